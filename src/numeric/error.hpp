@@ -1,0 +1,43 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace doppel {
+
+/// What the process answers with; one number a kind of outcome.
+enum class ExitCode { done = 0, differs = 1, bad_input = 2, method_failed = 3, io_failed = 4, interrupted = 130 };
+
+/// The one exception of Doppel: a sentence for the person who runs it, and the exit code that goes with it. It is thrown
+/// where the fault is known best, and caught once, in main.
+class Error : public std::runtime_error {
+public:
+    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    ExitCode code() const { return code_; }
+
+private:
+    ExitCode code_;
+};
+
+/// What was asked for makes no sense (exit 2).
+template <class... Args>
+Error bad_input(fmt::format_string<Args...> format, Args&&... args) {
+    return {ExitCode::bad_input, fmt::format(format, std::forward<Args>(args)...)};
+}
+
+/// The method broke down: a blow-up, a number that is none (exit 3).
+template <class... Args>
+Error method_failed(fmt::format_string<Args...> format, Args&&... args) {
+    return {ExitCode::method_failed, fmt::format(format, std::forward<Args>(args)...)};
+}
+
+/// Reading, drawing, encoding or writing failed (exit 4).
+template <class... Args>
+Error io_failed(fmt::format_string<Args...> format, Args&&... args) {
+    return {ExitCode::io_failed, fmt::format(format, std::forward<Args>(args)...)};
+}
+
+}  // namespace doppel

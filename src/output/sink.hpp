@@ -1,0 +1,22 @@
+#pragma once
+
+#include "picture/picture.hpp"
+
+#include <vector>
+
+namespace doppel {
+
+/// Where pictures go: a video or a folder of images. Fed in order, closed by finish(); both may block and both throw
+/// Error (exit 4) with the path and the reason. Destroyed unfinished it stops at once; whoever owns the file removes it.
+class Sink {
+public:
+    virtual ~Sink() = default;
+
+    /// The next frame. `changed` = where it differs from the frame before (the whole of it for the first).
+    virtual void take(const Picture& picture, const std::vector<Rect>& changed) = 0;
+
+    /// All that was taken is written, completely.
+    virtual void finish() = 0;
+};
+
+}  // namespace doppel

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace doppel {
+
+/// A colour as screens take it: sRGB, each channel 0…1, `a` = opacity (not premultiplied).
+struct Color {
+    float r = 0, g = 0, b = 0, a = 1;
+
+    constexpr Color with_alpha(float alpha) const { return {r, g, b, alpha}; }
+    friend constexpr bool operator==(const Color&, const Color&) = default;
+};
+
+/// From 0xRRGGBB, opaque.
+constexpr Color rgb(unsigned hex) {
+    return {static_cast<float>((hex >> 16) & 0xff) / 255.0f, static_cast<float>((hex >> 8) & 0xff) / 255.0f,
+            static_cast<float>(hex & 0xff) / 255.0f, 1.0f};
+}
+
+/// From "#rrggbb"; nothing where the text is no such colour.
+std::optional<Color> parse_color(std::string_view text);
+
+}  // namespace doppel

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "picture/color.hpp"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace doppel {
+
+/// A place in the picture, px from its top left corner; y points down. Pixel centres lie at halves.
+struct Point {
+    float x = 0, y = 0;
+};
+
+/// A filled rectangle with round corners. Its edges are at exactly left, top, right, bottom.
+struct Box {
+    float left = 0, top = 0, right = 0, bottom = 0;  // px
+    float corner = 0;                                // radius, px
+    Color color;
+};
+
+/// All points within `radius` of the segment from…to: a rod, a line, or a disc where both ends are one.
+struct Capsule {
+    Point from, to;
+    float radius = 1;  // px
+    Color color;
+};
+
+/// A circle drawn with a pen: `width` px wide, half of it on either side of `radius`.
+struct Ring {
+    Point center;
+    float radius = 1, width = 1;  // px
+    Color color;
+};
+
+/// A path of constant width whose opacity varies along it. It never adds to itself: where it crosses or joins itself the
+/// more opaque part shows.
+struct Stroke {
+    struct Vertex {
+        Point at;
+        float alpha = 1;  // times color.a
+    };
+    std::vector<Vertex> vertices;
+    float width = 1;  // px
+    Color color;
+};
+
+enum class Align { left, center, right };
+enum class Weight { regular, bold };
+
+/// One line of words (UTF-8), its baseline at anchor.y, aligned to anchor.x.
+struct Label {
+    std::string text;
+    Point anchor;
+    float size = 16;  // px an em
+    Align align = Align::left;
+    Weight weight = Weight::regular;
+    Color color;
+};
+
+/// What to draw, back to front.
+using Item = std::variant<Box, Capsule, Ring, Stroke, Label>;
+using DisplayList = std::vector<Item>;
+
+}  // namespace doppel
