@@ -1,0 +1,31 @@
+#pragma once
+
+#include "physics/pendulum.hpp"
+
+#include <cmath>
+#include <optional>
+
+namespace doppel {
+
+/// How far apart two pendulums are in state space: the Euclidean norm of the difference of (m, x, vx, y, vy) over all
+/// masses, in SI numbers, so that a difference in mass counts.
+inline double state_space_distance(const Bobs<double>& a, const Bobs<double>& b) {
+    double sum = 0;
+    const auto add = [&](double difference) { sum += difference * difference; };
+    for (std::size_t i = 0; i < link_count; ++i) {
+        add(a[i].mass - b[i].mass);
+        add(a[i].x - b[i].x);
+        add(a[i].vx - b[i].vx);
+        add(a[i].y - b[i].y);
+        add(a[i].vy - b[i].vy);
+    }
+    return std::sqrt(sum);
+}
+
+/// λ = ln(d / d0), the study's measure of divergence: dimensionless, not an exponent per second. Nothing where d0 or d is 0.
+inline std::optional<double> log_ratio(double distance, double start) {
+    if (start == 0 || distance == 0) return std::nullopt;
+    return std::log(distance / start);
+}
+
+}  // namespace doppel

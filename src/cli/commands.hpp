@@ -1,0 +1,15 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace doppel {
+
+// Each adds its command to the program: its options, its help, and what it does. One file a command.
+void add_render(CLI::App& app);
+void add_simulate(CLI::App& app);
+void add_compare(CLI::App& app, int& exit_code);  // the code is 1 where the pictures differ
+void add_list(CLI::App& app);
+void add_show(CLI::App& app);
+void add_check(CLI::App& app);
+
+}  // namespace doppel

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <atomic>
+
+namespace doppel {
+
+/// Becomes true when the person, or the system, asks the program to end (SIGINT, SIGTERM). The second time ends it at once.
+const std::atomic<bool>& watch_interrupts();
+
+}  // namespace doppel

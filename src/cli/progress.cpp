@@ -1,0 +1,95 @@
+#include "cli/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace doppel {
+namespace {
+
+std::string bar(double share) {
+    constexpr int width = 28;
+    const auto full = static_cast<int>(share * width);
+    std::string text;
+    for (int i = 0; i < width; ++i) text += i < full ? "━" : "─";
+    return text;
+}
+
+std::string duration(double seconds) {
+    const auto whole = static_cast<long>(seconds + 0.5);
+    return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
+}
+
+std::string bytes(double count) {
+    return count < 1e6 ? fmt::format("{:.0f} kB", count / 1e3) : fmt::format("{:.1f} MB", count / 1e6);
+}
+
+}  // namespace
+
+ProgressStyle progress_style(const std::string& name) {
+    if (name == "bar") return ProgressStyle::bar;
+    if (name == "plain") return ProgressStyle::plain;
+    if (name == "json") return ProgressStyle::json;
+    if (name == "none") return ProgressStyle::none;
+    return isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
+}
+
+ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::string unit)
+    : style_(style), name_(std::move(name)), unit_(std::move(unit)), start_(Clock::now()), shown_(start_) {}
+
+void ProgressReport::operator()(const Progress& progress) {
+    if (style_ == ProgressStyle::none) return;
+    const auto now = Clock::now();
+    const auto pause = style_ == ProgressStyle::bar ? std::chrono::milliseconds(100)
+                       : style_ == ProgressStyle::json ? std::chrono::milliseconds(500)
+                                                       : std::chrono::milliseconds(5000);
+    if (now - shown_ < pause) return;
+    shown_ = now;
+
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double rate = static_cast<double>(progress.done) / elapsed;
+    const double left = static_cast<double>(progress.total - progress.done) / rate;
+    const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
+    if (style_ == ProgressStyle::json) {
+        const nlohmann::ordered_json line = {{"event", "progress"}, {"preset", name_},          {"unit", unit_},
+                                             {"done", progress.done}, {"total", progress.total}, {"per_second", rate},
+                                             {"seconds_left", left}};
+        fmt::print("{}\n", line.dump());
+        std::fflush(stdout);
+    } else if (style_ == ProgressStyle::bar) {
+        fmt::print(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
+                   progress.done, progress.total, unit_, rate, unit_, duration(left));
+        on_screen_ = true;
+    } else {
+        fmt::print(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
+                   100 * share, rate, unit_, duration(left));
+    }
+}
+
+void ProgressReport::clear() {
+    if (on_screen_) fmt::print(stderr, "\r\033[K");
+    on_screen_ = false;
+}
+
+void ProgressReport::done(const RunResult& result) {
+    clear();
+    const long count = result.frames > 0 ? result.frames : result.samples;
+    if (style_ == ProgressStyle::json) {
+        nlohmann::ordered_json line = {{"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
+        for (const auto& file : result.files) line["files"].push_back(file.string());
+        fmt::print("{}\n", line.dump());
+        return;
+    }
+    if (style_ != ProgressStyle::none)
+        fmt::print(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
+                   static_cast<double>(count) / result.wall_s, unit_);
+    for (const auto& file : result.files)
+        fmt::print("{}\n", std::filesystem::is_directory(file)
+                               ? file.string() + "/"
+                               : fmt::format("{} ({})", file.string(), bytes(static_cast<double>(std::filesystem::file_size(file)))));
+}
+
+}  // namespace doppel

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "scene/run.hpp"
+
+#include <chrono>
+#include <string>
+
+namespace doppel {
+
+enum class ProgressStyle { bar, plain, json, none };
+
+/// "auto" is a bar on a terminal and plain lines elsewhere.
+ProgressStyle progress_style(const std::string& name);
+
+/// Tells the person how far a run is: a bar that renews itself, a line every few seconds, or JSON lines for a program (on
+/// standard output; the others on standard error).
+class ProgressReport {
+public:
+    ProgressReport(ProgressStyle style, std::string name, std::string unit);
+
+    void operator()(const Progress& progress);
+    void done(const RunResult& result);
+    /// Takes the bar off the screen, before an error is printed.
+    void clear();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    ProgressStyle style_;
+    std::string name_, unit_;  // of what; "frames"
+    Clock::time_point start_, shown_;
+    bool on_screen_ = false;
+};
+
+}  // namespace doppel

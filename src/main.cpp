@@ -1,0 +1,49 @@
+#include "cli/commands.hpp"
+#include "numeric/error.hpp"
+#include "scene/version.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <fmt/format.h>
+
+namespace {
+
+int failed(doppel::ExitCode code, const char* message) {
+    fmt::print(stderr, "doppel: {}\n", message);
+    return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using doppel::ExitCode;
+    try {
+        CLI::App app("Doppel films chaotic pendulums in pairs, a hair apart, and charts how they part.", "doppel");
+        app.set_version_flag("--version", fmt::format("doppel {} ({})", doppel::version(), doppel::revision()));
+        app.footer("doppel COMMAND --help tells more. Exit codes: 0 done, 1 compare found a difference, 2 bad usage or input,\n"
+                   "3 the method failed, 4 reading, writing or encoding failed, 130 interrupted.");
+        app.require_subcommand(1);
+
+        int exit_code = 0;
+        doppel::add_render(app);
+        doppel::add_simulate(app);
+        doppel::add_compare(app, exit_code);
+        doppel::add_list(app);
+        doppel::add_show(app);
+        doppel::add_check(app);
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::ParseError& fault) {
+            if (fault.get_exit_code() == 0) return app.exit(fault);
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", fault.what()).c_str());
+        }
+        return exit_code;
+    } catch (const doppel::Error& fault) {
+        return failed(fault.code(), fault.what());
+    } catch (const std::bad_alloc&) {
+        return failed(ExitCode::io_failed, "there is not enough memory");
+    } catch (const std::exception& fault) {
+        return failed(ExitCode::io_failed, fault.what());
+    }
+}

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace doppel {
+
+/// A fraction in lowest terms, denominator > 0. Times and rates that must divide each other exactly are kept as these.
+struct Rational {
+    std::int64_t numerator = 0, denominator = 1;
+
+    double value() const { return static_cast<double>(numerator) / static_cast<double>(denominator); }
+    bool is_whole() const { return denominator == 1; }
+    std::string text() const;  // "1/30000", "12"
+    friend bool operator==(const Rational&, const Rational&) = default;
+};
+
+/// numerator / denominator in lowest terms; nothing where the denominator is 0.
+std::optional<Rational> reduced(std::int64_t numerator, std::int64_t denominator);
+
+/// Exact; nothing where a part leaves 64 bits or the divisor is 0.
+std::optional<Rational> product(const Rational& a, const Rational& b);
+std::optional<Rational> quotient(const Rational& a, const Rational& b);
+
+/// "1/30000", "0.001", "2.5e-4": the number its digits mean. Nothing where the text is none, or needs more than 64 bits.
+std::optional<Rational> parse_rational(std::string_view text);
+
+/// The decimal fraction that the shortest digits of `value` mean: 0.1 becomes 1/10.
+std::optional<Rational> rational_from_decimal(double value);
+
+}  // namespace doppel

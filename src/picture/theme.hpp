@@ -1,0 +1,50 @@
+#pragma once
+
+#include "picture/color.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace doppel {
+
+/// The colours of a picture. The hues of the two sides, orange and blue, stay apart for the colour-blind (after Okabe & Ito 2008).
+struct Theme {
+    std::string_view name;
+    Color background, panel;           // behind everything; behind the pendulums
+    Color text, quiet_text;            // what is read first; what is read when wanted
+    Color grid, frame, cursor;         // lines of a chart: decades and seconds, its border, now
+    Color rod, bob, pivot;             // what all pendulums share
+    std::array<Color, 2> sides;        // a, b
+    Color trace;                       // what belongs to both
+};
+
+inline constexpr std::array<Theme, 2> themes{{
+    {.name = "dark",
+     .background = rgb(0x0b0e13),
+     .panel = rgb(0x11151d),
+     .text = rgb(0xf1f4f8),
+     .quiet_text = rgb(0x98a2b3),
+     .grid = rgb(0x222936),
+     .frame = rgb(0x2f3846),
+     .cursor = rgb(0x8b95a5),
+     .rod = rgb(0xc9d1dc),
+     .bob = rgb(0xeef1f6),
+     .pivot = rgb(0x6f7a8a),
+     .sides = {rgb(0xffa640), rgb(0x4fb0ff)},
+     .trace = rgb(0xb9f0c0)},
+    {.name = "light",
+     .background = rgb(0xffffff),
+     .panel = rgb(0xf4f6f9),
+     .text = rgb(0x10151d),
+     .quiet_text = rgb(0x586273),
+     .grid = rgb(0xe2e6ec),
+     .frame = rgb(0xc3cad4),
+     .cursor = rgb(0x8791a1),
+     .rod = rgb(0x4a5464),
+     .bob = rgb(0x27303d),
+     .pivot = rgb(0x9aa4b3),
+     .sides = {rgb(0xc95a00), rgb(0x0068b8)},
+     .trace = rgb(0x1b7a3d)},
+}};
+
+}  // namespace doppel

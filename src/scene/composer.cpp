@@ -1,0 +1,98 @@
+#include "scene/composer.hpp"
+
+#include "scene/wording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+constexpr double parted_at = 1;  // state-space distance from which the two count as strangers
+
+Theme themed(const VideoSpec& video) {
+    auto theme = *std::find_if(themes.begin(), themes.end(), [&](const auto& t) { return t.name == video.theme; });
+    if (video.side_colors) theme.sides = *video.side_colors;
+    return theme;
+}
+
+/// As many decimals as tell one frame from the next.
+std::string clock(const Scene& scene, double time) {
+    const double frame = 1 / (scene.fps.value() / scene.preset.video.speed.value());
+    return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
+}
+
+std::string speed_words(const Rational& speed) {
+    if (speed == Rational{1, 1}) return "real time";
+    return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
+}
+
+}  // namespace
+
+Composer::Composer(const Scene& scene)
+    : scene_(scene),
+      layout_(make_layout(scene)),
+      theme_(themed(scene.preset.video)),
+      heaviest_(std::max({scene.a.pendulum.mass[0], scene.a.pendulum.mass[1], scene.b.pendulum.mass[0],
+                          scene.b.pendulum.mass[1]})) {}
+
+DisplayList Composer::backdrop() const {
+    const float t = layout_.text, u = layout_.unit;
+    const auto& page = layout_.page;
+    const auto& size = scene_.preset.video.size;
+    DisplayList list;
+    list.push_back(Box{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, theme_.background});
+    list.push_back(Label{layout_.title, {page.left, page.top + 38 * t}, 40 * t, Align::left, Weight::bold, theme_.text});
+    list.push_back(Label{layout_.subtitle, {page.left, page.top + 74 * t}, 22 * t, Align::left, Weight::regular, theme_.quiet_text});
+    list.push_back(Label{speed_words(scene_.preset.video.speed), {page.right, page.top + 74 * t}, 22 * t, Align::right,
+                         Weight::regular, theme_.quiet_text});
+
+    for (std::size_t side = 0; layout_.panels && side < 2; ++side) {
+        const auto& panel = (*layout_.panels)[side];
+        const auto& area = panel.area;
+        list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
+        const double reach = std::max(scene_.a.pendulum.reach(), scene_.b.pendulum.reach());
+        list.push_back(Ring{panel.pivot, panel.px_per_m * static_cast<float>(reach), std::max(1.5f * u, 1.0f), theme_.grid});
+        const float left = area.left + 28 * u;
+        list.push_back(Label{panel.heading, {left, area.top + 50 * t}, 31 * t, Align::left, Weight::bold, theme_.sides[side]});
+        list.push_back(Label{panel.note, {left, area.top + 82 * t}, 21 * t, Align::left, Weight::regular, theme_.quiet_text});
+    }
+    if (layout_.distance) compose_strip_backdrop(*layout_.distance, "state-space distance", 34 * t, list);
+    if (layout_.energy) compose_strip_backdrop(*layout_.energy, "energy error", 26 * t, list);
+    if (layout_.distance || layout_.energy) compose_time_labels(layout_.energy ? *layout_.energy : *layout_.distance, list);
+    return list;
+}
+
+void Composer::add(const Moment& moment) {
+    now_ = moment;
+    const double time = scene_.time(moment.sample);
+    if (layout_.panels) {
+        extend_trail(0, moment.a.bobs.back(), time);
+        extend_trail(1, moment.b.bobs.back(), time);
+    }
+    if (layout_.distance) {
+        const auto& strip = *layout_.distance;
+        distance_.add({strip.time.at(time), strip.value.at(moment.distance)});
+    }
+    if (layout_.energy) {
+        const auto& strip = *layout_.energy;
+        energy_[0].add({strip.time.at(time), strip.value.at(std::abs(moment.energy_error_a))});
+        energy_[1].add({strip.time.at(time), strip.value.at(std::abs(moment.energy_error_b))});
+    }
+    if (!parted_ && moment.distance >= parted_at && moment.sample > 0) parted_ = time;
+}
+
+DisplayList Composer::frame() const {
+    const float t = layout_.text;
+    DisplayList list;
+    list.push_back(Label{clock(scene_, scene_.time(now_.sample)), {layout_.page.right, layout_.page.top + 38 * t}, 40 * t,
+                         Align::right, Weight::regular, theme_.text});
+    for (std::size_t side = 0; layout_.panels && side < 2; ++side) compose_panel(side, list);
+    if (layout_.distance) compose_distance(list);
+    if (layout_.energy) compose_energy(list);
+    return list;
+}
+
+}  // namespace doppel

@@ -1,0 +1,85 @@
+#include "scene/composer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+float apart(Point a, Point b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+}  // namespace
+
+/// Adds the way from the last bob to this one: a cubic through both with their velocities (Hermite), in pieces of a few pixels.
+void Composer::extend_trail(std::size_t side, const Bob<double>& bob, double time) {
+    const auto& panel = (*layout_.panels)[side];
+    auto& trail = trails_[side];
+    const float piece = std::max(8 * layout_.unit, 2.0f), least = std::max(1.5f * layout_.unit, 0.5f);  // px
+
+    const auto extend = [&](Point at, double when) {
+        if (trail.empty() || apart(at, trail.back().at) >= least) trail.push_back({at, when});
+    };
+    if (auto& last = last_bob_[side]) {
+        const auto& [from, from_time] = *last;
+        const double dt = time - from_time;
+        const float length = apart(panel.at(from.x, from.y), panel.at(bob.x, bob.y));
+        const int pieces = std::clamp(static_cast<int>(std::ceil(length / piece)), 1, 32);
+        for (int i = 1; i <= pieces; ++i) {
+            const double s = static_cast<double>(i) / pieces, r = 1 - s;
+            const auto cubic = [&](double p, double v, double q, double w) {
+                return (1 + 2 * s) * r * r * p + s * r * r * dt * v + s * s * (3 - 2 * s) * q - s * s * r * dt * w;
+            };
+            extend(panel.at(cubic(from.x, from.vx, bob.x, bob.vx), cubic(from.y, from.vy, bob.y, bob.vy)),
+                   from_time + s * dt);
+        }
+    } else {
+        extend(panel.at(bob.x, bob.y), time);
+    }
+    last_bob_[side] = {bob, time};
+    while (!trail.empty() && trail.front().time < time - scene_.preset.video.trail_s) trail.pop_front();
+}
+
+void Composer::compose_panel(std::size_t side, DisplayList& list) const {
+    const auto& panel = (*layout_.panels)[side];
+    const auto& own = side == 0 ? now_.a : now_.b;
+    const auto& other = side == 0 ? now_.b : now_.a;
+    const double trail_s = scene_.preset.video.trail_s;
+
+    // the trail of the last bob, fading with its age
+    if (trail_s > 0) {
+        Stroke stroke{{}, std::max(3.4f * layout_.unit, 1.2f), theme_.sides[side]};
+        const double time = scene_.time(now_.sample);
+        const auto freshness = [&](double when) { return static_cast<float>(std::clamp(1 - (time - when) / trail_s, 0.0, 1.0)); };
+        for (const auto& point : trails_[side]) stroke.vertices.push_back({point.at, std::pow(freshness(point.time), 1.6f)});
+        stroke.vertices.push_back({panel.at(own.bobs.back().x, own.bobs.back().y), 1});
+        list.push_back(std::move(stroke));
+    }
+
+    // where the twin is now, faintly; as long as they swing as one it hides behind this side
+    const Color ghost = theme_.sides[1 - side].with_alpha(0.26f);
+    compose_pendulum(panel, other.bobs, ghost, ghost, ghost, list);
+    compose_pendulum(panel, own.bobs, theme_.rod, theme_.bob, theme_.sides[side], list);
+}
+
+void Composer::compose_pendulum(const PanelLayout& panel, const Bobs<double>& bobs, Color rods, Color bobs_color, Color last,
+                                DisplayList& list) const {
+    const bool ghost = rods.a < 1;
+    Point joint = panel.pivot;
+    for (const auto& bob : bobs) {
+        const Point at = panel.at(bob.x, bob.y);
+        list.push_back(Capsule{joint, at, layout_.rod_radius * (ghost ? 0.7f : 1), rods});
+        joint = at;
+    }
+    if (!ghost) list.push_back(Capsule{panel.pivot, panel.pivot, 0.4f * layout_.bob_radius, theme_.pivot});
+    for (std::size_t i = 0; i < bobs.size(); ++i) {
+        // area by mass, but never too small to see
+        const auto share = static_cast<float>(std::sqrt(bobs[i].mass / heaviest_));
+        const float radius = std::max(layout_.bob_radius * share, 1.6f * layout_.rod_radius);
+        const Point at = panel.at(bobs[i].x, bobs[i].y);
+        const float rim = std::max(2 * layout_.unit, 0.75f);
+        if (!ghost) list.push_back(Capsule{at, at, radius + rim, theme_.panel});
+        list.push_back(Capsule{at, at, radius, i + 1 == bobs.size() ? last : bobs_color});
+    }
+}
+
+}  // namespace doppel

@@ -1,0 +1,92 @@
+#include "scene/composer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// A line from a to b whose edges fall on pixels: exactly `width` px, not two half-covered rows.
+Box vertical_line(float x, float top, float bottom, float width, Color color) {
+    const float left = std::round(x - width / 2);
+    return {left, top, left + std::max(1.0f, std::round(width)), bottom, 0, color};
+}
+
+Box horizontal_line(float y, float left, float right, float width, Color color) {
+    const float top = std::round(y - width / 2);
+    return {left, top, right, top + std::max(1.0f, std::round(width)), 0, color};
+}
+
+/// 0.0123 → "1.2 × 10⁻²"
+std::string scientific(double value) {
+    if (!(value > 0)) return "0";
+    if (value >= 0.1 && value < 1000) return fmt::format("{:.2g}", value);
+    const auto digits = fmt::format("{:.1e}", value);
+    const auto e = digits.find('e');
+    return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));
+}
+
+}  // namespace
+
+void Composer::compose_strip_backdrop(const StripLayout& strip, const char* heading, float label_px, DisplayList& list) const {
+    const float t = layout_.text, line = std::max(1.4f * layout_.unit, 1.0f);
+    const auto& area = strip.area;
+    const float size = 20 * t;
+    for (const auto& tick : round_ticks(strip.time, 90 * t))
+        list.push_back(vertical_line(strip.time.at(tick.value), area.top, area.bottom, line, theme_.grid));
+    for (const auto& tick : decade_ticks(strip.value, label_px)) {
+        const float y = strip.value.at(tick.value);
+        const bool border = y > area.bottom - 0.5f;
+        if (tick.text.empty() && !border) continue;
+        list.push_back(horizontal_line(y, area.left, area.right, line, border ? theme_.frame : theme_.grid));
+        if (!tick.text.empty())
+            list.push_back(Label{tick.text, {area.left - 12 * t, y + 0.36f * size}, size, Align::right, Weight::regular, theme_.quiet_text});
+    }
+    list.push_back(Label{heading, {area.left + 14 * t, area.top + 24 * t}, 21 * t, Align::left, Weight::regular, theme_.text});
+}
+
+void Composer::compose_time_labels(const StripLayout& strip, DisplayList& list) const {
+    const float t = layout_.text;
+    const auto ticks = round_ticks(strip.time, 90 * t);
+    for (const auto& tick : ticks) {
+        const bool last = &tick == &ticks.back();
+        const float x = strip.time.at(tick.value);
+        // the last one carries the unit, and stays on the page
+        const bool at_edge = x > layout_.page.right - 30 * t;
+        list.push_back(Label{last ? tick.text + " s" : tick.text, {at_edge ? layout_.page.right : x, layout_.time_labels}, 20 * t,
+                             at_edge ? Align::right : Align::center, Weight::regular, theme_.quiet_text});
+    }
+}
+
+void Composer::compose_distance(DisplayList& list) const {
+    const auto& strip = *layout_.distance;
+    const float t = layout_.text, u = layout_.unit;
+    const float x = strip.time.at(scene_.time(now_.sample)), y = strip.value.at(now_.distance);
+    list.push_back(Label{scientific(now_.distance), {strip.area.left + 14 * t, strip.area.top + 52 * t}, 21 * t, Align::left,
+                         Weight::regular, theme_.trace});
+    if (parted_) {
+        // the moment of parting: a dashed line and when it was, on the side that has room
+        const float at = strip.time.at(*parted_), dash = 6 * t;
+        for (float top = strip.area.top; top < strip.area.bottom; top += 2 * dash)
+            list.push_back(vertical_line(at, top, std::min(top + dash, strip.area.bottom), std::max(1.6f * u, 1.0f), theme_.quiet_text));
+        const bool room_left = at - strip.area.left > 420 * t;
+        list.push_back(Label{fmt::format("parted at {:.1f} s", *parted_),
+                             {room_left ? at - 12 * t : at + 12 * t, strip.area.bottom - 14 * t}, 21 * t,
+                             room_left ? Align::right : Align::left, Weight::regular, theme_.text});
+    }
+    list.push_back(vertical_line(x, strip.area.top, strip.area.bottom, std::max(1.6f * u, 1.0f), theme_.cursor));
+    list.push_back(Stroke{distance_.vertices(), std::max(2.8f * u, 1.2f), theme_.trace});
+    list.push_back(Capsule{{x, y}, {x, y}, std::max(6.5f * u, 2.0f), theme_.trace});
+}
+
+void Composer::compose_energy(DisplayList& list) const {
+    const auto& strip = *layout_.energy;
+    const float u = layout_.unit, x = strip.time.at(scene_.time(now_.sample));
+    list.push_back(vertical_line(x, strip.area.top, strip.area.bottom, std::max(1.6f * u, 1.0f), theme_.cursor));
+    for (std::size_t side = 0; side < 2; ++side)
+        list.push_back(Stroke{energy_[side].vertices(), std::max(2.2f * u, 1.0f), theme_.sides[side].with_alpha(0.9f)});
+}
+
+}  // namespace doppel

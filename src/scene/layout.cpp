@@ -1,0 +1,116 @@
+#include "scene/layout.hpp"
+
+#include "picture/font.hpp"
+#include "scene/wording.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// The distance axis where the preset names none: from the decade of the start to that of two strangers of the same energy.
+Range fitted_distance(const Scene& scene) {
+    const auto start = PairRun(scene).next(std::atomic<bool>(false));
+    const auto& p = scene.a.pendulum;
+    const double available = start.a.energy + p.potential_range() / 2;  // J, above hanging at rest
+    const double speed2 = 2 * available / std::min(p.mass[0], p.mass[1]);
+    const double apart2 = std::min(2 * p.reach() * p.reach(), 2 * available / (p.mass[0] * p.gravity) * p.reach());
+    const double high = std::sqrt(std::max(speed2 + apart2, 1e-12));
+    const double low = start.distance > 0 ? start.distance / 2 : high * 1e-8;
+    const double top = std::pow(10, std::ceil(std::log10(high)));
+    return {std::min(std::pow(10, std::floor(std::log10(low))), top / 10), top};
+}
+
+Range fitted_energy(const Scene& scene) {
+    const bool low_order = scene.a.method.order == 1 || scene.b.method.order == 1;
+    return low_order ? Range{1e-8, 1} : Range{1e-16, 1};
+}
+
+/// The circle of the outstretched chain as large as the panel allows, clear of the words in its top left corner.
+void place_pendulum(PanelLayout& panel, float words_right, float words_bottom, double reach, float margin) {
+    const Area& area = panel.area;
+    float radius = std::min(area.width(), area.height()) / 2 - margin;
+    const float x = (area.left + area.right) / 2;
+    const auto pivot_y = [&] { return area.bottom - margin - radius; };
+    const auto clear = [&] {
+        const float dx = std::max(0.0f, x - words_right), dy = std::max(0.0f, pivot_y() - words_bottom);
+        return dx * dx + dy * dy >= radius * radius;
+    };
+    const float least = radius / 2;
+    while (!clear() && radius > least) radius -= 1;
+    panel.pivot = {x, pivot_y()};
+    panel.px_per_m = radius / static_cast<float>(reach);
+}
+
+StripLayout strip(const Layout& layout, const Scene& scene, float top, float bottom, const Range& range) {
+    const Area area{layout.page.left + std::round(84 * layout.text), std::round(top), layout.page.right, std::round(bottom)};
+    return {area,
+            {.low = 0, .high = scene.time(scene.samples), .from = area.left, .to = area.right},
+            {.low = range.low, .high = range.high, .from = area.bottom, .to = area.top, .logarithmic = true}};
+}
+
+}  // namespace
+
+Point PanelLayout::at(double x_m, double y_m) const {
+    return {pivot.x + px_per_m * static_cast<float>(x_m), pivot.y - px_per_m * static_cast<float>(y_m)};
+}
+
+Layout make_layout(const Scene& scene) {
+    const auto& video = scene.preset.video;
+    const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
+    Layout layout;
+    layout.unit = std::min(width / 1920, height / 1080);
+    layout.text = std::max(layout.unit, 0.45f);
+    const float u = layout.unit, t = layout.text;
+    layout.page = {std::round(60 * u), std::round(28 * u), width - std::round(60 * u), height - std::round(26 * u)};
+    layout.title = scene.preset.title;
+    layout.subtitle = scene_words(scene);
+
+    // from the bottom up: words of the time axis, strips, panels; the header has what is left
+    const float header = layout.page.top + 96 * t;
+    float bottom = layout.page.bottom;
+    const bool strips = video.distance || video.energy;
+    if (strips) {
+        layout.time_labels = bottom - 4 * t;
+        bottom -= 38 * t;
+        const float room = bottom - header;
+        const float energy = video.energy ? (video.pendulums ? 0.125f : 0.3f) * room : 0;
+        const float distance = video.distance ? (video.pendulums ? 0.25f : 0.7f) * room : 0;
+        const float gap = video.energy && video.distance ? 16 * u : 0;
+        const float all = video.pendulums ? energy + distance + gap : room;
+        const float energy_top = video.distance ? bottom - energy : bottom - all;
+        if (video.energy)
+            layout.energy = strip(layout, scene, energy_top, bottom, video.energy_range.value_or(fitted_energy(scene)));
+        if (video.distance)
+            layout.distance = strip(layout, scene, bottom - all, bottom - energy - gap,
+                                    video.distance_range.value_or(fitted_distance(scene)));
+        bottom -= all + 32 * u;
+    }
+    if (!video.pendulums) return layout;
+
+    const auto words = side_words(scene);
+    const double reach = std::max(scene.a.pendulum.reach(), scene.b.pendulum.reach());
+    const float gap = std::round(24 * u), panel_width = std::floor((layout.page.width() - gap) / 2);
+    layout.panels.emplace();
+    for (std::size_t side = 0; side < 2; ++side) {
+        auto& panel = (*layout.panels)[side];
+        const float left = layout.page.left + static_cast<float>(side) * (panel_width + gap);
+        panel.area = {left, std::round(header), left + panel_width, std::round(bottom)};
+        panel.heading = words[side].heading;
+        panel.note = words[side].note;
+    }
+    // both alike, so that the pendulums are drawn to one scale
+    float words_width = 0;
+    for (const auto& panel : *layout.panels)
+        words_width = std::max({words_width, text_width(panel.heading, 31 * t, Weight::bold), text_width(panel.note, 21 * t)});
+    for (auto& panel : *layout.panels)
+        place_pendulum(panel, panel.area.left + 28 * u + words_width + 8 * u, panel.area.top + (panel.note.empty() ? 60 : 92) * t,
+                       reach, 30 * u);
+    const float radius = static_cast<float>(reach) * layout.panels->front().px_per_m;
+    layout.bob_radius = 0.068f * radius;
+    layout.rod_radius = std::max(0.0115f * radius, 0.8f);
+    return layout;
+}
+
+}  // namespace doppel

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "picture/axis.hpp"
+#include "picture/display_list.hpp"
+#include "scene/scene.hpp"
+
+#include <array>
+#include <optional>
+
+namespace doppel {
+
+/// A rectangle in px.
+struct Area {
+    float left = 0, top = 0, right = 0, bottom = 0;
+
+    float width() const { return right - left; }
+    float height() const { return bottom - top; }
+};
+
+/// A pendulum's panel and how metres become pixels in it.
+struct PanelLayout {
+    Area area;
+    Point pivot;               // px
+    float px_per_m = 1;
+    std::string heading, note;  // what differs; what else defines the side
+    Point at(double x_m, double y_m) const;
+};
+
+/// A strip of the chart below: time across, a quantity up.
+struct StripLayout {
+    Area area;
+    Axis time, value;
+};
+
+/// Where everything of a pair's picture goes: a function of the scene alone.
+struct Layout {
+    float unit = 1;  // 1 px of a 1920×1080 picture
+    float text = 1;  // the same for words, which stay legible in small pictures
+    Area page;       // within the margins
+    std::string title, subtitle;
+    std::optional<std::array<PanelLayout, 2>> panels;
+    std::optional<StripLayout> distance, energy;
+    float bob_radius = 0;  // px, of the heaviest
+    float rod_radius = 0;  // half its width, px
+    float time_labels = 0;  // their baseline, px
+};
+
+Layout make_layout(const Scene& scene);
+
+}  // namespace doppel

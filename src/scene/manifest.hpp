@@ -1,0 +1,35 @@
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// The preset as it was understood, every key with its value: TOML that read_preset() reads back to the same scene.
+std::string resolved_toml(const Preset& preset);
+
+struct WorstErrors {
+    double energy_a = 0, energy_b = 0;  // relative
+    double length_a = 0, length_b = 0;  // m
+};
+
+/// What a run has to tell about itself besides the scene.
+struct RunRecord {
+    long first_sample = 0, last_sample = 0;  // in the table, both included
+    long frames = 0;
+    std::string gl, libav;  // empty where no pictures were made
+    double simulate_cpu_s = 0, draw_cpu_s = 0, write_cpu_s = 0;  // by the threads' clocks; write = convert, hand over
+    double encode_cpu_s = 0;                                      // the rest of the process: encoder or compressor threads
+    double wall_s = 0, cpu_s = 0;
+    WorstErrors worst;
+    double largest_distance = 0;
+    std::vector<std::pair<std::string, std::filesystem::path>> files;  // name, and where its bytes are now
+};
+
+/// Writes the manifest to `path`; hashes the files. Throws Error (exit 4).
+void write_manifest(const std::filesystem::path& path, const Scene& scene, const RunRecord& record);
+
+}  // namespace doppel

@@ -1,0 +1,242 @@
+#include "scene/run.hpp"
+
+#include "analysis/distance.hpp"
+#include "numeric/error.hpp"
+#include "output/csv.hpp"
+#include "output/mp4.hpp"
+#include "output/part_files.hpp"
+#include "output/png.hpp"
+#include "output/queue.hpp"
+#include "picture/renderer.hpp"
+#include "scene/composer.hpp"
+#include "scene/manifest.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <optional>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+double seconds_of(clockid_t clock) {
+    timespec now{};
+    clock_gettime(clock, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Adds the CPU time that this thread spends while it lives, s.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& total) : total_(total), start_(seconds_of(CLOCK_THREAD_CPUTIME_ID)) {}
+    ~Stopwatch() { total_ += seconds_of(CLOCK_THREAD_CPUTIME_ID) - start_; }
+
+private:
+    double& total_;
+    double start_;
+};
+
+/// Steps the pair in a thread of its own, a bounded number of moments ahead of who takes them.
+class Simulation {
+public:
+    Simulation(const Scene& scene, long last, const std::atomic<bool>& stop)
+        : thread_([this, &scene, last, &stop] { work(scene, last, stop); }) {}
+    ~Simulation() {
+        ahead_.close();
+        thread_.join();
+    }
+
+    /// The next moment; rethrows what stopped the simulation.
+    Moment next() {
+        auto moment = ahead_.pop();
+        if (!moment) std::rethrow_exception(fault_);
+        return *moment;
+    }
+
+    /// CPU time of the thread, s; whole once the last moment was taken.
+    double cpu_s() const { return cpu_s_; }
+
+private:
+    void work(const Scene& scene, long last, const std::atomic<bool>& stop) {
+        try {
+            PairRun pair(scene);
+            for (long sample = 0; sample < last; ++sample) {
+                auto moment = pair.next(stop);
+                cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+                if (!ahead_.push(std::move(moment))) return;
+            }
+        } catch (...) {
+            fault_ = std::current_exception();
+            ahead_.close();
+        }
+    }
+
+    Queue<Moment> ahead_{256};
+    std::exception_ptr fault_;
+    std::atomic<double> cpu_s_ = 0;
+    std::thread thread_;
+};
+
+/// The table of a pair: DESIGN's columns, the same for every model.
+class Table {
+public:
+    explicit Table(const std::filesystem::path& path) : csv_(path, columns()) {}
+
+    void add(const Scene& scene, const Moment& moment, double start_distance) {
+        csv_.add(moment.sample);
+        csv_.add(scene.time(moment.sample));
+        add_side(moment.a, moment.energy_error_a);
+        add_side(moment.b, moment.energy_error_b);
+        csv_.add(moment.distance);
+        const auto ratio = log_ratio(moment.distance, start_distance);
+        ratio ? csv_.add(*ratio) : csv_.add_empty();
+        csv_.end_row();
+    }
+
+    void finish() { csv_.finish(); }
+
+private:
+    static std::vector<std::string> columns() {
+        std::vector<std::string> names{"sample", "time_s"};
+        for (const char side : {'a', 'b'}) {
+            const auto each_link = [&](std::initializer_list<const char*> patterns) {
+                for (std::size_t i = 1; i <= link_count; ++i)
+                    for (const char* pattern : patterns) names.push_back(fmt::format(fmt::runtime(pattern), side, i));
+            };
+            each_link({"{}_theta{}_rad"});
+            each_link({"{}_omega{}_rad_per_s"});
+            each_link({"{}_x{}_m", "{}_y{}_m", "{}_vx{}_m_per_s", "{}_vy{}_m_per_s"});
+            for (const char* name : {"energy_J", "energy_error", "length_error_m"}) names.push_back(fmt::format("{}_{}", side, name));
+        }
+        names.insert(names.end(), {"distance", "log_ratio"});
+        return names;
+    }
+
+    void add_side(const Observation& seen, double energy_error) {
+        for (const auto& bob : seen.bobs) csv_.add(bob.theta);
+        for (const auto& bob : seen.bobs) csv_.add(bob.omega);
+        for (const auto& bob : seen.bobs)
+            for (const double value : {bob.x, bob.y, bob.vx, bob.vy}) csv_.add(value);
+        for (const double value : {seen.energy, energy_error, seen.length_error}) csv_.add(value);
+    }
+
+    Csv csv_;
+};
+
+/// Draws the frames and hands them to the video or the sequence.
+class Film {
+public:
+    Film(const Scene& scene, PartFiles& parts, int jobs, RunRecord& record) : scene_(scene), composer_(scene) {
+        const auto& video = scene.preset.video;
+        if (video.format == "png") {
+            const auto folder = parts.directory("frames");
+            record.files.emplace_back("frames", folder);
+            sink_ = make_png_sink(folder, [this](long k) { return fmt::format("{:06}.png", first_frame_ + k); }, jobs);
+        } else {
+            const auto name = scene.preset.name + ".mp4";
+            const auto path = parts.file(name);
+            record.files.emplace_back(name, path);
+            sink_ = make_mp4_sink(path, {.size = video.size,
+                                         .fps_numerator = static_cast<int>(scene.fps.numerator),
+                                         .fps_denominator = static_cast<int>(scene.fps.denominator),
+                                         .preset = video.preset,
+                                         .crf = video.crf,
+                                         .threads = jobs,
+                                         .title = scene.preset.title});
+            record.libav = libav_description();
+        }
+        renderer_.emplace(video.size, composer_.backdrop());
+        record.gl = renderer_->description();
+    }
+
+    void add(const Moment& moment) { composer_.add(moment); }
+
+    /// The moment added last becomes a frame.
+    void shoot(const Moment& moment, RunRecord& record) {
+        if (record.frames == 0) first_frame_ = moment.sample / scene_.samples_per_frame;
+        const Picture* picture = nullptr;
+        {
+            Stopwatch watch(record.draw_cpu_s);
+            picture = &renderer_->draw(composer_.frame());
+        }
+        Stopwatch watch(record.write_cpu_s);
+        sink_->take(*picture, renderer_->changed());
+        ++record.frames;
+    }
+
+    void finish() { sink_->finish(); }
+
+private:
+    const Scene& scene_;
+    Composer composer_;
+    std::atomic<long> first_frame_ = 0;  // its number; compressor threads ask
+    std::unique_ptr<Sink> sink_;
+    std::optional<Renderer> renderer_;
+};
+
+void watch_worst(WorstErrors& worst, const Moment& moment) {
+    worst.energy_a = std::max(worst.energy_a, std::abs(moment.energy_error_a));
+    worst.energy_b = std::max(worst.energy_b, std::abs(moment.energy_error_b));
+    worst.length_a = std::max(worst.length_a, moment.a.length_error);
+    worst.length_b = std::max(worst.length_b, moment.b.length_error);
+}
+
+}  // namespace
+
+RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
+              const std::function<void(const Progress&)>& report) {
+    const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
+    if (first < 0 || first >= last || last > scene.samples + 1)
+        throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last, scene.preset.name,
+                        scene.samples, scene.samples + 1);
+    const long stride = options.pictures ? scene.samples_per_frame : 1;
+    const long total = (last - 1) / stride - (first - 1 + stride) / stride + 1;
+    if (options.pictures && total < 1)
+        throw bad_input("--frames {}:{}: no frame falls into it; every {}th sample is one", first, last, stride);
+    const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+
+    RunRecord record{.first_sample = first, .last_sample = last - 1};
+    PartFiles parts(options.out / scene.preset.name);
+    std::optional<Film> film;
+    if (options.pictures) film.emplace(scene, parts, jobs, record);
+    const auto csv_name = scene.preset.name + ".csv";
+    record.files.emplace_back(csv_name, parts.file(csv_name));
+    Table table(record.files.back().second);
+
+    Simulation simulation(scene, last, stop);
+    double start_distance = 0;
+    for (long sample = 0, done = 0; sample < last; ++sample) {
+        const auto moment = simulation.next();
+        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        if (sample == 0) start_distance = moment.distance;
+        watch_worst(record.worst, moment);
+        record.largest_distance = std::max(record.largest_distance, moment.distance);
+        if (film) film->add(moment);
+        if (sample < first) continue;
+        table.add(scene, moment, start_distance);
+        if (sample % stride != 0) continue;
+        if (film) film->shoot(moment, record);
+        report({++done, total});
+    }
+    table.finish();
+    if (film) film->finish();
+
+    record.simulate_cpu_s = simulation.cpu_s();
+    record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+    record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
+    record.encode_cpu_s = std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
+    const auto manifest = scene.preset.name + ".json";
+    write_manifest(parts.file(manifest), scene, record);
+    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    parts.publish();
+
+    RunResult result{.files = {}, .frames = record.frames, .samples = last - first, .wall_s = record.wall_s};
+    for (const auto& file : record.files) result.files.push_back(parts.folder() / file.first);
+    result.files.push_back(parts.folder() / manifest);
+    return result;
+}
+
+}  // namespace doppel

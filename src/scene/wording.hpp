@@ -1,0 +1,23 @@
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <array>
+#include <string>
+
+namespace doppel {
+
+/// What a picture says about one side: `heading`, what sets it apart from the other; `note`, the start it has besides.
+struct SideWords {
+    std::string heading, note;
+};
+
+std::array<SideWords, 2> side_words(const Scene& scene);
+
+/// What both sides have in common: "two double pendulums, released at rest · angles, explicit Euler, 1/30 000 s".
+std::string scene_words(const Scene& scene);
+
+/// 30000 → "30 000" with thin spaces.
+std::string grouped(long number);
+
+}  // namespace doppel
