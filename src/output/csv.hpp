@@ -1,35 +1,40 @@
 #pragma once
 
-#include <cstdio>
+#include "output/output_file.hpp"
+
 #include <filesystem>
-#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace doppel {
 
-/// A table as RFC 4180 has it: a header, commas, CRLF. Numbers are written with the fewest digits that give the same double back.
+/// A table as RFC 4180 has it: a header, commas, CRLF. Numbers are written with the fewest digits that give the same
+/// double back.
 class Csv {
 public:
     /// Opens the file and writes the header. Throws Error (exit 4), as do all that write.
-    Csv(const std::filesystem::path& path, const std::vector<std::string>& columns);
+    Csv(const std::filesystem::path& path, std::vector<std::string> columns);
 
     void add(long value);
+    /// Throws Error (exit 3) where the value is not finite: a method that broke down has no place in a table.
     void add(double value);
+    /// In quotes where it holds a comma, a quote or the end of a line.
+    void add(std::string_view text);
     void add_empty();
-    /// Ends the row. The number of cells must be that of the columns.
+    /// Ends the row. The number of cells must be that of the columns; std::logic_error where it is not.
     void end_row();
     /// Writes what is buffered and closes the file.
     void finish();
 
 private:
     void separate();
-    void flush();
 
-    std::filesystem::path path_;
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+    OutputFile file_;
     std::string buffer_;
-    std::size_t columns_, cell_ = 0;
+    std::vector<std::string> columns_;
+    std::size_t cell_ = 0;
+    long row_ = 0;
 };
 
 }  // namespace doppel

@@ -9,13 +9,13 @@
 namespace doppel {
 
 struct Mp4Options {
-    Size size;                        // px, both even
-    int fps_numerator = 120;          // frames/s = numerator / denominator
+    Size size;                // px, both even
+    int fps_numerator = 120;  // frames/s = numerator / denominator
     int fps_denominator = 1;
     std::string preset = "veryfast";  // x264's
     int crf = 18;                     // 0…51, lower is better
     int threads = 0;                  // of the encoder; 0 = its own choice
-    std::string title;                // metadata; none where empty
+    std::string title = {};           // metadata; none where empty
 };
 
 /// H.264 in MP4: yuv420p, BT.709 (limited range) converted and tagged, constant frame rate, the index at the front.

@@ -1,27 +1,31 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace doppel {
 
-/// The files of one run, which appear complete or not at all. Each is written as NAME.part; publish() gives all of them their
-/// names once every one is whole. Destroyed unpublished, it removes what was written.
+/// The files of one run, which appear complete or not at all. Each is written as NAME.part; publish() gives all of them
+/// their names once every one is whole. Destroyed unpublished, it removes what was written, and the folders it made if
+/// they are empty.
 class PartFiles {
 public:
-    /// Makes `folder` (and what leads to it). Throws Error (exit 4) where that fails, or something else is in its place.
+    /// Makes `folder` (and what leads to it). Throws Error (exit 4) where that fails, or something else is in its
+    /// place.
     explicit PartFiles(std::filesystem::path folder);
     ~PartFiles();
     PartFiles(const PartFiles&) = delete;
     PartFiles& operator=(const PartFiles&) = delete;
 
-    /// The path FOLDER/NAME.part to write to; a stale one is removed. Throws Error (exit 4) where FOLDER/NAME is taken by
-    /// something of another kind (a folder in place of the file).
+    /// The path FOLDER/NAME.part to write to; a stale one is removed. Throws Error (exit 4) where FOLDER/NAME is taken
+    /// by something of another kind (a folder in place of the file).
     std::filesystem::path file(const std::string& name);
     /// The same for a folder NAME, made empty as NAME.part/. Publishing replaces an older folder NAME as a whole.
     std::filesystem::path directory(const std::string& name);
 
-    /// Gives every part its name, in the order they were asked for. Throws Error (exit 4).
+    /// Gives every part its name, in the order they were asked for. Throws Error (exit 4); then nothing of this run
+    /// stays.
     void publish();
 
     const std::filesystem::path& folder() const { return folder_; }
@@ -29,12 +33,12 @@ public:
 private:
     struct Part {
         std::filesystem::path target;
-        bool is_directory;
+        std::filesystem::path written;  // where it is now: NAME.part, then target
     };
-    std::filesystem::path part_of(const std::string& name, bool is_directory);
+    std::filesystem::path add_part(const std::string& name);
 
     std::filesystem::path folder_;
-    bool made_folder_ = false;
+    std::vector<std::filesystem::path> made_;  // folders, outermost first
     std::vector<Part> parts_;
 };
 

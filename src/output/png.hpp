@@ -11,11 +11,13 @@ namespace doppel {
 /// One picture as an RGB PNG (alpha is left out), through stb_image_write with libdeflate. Throws Error (exit 4).
 void write_png(const std::filesystem::path& path, const Picture& picture);
 
-/// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it cannot be decoded.
+/// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it cannot be
+/// decoded.
 Picture read_png(const std::filesystem::path& path);
 
 /// A numbered sequence in an existing folder: picture k of the run, k = 0, 1, …, is written to folder/name_of(k).
 /// `jobs` threads compress, fed through a bounded queue. Errors as write_png's, thrown by take() or finish().
-std::unique_ptr<Sink> make_png_sink(const std::filesystem::path& folder, std::function<std::string(long)> name_of, int jobs);
+std::unique_ptr<Sink> make_png_sink(const std::filesystem::path& folder, std::function<std::string(long)> name_of,
+                                    int jobs);
 
 }  // namespace doppel

@@ -5,6 +5,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 namespace doppel {
 
@@ -41,6 +42,13 @@ public:
         closed_ = true;
         room_.notify_all();
         filled_.notify_all();
+    }
+
+    /// Closes, and forgets what is in it.
+    void abandon() {
+        close();
+        std::lock_guard lock(mutex_);
+        things_.clear();
     }
 
 private:

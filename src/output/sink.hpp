@@ -7,7 +7,8 @@
 namespace doppel {
 
 /// Where pictures go: a video or a folder of images. Fed in order, closed by finish(); both may block and both throw
-/// Error (exit 4) with the path and the reason. Destroyed unfinished it stops at once; whoever owns the file removes it.
+/// Error (exit 4) with the path and the reason. Destroyed unfinished it stops at once; whoever owns the file removes
+/// it.
 class Sink {
 public:
     virtual ~Sink() = default;

@@ -1,0 +1,72 @@
+#include "output/csv.hpp"
+
+#include "numeric/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+namespace doppel {
+
+Csv::Csv(const std::filesystem::path& path, std::vector<std::string> columns)
+    : file_(path), columns_(std::move(columns)) {
+    for (const std::string& name : columns_) add(name);
+    end_row();
+    row_ = 0;
+}
+
+void Csv::add(long value) {
+    separate();
+    fmt::format_to(std::back_inserter(buffer_), "{}", value);
+}
+
+void Csv::add(double value) {
+    separate();
+    if (!std::isfinite(value))
+        throw method_failed("{}: {} of row {} would be {}; a table holds only finite numbers", file_.path().string(),
+                            columns_[cell_ - 1], row_, value);
+    fmt::format_to(std::back_inserter(buffer_), "{}", value);
+}
+
+void Csv::add(std::string_view text) {
+    separate();
+    if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+        buffer_ += text;
+        return;
+    }
+    buffer_ += '"';
+    for (const char c : text) buffer_.append(c == '"' ? 2 : 1, c);
+    buffer_ += '"';
+}
+
+void Csv::add_empty() {
+    separate();
+}
+
+void Csv::end_row() {
+    if (cell_ != columns_.size())
+        throw std::logic_error(
+            fmt::format("{}: a row of {} cells under {} columns", file_.path().string(), cell_, columns_.size()));
+    buffer_ += "\r\n";
+    cell_ = 0;
+    ++row_;
+    if (buffer_.size() >= std::size_t{1} << 16) {
+        file_.write(buffer_);
+        buffer_.clear();
+    }
+}
+
+void Csv::finish() {
+    file_.write(buffer_);
+    file_.close();
+}
+
+void Csv::separate() {
+    if (cell_ == columns_.size())
+        throw std::logic_error(fmt::format("{}: more than {} cells in a row", file_.path().string(), columns_.size()));
+    if (cell_++ > 0) buffer_ += ',';
+}
+
+}  // namespace doppel

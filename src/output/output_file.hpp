@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+namespace doppel {
+
+/// A file being written. Every failure, a full disk included, is an Error (exit 4) with the path and the system's
+/// reason.
+class OutputFile {
+public:
+    /// Opens it, empty.
+    explicit OutputFile(std::filesystem::path path);
+
+    void write(std::string_view bytes);
+    /// Only what was closed is known to be written.
+    void close();
+
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    std::filesystem::path path_;
+    std::unique_ptr<std::FILE, Close> file_;
+};
+
+}  // namespace doppel

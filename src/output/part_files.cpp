@@ -1,0 +1,116 @@
+#include "output/part_files.hpp"
+
+#include "numeric/error.hpp"
+
+#include <ranges>
+#include <system_error>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path with_suffix(fs::path path, const char* suffix) {
+    return path += suffix;
+}
+
+void remove_quietly(const fs::path& path) {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+}
+
+/// Only those that are empty.
+void remove_folders(const std::vector<fs::path>& folders) {
+    std::error_code ignored;
+    for (const fs::path& folder : std::views::reverse(folders)) fs::remove(folder, ignored);
+}
+
+/// Makes what is missing of the way to `folder`, and returns what it made, outermost first.
+std::vector<fs::path> make_folders(const fs::path& folder) {
+    std::vector<fs::path> made;
+    fs::path way;
+    for (const fs::path& step : folder) {
+        way /= step;
+        std::error_code error;
+        if (fs::is_directory(way, error)) continue;
+        const bool taken = fs::exists(fs::symlink_status(way, error));
+        if (!taken && fs::create_directory(way, error)) {
+            made.push_back(way);
+            continue;
+        }
+        remove_folders(made);
+        if (taken) throw io_failed("{} is no folder; Doppel would write into a folder there", way.string());
+        throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
+    }
+    return made;
+}
+
+void move_to(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error) throw io_failed("{}: cannot be renamed to {}: {}", from.string(), to.string(), error.message());
+}
+
+/// Puts the folder `from` in the place of the folder `to`, whose files never mix with the new ones.
+void replace_folder(const fs::path& from, const fs::path& to) {
+    const fs::path aside = with_suffix(to, ".old");
+    remove_quietly(aside);
+    move_to(to, aside);
+    try {
+        move_to(from, to);
+    } catch (...) {
+        std::error_code ignored;
+        fs::rename(aside, to, ignored);
+        throw;
+    }
+    remove_quietly(aside);
+}
+
+}  // namespace
+
+PartFiles::PartFiles(fs::path folder) : folder_(std::move(folder)), made_(make_folders(folder_)) {}
+
+PartFiles::~PartFiles() {
+    for (const Part& part : parts_) remove_quietly(part.written);
+    remove_folders(made_);
+}
+
+fs::path PartFiles::file(const std::string& name) {
+    if (fs::is_directory(folder_ / name))
+        throw io_failed("{} is a folder; Doppel would write a file there", (folder_ / name).string());
+    return add_part(name);
+}
+
+fs::path PartFiles::directory(const std::string& name) {
+    const fs::path target = folder_ / name;
+    if (fs::exists(target) && !fs::is_directory(target))
+        throw io_failed("{} is a file; Doppel would make a folder there", target.string());
+    fs::path part = add_part(name);
+    std::error_code error;
+    if (!fs::create_directory(part, error))
+        throw io_failed("{}: the folder cannot be made: {}", part.string(), error.message());
+    return part;
+}
+
+fs::path PartFiles::add_part(const std::string& name) {
+    const fs::path target = folder_ / name;
+    fs::path part = with_suffix(target, ".part");
+    std::error_code error;
+    fs::remove_all(part, error);
+    if (error) throw io_failed("{}: a stale part cannot be removed: {}", part.string(), error.message());
+    parts_.push_back({target, part});
+    return part;
+}
+
+void PartFiles::publish() {
+    for (Part& part : parts_) {
+        if (fs::is_directory(part.written) && fs::is_directory(part.target))
+            replace_folder(part.written, part.target);
+        else
+            move_to(part.written, part.target);
+        part.written = part.target;
+    }
+    parts_.clear();
+}
+
+}  // namespace doppel

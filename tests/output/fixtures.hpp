@@ -1,0 +1,43 @@
+#pragma once
+
+#include "numeric/error.hpp"
+#include "picture/picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace doppel::test {
+
+/// An empty folder for the test that runs.
+std::filesystem::path fresh_folder();
+
+std::string bytes_of(const std::filesystem::path& path);
+void write_bytes(const std::filesystem::path& path, const std::string& bytes);
+
+/// Frame k of something like ours: a dark ground, two pendulums with antialiased discs and fading trails, thin lines.
+Picture moving_scene(Size size, long k);
+
+/// Every byte drawn anew: nothing can compress it.
+Picture noise(Size size, unsigned seed);
+
+inline std::vector<Rect> whole(Size size) {
+    return {{0, 0, size.width, size.height}};
+}
+
+/// Files of this process cannot grow beyond `bytes` while it lives: a full disk, wherever the tests run.
+class FullDisk {
+public:
+    explicit FullDisk(std::uintmax_t bytes);
+    ~FullDisk();
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+};
+
+/// What `action` threw: its exit code, and that the message holds `words`.
+void expect_error(ExitCode code, const std::vector<std::string>& words, const std::function<void()>& action);
+
+}  // namespace doppel::test

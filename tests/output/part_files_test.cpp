@@ -1,0 +1,110 @@
+#include "output/part_files.hpp"
+
+#include "output/fixtures.hpp"
+
+#include <set>
+
+using namespace doppel;
+using namespace doppel::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// All that is below `folder`, as paths relative to it.
+std::set<std::string> listing(const fs::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        names.insert(entry.path().lexically_relative(folder));
+    return names;
+}
+
+using Names = std::set<std::string>;
+
+}  // namespace
+
+TEST(PartFiles, AppearTogetherWhenPublished) {
+    const auto out = fresh_folder();
+    PartFiles files(out / "a/b");
+    write_bytes(files.file("x.csv"), "table");
+    write_bytes(files.file("x.mp4"), "video");
+    write_bytes(files.directory("frames") / "0.png", "picture");
+    EXPECT_EQ(listing(out / "a/b"), (Names{"x.csv.part", "x.mp4.part", "frames.part", "frames.part/0.png"}));
+    files.publish();
+    EXPECT_EQ(listing(out / "a/b"), (Names{"x.csv", "x.mp4", "frames", "frames/0.png"}));
+    EXPECT_EQ(bytes_of(out / "a/b/x.csv"), "table");
+}
+
+TEST(PartFiles, DestroyedUnpublishedLeaveNothing) {
+    const auto out = fresh_folder();
+    fs::create_directory(out / "a");
+    {
+        PartFiles files(out / "a/b/c");
+        write_bytes(files.file("x.csv"), "table");
+        write_bytes(files.directory("frames") / "0.png", "picture");
+        files.file("never written");
+    }
+    EXPECT_EQ(listing(out), Names{"a"});  // which was there before
+}
+
+TEST(PartFiles, FoldersWithOtherThingsInThemStay) {
+    const auto out = fresh_folder();
+    {
+        PartFiles files(out / "a/b");
+        files.file("x.csv");
+        write_bytes(out / "a/notes", "somebody's");
+    }
+    EXPECT_EQ(listing(out), (Names{"a", "a/notes"}));
+}
+
+TEST(PartFiles, OlderFilesStayUntilPublishedAndStalePartsGo) {
+    const auto out = fresh_folder();
+    write_bytes(out / "x.csv", "old");
+    write_bytes(out / "x.csv.part", "stale");
+    {
+        PartFiles files(out);
+        EXPECT_FALSE(fs::exists(files.file("x.csv")));
+    }
+    EXPECT_EQ(bytes_of(out / "x.csv"), "old");
+    PartFiles files(out);
+    write_bytes(files.file("x.csv"), "new");
+    files.publish();
+    EXPECT_EQ(bytes_of(out / "x.csv"), "new");
+    EXPECT_EQ(listing(out), Names{"x.csv"});
+}
+
+TEST(PartFiles, AFolderIsReplacedAsAWhole) {
+    const auto out = fresh_folder();
+    fs::create_directories(out / "frames");
+    fs::create_directories(out / "frames.part");
+    fs::create_directories(out / "frames.old");
+    write_bytes(out / "frames/old.png", "old");
+    write_bytes(out / "frames.part/stale.png", "stale");
+    PartFiles files(out);
+    write_bytes(files.directory("frames") / "new.png", "new");
+    files.publish();
+    EXPECT_EQ(listing(out), (Names{"frames", "frames/new.png"}));
+}
+
+TEST(PartFiles, OneThatCannotBePublishedTakesTheOthersWithIt) {
+    const auto out = fresh_folder();
+    {
+        PartFiles files(out / "a");
+        write_bytes(files.file("x.csv"), "table");
+        files.file("x.mp4");  // asked for, never written
+        expect_error(ExitCode::io_failed, {"x.mp4.part", "No such file"}, [&] { files.publish(); });
+    }
+    EXPECT_EQ(listing(out), Names{});
+}
+
+TEST(PartFiles, WhatIsInTheWayIsNamed) {
+    const auto out = fresh_folder();
+    fs::create_directories(out / "x/x.csv");
+    write_bytes(out / "file", "");
+    expect_error(ExitCode::io_failed, {"x/x.csv is a folder; Doppel would write a file there"},
+                 [&] { PartFiles(out / "x").file("x.csv"); });
+    expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"},
+                 [&] { PartFiles(out).directory("file"); });
+    expect_error(ExitCode::io_failed, {"file is no folder"}, [&] { PartFiles(out / "file/x"); });
+    expect_error(ExitCode::io_failed, {"/proc/doppel", "No such file"}, [] { PartFiles("/proc/doppel/x"); });
+    EXPECT_EQ(listing(out), (Names{"x", "x/x.csv", "file"}));
+}
