@@ -58,7 +58,8 @@ void check(const Mp4Options& options) {
     if (options.crf < 0 || options.crf > 51) throw bad_input("crf must be 0 … 51; it is {}", options.crf);
 }
 
-/// Frames wait as what changed in them; the encoder's thread puts that into the one frame it keeps.
+/// Frames wait as what changed in them; the encoder's thread puts that into the one frame it keeps. (Queueing all of a
+/// 1080p frame would add a copy of 0.2 ms: as much as it takes to convert a tenth of one.)
 class Mp4Sink final : public Sink {
 public:
     Mp4Sink(const std::filesystem::path& path, const Mp4Options& options)
