@@ -36,7 +36,8 @@ Composer::Composer(const Scene& scene)
       layout_(make_layout(scene)),
       theme_(themed(scene.preset.video)),
       heaviest_(std::max({scene.a.pendulum.mass[0], scene.a.pendulum.mass[1], scene.b.pendulum.mass[0],
-                          scene.b.pendulum.mass[1]})) {}
+                          scene.b.pendulum.mass[1]})),
+      energy_unit_(std::max(scene.a.pendulum.potential_range(), scene.b.pendulum.potential_range())) {}
 
 DisplayList Composer::backdrop() const {
     const float t = layout_.text, u = layout_.unit;
@@ -59,8 +60,8 @@ DisplayList Composer::backdrop() const {
         list.push_back(Label{panel.heading, {left, area.top + 50 * t}, 31 * t, Align::left, Weight::bold, theme_.sides[side]});
         list.push_back(Label{panel.note, {left, area.top + 82 * t}, 21 * t, Align::left, Weight::regular, theme_.quiet_text});
     }
-    if (layout_.distance) compose_strip_backdrop(*layout_.distance, "state-space distance", 34 * t, list);
-    if (layout_.energy) compose_strip_backdrop(*layout_.energy, "energy error", 26 * t, list);
+    if (layout_.distance) compose_strip_backdrop(*layout_.distance, distance_heading, 34 * t, list);
+    if (layout_.energy) compose_strip_backdrop(*layout_.energy, "energy error, of the potential range", 30 * t, list);
     if (layout_.distance || layout_.energy) compose_time_labels(layout_.energy ? *layout_.energy : *layout_.distance, list);
     return list;
 }
@@ -78,8 +79,10 @@ void Composer::add(const Moment& moment) {
     }
     if (layout_.energy) {
         const auto& strip = *layout_.energy;
-        energy_[0].add({strip.time.at(time), strip.value.at(std::abs(moment.energy_error_a))});
-        energy_[1].add({strip.time.at(time), strip.value.at(std::abs(moment.energy_error_b))});
+        if (moment.sample == 0) start_energy_ = {moment.a.energy, moment.b.energy};
+        const std::array energy{moment.a.energy, moment.b.energy};
+        for (std::size_t side = 0; side < 2; ++side)
+            energy_[side].add({strip.time.at(time), strip.value.at(std::abs(energy[side] - start_energy_[side]) / energy_unit_)});
     }
     if (!parted_ && moment.distance >= parted_at && moment.sample > 0) parted_ = time;
 }

@@ -40,10 +40,14 @@ private:
     void compose_strip_backdrop(const StripLayout& strip, const char* heading, float label_px, DisplayList& list) const;
     void compose_time_labels(const StripLayout& strip, DisplayList& list) const;
 
+    static constexpr const char* distance_heading = "state-space distance";
+
     const Scene& scene_;
     Layout layout_;
     Theme theme_;
-    double heaviest_;  // kg
+    double heaviest_;                      // kg
+    double energy_unit_;                   // J: one for both sides, or the side that starts near E = 0 would look far worse
+    std::array<double, 2> start_energy_{};  // J
     Moment now_;
     std::array<std::deque<TrailPoint>, 2> trails_;
     std::array<std::optional<std::pair<Bob<double>, double>>, 2> last_bob_;

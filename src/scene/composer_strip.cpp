@@ -1,3 +1,4 @@
+#include "picture/font.hpp"
 #include "scene/composer.hpp"
 
 #include <fmt/format.h>
@@ -18,6 +19,8 @@ Box horizontal_line(float y, float left, float right, float width, Color color) 
     const float top = std::round(y - width / 2);
     return {left, top, right, top + std::max(1.0f, std::round(width)), 0, color};
 }
+
+constexpr float words_px = 21;  // size of the words above a strip, in a 1920×1080 picture
 
 /// 0.0123 → "1.2 × 10⁻²"
 std::string scientific(double value) {
@@ -44,7 +47,7 @@ void Composer::compose_strip_backdrop(const StripLayout& strip, const char* head
         if (!tick.text.empty())
             list.push_back(Label{tick.text, {area.left - 12 * t, y + 0.36f * size}, size, Align::right, Weight::regular, theme_.quiet_text});
     }
-    list.push_back(Label{heading, {area.left + 14 * t, area.top + 24 * t}, 21 * t, Align::left, Weight::regular, theme_.text});
+    list.push_back(Label{heading, {area.left, area.top - 12 * t}, words_px * t, Align::left, Weight::regular, theme_.text});
 }
 
 void Composer::compose_time_labels(const StripLayout& strip, DisplayList& list) const {
@@ -64,17 +67,17 @@ void Composer::compose_distance(DisplayList& list) const {
     const auto& strip = *layout_.distance;
     const float t = layout_.text, u = layout_.unit;
     const float x = strip.time.at(scene_.time(now_.sample)), y = strip.value.at(now_.distance);
-    list.push_back(Label{scientific(now_.distance), {strip.area.left + 14 * t, strip.area.top + 52 * t}, 21 * t, Align::left,
-                         Weight::regular, theme_.trace});
+    const float words = strip.area.left + text_width(distance_heading, words_px * t) + 18 * t, baseline = strip.area.top - 12 * t;
+    list.push_back(Label{scientific(now_.distance), {words, baseline}, words_px * t, Align::left, Weight::regular, theme_.trace});
     if (parted_) {
-        // the moment of parting: a dashed line and when it was, on the side that has room
+        // the moment of parting: a dashed line, and when it was above it
         const float at = strip.time.at(*parted_), dash = 6 * t;
         for (float top = strip.area.top; top < strip.area.bottom; top += 2 * dash)
             list.push_back(vertical_line(at, top, std::min(top + dash, strip.area.bottom), std::max(1.6f * u, 1.0f), theme_.quiet_text));
-        const bool room_left = at - strip.area.left > 420 * t;
-        list.push_back(Label{fmt::format("parted at {:.1f} s", *parted_),
-                             {room_left ? at - 12 * t : at + 12 * t, strip.area.bottom - 14 * t}, 21 * t,
-                             room_left ? Align::right : Align::left, Weight::regular, theme_.text});
+        const auto text = fmt::format("parted at {:.1f} s", *parted_);
+        const float half = text_width(text, words_px * t) / 2, room = 110 * t;
+        const float center = std::clamp(at, words + room + half, std::max(words + room + half, strip.area.right - half));
+        list.push_back(Label{text, {center, baseline}, words_px * t, Align::center, Weight::regular, theme_.text});
     }
     list.push_back(vertical_line(x, strip.area.top, strip.area.bottom, std::max(1.6f * u, 1.0f), theme_.cursor));
     list.push_back(Stroke{distance_.vertices(), std::max(2.8f * u, 1.2f), theme_.trace});

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-/// The distance axis where the preset names none: from the decade of the start to that of two strangers of the same energy.
+/// The distance axis where the preset names none: from the decade of the start to beyond two strangers of the same energy.
 Range fitted_distance(const Scene& scene) {
     const auto start = PairRun(scene).next(std::atomic<bool>(false));
     const auto& p = scene.a.pendulum;
@@ -18,7 +18,7 @@ Range fitted_distance(const Scene& scene) {
     const double apart2 = std::min(2 * p.reach() * p.reach(), 2 * available / (p.mass[0] * p.gravity) * p.reach());
     const double high = std::sqrt(std::max(speed2 + apart2, 1e-12));
     const double low = start.distance > 0 ? start.distance / 2 : high * 1e-8;
-    const double top = std::pow(10, std::ceil(std::log10(high)));
+    const double top = std::pow(10, std::ceil(2 * std::log10(1.5 * high)) / 2);  // half a decade of air
     return {std::min(std::pow(10, std::floor(std::log10(low))), top / 10), top};
 }
 
@@ -27,16 +27,17 @@ Range fitted_energy(const Scene& scene) {
     return low_order ? Range{1e-8, 1} : Range{1e-16, 1};
 }
 
-/// The circle of the outstretched chain as large as the panel allows, clear of the words in its top left corner.
+/// The circle of the outstretched chain as large as the panel allows, beside or below the words in its top left corner.
 void place_pendulum(PanelLayout& panel, float words_right, float words_bottom, double reach, float margin) {
     const Area& area = panel.area;
     float radius = std::min(area.width(), area.height()) / 2 - margin;
-    const float x = (area.left + area.right) / 2;
+    float x = (area.left + area.right) / 2;
     const auto pivot_y = [&] { return area.bottom - margin - radius; };
     const auto clear = [&] {
         const float dx = std::max(0.0f, x - words_right), dy = std::max(0.0f, pivot_y() - words_bottom);
         return dx * dx + dy * dy >= radius * radius;
     };
+    while (!clear() && x + radius + margin < area.right) x += 1;
     const float least = radius / 2;
     while (!clear() && radius > least) radius -= 1;
     panel.pivot = {x, pivot_y()};
@@ -75,17 +76,18 @@ Layout make_layout(const Scene& scene) {
         layout.time_labels = bottom - 4 * t;
         bottom -= 38 * t;
         const float room = bottom - header;
-        const float energy = video.energy ? (video.pendulums ? 0.125f : 0.3f) * room : 0;
-        const float distance = video.distance ? (video.pendulums ? 0.25f : 0.7f) * room : 0;
-        const float gap = video.energy && video.distance ? 16 * u : 0;
-        const float all = video.pendulums ? energy + distance + gap : room;
+        const float energy = video.energy ? (video.pendulums ? 0.11f : 0.3f) * room : 0;
+        const float distance = video.distance ? (video.pendulums ? 0.24f : 0.7f) * room : 0;
+        const float caption = 40 * t;  // a line of words above each strip
+        const float gap = video.energy && video.distance ? caption : 0;
+        const float all = video.pendulums ? energy + distance + gap : room - caption;
         const float energy_top = video.distance ? bottom - energy : bottom - all;
         if (video.energy)
             layout.energy = strip(layout, scene, energy_top, bottom, video.energy_range.value_or(fitted_energy(scene)));
         if (video.distance)
             layout.distance = strip(layout, scene, bottom - all, bottom - energy - gap,
                                     video.distance_range.value_or(fitted_distance(scene)));
-        bottom -= all + 32 * u;
+        bottom -= all + caption + 4 * u;
     }
     if (!video.pendulums) return layout;
 
