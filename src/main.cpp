@@ -1,13 +1,25 @@
 #include "cli/commands.hpp"
 #include "numeric/error.hpp"
+#include "scene/nearest.hpp"
 #include "scene/version.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <fmt/format.h>
 
 namespace {
+
+/// A word in the place of the command that is none.
+void refuse_unknown_command(const CLI::App& app, const std::string& word) {
+    std::vector<std::string> names;
+    for (const auto* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    const auto meant = doppel::nearest(word, std::vector<std::string_view>(names.begin(), names.end()));
+    throw doppel::bad_input("there is no command \"{}\"; {}", word,
+                            meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
+}
 
 int failed(doppel::ExitCode code, const char* message) {
     fmt::print(stderr, "doppel: {}\n", message);
@@ -32,6 +44,7 @@ int main(int argc, char** argv) {
         doppel::add_list(app);
         doppel::add_show(app);
         doppel::add_check(app);
+        if (argc > 1 && argv[1][0] != '-') refuse_unknown_command(app, argv[1]);
         try {
             app.parse(argc, argv);
         } catch (const CLI::ParseError& fault) {

@@ -1,16 +1,13 @@
 #include "scene/manifest.hpp"
 
-#include "numeric/error.hpp"
+#include "output/output_file.hpp"
 #include "output/sha256.hpp"
 #include "scene/version.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <toml++/toml.h>
@@ -119,10 +116,9 @@ void write_manifest(const std::filesystem::path& path, const Scene& scene, const
             {"encode_and_rest", record.encode_cpu_s}}}}},
         {"files", files},
     };
-    std::ofstream file(path, std::ios::binary);
-    file << manifest.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    OutputFile file(path);
+    file.write(manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     file.close();
-    if (!file) throw io_failed("{}: cannot be written: {}", path.string(), std::strerror(errno));
 }
 
 }  // namespace doppel

@@ -1,6 +1,7 @@
 #include "embedded/scene.hpp"
+#include "numeric/error.hpp"
+#include "scene/nearest.hpp"
 #include "scene/preset.hpp"
-#include "scene/toml_reader.hpp"
 
 #include <algorithm>
 #include <cerrno>

@@ -197,7 +197,7 @@ void check_rates(const Preset& preset, const TomlReader& scene, const TomlReader
         throw video.fault("fps", "must divide sample_hz · speed = {}, so that each frame is a sample; it is {}",
                           sampled ? sampled->text() : "?", preset.video.fps->text());
     if (samples->numerator % stride->numerator != 0)
-        throw video.fault("fps", "must let the last of {} samples be a frame; with {} it would show every {}th",
+        throw video.fault("fps", "must let the last of {} samples be a frame; with {} one sample in {} is one",
                           samples->numerator, preset.video.fps->text(), stride->numerator);
 }
 

@@ -1,8 +1,9 @@
 #include "scene/toml_reader.hpp"
 
+#include "scene/nearest.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <sstream>
 
 namespace doppel {
@@ -15,39 +16,34 @@ std::string kind_of(const toml::node& node) {
         case toml::node_type::table: return "a table";
         case toml::node_type::array: return "an array";
         case toml::node_type::string: return "a string";
-        case toml::node_type::integer:
-        case toml::node_type::floating_point: return "a number";
+        case toml::node_type::integer: return "a whole number";
+        case toml::node_type::floating_point: return "a decimal number";
         case toml::node_type::boolean: return "a boolean";
         default: return "a date or time";
     }
 }
 
-/// The value as TOML writes it, on one line and not too long.
-std::string shown(const toml::node& node) {
+std::string written(const toml::node& node) {
+    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+    if (const auto* array = node.as_array()) {
+        std::string text;
+        for (const auto& element : *array) text += (text.empty() ? "" : ", ") + written(element);
+        return fmt::format("[{}]", text);
+    }
     std::ostringstream out;
     node.visit([&](const auto& n) { out << toml::toml_formatter{n, toml::format_flags::none}; });
-    std::string text = out.str();
+    return out.str();
+}
+
+/// The value as TOML writes it, on one line and not too long.
+std::string shown(const toml::node& node) {
+    auto text = written(node);
     std::replace(text.begin(), text.end(), '\n', ' ');
     constexpr std::size_t most = 60;
-    if (text.size() > most) text = text.substr(0, most - 1) + "…";
-    return text;
+    return text.size() > most ? text.substr(0, most - 1) + "…" : text;
 }
 
 std::string found(const toml::node& node) { return fmt::format("it is {} ({})", kind_of(node), shown(node)); }
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0]++;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const auto swap = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({swap, row[j] + 1, diagonal + 1});
-        }
-    }
-    return row.back();
-}
 
 std::string listed(std::span<const std::string_view> choices) {
     std::string text;
@@ -57,13 +53,6 @@ std::string listed(std::span<const std::string_view> choices) {
 }
 
 }  // namespace
-
-std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
-    const auto better = [&](auto a, auto b) { return edit_distance(word, a) < edit_distance(word, b); };
-    const auto best = std::min_element(candidates.begin(), candidates.end(), better);
-    if (best == candidates.end() || edit_distance(word, *best) > std::max<std::size_t>(2, word.size() / 3)) return {};
-    return std::string(*best);
-}
 
 std::string place_of(const toml::table& table, std::string_view key, const std::string& path) {
     for (auto&& [name, node] : table) {

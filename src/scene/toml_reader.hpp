@@ -17,9 +17,6 @@ namespace doppel {
 /// "path:line:column" of a key, or the command line option that gave it.
 std::string place_of(const toml::table& table, std::string_view key, const std::string& path);
 
-/// The candidate that is one slip of the hand away from `word`, if there is one.
-std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
-
 /// Reads one table of a preset key by key. Every read_… leaves its target alone where the key is absent, and throws Error
 /// (exit 2) with place, value and what would be right where it is of the wrong kind. finish() finds the keys nobody asked for.
 class TomlReader {

@@ -1,0 +1,237 @@
+#include "output/fixtures.hpp"
+#include "output/png.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::fresh_folder;
+
+/// Starts the program in `folder`; standard output and error go to files there.
+pid_t start(const fs::path& folder, const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    if (chdir(folder.c_str()) != 0) _exit(99);
+    const int out = open("stdout", O_CREAT | O_TRUNC | O_WRONLY, 0644), err = open("stderr", O_CREAT | O_TRUNC | O_WRONLY, 0644);
+    dup2(out, STDOUT_FILENO);
+    dup2(err, STDERR_FILENO);
+    if (prepare) prepare();
+    std::vector<char*> argv{const_cast<char*>(DOPPEL_PROGRAM)};
+    for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    execv(DOPPEL_PROGRAM, argv.data());
+    _exit(98);
+}
+
+int wait_for(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+struct Outcome {
+    int code;
+    std::string out, err;
+};
+
+Outcome doppel(const fs::path& folder, const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
+    const int code = wait_for(start(folder, arguments, prepare));
+    return {code, bytes_of(folder / "stdout"), bytes_of(folder / "stderr")};
+}
+
+bool left_nothing(const fs::path& folder) { return !fs::exists(folder / "out") || fs::is_empty(folder / "out"); }
+
+const std::vector<std::string> tiny{"--set", "scene.duration_s=0.1", "--size", "160x90", "--progress", "none"};
+
+std::vector<std::string> with(std::vector<std::string> command, const std::vector<std::string>& more) {
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+}
+
+TEST(Program, RendersAPresetByNameAndByPath) {
+    const auto folder = fresh_folder();
+    fs::create_directory(folder / "mine");
+    std::ofstream(folder / "mine/two.toml") << bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/calm.toml");
+    const auto result = doppel(folder, with({"render", "butterfly", "mine/two.toml"}, tiny));
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_NE(result.out.find("out/butterfly/butterfly.mp4"), std::string::npos);
+    for (const char* file : {"butterfly/butterfly.mp4", "butterfly/butterfly.csv", "butterfly/butterfly.json", "two/two.mp4"})
+        EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
+}
+
+TEST(Program, SimulatesWithoutPictures) {
+    const auto folder = fresh_folder();
+    EXPECT_EQ(doppel(folder, {"simulate", "calm", "-o", "data"}).code, 0);
+    EXPECT_TRUE(fs::exists(folder / "data/calm/calm.csv"));
+    EXPECT_FALSE(fs::exists(folder / "data/calm/calm.mp4"));
+}
+
+TEST(Program, ListsShowsAndChecks) {
+    const auto folder = fresh_folder();
+    EXPECT_NE(doppel(folder, {"list"}).out.find("butterfly    Three thousandths of a degree\n"), std::string::npos);
+    EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out, bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/butterfly.toml"));
+    const auto check = doppel(folder, {"check", "butterfly"});
+    EXPECT_EQ(check.code, 0);
+    for (const char* words : {"angles, explicit Euler, step 1/30000 s, 250 steps a sample", "the smallest model that serves",
+                              "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3 601 frames of 1920×1080", "to render"})
+        EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Program, HelpTeaches) {
+    const auto folder = fresh_folder();
+    const auto help = doppel(folder, {"--help"});
+    EXPECT_EQ(help.code, 0);
+    for (const char* command : {"render", "simulate", "compare", "list", "show", "check"})
+        EXPECT_NE(help.out.find(command), std::string::npos) << command;
+    EXPECT_NE(doppel(folder, {"render", "--help"}).out.find("--frames"), std::string::npos);
+    EXPECT_EQ(doppel(folder, {"--version"}).out.rfind("doppel 0.", 0), 0u);
+}
+
+TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
+    const auto folder = fresh_folder();
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+        {{}, "A subcommand is required"},
+        {{"rendr", "butterfly"}, "there is no command \"rendr\"; did you mean \"render\"?"},
+        {{"render"}, "PRESET is required"},
+        {{"render", "nonesuch"}, "there is no preset \"nonesuch\""},
+        {{"render", "butterfly", "--size", "641x360"}, "--size 641x360: [video] size must be even"},
+        {{"render", "butterfly", "--size", "wide"}, "--size wants WIDTHxHEIGHT, such as 1280x720; it is \"wide\""},
+        {{"render", "butterfly", "--frames", "9:3"}, "--frames wants A:B"},
+        {{"render", "butterfly", "--format", "avi"}, "--format"},
+        {{"render", "butterfly", "--quality", "best", "--set", "video.crf=3"}, "video.crf is given twice: --set video.crf and --quality best"},
+        {{"render", "butterfly", "butterfly"}, "butterfly and butterfly would both be written to butterfly/"},
+        {{"render", "butterfly", "--set", "system.mass_kg=[1, 0]"}, "--set system.mass_kg: [system] mass_kg[1] must be > 0; it is 0"},
+        {{"check", "butterfly", "--set", "system.lenght_m=1"}, "did you mean \"length_m\"?"},
+        {{"compare", "nothing.png", "stdout"}, "nothing.png: there is no such file or folder"},
+    };
+    for (const auto& [arguments, words] : cases) {
+        const auto result = doppel(folder, arguments);
+        EXPECT_EQ(result.code, 2) << words;
+        EXPECT_EQ(result.err.rfind("doppel: ", 0), 0u) << result.err;
+        EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+        EXPECT_EQ(result.out, "");
+    }
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Program, ExitsWith3WhereTheMethodFails) {
+    const auto folder = fresh_folder();
+    const auto result = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.step_s=\"1/3\"", "--set",
+                                        "scene.sample_hz=3", "--set", "scene.duration_s=3000", "--set", "system.model=\"constraints\""});
+    EXPECT_EQ(result.code, 3);
+    EXPECT_NE(result.err.find("doppel: butterfly: side a broke down: by t = "), std::string::npos) << result.err;
+    EXPECT_TRUE(left_nothing(folder));
+}
+
+TEST(Program, ExitsWith4WhereNothingCanBeWritten) {
+    const auto folder = fresh_folder();
+    std::ofstream(folder / "taken") << "a file";
+    const auto taken = doppel(folder, with({"render", "butterfly", "-o", "taken"}, tiny));
+    EXPECT_EQ(taken.code, 4);
+    EXPECT_NE(taken.err.find("taken"), std::string::npos) << taken.err;
+
+    fs::create_directories(folder / "out/butterfly/butterfly.csv");
+    const auto in_place = doppel(folder, with({"render", "butterfly"}, tiny));
+    EXPECT_EQ(in_place.code, 4);
+    EXPECT_NE(in_place.err.find("butterfly.csv is a folder"), std::string::npos) << in_place.err;
+    EXPECT_FALSE(fs::exists(folder / "out/butterfly/butterfly.mp4"));
+}
+
+TEST(Program, ExitsWith4OnAFullDiskAndLeavesNothing) {
+    for (const char* format : {"mp4", "png"}) {
+        const auto folder = fresh_folder();
+        const auto result = doppel(folder, {"render", "butterfly", "--size", "640x360", "--progress", "none", "--set", "scene.duration_s=2",
+                                            "--format", format},
+                                   [] {
+                                       const rlimit small{20'000, 20'000};
+                                       setrlimit(RLIMIT_FSIZE, &small);
+                                   });
+        EXPECT_EQ(result.code, 4) << result.err;
+        EXPECT_NE(result.err.find("doppel: out/butterfly"), std::string::npos) << result.err;
+        EXPECT_TRUE(left_nothing(folder)) << format;
+    }
+}
+
+TEST(Program, ExitsWith4WhereOpenGLIsTooOld) {
+    const auto folder = fresh_folder();
+    const auto result = doppel(folder, with({"render", "butterfly"}, tiny), [] { setenv("MESA_GL_VERSION_OVERRIDE", "2.1", 1); });
+    EXPECT_EQ(result.code, 4);
+    EXPECT_NE(result.err.find("OpenGL 3.3"), std::string::npos) << result.err;
+    EXPECT_TRUE(left_nothing(folder));
+}
+
+TEST(Program, ExitsWith130WithinASecondOfCtrlC) {
+    for (const char* command : {"render", "simulate"}) {
+        const auto folder = fresh_folder();
+        const auto child = start(folder, {command, "butterfly", "--set", "scene.duration_s=3600", "--progress", "none"});
+        std::this_thread::sleep_for(std::chrono::milliseconds(700));
+        const auto asked = std::chrono::steady_clock::now();
+        kill(child, SIGINT);
+        EXPECT_EQ(wait_for(child), 130);
+        EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1)) << command;  // measured 0.1 s
+        EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
+        EXPECT_TRUE(left_nothing(folder)) << command;
+    }
+}
+
+TEST(Program, ReportsProgressForPeopleAndPrograms) {
+    const auto folder = fresh_folder();
+    const auto json = doppel(folder, {"render", "butterfly", "--size", "160x90", "--set", "scene.duration_s=1", "--progress", "json"});
+    EXPECT_EQ(json.err, "");
+    std::istringstream lines(json.out);
+    nlohmann::json event;
+    for (std::string line; std::getline(lines, line);) event = nlohmann::json::parse(line);
+    EXPECT_EQ(event["event"], "done");
+    EXPECT_EQ(event["done"], 121);
+    EXPECT_EQ(event["files"].size(), 3u);
+    const auto plain = doppel(folder, {"render", "butterfly", "--size", "160x90", "--set", "scene.duration_s=1"});
+    EXPECT_NE(plain.err.find("butterfly: 121 frames in "), std::string::npos) << plain.err;
+    EXPECT_EQ(plain.err.find('\r'), std::string::npos) << "no bar where there is no terminal";
+}
+
+TEST(Compare, PassesDiffersAndShowsTheDifference) {
+    const auto folder = fresh_folder();
+    const auto frames = with({"render", "calm", "--format", "png", "--frames", "0:3"}, tiny);
+    ASSERT_EQ(doppel(folder, with(frames, {"-o", "one"})).code, 0);
+    ASSERT_EQ(doppel(folder, with(frames, {"-o", "two"})).code, 0);
+    const auto same = doppel(folder, {"compare", "one/calm/frames", "two/calm/frames"});
+    EXPECT_EQ(same.code, 0) << same.out;
+    EXPECT_EQ(same.out, "0 of 3 pictures differ\n");
+
+    auto picture = read_png(folder / "two/calm/frames/000001.png");
+    for (int i = 0; i < 40; ++i) picture.at(10 + i, 20)[0] ^= 64;
+    write_png(folder / "two/calm/frames/000001.png", picture);
+    fs::remove(folder / "two/calm/frames/000002.png");
+    const auto differs = doppel(folder, {"compare", "one/calm/frames", "two/calm/frames"});
+    EXPECT_EQ(differs.code, 1);
+    EXPECT_NE(differs.out.find("000001.png: differs from"), std::string::npos) << differs.out;
+    EXPECT_NE(differs.out.find("40 pixels differ by more than 3/255, 4 may"), std::string::npos) << differs.out;
+    EXPECT_NE(differs.out.find("two/calm/frames/000002.png: missing"), std::string::npos);
+    EXPECT_TRUE(fs::exists(folder / "out/compare/000001.diff.png"));
+    EXPECT_EQ(doppel(folder, {"compare", "one/calm/frames/000000.png", "two/calm/frames/000000.png"}).code, 0);
+    EXPECT_EQ(doppel(folder, {"compare", "one/calm/frames", "two/calm/frames/000000.png"}).code, 2);
+
+    std::ofstream(folder / "broken.png") << "no picture";
+    EXPECT_EQ(doppel(folder, {"compare", "broken.png", "two/calm/frames/000000.png"}).code, 4);
+}
+
+}  // namespace
+}  // namespace doppel

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "numeric/error.hpp"
+#include "numeric/state.hpp"
+#include "picture/renderer.hpp"
+#include "scene/composer.hpp"
+#include "scene/scene.hpp"
+
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// Overrides as --set gives them: {"video.size=[480, 270]", …}.
+inline std::vector<Override> sets(const std::vector<std::string>& arguments) {
+    std::vector<Override> all;
+    for (const auto& argument : arguments) all.push_back(parse_set(argument));
+    return all;
+}
+
+inline Scene scene_of(const std::string& preset, const std::vector<std::string>& arguments = {}) {
+    return make_scene(read_preset(find_preset(preset), sets(arguments)));
+}
+
+/// The picture of one sample.
+inline Picture frame_of(const Scene& scene, long sample) {
+    Composer composer(scene);
+    PairRun pair(scene);
+    const std::atomic<bool> never = false;
+    for (long n = 0; n <= sample; ++n) composer.add(pair.next(never));
+    Renderer renderer(scene.preset.video.size, composer.backdrop());
+    return renderer.draw(composer.frame());
+}
+
+/// The error that `action` throws; fails where it throws none.
+template <class Action>
+std::pair<ExitCode, std::string> error_of(Action&& action) {
+    try {
+        action();
+    } catch (const Error& fault) {
+        return {fault.code(), fault.what()};
+    }
+    return {ExitCode::done, "nothing was thrown"};
+}
+
+}  // namespace doppel
