@@ -29,7 +29,9 @@ public:
     void advance(long steps) override {
         while (steps > 0) {
             const long now = std::min(steps, watch_);
-            for (long i = 0; i < now; ++i) state_ = doppel::step<table>(model_, state_, step_);
+            auto y = state_;  // here, so that the compiler keeps it in registers
+            for (long i = 0; i < now; ++i) y = doppel::step<table>(model_, y, step_);
+            state_ = y;
             steps -= now;
             follow_turns(model_.bobs(state_));
         }

@@ -24,11 +24,18 @@ struct RodChain {
     using Vector = Eigen::Matrix<Scalar, 2, 1>;
 
     Scalar m1, m2;  // kg
+    Scalar w1, w2;  // 1/kg, their inverses: the diagonal of M⁻¹
     Scalar l1, l2;  // m
     Scalar g;       // m/s²
 
     explicit RodChain(const Pendulum& p)
-        : m1(p.mass[0]), m2(p.mass[1]), l1(p.length[0]), l2(p.length[1]), g(p.gravity) {}
+        : m1(p.mass[0]),
+          m2(p.mass[1]),
+          w1(Scalar(1) / m1),
+          w2(Scalar(1) / m2),
+          l1(p.length[0]),
+          l2(p.length[1]),
+          g(p.gravity) {}
 
     static State start(const Pendulum& p) {
         using std::cos;
@@ -48,18 +55,20 @@ struct RodChain {
     ///     ⎣ −r1·r2/m1    r2·r2 (1/m1 + 1/m2)  ⎦ ⎣λ2⎦ = ⎣ −u2·u2         ⎦
     /// (both masses fall alike, so gravity drops out of the second row).
     State rate(const State& y) const {
-        const Vector r1 = y.template segment<2>(0), r2 = y.template segment<2>(2) - r1;
-        const Vector v1 = y.template segment<2>(4), v2 = y.template segment<2>(6), u2 = v2 - v1;
-        const Scalar w1 = Scalar(1) / m1, w2 = Scalar(1) / m2;
+        const Scalar r1x = y[0], r1y = y[1], r2x = y[2] - y[0], r2y = y[3] - y[1];
+        const Scalar v1x = y[4], v1y = y[5], u2x = y[6] - y[4], u2y = y[7] - y[5];
 
-        const Scalar a11 = r1.dot(r1) * w1, a12 = -r1.dot(r2) * w1, a22 = r2.dot(r2) * (w1 + w2);
-        const Scalar b1 = g * r1.y() - v1.dot(v1), b2 = -u2.dot(u2);
+        const Scalar a11 = (r1x * r1x + r1y * r1y) * w1, a12 = -(r1x * r2x + r1y * r2y) * w1;
+        const Scalar a22 = (r2x * r2x + r2y * r2y) * (w1 + w2);
+        const Scalar b1 = g * r1y - (v1x * v1x + v1y * v1y), b2 = -(u2x * u2x + u2y * u2y);
         const Scalar inverse = Scalar(1) / (a11 * a22 - a12 * a12);
         const Scalar lambda1 = (b1 * a22 - b2 * a12) * inverse, lambda2 = (b2 * a11 - b1 * a12) * inverse;
 
-        const Vector fall(Scalar(0), -g);
         State rate;
-        rate << v1, v2, fall + w1 * (lambda1 * r1 - lambda2 * r2), fall + w2 * lambda2 * r2;
+        rate << v1x, v1y, y[6], y[7],                               //
+            w1 * (lambda1 * r1x - lambda2 * r2x),                   //
+            w1 * (lambda1 * r1y - lambda2 * r2y) - g,               //
+            w2 * lambda2 * r2x, w2 * lambda2 * r2y - g;
         return rate;
     }
 

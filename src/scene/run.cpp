@@ -185,6 +185,10 @@ void watch_worst(WorstErrors& worst, const Moment& moment) {
 
 }  // namespace
 
+int run_threads(int jobs) {
+    return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
@@ -196,12 +200,10 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const long total = (last - 1) / stride - (first - 1 + stride) / stride + 1;
     if (options.pictures && total < 1)
         throw bad_input("--frames {}:{}: no frame falls into it; every {}th sample is one", first, last, stride);
-    const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-
     RunRecord record{.first_sample = first, .last_sample = last - 1};
     PartFiles parts(options.out / scene.preset.name);
     std::optional<Film> film;
-    if (options.pictures) film.emplace(scene, parts, jobs, record);
+    if (options.pictures) film.emplace(scene, parts, run_threads(options.jobs), record);
     const auto csv_name = scene.preset.name + ".csv";
     record.files.emplace_back(csv_name, parts.file(csv_name));
     Table table(record.files.back().second);
