@@ -19,6 +19,12 @@ constexpr Color rgb(unsigned hex) {
             static_cast<float>(hex & 0xff) / 255.0f, 1.0f};
 }
 
+/// `share` of b in a.
+constexpr Color mixed(Color a, Color b, float share) {
+    const auto mix = [share](float x, float y) { return x + share * (y - x); };
+    return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), mix(a.a, b.a)};
+}
+
 /// From "#rrggbb"; nothing where the text is no such colour.
 std::optional<Color> parse_color(std::string_view text);
 

@@ -33,8 +33,8 @@ private:
 
     void extend_trail(std::size_t side, const Bob<double>& bob, double time);
     void compose_panel(std::size_t side, DisplayList& list) const;
-    void compose_pendulum(const PanelLayout& panel, const Bobs<double>& bobs, Color rods, Color bobs_color, Color last,
-                          DisplayList& list) const;
+    void compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
+    float bob_radius(const Bob<double>& bob) const;
     void compose_distance(DisplayList& list) const;
     void compose_energy(DisplayList& list) const;
     void compose_strip_backdrop(const StripLayout& strip, const char* heading, float label_px, DisplayList& list) const;

@@ -8,6 +8,8 @@ namespace {
 
 float apart(Point a, Point b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
+Capsule disc(Point at, float radius, Color color) { return {at, at, radius, color}; }
+
 }  // namespace
 
 /// Adds the way from the last bob to this one: a cubic through both with their velocities (Hermite), in pieces of a few pixels.
@@ -45,6 +47,11 @@ void Composer::compose_panel(std::size_t side, DisplayList& list) const {
     const auto& other = side == 0 ? now_.b : now_.a;
     const double trail_s = scene_.preset.video.trail_s;
 
+    // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
+    const Color ghost = mixed(theme_.panel, theme_.sides[1 - side], 0.26f);
+    compose_rods(panel, other.bobs, 0.7f * layout_.rod_radius, ghost, list);
+    for (const auto& bob : other.bobs) list.push_back(disc(panel.at(bob.x, bob.y), bob_radius(bob), ghost));
+
     // the trail of the last bob, fading with its age
     if (trail_s > 0) {
         Stroke stroke{{}, std::max(3.4f * layout_.unit, 1.2f), theme_.sides[side]};
@@ -55,31 +62,30 @@ void Composer::compose_panel(std::size_t side, DisplayList& list) const {
         list.push_back(std::move(stroke));
     }
 
-    // where the twin is now, faintly; as long as they swing as one it hides behind this side
-    const Color ghost = theme_.sides[1 - side].with_alpha(0.26f);
-    compose_pendulum(panel, other.bobs, ghost, ghost, ghost, list);
-    compose_pendulum(panel, own.bobs, theme_.rod, theme_.bob, theme_.sides[side], list);
+    // this side: rods, then the pivot and the bobs, each on a rim that sets it off
+    compose_rods(panel, own.bobs, layout_.rod_radius, theme_.rod, list);
+    list.push_back(disc(panel.pivot, 0.4f * layout_.bob_radius, theme_.pivot));
+    for (const auto& bob : own.bobs) {
+        const Point at = panel.at(bob.x, bob.y);
+        const float radius = bob_radius(bob), rim = std::max(2 * layout_.unit, 0.75f);
+        list.push_back(disc(at, radius + rim, theme_.panel));
+        list.push_back(disc(at, radius, &bob == &own.bobs.back() ? theme_.sides[side] : theme_.bob));
+    }
 }
 
-void Composer::compose_pendulum(const PanelLayout& panel, const Bobs<double>& bobs, Color rods, Color bobs_color, Color last,
-                                DisplayList& list) const {
-    const bool ghost = rods.a < 1;
+void Composer::compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const {
     Point joint = panel.pivot;
     for (const auto& bob : bobs) {
         const Point at = panel.at(bob.x, bob.y);
-        list.push_back(Capsule{joint, at, layout_.rod_radius * (ghost ? 0.7f : 1), rods});
+        list.push_back(Capsule{joint, at, radius, color});
         joint = at;
     }
-    if (!ghost) list.push_back(Capsule{panel.pivot, panel.pivot, 0.4f * layout_.bob_radius, theme_.pivot});
-    for (std::size_t i = 0; i < bobs.size(); ++i) {
-        // area by mass, but never too small to see
-        const auto share = static_cast<float>(std::sqrt(bobs[i].mass / heaviest_));
-        const float radius = std::max(layout_.bob_radius * share, 1.6f * layout_.rod_radius);
-        const Point at = panel.at(bobs[i].x, bobs[i].y);
-        const float rim = std::max(2 * layout_.unit, 0.75f);
-        if (!ghost) list.push_back(Capsule{at, at, radius + rim, theme_.panel});
-        list.push_back(Capsule{at, at, radius, i + 1 == bobs.size() ? last : bobs_color});
-    }
+}
+
+/// Area by mass, but never too small to see; px.
+float Composer::bob_radius(const Bob<double>& bob) const {
+    const auto share = static_cast<float>(std::sqrt(bob.mass / heaviest_));
+    return std::max(layout_.bob_radius * share, 1.6f * layout_.rod_radius);
 }
 
 }  // namespace doppel
