@@ -4,10 +4,11 @@
 #include "scene/version.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <fmt/format.h>
 
 namespace {
 
@@ -17,8 +18,9 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
     for (const auto* command : app.get_subcommands({})) names.push_back(command->get_name());
     if (std::find(names.begin(), names.end(), word) != names.end()) return;
     const auto meant = doppel::nearest(word, std::vector<std::string_view>(names.begin(), names.end()));
-    throw doppel::bad_input("there is no command \"{}\"; {}", word,
-                            meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
+    throw doppel::bad_input(
+        "there is no command \"{}\"; {}", word,
+        meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
 int failed(doppel::ExitCode code, const char* message) {
@@ -33,8 +35,10 @@ int main(int argc, char** argv) {
     try {
         CLI::App app("Doppel films chaotic pendulums in pairs, a hair apart, and charts how they part.", "doppel");
         app.set_version_flag("--version", fmt::format("doppel {} ({})", doppel::version(), doppel::revision()));
-        app.footer("doppel COMMAND --help tells more. Exit codes: 0 done, 1 compare found a difference, 2 bad usage or input,\n"
-                   "3 the method failed, 4 reading, writing or encoding failed, 130 interrupted.");
+        app.footer(
+            "doppel COMMAND --help tells more. Exit codes: 0 done, 1 compare found a difference, 2 bad usage or "
+            "input,\n"
+            "3 the method failed, 4 reading, writing or encoding failed, 130 interrupted.");
         app.require_subcommand(1);
 
         int exit_code = 0;

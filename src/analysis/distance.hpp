@@ -22,7 +22,8 @@ inline double state_space_distance(const Bobs<double>& a, const Bobs<double>& b)
     return std::sqrt(sum);
 }
 
-/// λ = ln(d / d0), the study's measure of divergence: dimensionless, not an exponent per second. Nothing where d0 or d is 0.
+/// λ = ln(d / d0), the study's measure of divergence: dimensionless, not an exponent per second. Nothing where d0 or d
+/// is 0.
 inline std::optional<double> log_ratio(double distance, double start) {
     if (start == 0 || distance == 0) return std::nullopt;
     return std::log(distance / start);

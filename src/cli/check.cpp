@@ -32,13 +32,17 @@ double estimated_pictures(const Scene& scene) {
     const auto& video = scene.preset.video;
     const double megapixels = 1e-6 * video.size.width * video.size.height;
     const bool slow = video.preset.find("slow") != std::string::npos;
-    const double ms = video.format == "png" ? 4 : video.preset == "ultrafast" ? 1.5 : slow ? 8 : video.preset == "medium" ? 4.5 : 2.5;
+    const double ms = video.format == "png"         ? 4
+                      : video.preset == "ultrafast" ? 1.5
+                      : slow                        ? 8
+                      : video.preset == "medium"    ? 4.5
+                                                    : 2.5;
     return 1e-3 * ms * megapixels * static_cast<double>(scene.samples / scene.samples_per_frame + 1);
 }
 
 void print_side(const char* name, const Side& side) {
-    fmt::print("  {}      {}, {}, step {} s, {} steps a sample\n         {}: {}\n", name, name_of(side.model), side.method.title,
-               side.step.text(), grouped(side.steps_per_sample), name_of(side.model), side.why);
+    fmt::print("  {}      {}, {}, step {} s, {} steps a sample\n         {}: {}\n", name, name_of(side.model),
+               side.method.title, side.step.text(), grouped(side.steps_per_sample), name_of(side.model), side.why);
 }
 
 void print_scene(const Scene& scene) {
@@ -47,10 +51,12 @@ void print_scene(const Scene& scene) {
     fmt::print("{}: {}\n", scene.preset.name, scene.preset.title);
     print_side("a", scene.a);
     print_side("b", scene.b);
-    fmt::print("  time   {} s: samples 0 to {} at {} Hz, {} steps in all\n", scene.preset.duration_s.value(), scene.samples,
-               scene.preset.sample_hz.text(), grouped(scene.samples * (scene.a.steps_per_sample + scene.b.steps_per_sample)));
+    fmt::print("  time   {} s: samples 0 to {} at {} Hz, {} steps in all\n", scene.preset.duration_s.value(),
+               scene.samples, scene.preset.sample_hz.text(),
+               grouped(scene.samples * (scene.a.steps_per_sample + scene.b.steps_per_sample)));
     fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames), video.size.width, video.size.height,
-               scene.fps.text(), video.format == "png" ? "PNG sequence" : fmt::format("H.264 {}, crf {}", video.preset, video.crf));
+               scene.fps.text(),
+               video.format == "png" ? "PNG sequence" : fmt::format("H.264 {}, crf {}", video.preset, video.crf));
     const double simulation = estimated_simulation(scene), pictures = estimated_pictures(scene);
     fmt::print("  takes  about {:.2g} s to simulate, {:.2g} s to render\n", simulation, std::max(simulation, pictures));
 }

@@ -5,8 +5,9 @@
 #include "picture/golden.hpp"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <fmt/format.h>
+
+#include <filesystem>
 #include <memory>
 #include <set>
 
@@ -33,8 +34,8 @@ bool same(const fs::path& expected_path, const fs::path& actual_path, const fs::
     const auto name = actual_path.stem().string() + ".diff.png";
     write_png(parts.file(name), difference_picture(expected, actual));
     parts.publish();
-    fmt::print("{}: differs from {}: {}; expected, actual and difference ×16: {}\n", actual_path.string(), expected_path.string(),
-               verdict.why, (parts.folder() / name).string());
+    fmt::print("{}: differs from {}: {}; expected, actual and difference ×16: {}\n", actual_path.string(),
+               expected_path.string(), verdict.why, (parts.folder() / name).string());
     return false;
 }
 
@@ -77,13 +78,17 @@ bool compare(const CompareOptions& options) {
 
 void add_compare(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<CompareOptions>();
-    auto& command = *app.add_subcommand("compare", "Golden comparison of two PNGs, or of two folders of them, name by name");
-    command.footer("Exit code 0: the same within the golden policy (a few pixels may differ a little, as between\n"
-                   "drivers); 1: they differ, and a picture of the difference was written to DIR/compare/.\n"
-                   "Example:\n  doppel render calm --format png --frames 0:3 && doppel compare golden out/calm/frames");
+    auto& command =
+        *app.add_subcommand("compare", "Golden comparison of two PNGs, or of two folders of them, name by name");
+    command.footer(
+        "Exit code 0: the same within the golden policy (a few pixels may differ a little, as between\n"
+        "drivers); 1: they differ, and a picture of the difference was written to DIR/compare/.\n"
+        "Example:\n  doppel render calm --format png --frames 0:3 && doppel compare golden out/calm/frames");
     command.add_option("EXPECTED", options->expected, "Picture or folder as it should be")->required();
     command.add_option("ACTUAL", options->actual, "Picture or folder as it is")->required();
-    command.add_option("-o,--out", options->out, "Where difference pictures go: DIR/compare/")->type_name("DIR")->capture_default_str();
+    command.add_option("-o,--out", options->out, "Where difference pictures go: DIR/compare/")
+        ->type_name("DIR")
+        ->capture_default_str();
     command.callback([options, &exit_code] {
         if (!compare(*options)) exit_code = static_cast<int>(ExitCode::differs);
     });

@@ -10,7 +10,9 @@ namespace doppel {
 
 void add_preset_options(CLI::App& command, PresetOptions& options) {
     command.add_option("PRESET", options.presets, "Names (see doppel list) or paths of TOML files")->required();
-    command.add_option("--set", options.sets, "Another value for a key of the preset, in TOML:\n--set system.step_s='\"1/1000\"'")
+    command
+        .add_option("--set", options.sets,
+                    "Another value for a key of the preset, in TOML:\n--set system.step_s='\"1/1000\"'")
         ->type_name("TABLE.KEY=VALUE")
         ->expected(1)
         ->allow_extra_args(false)
@@ -19,8 +21,12 @@ void add_preset_options(CLI::App& command, PresetOptions& options) {
 
 void add_run_options(CLI::App& command, RunCommandOptions& options) {
     add_preset_options(command, options);
-    command.add_option("-o,--out", options.out, "Folder for the results; they go to DIR/NAME/")->type_name("DIR")->capture_default_str();
-    command.add_option("-j,--jobs", options.jobs, "Threads that encode; one a core where not given")->type_name("N")->check(CLI::Range(1, 1024));
+    command.add_option("-o,--out", options.out, "Folder for the results; they go to DIR/NAME/")
+        ->type_name("DIR")
+        ->capture_default_str();
+    command.add_option("-j,--jobs", options.jobs, "Threads that encode; one a core where not given")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
     command.add_option("--progress", options.progress, "How to show progress: auto, bar, plain, json or none")
         ->type_name("STYLE")
         ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
@@ -36,7 +42,8 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
         scenes.push_back(make_scene(read_preset(find_preset(name), overrides)));
         for (std::size_t i = 0; i + 1 < scenes.size(); ++i)
             if (scenes[i].preset.name == scenes.back().preset.name)
-                throw bad_input("{} and {} would both be written to {}/", options.presets[i], name, scenes[i].preset.name);
+                throw bad_input("{} and {} would both be written to {}/", options.presets[i], name,
+                                scenes[i].preset.name);
     }
     return scenes;
 }

@@ -4,6 +4,7 @@
 #include "scene/run.hpp"
 
 #include <CLI/App.hpp>
+
 #include <string>
 #include <vector>
 

@@ -1,11 +1,11 @@
 #include "cli/progress.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 namespace doppel {
 namespace {
@@ -43,7 +43,7 @@ ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::strin
 void ProgressReport::operator()(const Progress& progress) {
     if (style_ == ProgressStyle::none) return;
     const auto now = Clock::now();
-    const auto pause = style_ == ProgressStyle::bar ? std::chrono::milliseconds(100)
+    const auto pause = style_ == ProgressStyle::bar    ? std::chrono::milliseconds(100)
                        : style_ == ProgressStyle::json ? std::chrono::milliseconds(500)
                                                        : std::chrono::milliseconds(5000);
     if (now - shown_ < pause) return;
@@ -54,7 +54,7 @@ void ProgressReport::operator()(const Progress& progress) {
     const double left = static_cast<double>(progress.total - progress.done) / rate;
     const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
     if (style_ == ProgressStyle::json) {
-        const nlohmann::ordered_json line = {{"event", "progress"}, {"preset", name_},          {"unit", unit_},
+        const nlohmann::ordered_json line = {{"event", "progress"},   {"preset", name_},         {"unit", unit_},
                                              {"done", progress.done}, {"total", progress.total}, {"per_second", rate},
                                              {"seconds_left", left}};
         fmt::print("{}\n", line.dump());
@@ -64,8 +64,8 @@ void ProgressReport::operator()(const Progress& progress) {
                    progress.done, progress.total, unit_, rate, unit_, duration(left));
         on_screen_ = true;
     } else {
-        fmt::print(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
-                   100 * share, rate, unit_, duration(left));
+        fmt::print(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total,
+                   unit_, 100 * share, rate, unit_, duration(left));
     }
 }
 
@@ -78,7 +78,8 @@ void ProgressReport::done(const RunResult& result) {
     clear();
     const long count = result.frames > 0 ? result.frames : result.samples;
     if (style_ == ProgressStyle::json) {
-        nlohmann::ordered_json line = {{"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
+        nlohmann::ordered_json line = {
+            {"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
         for (const auto& file : result.files) line["files"].push_back(file.string());
         fmt::print("{}\n", line.dump());
         return;
@@ -89,7 +90,8 @@ void ProgressReport::done(const RunResult& result) {
     for (const auto& file : result.files)
         fmt::print("{}\n", std::filesystem::is_directory(file)
                                ? file.string() + "/"
-                               : fmt::format("{} ({})", file.string(), bytes(static_cast<double>(std::filesystem::file_size(file)))));
+                               : fmt::format("{} ({})", file.string(),
+                                             bytes(static_cast<double>(std::filesystem::file_size(file)))));
 }
 
 }  // namespace doppel

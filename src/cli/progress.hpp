@@ -12,8 +12,8 @@ enum class ProgressStyle { bar, plain, json, none };
 /// "auto" is a bar on a terminal and plain lines elsewhere.
 ProgressStyle progress_style(const std::string& name);
 
-/// Tells the person how far a run is: a bar that renews itself, a line every few seconds, or JSON lines for a program (on
-/// standard output; the others on standard error).
+/// Tells the person how far a run is: a bar that renews itself, a line every few seconds, or JSON lines for a program
+/// (on standard output; the others on standard error).
 class ProgressReport {
 public:
     ProgressReport(ProgressStyle style, std::string name, std::string unit);

@@ -3,6 +3,7 @@
 #include "numeric/error.hpp"
 
 #include <CLI/CLI.hpp>
+
 #include <charconv>
 #include <memory>
 
@@ -31,7 +32,8 @@ std::vector<Override> overrides(const RenderOptions& options) {
         if (!size) throw bad_input("--size wants WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", options.size);
         all.push_back({"video.size", fmt::format("[{}, {}]", size->first, size->second), "--size " + options.size});
     }
-    if (!options.format.empty()) all.push_back({"video.format", fmt::format("\"{}\"", options.format), "--format " + options.format});
+    if (!options.format.empty())
+        all.push_back({"video.format", fmt::format("\"{}\"", options.format), "--format " + options.format});
     if (!options.quality.empty() && options.quality != "standard") {
         const bool draft = options.quality == "draft";
         all.push_back({"video.preset", draft ? "\"ultrafast\"" : "\"slow\"", "--quality " + options.quality});
@@ -45,26 +47,33 @@ std::vector<Override> overrides(const RenderOptions& options) {
 void add_render(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();
     auto& command = *app.add_subcommand("render", "Films presets: video or PNG sequence, CSV and manifest");
-    command.footer("Examples:\n"
-                   "  doppel render butterfly\n"
-                   "  doppel render calm --size 1280x720 --format png --frames 0:240\n"
-                   "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films");
+    command.footer(
+        "Examples:\n"
+        "  doppel render butterfly\n"
+        "  doppel render calm --size 1280x720 --format png --frames 0:240\n"
+        "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films");
     add_run_options(command, *options);
-    command.add_option("--frames", options->frames, "Only the samples A to B-1; the same pixels as in the whole")->type_name("A:B");
-    command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")->type_name("WxH");
+    command.add_option("--frames", options->frames, "Only the samples A to B-1; the same pixels as in the whole")
+        ->type_name("A:B");
+    command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")
+        ->type_name("WxH");
     command.add_option("--format", options->format, "mp4 (H.264) or png (a sequence); the preset's where not given")
         ->type_name("FORMAT")
         ->check(CLI::IsMember({"mp4", "png"}));
     command.add_option("--quality", options->quality, "draft (fast), standard (what the preset says) or best (slow)")
         ->type_name("QUALITY")
         ->check(CLI::IsMember({"draft", "standard", "best"}));
-    command.add_option("--gl", options->gl, "What draws")->type_name("NAME")->check(CLI::IsMember({"osmesa"}))->capture_default_str();
+    command.add_option("--gl", options->gl, "What draws")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"osmesa"}))
+        ->capture_default_str();
     command.callback([options] {
         RunOptions run{.out = options->out, .pictures = true, .jobs = options->jobs};
         if (!options->frames.empty()) {
             const auto range = two_numbers(options->frames, ':');
             if (!range || range->first < 0 || range->second <= range->first)
-                throw bad_input("--frames wants A:B with 0 ≤ A < B, the samples A to B−1; it is \"{}\"", options->frames);
+                throw bad_input("--frames wants A:B with 0 ≤ A < B, the samples A to B−1; it is \"{}\"",
+                                options->frames);
             std::tie(run.first, run.last) = *range;
         }
         run_all(read_scenes(*options, overrides(*options)), *options, run);

@@ -25,7 +25,7 @@ constexpr void for_each_method(Visit&& visit) {
 inline constexpr std::array<Method, 2> methods = [] {
     std::array<Method, 2> all;
     std::size_t n = 0;
-    for_each_method([&]<const auto& table>() { all[n++] = {table.name, table.title, table.order}; });
+    for_each_method([&]<const auto & table>() { all[n++] = {table.name, table.title, table.order}; });
     return all;
 }();
 

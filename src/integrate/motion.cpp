@@ -12,8 +12,8 @@
 namespace doppel {
 namespace {
 
-/// A model knows its angles only up to whole turns if it is built of particles: they are followed from one look to the next,
-/// which may be no further apart than half a turn.
+/// A model knows its angles only up to whole turns if it is built of particles: they are followed from one look to the
+/// next, which may be no further apart than half a turn.
 constexpr double longest_unwatched = 1.0 / 500;  // s; half a turn in it would be 1570 rad/s
 
 template <class Mechanism, const auto& table>
@@ -65,7 +65,7 @@ private:
 template <class Mechanism>
 std::unique_ptr<Motion> stepped(std::string_view method, const Pendulum& pendulum, double step) {
     std::unique_ptr<Motion> motion;
-    for_each_method([&]<const auto& table>() {
+    for_each_method([&]<const auto & table>() {
         if (table.name == method) motion = std::make_unique<Stepped<Mechanism, table>>(pendulum, step);
     });
     if (!motion) throw bad_input("there is no method \"{}\"", method);

@@ -14,8 +14,8 @@ struct Observation {
     double length_error = 0;  // of the worst rod, m
 };
 
-/// A mechanism that moves, as the sample loop sees it. Virtual, because it is asked 120 times a second; the steps inside
-/// advance(), 30 000 times a second, are a template behind this door.
+/// A mechanism that moves, as the sample loop sees it. Virtual, because it is asked 120 times a second; the steps
+/// inside advance(), 30 000 times a second, are a template behind this door.
 class Motion {
 public:
     virtual ~Motion() = default;

@@ -32,7 +32,9 @@ typename Model::State step(const Model& model, const typename Model::State& y, c
         static constexpr auto row = table.a[i];
         k[i] = model.rate(advanced<row>(y, h, k, std::make_index_sequence<i>()));
     };
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (slope.template operator()<I>(), ...); }
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+        (slope.template operator()<I>(), ...);
+    }
     (std::make_index_sequence<stages>());
 
     // y + h Σ b_i k_i

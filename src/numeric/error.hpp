@@ -11,8 +11,8 @@ namespace doppel {
 /// What the process answers with; one number a kind of outcome.
 enum class ExitCode { done = 0, differs = 1, bad_input = 2, method_failed = 3, io_failed = 4, interrupted = 130 };
 
-/// The one exception of Doppel: a sentence for the person who runs it, and the exit code that goes with it. It is thrown
-/// where the fault is known best, and caught once, in main.
+/// The one exception of Doppel: a sentence for the person who runs it, and the exit code that goes with it. It is
+/// thrown where the fault is known best, and caught once, in main.
 class Error : public std::runtime_error {
 public:
     Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

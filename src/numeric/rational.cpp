@@ -102,6 +102,8 @@ std::optional<Rational> parse_rational(std::string_view text) {
     return above && below ? quotient(*above, *below) : std::nullopt;
 }
 
-std::optional<Rational> rational_from_decimal(double value) { return parse_decimal(fmt::format("{}", value)); }
+std::optional<Rational> rational_from_decimal(double value) {
+    return parse_decimal(fmt::format("{}", value));
+}
 
 }  // namespace doppel

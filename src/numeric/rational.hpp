@@ -24,7 +24,8 @@ std::optional<Rational> reduced(std::int64_t numerator, std::int64_t denominator
 std::optional<Rational> product(const Rational& a, const Rational& b);
 std::optional<Rational> quotient(const Rational& a, const Rational& b);
 
-/// "1/30000", "0.001", "2.5e-4": the number its digits mean. Nothing where the text is none, or needs more than 64 bits.
+/// "1/30000", "0.001", "2.5e-4": the number its digits mean. Nothing where the text is none, or needs more than 64
+/// bits.
 std::optional<Rational> parse_rational(std::string_view text);
 
 /// The decimal fraction that the shortest digits of `value` mean: 0.1 becomes 1/10.

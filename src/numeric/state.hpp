@@ -22,6 +22,8 @@ struct SinCos {
 };
 
 inline constexpr double pi = 3.14159265358979323846;
-constexpr double radians(double degrees) { return degrees * (pi / 180); }
+constexpr double radians(double degrees) {
+    return degrees * (pi / 180);
+}
 
 }  // namespace doppel

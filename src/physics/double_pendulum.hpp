@@ -5,8 +5,8 @@
 
 namespace doppel {
 
-/// The double pendulum in angles (Lagrange): two point masses on massless rigid rods, swinging in a vertical plane without
-/// friction. Rods keep their length by construction.
+/// The double pendulum in angles (Lagrange): two point masses on massless rigid rods, swinging in a vertical plane
+/// without friction. Rods keep their length by construction.
 ///
 /// State   (θ1, θ2, ω1, ω2). Angles are not wrapped: whole turns count as flips.
 /// Source  Landau & Lifshitz, Mechanics, §5 problem 1, solved for the accelerations.

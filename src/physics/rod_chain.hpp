@@ -4,6 +4,7 @@
 #include "physics/pendulum.hpp"
 
 #include <Eigen/Dense>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +14,8 @@ namespace doppel {
 ///
 ///     C1 = ½ (|q1|² − l1²) = 0,   C2 = ½ (|q2 − q1|² − l2²) = 0
 ///
-/// The multipliers λ of the constraint forces Jᵀλ follow from C″ = 0, as (J M⁻¹ Jᵀ) λ = −J̇ q̇ − J M⁻¹ F. Nothing pulls the
-/// rods back once a method has let them stretch; length_error() says how far they have.
+/// The multipliers λ of the constraint forces Jᵀλ follow from C″ = 0, as (J M⁻¹ Jᵀ) λ = −J̇ q̇ − J M⁻¹ F. Nothing pulls
+/// the rods back once a method has let them stretch; length_error() says how far they have.
 ///
 /// State   (x1, y1, x2, y2, vx1, vy1, vx2, vy2), m and m/s.
 /// Source  Witkin 1997, Physically Based Modeling: Constrained Dynamics.
@@ -65,9 +66,9 @@ struct RodChain {
         const Scalar lambda1 = (b1 * a22 - b2 * a12) * inverse, lambda2 = (b2 * a11 - b1 * a12) * inverse;
 
         State rate;
-        rate << v1x, v1y, y[6], y[7],                               //
-            w1 * (lambda1 * r1x - lambda2 * r2x),                   //
-            w1 * (lambda1 * r1y - lambda2 * r2y) - g,               //
+        rate << v1x, v1y, y[6], y[7],                  //
+            w1 * (lambda1 * r1x - lambda2 * r2x),      //
+            w1 * (lambda1 * r1y - lambda2 * r2y) - g,  //
             w2 * lambda2 * r2x, w2 * lambda2 * r2y - g;
         return rate;
     }

@@ -17,8 +17,8 @@ std::string power_of_ten(int exponent) {
 }
 
 float Axis::at(double value) const {
-    const double share = logarithmic ? std::log(std::max(value, low) / low) / std::log(high / low)
-                                     : (value - low) / (high - low);
+    const double share =
+        logarithmic ? std::log(std::max(value, low) / low) / std::log(high / low) : (value - low) / (high - low);
     return static_cast<float>(from + (to - from) * std::clamp(share, 0.0, 1.0));
 }
 

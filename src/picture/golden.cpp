@@ -10,14 +10,14 @@ namespace doppel {
 namespace {
 
 // The policy: identical pixels pass; otherwise all of these must hold.
-constexpr int strong_difference = 3;        // /255
-constexpr long most_strong = 4;             // pixels
-constexpr int largest_allowed = 80;         // /255
-constexpr double most_differing = 0.08;     // of all pixels
-constexpr int tile = 32;                    // px
-constexpr double most_tile_mean = 0.25;     // /255
-constexpr double most_signed_mean = 0.03;   // /255
-constexpr int channels = 3;                 // opacity is not compared: pictures are opaque
+constexpr int strong_difference = 3;       // /255
+constexpr long most_strong = 4;            // pixels
+constexpr int largest_allowed = 80;        // /255
+constexpr double most_differing = 0.08;    // of all pixels
+constexpr int tile = 32;                   // px
+constexpr double most_tile_mean = 0.25;    // /255
+constexpr double most_signed_mean = 0.03;  // /255
+constexpr int channels = 3;                // opacity is not compared: pictures are opaque
 
 /// Mean absolute difference over the tile whose corner is (left, top).
 double tile_mean(const Picture& expected, const Picture& actual, int left, int top) {
@@ -34,8 +34,8 @@ double tile_mean(const Picture& expected, const Picture& actual, int left, int t
 GoldenVerdict compare_golden(const Picture& expected, const Picture& actual) {
     const auto [width, height] = expected.size;
     if (actual.size != expected.size)
-        throw Error(ExitCode::differs, fmt::format("the pictures differ in size: {}×{} expected, {}×{} found", width, height,
-                                                   actual.size.width, actual.size.height));
+        throw Error(ExitCode::differs, fmt::format("the pictures differ in size: {}×{} expected, {}×{} found", width,
+                                                   height, actual.size.width, actual.size.height));
     GoldenVerdict verdict;
     std::array<long, channels> sums{};
     for (int y = 0; y < height; ++y)
@@ -66,14 +66,15 @@ GoldenVerdict compare_golden(const Picture& expected, const Picture& actual) {
     rule(verdict.largest <= largest_allowed,
          fmt::format("a pixel differs by {}/255, {} is allowed", verdict.largest, largest_allowed));
     rule(static_cast<double>(verdict.differing) <= most_differing * pixels,
-         fmt::format("{:.1f} % of the pixels differ, {:.0f} % may", 100.0 * static_cast<double>(verdict.differing) / pixels,
-                     100 * most_differing));
+         fmt::format("{:.1f} % of the pixels differ, {:.0f} % may",
+                     100.0 * static_cast<double>(verdict.differing) / pixels, 100 * most_differing));
     rule(verdict.worst_tile <= most_tile_mean,
-         fmt::format("a {0}×{0} tile differs by {1:.2f}/255 on average, {2} is allowed", tile, verdict.worst_tile, most_tile_mean));
+         fmt::format("a {0}×{0} tile differs by {1:.2f}/255 on average, {2} is allowed", tile, verdict.worst_tile,
+                     most_tile_mean));
     for (std::size_t c = 0; c < channels; ++c)
         rule(std::abs(verdict.mean[c]) <= most_signed_mean,
-             fmt::format("{} is {:+.3f}/255 off on average, {} is allowed", std::array{"red", "green", "blue"}[c], verdict.mean[c],
-                         most_signed_mean));
+             fmt::format("{} is {:+.3f}/255 off on average, {} is allowed", std::array{"red", "green", "blue"}[c],
+                         verdict.mean[c], most_signed_mean));
     return verdict;
 }
 

@@ -7,14 +7,14 @@
 
 namespace doppel {
 
-/// How two pictures of one size differ, and whether the golden policy lets it pass. Drivers and SIMD widths move a few pixels by
-/// a few levels and pass; a shift by a pixel, another background or another gamma does not.
+/// How two pictures of one size differ, and whether the golden policy lets it pass. Drivers and SIMD widths move a few
+/// pixels by a few levels and pass; a shift by a pixel, another background or another gamma does not.
 struct GoldenVerdict {
-    long differing = 0;               // pixels that are not the same
-    long strong = 0;                  // pixels that differ by more than 3/255 in a channel
-    int largest = 0;                  // greatest difference of a channel, /255
-    double worst_tile = 0;            // greatest mean difference over a 32×32 tile, /255
-    std::array<double, 3> mean{};     // signed mean of each channel, actual − expected, /255
+    long differing = 0;            // pixels that are not the same
+    long strong = 0;               // pixels that differ by more than 3/255 in a channel
+    int largest = 0;               // greatest difference of a channel, /255
+    double worst_tile = 0;         // greatest mean difference over a 32×32 tile, /255
+    std::array<double, 3> mean{};  // signed mean of each channel, actual − expected, /255
     bool passes = true;
     std::string why;  // the rules broken, in words; empty if it passes
 };

@@ -7,15 +7,16 @@
 
 namespace doppel {
 
-/// The colours of a picture. The hues of the two sides, orange and blue, stay apart for the colour-blind (after Okabe & Ito 2008).
+/// The colours of a picture. The hues of the two sides, orange and blue, stay apart for the colour-blind (after Okabe &
+/// Ito 2008).
 struct Theme {
     std::string_view name;
-    Color background, panel;           // behind everything; behind the pendulums
-    Color text, quiet_text;            // what is read first; what is read when wanted
-    Color grid, frame, cursor;         // lines of a chart: decades and seconds, its border, now
-    Color rod, bob, pivot;             // what all pendulums share
-    std::array<Color, 2> sides;        // a, b
-    Color trace;                       // what belongs to both
+    Color background, panel;     // behind everything; behind the pendulums
+    Color text, quiet_text;      // what is read first; what is read when wanted
+    Color grid, frame, cursor;   // lines of a chart: decades and seconds, its border, now
+    Color rod, bob, pivot;       // what all pendulums share
+    std::array<Color, 2> sides;  // a, b
+    Color trace;                 // what belongs to both
 };
 
 inline constexpr std::array<Theme, 2> themes{{

@@ -6,8 +6,8 @@
 
 namespace doppel {
 
-/// The path of a quantity over time, growing to the right, with the points left out that lie within a fifth of a pixel of the
-/// straight line through those that stay. What stays depends only on what came before.
+/// The path of a quantity over time, growing to the right, with the points left out that lie within a fifth of a pixel
+/// of the straight line through those that stay. What stays depends only on what came before.
 class Trace {
 public:
     /// x must grow from point to point.
@@ -19,7 +19,7 @@ public:
 private:
     std::vector<Stroke::Vertex> kept_;
     Point newest_{};
-    bool pending_ = false;            // the newest point is not among the kept
+    bool pending_ = false;               // the newest point is not among the kept
     float steepest_ = 0, flattest_ = 0;  // slopes from the last kept point that miss no point since
 };
 

@@ -35,8 +35,8 @@ Composer::Composer(const Scene& scene)
     : scene_(scene),
       layout_(make_layout(scene)),
       theme_(themed(scene.preset.video)),
-      heaviest_(std::max({scene.a.pendulum.mass[0], scene.a.pendulum.mass[1], scene.b.pendulum.mass[0],
-                          scene.b.pendulum.mass[1]})),
+      heaviest_(std::max(
+          {scene.a.pendulum.mass[0], scene.a.pendulum.mass[1], scene.b.pendulum.mass[0], scene.b.pendulum.mass[1]})),
       energy_unit_(std::max(scene.a.pendulum.potential_range(), scene.b.pendulum.potential_range())) {}
 
 DisplayList Composer::backdrop() const {
@@ -45,24 +45,34 @@ DisplayList Composer::backdrop() const {
     const auto& size = scene_.preset.video.size;
     DisplayList list;
     list.push_back(Box{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, theme_.background});
-    list.push_back(Label{layout_.title, {page.left, page.top + 38 * t}, 40 * t, Align::left, Weight::bold, theme_.text});
-    list.push_back(Label{layout_.subtitle, {page.left, page.top + 74 * t}, 22 * t, Align::left, Weight::regular, theme_.quiet_text});
-    list.push_back(Label{speed_words(scene_.preset.video.speed), {page.right, page.top + 74 * t}, 22 * t, Align::right,
-                         Weight::regular, theme_.quiet_text});
+    list.push_back(
+        Label{layout_.title, {page.left, page.top + 38 * t}, 40 * t, Align::left, Weight::bold, theme_.text});
+    list.push_back(Label{
+        layout_.subtitle, {page.left, page.top + 74 * t}, 22 * t, Align::left, Weight::regular, theme_.quiet_text});
+    list.push_back(Label{speed_words(scene_.preset.video.speed),
+                         {page.right, page.top + 74 * t},
+                         22 * t,
+                         Align::right,
+                         Weight::regular,
+                         theme_.quiet_text});
 
     for (std::size_t side = 0; layout_.panels && side < 2; ++side) {
         const auto& panel = (*layout_.panels)[side];
         const auto& area = panel.area;
         list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
         const double reach = std::max(scene_.a.pendulum.reach(), scene_.b.pendulum.reach());
-        list.push_back(Ring{panel.pivot, panel.px_per_m * static_cast<float>(reach), std::max(1.5f * u, 1.0f), theme_.grid});
+        list.push_back(
+            Ring{panel.pivot, panel.px_per_m * static_cast<float>(reach), std::max(1.5f * u, 1.0f), theme_.grid});
         const float left = area.left + 28 * u;
-        list.push_back(Label{panel.heading, {left, area.top + 50 * t}, 31 * t, Align::left, Weight::bold, theme_.sides[side]});
-        list.push_back(Label{panel.note, {left, area.top + 82 * t}, 21 * t, Align::left, Weight::regular, theme_.quiet_text});
+        list.push_back(
+            Label{panel.heading, {left, area.top + 50 * t}, 31 * t, Align::left, Weight::bold, theme_.sides[side]});
+        list.push_back(
+            Label{panel.note, {left, area.top + 82 * t}, 21 * t, Align::left, Weight::regular, theme_.quiet_text});
     }
     if (layout_.distance) compose_strip_backdrop(*layout_.distance, distance_heading, 34 * t, list);
     if (layout_.energy) compose_strip_backdrop(*layout_.energy, "energy error, of the potential range", 30 * t, list);
-    if (layout_.distance || layout_.energy) compose_time_labels(layout_.energy ? *layout_.energy : *layout_.distance, list);
+    if (layout_.distance || layout_.energy)
+        compose_time_labels(layout_.energy ? *layout_.energy : *layout_.distance, list);
     return list;
 }
 
@@ -82,7 +92,8 @@ void Composer::add(const Moment& moment) {
         if (moment.sample == 0) start_energy_ = {moment.a.energy, moment.b.energy};
         const std::array energy{moment.a.energy, moment.b.energy};
         for (std::size_t side = 0; side < 2; ++side)
-            energy_[side].add({strip.time.at(time), strip.value.at(std::abs(energy[side] - start_energy_[side]) / energy_unit_)});
+            energy_[side].add(
+                {strip.time.at(time), strip.value.at(std::abs(energy[side] - start_energy_[side]) / energy_unit_)});
     }
     if (!parted_ && moment.distance >= parted_at && moment.sample > 0) parted_ = time;
 }
@@ -90,8 +101,12 @@ void Composer::add(const Moment& moment) {
 DisplayList Composer::frame() const {
     const float t = layout_.text;
     DisplayList list;
-    list.push_back(Label{clock(scene_, scene_.time(now_.sample)), {layout_.page.right, layout_.page.top + 38 * t}, 40 * t,
-                         Align::right, Weight::regular, theme_.text});
+    list.push_back(Label{clock(scene_, scene_.time(now_.sample)),
+                         {layout_.page.right, layout_.page.top + 38 * t},
+                         40 * t,
+                         Align::right,
+                         Weight::regular,
+                         theme_.text});
     for (std::size_t side = 0; layout_.panels && side < 2; ++side) compose_panel(side, list);
     if (layout_.distance) compose_distance(list);
     if (layout_.energy) compose_energy(list);

@@ -10,8 +10,8 @@
 
 namespace doppel {
 
-/// Turns a pair's moments into display lists. The list of a moment depends on the scene and on the moments so far, and on
-/// nothing else: any frame can be drawn alone.
+/// Turns a pair's moments into display lists. The list of a moment depends on the scene and on the moments so far, and
+/// on nothing else: any frame can be drawn alone.
 class Composer {
 public:
     explicit Composer(const Scene& scene);
@@ -33,7 +33,8 @@ private:
 
     void extend_trail(std::size_t side, const Bob<double>& bob, double time);
     void compose_panel(std::size_t side, DisplayList& list) const;
-    void compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
+    void compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color,
+                      DisplayList& list) const;
     float bob_radius(const Bob<double>& bob) const;
     void compose_distance(DisplayList& list) const;
     void compose_energy(DisplayList& list) const;
@@ -45,8 +46,8 @@ private:
     const Scene& scene_;
     Layout layout_;
     Theme theme_;
-    double heaviest_;                      // kg
-    double energy_unit_;                   // J: one for both sides, or the side that starts near E = 0 would look far worse
+    double heaviest_;     // kg
+    double energy_unit_;  // J: one for both sides, or the side that starts near E = 0 would look far worse
     std::array<double, 2> start_energy_{};  // J
     Moment now_;
     std::array<std::deque<TrailPoint>, 2> trails_;

@@ -6,13 +6,18 @@
 namespace doppel {
 namespace {
 
-float apart(Point a, Point b) { return std::hypot(a.x - b.x, a.y - b.y); }
+float apart(Point a, Point b) {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
 
-Capsule disc(Point at, float radius, Color color) { return {at, at, radius, color}; }
+Capsule disc(Point at, float radius, Color color) {
+    return {at, at, radius, color};
+}
 
 }  // namespace
 
-/// Adds the way from the last bob to this one: a cubic through both with their velocities (Hermite), in pieces of a few pixels.
+/// Adds the way from the last bob to this one: a cubic through both with their velocities (Hermite), in pieces of a few
+/// pixels.
 void Composer::extend_trail(std::size_t side, const Bob<double>& bob, double time) {
     const auto& panel = (*layout_.panels)[side];
     auto& trail = trails_[side];
@@ -56,8 +61,11 @@ void Composer::compose_panel(std::size_t side, DisplayList& list) const {
     if (trail_s > 0) {
         Stroke stroke{{}, std::max(3.4f * layout_.unit, 1.2f), theme_.sides[side]};
         const double time = scene_.time(now_.sample);
-        const auto freshness = [&](double when) { return static_cast<float>(std::clamp(1 - (time - when) / trail_s, 0.0, 1.0)); };
-        for (const auto& point : trails_[side]) stroke.vertices.push_back({point.at, std::pow(freshness(point.time), 1.6f)});
+        const auto freshness = [&](double when) {
+            return static_cast<float>(std::clamp(1 - (time - when) / trail_s, 0.0, 1.0));
+        };
+        for (const auto& point : trails_[side])
+            stroke.vertices.push_back({point.at, std::pow(freshness(point.time), 1.6f)});
         stroke.vertices.push_back({panel.at(own.bobs.back().x, own.bobs.back().y), 1});
         list.push_back(std::move(stroke));
     }
@@ -73,7 +81,8 @@ void Composer::compose_panel(std::size_t side, DisplayList& list) const {
     }
 }
 
-void Composer::compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const {
+void Composer::compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color,
+                            DisplayList& list) const {
     Point joint = panel.pivot;
     for (const auto& bob : bobs) {
         const Point at = panel.at(bob.x, bob.y);

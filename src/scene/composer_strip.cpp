@@ -33,7 +33,8 @@ std::string scientific(double value) {
 
 }  // namespace
 
-void Composer::compose_strip_backdrop(const StripLayout& strip, const char* heading, float label_px, DisplayList& list) const {
+void Composer::compose_strip_backdrop(const StripLayout& strip, const char* heading, float label_px,
+                                      DisplayList& list) const {
     const float t = layout_.text, line = std::max(1.4f * layout_.unit, 1.0f);
     const auto& area = strip.area;
     const float size = 20 * t;
@@ -45,9 +46,15 @@ void Composer::compose_strip_backdrop(const StripLayout& strip, const char* head
         if (tick.text.empty() && !border) continue;
         list.push_back(horizontal_line(y, area.left, area.right, line, border ? theme_.frame : theme_.grid));
         if (!tick.text.empty())
-            list.push_back(Label{tick.text, {area.left - 12 * t, y + 0.36f * size}, size, Align::right, Weight::regular, theme_.quiet_text});
+            list.push_back(Label{tick.text,
+                                 {area.left - 12 * t, y + 0.36f * size},
+                                 size,
+                                 Align::right,
+                                 Weight::regular,
+                                 theme_.quiet_text});
     }
-    list.push_back(Label{heading, {area.left, area.top - 12 * t}, words_px * t, Align::left, Weight::regular, theme_.text});
+    list.push_back(
+        Label{heading, {area.left, area.top - 12 * t}, words_px * t, Align::left, Weight::regular, theme_.text});
 }
 
 void Composer::compose_time_labels(const StripLayout& strip, DisplayList& list) const {
@@ -58,8 +65,12 @@ void Composer::compose_time_labels(const StripLayout& strip, DisplayList& list) 
         const float x = strip.time.at(tick.value);
         // the last one carries the unit, and stays on the page
         const bool at_edge = x > layout_.page.right - 30 * t;
-        list.push_back(Label{last ? tick.text + " s" : tick.text, {at_edge ? layout_.page.right : x, layout_.time_labels}, 20 * t,
-                             at_edge ? Align::right : Align::center, Weight::regular, theme_.quiet_text});
+        list.push_back(Label{last ? tick.text + " s" : tick.text,
+                             {at_edge ? layout_.page.right : x, layout_.time_labels},
+                             20 * t,
+                             at_edge ? Align::right : Align::center,
+                             Weight::regular,
+                             theme_.quiet_text});
     }
 }
 
@@ -67,16 +78,20 @@ void Composer::compose_distance(DisplayList& list) const {
     const auto& strip = *layout_.distance;
     const float t = layout_.text, u = layout_.unit;
     const float x = strip.time.at(scene_.time(now_.sample)), y = strip.value.at(now_.distance);
-    const float words = strip.area.left + text_width(distance_heading, words_px * t) + 18 * t, baseline = strip.area.top - 12 * t;
-    list.push_back(Label{scientific(now_.distance), {words, baseline}, words_px * t, Align::left, Weight::regular, theme_.trace});
+    const float words = strip.area.left + text_width(distance_heading, words_px * t) + 18 * t,
+                baseline = strip.area.top - 12 * t;
+    list.push_back(
+        Label{scientific(now_.distance), {words, baseline}, words_px * t, Align::left, Weight::regular, theme_.trace});
     if (parted_) {
         // the moment of parting: a dashed line, and when it was above it
         const float at = strip.time.at(*parted_), dash = 6 * t;
         for (float top = strip.area.top; top < strip.area.bottom; top += 2 * dash)
-            list.push_back(vertical_line(at, top, std::min(top + dash, strip.area.bottom), std::max(1.6f * u, 1.0f), theme_.quiet_text));
+            list.push_back(vertical_line(at, top, std::min(top + dash, strip.area.bottom), std::max(1.6f * u, 1.0f),
+                                         theme_.quiet_text));
         const auto text = fmt::format("parted at {:.1f} s", *parted_);
         const float half = text_width(text, words_px * t) / 2, room = 110 * t;
-        const float center = std::clamp(at, words + room + half, std::max(words + room + half, strip.area.right - half));
+        const float center =
+            std::clamp(at, words + room + half, std::max(words + room + half, strip.area.right - half));
         list.push_back(Label{text, {center, baseline}, words_px * t, Align::center, Weight::regular, theme_.text});
     }
     list.push_back(vertical_line(x, strip.area.top, strip.area.bottom, std::max(1.6f * u, 1.0f), theme_.cursor));

@@ -9,7 +9,8 @@
 namespace doppel {
 namespace {
 
-/// The distance axis where the preset names none: from the decade of the start to beyond two strangers of the same energy.
+/// The distance axis where the preset names none: from the decade of the start to beyond two strangers of the same
+/// energy.
 Range fitted_distance(const Scene& scene) {
     const auto start = PairRun(scene).next(std::atomic<bool>(false));
     const auto& p = scene.a.pendulum;
@@ -45,7 +46,8 @@ void place_pendulum(PanelLayout& panel, float words_right, float words_bottom, d
 }
 
 StripLayout strip(const Layout& layout, const Scene& scene, float top, float bottom, const Range& range) {
-    const Area area{layout.page.left + std::round(84 * layout.text), std::round(top), layout.page.right, std::round(bottom)};
+    const Area area{layout.page.left + std::round(84 * layout.text), std::round(top), layout.page.right,
+                    std::round(bottom)};
     return {area,
             {.low = 0, .high = scene.time(scene.samples), .from = area.left, .to = area.right},
             {.low = range.low, .high = range.high, .from = area.bottom, .to = area.top, .logarithmic = true}};
@@ -105,10 +107,11 @@ Layout make_layout(const Scene& scene) {
     // both alike, so that the pendulums are drawn to one scale
     float words_width = 0;
     for (const auto& panel : *layout.panels)
-        words_width = std::max({words_width, text_width(panel.heading, 31 * t, Weight::bold), text_width(panel.note, 21 * t)});
+        words_width =
+            std::max({words_width, text_width(panel.heading, 31 * t, Weight::bold), text_width(panel.note, 21 * t)});
     for (auto& panel : *layout.panels)
-        place_pendulum(panel, panel.area.left + 28 * u + words_width + 8 * u, panel.area.top + (panel.note.empty() ? 60 : 92) * t,
-                       reach, 30 * u);
+        place_pendulum(panel, panel.area.left + 28 * u + words_width + 8 * u,
+                       panel.area.top + (panel.note.empty() ? 60 : 92) * t, reach, 30 * u);
     const float radius = static_cast<float>(reach) * layout.panels->front().px_per_m;
     layout.bob_radius = 0.068f * radius;
     layout.rod_radius = std::max(0.0115f * radius, 0.8f);

@@ -20,7 +20,7 @@ struct Area {
 /// A pendulum's panel and how metres become pixels in it.
 struct PanelLayout {
     Area area;
-    Point pivot;               // px
+    Point pivot;  // px
     float px_per_m = 1;
     std::string heading, note;  // what differs; what else defines the side
     Point at(double x_m, double y_m) const;
@@ -40,8 +40,8 @@ struct Layout {
     std::string title, subtitle;
     std::optional<std::array<PanelLayout, 2>> panels;
     std::optional<StripLayout> distance, energy;
-    float bob_radius = 0;  // px, of the heaviest
-    float rod_radius = 0;  // half its width, px
+    float bob_radius = 0;   // px, of the heaviest
+    float rod_radius = 0;   // half its width, px
     float time_labels = 0;  // their baseline, px
 };
 

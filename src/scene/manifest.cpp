@@ -5,12 +5,12 @@
 #include "scene/version.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <sstream>
-#include <toml++/toml.h>
 
 namespace doppel {
 namespace {
@@ -18,7 +18,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A basic TOML string.
-std::string quoted(const std::string& text) { return Json(text).dump(); }
+std::string quoted(const std::string& text) {
+    return Json(text).dump();
+}
 
 std::string hex(const Color& color) {
     const auto channel = [](float x) { return static_cast<int>(std::lround(x * 255)); };
@@ -26,7 +28,9 @@ std::string hex(const Color& color) {
 }
 
 /// A number where it is whole, "a/b" where it is not.
-std::string ratio(const Rational& value) { return value.is_whole() ? value.text() : fmt::format("\"{}\"", value.text()); }
+std::string ratio(const Rational& value) {
+    return value.is_whole() ? value.text() : fmt::format("\"{}\"", value.text());
+}
 
 Json json_of(const std::string& toml) {
     std::ostringstream text;
@@ -40,8 +44,8 @@ std::string side_toml(const SideSpec& side) {
         "links = {}\nmass_kg = [{}]\nlength_m = [{}]\nangle_deg = [{}]\nomega_deg_per_s = [{}]\ngravity_m_per_s2 = {}\n"
         "model = \"{}\"\nintegrator = \"{}\"\nstep_s = {}\nprecision = \"double\"\n",
         link_count, fmt::join(side.mass_kg, ", "), fmt::join(side.length_m, ", "), fmt::join(side.angle_deg, ", "),
-        fmt::join(side.omega_deg_per_s, ", "), side.gravity_m_per_s2, models[static_cast<int>(side.model)], side.integrator,
-        ratio(side.step_s));
+        fmt::join(side.omega_deg_per_s, ", "), side.gravity_m_per_s2, models[static_cast<int>(side.model)],
+        side.integrator, ratio(side.step_s));
 }
 
 Json side_json(const Side& side, double energy_error, double length_error) {
@@ -74,14 +78,16 @@ std::string resolved_toml(const Preset& preset) {
     if (video.distance) panels.emplace_back("\"distance\"");
     if (video.energy) panels.emplace_back("\"energy\"");
 
-    auto text = fmt::format("title = {}\n\n[scene]\nkind = \"pair\"\nduration_s = {}\nsample_hz = {}\n", quoted(preset.title),
-                            ratio(preset.duration_s), ratio(preset.sample_hz));
+    auto text = fmt::format("title = {}\n\n[scene]\nkind = \"pair\"\nduration_s = {}\nsample_hz = {}\n",
+                            quoted(preset.title), ratio(preset.duration_s), ratio(preset.sample_hz));
     text += fmt::format("\n[a]\n{}\n[b]\n{}", side_toml(preset.a), side_toml(preset.b));
-    text += fmt::format("\n[video]\nsize = [{}, {}]\nspeed = {}\nformat = \"{}\"\npreset = \"{}\"\ncrf = {}\ntheme = \"{}\"\n",
-                        video.size.width, video.size.height, ratio(video.speed), video.format, video.preset, video.crf, video.theme);
+    text += fmt::format(
+        "\n[video]\nsize = [{}, {}]\nspeed = {}\nformat = \"{}\"\npreset = \"{}\"\ncrf = {}\ntheme = \"{}\"\n",
+        video.size.width, video.size.height, ratio(video.speed), video.format, video.preset, video.crf, video.theme);
     text += fmt::format("trail_s = {}\npanels = [{}]\n", video.trail_s, fmt::join(panels, ", "));
     if (video.fps) text += fmt::format("fps = {}\n", ratio(*video.fps));
-    if (video.side_colors) text += fmt::format("side_colors = [{}, {}]\n", hex((*video.side_colors)[0]), hex((*video.side_colors)[1]));
+    if (video.side_colors)
+        text += fmt::format("side_colors = [{}, {}]\n", hex((*video.side_colors)[0]), hex((*video.side_colors)[1]));
     const auto add_range = [&](const char* key, const std::optional<Range>& range) {
         if (range) text += fmt::format("{} = [{}, {}]\n", key, range->low, range->high);
     };
@@ -100,7 +106,8 @@ void write_manifest(const std::filesystem::path& path, const Scene& scene, const
         {"preset", scene.preset.name},
         {"resolved_preset", json_of(resolved_toml(scene.preset))},
         {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
-        {"frames", {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", scene.samples_per_frame}}},
+        {"frames",
+         {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", scene.samples_per_frame}}},
         {"steps", steps},
         {"a", side_json(scene.a, record.worst.energy_a, record.worst.length_a)},
         {"b", side_json(scene.b, record.worst.energy_b, record.worst.length_b)},

@@ -20,9 +20,9 @@ struct WorstErrors {
 struct RunRecord {
     long first_sample = 0, last_sample = 0;  // in the table, both included
     long frames = 0;
-    std::string gl, libav;  // empty where no pictures were made
+    std::string gl, libav;                                       // empty where no pictures were made
     double simulate_cpu_s = 0, draw_cpu_s = 0, write_cpu_s = 0;  // by the threads' clocks; write = convert, hand over
-    double encode_cpu_s = 0;                                      // the rest of the process: encoder or compressor threads
+    double encode_cpu_s = 0;  // the rest of the process: encoder or compressor threads
     double wall_s = 0, cpu_s = 0;
     WorstErrors worst;
     double largest_distance = 0;

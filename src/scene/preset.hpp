@@ -38,11 +38,11 @@ struct VideoSpec {
     std::string format = "mp4";   // or "png"
     std::string preset = "veryfast";
     int crf = 18;
-    std::string theme = "dark";                         // or "light"
-    std::optional<std::array<Color, 2>> side_colors;    // the theme's where not given
-    double trail_s = 2.5;                               // s; 0 = none
+    std::string theme = "dark";                             // or "light"
+    std::optional<std::array<Color, 2>> side_colors;        // the theme's where not given
+    double trail_s = 2.5;                                   // s; 0 = none
     bool pendulums = true, distance = true, energy = true;  // which panels
-    std::optional<Range> distance_range, energy_range;  // fitted to the scene where not given
+    std::optional<Range> distance_range, energy_range;      // fitted to the scene where not given
 };
 
 /// A scene as a preset file describes it: read, complete and checked, nothing computed yet.
@@ -69,15 +69,15 @@ struct PresetText {
     std::string text;
 };
 
-/// Finds a preset: a path (anything with a slash or ending in .toml), or a name in presets/ here or built into the program.
-/// Throws Error (exit 2) that names the nearest preset, or says what is in place of the file.
+/// Finds a preset: a path (anything with a slash or ending in .toml), or a name in presets/ here or built into the
+/// program. Throws Error (exit 2) that names the nearest preset, or says what is in place of the file.
 PresetText find_preset(const std::string& name_or_path);
 
 /// All presets that are built in, by name.
 std::vector<PresetText> builtin_presets();
 
-/// Reads and checks; unknown keys, wrong types and lengths, and values out of range are Errors (exit 2) with place, value found
-/// and what would be right.
+/// Reads and checks; unknown keys, wrong types and lengths, and values out of range are Errors (exit 2) with place,
+/// value found and what would be right.
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides = {});
 
 /// The key=value of --set. Throws Error (exit 2) where it is not of that form.

@@ -16,7 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view ending = ".toml";
 
-std::string path_of(std::string_view name) { return fmt::format("presets/{}{}", name, ending); }
+std::string path_of(std::string_view name) {
+    return fmt::format("presets/{}{}", name, ending);
+}
 
 PresetText read_file(const fs::path& path) {
     std::error_code ignored;
@@ -56,8 +58,9 @@ PresetText find_preset(const std::string& name_or_path) {
         names.push_back(preset.name);
     }
     const auto meant = nearest(name_or_path, names);
-    throw bad_input("there is no preset \"{}\"; {}", name_or_path,
-                    meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
+    throw bad_input(
+        "there is no preset \"{}\"; {}", name_or_path,
+        meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
 }  // namespace doppel

@@ -1,5 +1,5 @@
-#include "picture/theme.hpp"
 #include "integrate/methods.hpp"
+#include "picture/theme.hpp"
 #include "scene/preset.hpp"
 #include "scene/toml_reader.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::array encoder_presets{"ultrafast"sv, "superfast"sv, "veryfast"sv, "faster"sv, "fast"sv,
+constexpr std::array encoder_presets{"ultrafast"sv, "superfast"sv, "veryfast"sv, "faster"sv,  "fast"sv,
                                      "medium"sv,    "slow"sv,      "slower"sv,   "veryslow"sv};
 constexpr std::array formats{"mp4"sv, "png"sv};
 constexpr std::array model_names{"auto"sv, "angles"sv, "constraints"sv};
@@ -45,8 +45,8 @@ void apply(toml::table& root, const Override& change) {
     try {
         given = toml::parse("value = " + change.value, change.origin);
     } catch (const toml::parse_error& fault) {
-        throw bad_input("{}: \"{}\" is no TOML value ({}); strings want quotes: '{}=\"{}\"'", change.origin, change.value,
-                        fault.description(), change.key, change.value);
+        throw bad_input("{}: \"{}\" is no TOML value ({}); strings want quotes: '{}=\"{}\"'", change.origin,
+                        change.value, fault.description(), change.key, change.value);
     }
     if (given.size() != 1) throw bad_input("{}: \"{}\" is more than one value", change.origin, change.value);
     // moved, not copied: a copy would forget where it comes from
@@ -60,7 +60,8 @@ void apply(toml::table& root, const std::vector<Override>& overrides) {
     for (std::size_t i = 0; i < overrides.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j)
             if (overrides[i].key == overrides[j].key)
-                throw bad_input("{} is given twice: {} and {}", overrides[i].key, overrides[j].origin, overrides[i].origin);
+                throw bad_input("{} is given twice: {} and {}", overrides[i].key, overrides[j].origin,
+                                overrides[i].origin);
         apply(root, overrides[i]);
     }
 }
@@ -78,7 +79,8 @@ void read_side(TomlReader& table, SideSpec& side) {
 
     std::string model(model_names[static_cast<std::size_t>(side.model)]), precision = "double";
     table.read_choice("model", model, model_names);
-    side.model = static_cast<ModelChoice>(std::find(model_names.begin(), model_names.end(), model) - model_names.begin());
+    side.model =
+        static_cast<ModelChoice>(std::find(model_names.begin(), model_names.end(), model) - model_names.begin());
     std::vector<std::string_view> names;
     for (const auto& method : methods) names.push_back(method.name);
     table.read_choice("integrator", side.integrator, names);
@@ -97,8 +99,8 @@ void read_video(TomlReader& table, VideoSpec& video) {
             throw table.fault("size", "must be whole numbers from {} to {}; it is [{}, {}]", smallest_picture,
                               largest_picture, size[0], size[1]);
         if (std::fmod(pixels, 2) != 0)
-            throw table.fault("size", "must be even, as H.264 needs it; it is [{}, {}]; [{}, {}] would do", size[0], size[1],
-                              size[0] + std::fmod(size[0], 2), size[1] + std::fmod(size[1], 2));
+            throw table.fault("size", "must be even, as H.264 needs it; it is [{}, {}]; [{}, {}] would do", size[0],
+                              size[1], size[0] + std::fmod(size[0], 2), size[1] + std::fmod(size[1], 2));
     }
     video.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
 
@@ -112,11 +114,14 @@ void read_video(TomlReader& table, VideoSpec& video) {
     for (const auto& theme : themes) theme_names.push_back(theme.name);
     table.read_choice("theme", video.theme, theme_names);
     if (const auto colors = table.read_texts("side_colors")) {
-        if (colors->size() != 2) throw table.fault("side_colors", "must have 2 colours, a and b; it has {}", colors->size());
+        if (colors->size() != 2)
+            throw table.fault("side_colors", "must have 2 colours, a and b; it has {}", colors->size());
         auto& sides = video.side_colors.emplace();
         for (std::size_t i = 0; i < 2; ++i) {
             const auto color = parse_color((*colors)[i]);
-            if (!color) throw table.fault("side_colors", "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, (*colors)[i]);
+            if (!color)
+                throw table.fault("side_colors", "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i,
+                                  (*colors)[i]);
             sides[i] = *color;
         }
     }
@@ -126,11 +131,15 @@ void read_video(TomlReader& table, VideoSpec& video) {
             throw table.fault("trail_s", "must be from 0 (none) to 3600; it is {}", video.trail_s);
     }
     if (const auto panels = table.read_texts("panels")) {
-        const auto shows = [&](std::string_view name) { return std::find(panels->begin(), panels->end(), name) != panels->end(); };
+        const auto shows = [&](std::string_view name) {
+            return std::find(panels->begin(), panels->end(), name) != panels->end();
+        };
         for (const auto& panel : *panels)
             if (std::find(panel_names.begin(), panel_names.end(), panel) == panel_names.end())
-                throw table.fault("panels", "may hold \"{}\"; \"{}\" is none of them", fmt::join(panel_names, "\", \""), panel);
-        if (panels->empty()) throw table.fault("panels", "must hold at least one of \"{}\"", fmt::join(panel_names, "\", \""));
+                throw table.fault("panels", "may hold \"{}\"; \"{}\" is none of them", fmt::join(panel_names, "\", \""),
+                                  panel);
+        if (panels->empty())
+            throw table.fault("panels", "must hold at least one of \"{}\"", fmt::join(panel_names, "\", \""));
         video.pendulums = shows("pendulums");
         video.distance = shows("distance");
         video.energy = shows("energy");
@@ -178,8 +187,8 @@ void check_rates(const Preset& preset, const TomlReader& scene, const TomlReader
     }
     const auto samples = product(preset.duration_s, preset.sample_hz);
     if (!samples || !samples->is_whole())
-        throw scene.fault("duration_s", "must be a whole number of samples at {} Hz; {} s are {}", preset.sample_hz.text(),
-                          preset.duration_s.text(), samples ? samples->text() : "too many");
+        throw scene.fault("duration_s", "must be a whole number of samples at {} Hz; {} s are {}",
+                          preset.sample_hz.text(), preset.duration_s.text(), samples ? samples->text() : "too many");
     constexpr long most_samples = 100'000'000;
     if (samples->numerator > most_samples)
         throw scene.fault("duration_s", "must be at most {} samples; it is {}", most_samples, samples->numerator);
@@ -189,8 +198,8 @@ void check_rates(const Preset& preset, const TomlReader& scene, const TomlReader
     constexpr double most_fps = 1000;
     constexpr long most_digits = 1'000'000;
     if (!fps || fps->value() > most_fps || fps->numerator > most_digits || fps->denominator > most_digits)
-        throw video.fault("fps", "must be at most {} and a fraction of whole numbers up to {}; it is {}", most_fps, most_digits,
-                          fps ? fps->text() : "beyond them");
+        throw video.fault("fps", "must be at most {} and a fraction of whole numbers up to {}; it is {}", most_fps,
+                          most_digits, fps ? fps->text() : "beyond them");
     if (!preset.video.fps) return;
     const auto stride = sampled ? quotient(*sampled, *preset.video.fps) : std::nullopt;
     if (!stride || !stride->is_whole())

@@ -108,7 +108,8 @@ private:
             each_link({"{}_theta{}_rad"});
             each_link({"{}_omega{}_rad_per_s"});
             each_link({"{}_x{}_m", "{}_y{}_m", "{}_vx{}_m_per_s", "{}_vy{}_m_per_s"});
-            for (const char* name : {"energy_J", "energy_error", "length_error_m"}) names.push_back(fmt::format("{}_{}", side, name));
+            for (const char* name : {"energy_J", "energy_error", "length_error_m"})
+                names.push_back(fmt::format("{}_{}", side, name));
         }
         names.insert(names.end(), {"distance", "log_ratio"});
         return names;
@@ -133,7 +134,8 @@ public:
         if (video.format == "png") {
             const auto folder = parts.directory("frames");
             record.files.emplace_back("frames", folder);
-            sink_ = make_png_sink(folder, [this](long k) { return fmt::format("{:06}.png", first_frame_ + k); }, jobs);
+            sink_ = make_png_sink(
+                folder, [this](long k) { return fmt::format("{:06}.png", first_frame_ + k); }, jobs);
         } else {
             const auto name = scene.preset.name + ".mp4";
             const auto path = parts.file(name);
@@ -194,8 +196,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
     if (first < 0 || first >= last || last > scene.samples + 1)
-        throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last, scene.preset.name,
-                        scene.samples, scene.samples + 1);
+        throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
+                        scene.preset.name, scene.samples, scene.samples + 1);
     const long stride = options.pictures ? scene.samples_per_frame : 1;
     const long total = (last - 1) / stride - (first - 1 + stride) / stride + 1;
     if (options.pictures && total < 1)

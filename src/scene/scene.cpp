@@ -34,7 +34,8 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
             side.why = "the preset asks for it";
             break;
     }
-    side.method = *std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == spec.integrator; });
+    side.method =
+        *std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == spec.integrator; });
     side.step = spec.step_s;
     side.steps_per_sample = quotient(*quotient({1, 1}, spec.step_s), sample_hz)->numerator;
     return side;
@@ -42,9 +43,9 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
 
 bool finite(const Observation& seen) {
     const auto whole = [](const auto&... x) { return (std::isfinite(x) && ...); };
-    return whole(seen.energy, seen.length_error) && std::all_of(seen.bobs.begin(), seen.bobs.end(), [&](const auto& bob) {
-               return whole(bob.x, bob.y, bob.vx, bob.vy, bob.theta, bob.omega);
-           });
+    return whole(seen.energy, seen.length_error) &&
+           std::all_of(seen.bobs.begin(), seen.bobs.end(),
+                       [&](const auto& bob) { return whole(bob.x, bob.y, bob.vx, bob.vy, bob.theta, bob.omega); });
 }
 
 }  // namespace
@@ -67,7 +68,9 @@ Scene make_scene(const Preset& preset) {
     return scene;
 }
 
-std::string_view name_of(Model model) { return model == Model::angles ? "angles" : "constraints"; }
+std::string_view name_of(Model model) {
+    return model == Model::angles ? "angles" : "constraints";
+}
 
 PairRun::PairRun(const Scene& scene) : scene_(scene), a_(runner(scene.a)), b_(runner(scene.b)) {}
 
@@ -87,10 +90,11 @@ Observation PairRun::advanced(Runner& runner, std::string_view name, const std::
     }
     auto seen = runner.motion->observe();
     if (!finite(seen))
-        throw method_failed("{}: side {} broke down: by t = {} s its state is no longer finite ({}, {}, step {} s); a smaller "
-                            "step_s or integrator = \"rk4\" may hold",
-                            scene_.preset.name, name, scene_.time(sample_), name_of(runner.side.model), runner.side.method.title,
-                            runner.side.step.text());
+        throw method_failed(
+            "{}: side {} broke down: by t = {} s its state is no longer finite ({}, {}, step {} s); a smaller "
+            "step_s or integrator = \"rk4\" may hold",
+            scene_.preset.name, name, scene_.time(sample_), name_of(runner.side.model), runner.side.method.title,
+            runner.side.step.text());
     return seen;
 }
 

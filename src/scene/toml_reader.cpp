@@ -13,13 +13,20 @@ constexpr std::string_view command_line = "--";
 
 std::string kind_of(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::table: return "a table";
-        case toml::node_type::array: return "an array";
-        case toml::node_type::string: return "a string";
-        case toml::node_type::integer: return "a whole number";
-        case toml::node_type::floating_point: return "a decimal number";
-        case toml::node_type::boolean: return "a boolean";
-        default: return "a date or time";
+        case toml::node_type::table:
+            return "a table";
+        case toml::node_type::array:
+            return "an array";
+        case toml::node_type::string:
+            return "a string";
+        case toml::node_type::integer:
+            return "a whole number";
+        case toml::node_type::floating_point:
+            return "a decimal number";
+        case toml::node_type::boolean:
+            return "a boolean";
+        default:
+            return "a date or time";
     }
 }
 
@@ -43,7 +50,9 @@ std::string shown(const toml::node& node) {
     return text.size() > most ? text.substr(0, most - 1) + "…" : text;
 }
 
-std::string found(const toml::node& node) { return fmt::format("it is {} ({})", kind_of(node), shown(node)); }
+std::string found(const toml::node& node) {
+    return fmt::format("it is {} ({})", kind_of(node), shown(node));
+}
 
 std::string listed(std::span<const std::string_view> choices) {
     std::string text;
@@ -67,7 +76,9 @@ std::string place_of(const toml::table& table, std::string_view key, const std::
 TomlReader::TomlReader(const toml::table* table, std::string name, std::string path)
     : table_(table), name_(std::move(name)), path_(std::move(path)) {}
 
-std::string TomlReader::place(std::string_view key) const { return table_ ? place_of(*table_, key, path_) : path_; }
+std::string TomlReader::place(std::string_view key) const {
+    return table_ ? place_of(*table_, key, path_) : path_;
+}
 
 std::string TomlReader::subject(std::string_view key) const {
     return name_.empty() ? std::string(key) : fmt::format("{} {}", name_, key);
@@ -78,7 +89,9 @@ const toml::node* TomlReader::find(std::string_view key) {
     return table_ ? table_->get(key) : nullptr;
 }
 
-bool TomlReader::has(std::string_view key) { return find(key) != nullptr; }
+bool TomlReader::has(std::string_view key) {
+    return find(key) != nullptr;
+}
 
 void TomlReader::read_text(std::string_view key, std::string& into) {
     const auto* node = find(key);
@@ -163,7 +176,8 @@ std::optional<std::vector<std::string>> TomlReader::read_texts(std::string_view 
     if (!array) throw fault(key, "must be an array of strings; {}", found(*node));
     std::vector<std::string> texts;
     for (const auto& element : *array) {
-        if (!element.is_string()) throw fault(key, "must be an array of strings; {} is {}", shown(element), kind_of(element));
+        if (!element.is_string())
+            throw fault(key, "must be an array of strings; {} is {}", shown(element), kind_of(element));
         texts.push_back(element.as_string()->get());
     }
     return texts;
@@ -181,9 +195,9 @@ void TomlReader::finish() const {
         if (known_.contains(name.str())) continue;
         const std::vector<std::string_view> keys(known_.begin(), known_.end());
         const auto meant = nearest(name.str(), keys);
-        throw bad_input("{}: {} no \"{}\"; {}", place(name.str()), name_.empty() ? "a preset has" : name_ + " has",
-                        name.str(),
-                        meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("it has {}", fmt::join(keys, ", ")));
+        throw bad_input(
+            "{}: {} no \"{}\"; {}", place(name.str()), name_.empty() ? "a preset has" : name_ + " has", name.str(),
+            meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("it has {}", fmt::join(keys, ", ")));
     }
 }
 

@@ -3,13 +3,14 @@
 #include "numeric/error.hpp"
 #include "numeric/rational.hpp"
 
+#include <toml++/toml.h>
+
 #include <functional>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <vector>
 
 namespace doppel {
@@ -17,8 +18,9 @@ namespace doppel {
 /// "path:line:column" of a key, or the command line option that gave it.
 std::string place_of(const toml::table& table, std::string_view key, const std::string& path);
 
-/// Reads one table of a preset key by key. Every read_… leaves its target alone where the key is absent, and throws Error
-/// (exit 2) with place, value and what would be right where it is of the wrong kind. finish() finds the keys nobody asked for.
+/// Reads one table of a preset key by key. Every read_… leaves its target alone where the key is absent, and throws
+/// Error (exit 2) with place, value and what would be right where it is of the wrong kind. finish() finds the keys
+/// nobody asked for.
 class TomlReader {
 public:
     /// `name` = how errors call it, "[video]"; `table` may be null: then all keys are absent.

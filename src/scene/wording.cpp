@@ -20,7 +20,9 @@ std::string step_words(const Rational& step) {
     return step.numerator == 1 ? fmt::format("1/{} s", grouped(step.denominator)) : fmt::format("{} s", step.value());
 }
 
-std::string model_words(const Side& side) { return std::string(name_of(side.model)); }
+std::string model_words(const Side& side) {
+    return std::string(name_of(side.model));
+}
 
 std::vector<Statement> statements(const SideSpec& spec, const Side& side) {
     std::vector<Statement> all;
@@ -39,13 +41,16 @@ std::vector<Statement> statements(const SideSpec& spec, const Side& side) {
     return all;
 }
 
-std::string joined(const std::vector<std::string>& parts) { return fmt::format("{}", fmt::join(parts, ", ")); }
+std::string joined(const std::vector<std::string>& parts) {
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
 
 }  // namespace
 
 std::string grouped(long number) {
     auto digits = fmt::format("{}", number);
-    for (auto at = static_cast<long>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");
+    for (auto at = static_cast<long>(digits.size()) - 3; at > 0; at -= 3)
+        digits.insert(static_cast<std::size_t>(at), " ");
     return digits;
 }
 
@@ -73,7 +78,8 @@ std::array<SideWords, 2> side_words(const Scene& scene) {
 
 std::string scene_words(const Scene& scene) {
     const auto at_rest = [](const SideSpec& side) {
-        return std::all_of(side.omega_deg_per_s.begin(), side.omega_deg_per_s.end(), [](double rate) { return rate == 0; });
+        return std::all_of(side.omega_deg_per_s.begin(), side.omega_deg_per_s.end(),
+                           [](double rate) { return rate == 0; });
     };
     std::vector<std::string> common;
     if (scene.a.model == scene.b.model) common.push_back(model_words(scene.a));

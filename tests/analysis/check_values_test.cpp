@@ -11,8 +11,8 @@
 namespace doppel {
 namespace {
 
-// Values of the study's own procedure: explicit Euler, 30 kHz, a sample each 250 steps, twins 0.003° apart (Kao 2022, re-run
-// independently). They hold to the digits given where the motion is regular.
+// Values of the study's own procedure: explicit Euler, 30 kHz, a sample each 250 steps, twins 0.003° apart (Kao 2022,
+// re-run independently). They hold to the digits given where the motion is regular.
 constexpr double dt = 1.0 / 30000;
 constexpr long steps_per_sample = 250;
 
@@ -43,10 +43,14 @@ double average_log_ratio(Model model, const Pendulum& a, const Pendulum& b) {
 }
 
 TEST(CheckValues, AverageOverTheAngle) {
-    for (const auto& [angle, expected] : {std::pair{0.0, 0.7923}, {10.0, 1.2624}, {20.0, 2.2050}, {30.0, 2.7880}, {40.0, 2.9647}})
-        EXPECT_NEAR(average_log_ratio(Model::angles, released(angle, 0), released(angle + 0.003, 0)), expected, 6e-5) << angle;
+    for (const auto& [angle, expected] :
+         {std::pair{0.0, 0.7923}, {10.0, 1.2624}, {20.0, 2.2050}, {30.0, 2.7880}, {40.0, 2.9647}})
+        EXPECT_NEAR(average_log_ratio(Model::angles, released(angle, 0), released(angle + 0.003, 0)), expected, 6e-5)
+            << angle;
     for (const auto& [angle, expected] : {std::pair{10.0, 1.2635}, {20.0, 2.2062}, {30.0, 2.7888}})
-        EXPECT_NEAR(average_log_ratio(Model::constraints, released(angle, 0), released(angle + 0.003, 0)), expected, 6e-5) << angle;
+        EXPECT_NEAR(average_log_ratio(Model::constraints, released(angle, 0), released(angle + 0.003, 0)), expected,
+                    6e-5)
+            << angle;
 }
 
 TEST(CheckValues, AverageOverTheMassRatio) {

@@ -28,7 +28,9 @@ namespace {
 constexpr long first = 1500, count = 600;  // frames in the middle of the run: full trails, traces half across
 const std::atomic<bool> never = false;
 
-Scene butterfly() { return make_scene(read_preset(find_preset("butterfly"))); }
+Scene butterfly() {
+    return make_scene(read_preset(find_preset("butterfly")));
+}
 
 /// Calls visit(composer) for each of the frames, in order.
 template <class Visit>
@@ -161,7 +163,9 @@ void end_to_end(benchmark::State& state) {
         sum.cpu_s += more.cpu_s;
     };
     for (auto _ : state) {
-        add(whole, cost_of([&] { run(scene, {.out = out, .first = first, .last = first + count}, never, [](const Progress&) {}); }));
+        add(whole, cost_of([&] {
+                run(scene, {.out = out, .first = first, .last = first + count}, never, [](const Progress&) {});
+            }));
         add(floor, cost_of([&] { encode_alone(frames, scene); }));
     }
     std::filesystem::remove_all(out);

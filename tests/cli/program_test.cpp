@@ -1,17 +1,17 @@
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <fcntl.h>
-#include <fmt/format.h>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
@@ -23,11 +23,13 @@ using test::bytes_of;
 using test::fresh_folder;
 
 /// Starts the program in `folder`; standard output and error go to files there.
-pid_t start(const fs::path& folder, const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
+pid_t start(const fs::path& folder, const std::vector<std::string>& arguments,
+            const std::function<void()>& prepare = {}) {
     const pid_t child = fork();
     if (child != 0) return child;
     if (chdir(folder.c_str()) != 0) _exit(99);
-    const int out = open("stdout", O_CREAT | O_TRUNC | O_WRONLY, 0644), err = open("stderr", O_CREAT | O_TRUNC | O_WRONLY, 0644);
+    const int out = open("stdout", O_CREAT | O_TRUNC | O_WRONLY, 0644),
+              err = open("stderr", O_CREAT | O_TRUNC | O_WRONLY, 0644);
     dup2(out, STDOUT_FILENO);
     dup2(err, STDERR_FILENO);
     if (prepare) prepare();
@@ -49,12 +51,15 @@ struct Outcome {
     std::string out, err;
 };
 
-Outcome doppel(const fs::path& folder, const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
+Outcome doppel(const fs::path& folder, const std::vector<std::string>& arguments,
+               const std::function<void()>& prepare = {}) {
     const int code = wait_for(start(folder, arguments, prepare));
     return {code, bytes_of(folder / "stdout"), bytes_of(folder / "stderr")};
 }
 
-bool left_nothing(const fs::path& folder) { return !fs::exists(folder / "out") || fs::is_empty(folder / "out"); }
+bool left_nothing(const fs::path& folder) {
+    return !fs::exists(folder / "out") || fs::is_empty(folder / "out");
+}
 
 const std::vector<std::string> tiny{"--set", "scene.duration_s=0.1", "--size", "160x90", "--progress", "none"};
 
@@ -71,7 +76,8 @@ TEST(Program, RendersAPresetByNameAndByPath) {
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.err, "");
     EXPECT_NE(result.out.find("out/butterfly/butterfly.mp4"), std::string::npos);
-    for (const char* file : {"butterfly/butterfly.mp4", "butterfly/butterfly.csv", "butterfly/butterfly.json", "two/two.mp4"})
+    for (const char* file :
+         {"butterfly/butterfly.mp4", "butterfly/butterfly.csv", "butterfly/butterfly.json", "two/two.mp4"})
         EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
 }
 
@@ -85,11 +91,13 @@ TEST(Program, SimulatesWithoutPictures) {
 TEST(Program, ListsShowsAndChecks) {
     const auto folder = fresh_folder();
     EXPECT_NE(doppel(folder, {"list"}).out.find("butterfly    Three thousandths of a degree\n"), std::string::npos);
-    EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out, bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/butterfly.toml"));
+    EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out,
+              bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/butterfly.toml"));
     const auto check = doppel(folder, {"check", "butterfly"});
     EXPECT_EQ(check.code, 0);
-    for (const char* words : {"angles, explicit Euler, step 1/30000 s, 250 steps a sample", "the smallest model that serves",
-                              "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3 601 frames of 1920×1080", "to render"})
+    for (const char* words :
+         {"angles, explicit Euler, step 1/30000 s, 250 steps a sample", "the smallest model that serves",
+          "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3 601 frames of 1920×1080", "to render"})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
@@ -115,9 +123,11 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"render", "butterfly", "--size", "wide"}, "--size wants WIDTHxHEIGHT, such as 1280x720; it is \"wide\""},
         {{"render", "butterfly", "--frames", "9:3"}, "--frames wants A:B"},
         {{"render", "butterfly", "--format", "avi"}, "--format"},
-        {{"render", "butterfly", "--quality", "best", "--set", "video.crf=3"}, "video.crf is given twice: --set video.crf and --quality best"},
+        {{"render", "butterfly", "--quality", "best", "--set", "video.crf=3"},
+         "video.crf is given twice: --set video.crf and --quality best"},
         {{"render", "butterfly", "butterfly"}, "butterfly and butterfly would both be written to butterfly/"},
-        {{"render", "butterfly", "--set", "system.mass_kg=[1, 0]"}, "--set system.mass_kg: [system] mass_kg[1] must be > 0; it is 0"},
+        {{"render", "butterfly", "--set", "system.mass_kg=[1, 0]"},
+         "--set system.mass_kg: [system] mass_kg[1] must be > 0; it is 0"},
         {{"check", "butterfly", "--set", "system.lenght_m=1"}, "did you mean \"length_m\"?"},
         {{"compare", "nothing.png", "stdout"}, "nothing.png: there is no such file or folder"},
     };
@@ -134,8 +144,9 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
 
 TEST(Program, ExitsWith3WhereTheMethodFails) {
     const auto folder = fresh_folder();
-    const auto result = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.step_s=\"1/3\"", "--set",
-                                        "scene.sample_hz=3", "--set", "scene.duration_s=3000", "--set", "system.model=\"constraints\""});
+    const auto result = doppel(
+        folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.step_s=\"1/3\"", "--set",
+                 "scene.sample_hz=3", "--set", "scene.duration_s=3000", "--set", "system.model=\"constraints\""});
     EXPECT_EQ(result.code, 3);
     EXPECT_NE(result.err.find("doppel: butterfly: side a broke down: by t = "), std::string::npos) << result.err;
     EXPECT_TRUE(left_nothing(folder));
@@ -158,8 +169,9 @@ TEST(Program, ExitsWith4WhereNothingCanBeWritten) {
 TEST(Program, ExitsWith4OnAFullDiskAndLeavesNothing) {
     for (const char* format : {"mp4", "png"}) {
         const auto folder = fresh_folder();
-        const auto result = doppel(folder, {"render", "butterfly", "--size", "640x360", "--progress", "none", "--set", "scene.duration_s=2",
-                                            "--format", format},
+        const auto result = doppel(folder,
+                                   {"render", "butterfly", "--size", "640x360", "--progress", "none", "--set",
+                                    "scene.duration_s=2", "--format", format},
                                    [] {
                                        const rlimit small{20'000, 20'000};
                                        setrlimit(RLIMIT_FSIZE, &small);
@@ -172,7 +184,8 @@ TEST(Program, ExitsWith4OnAFullDiskAndLeavesNothing) {
 
 TEST(Program, ExitsWith4WhereOpenGLIsTooOld) {
     const auto folder = fresh_folder();
-    const auto result = doppel(folder, with({"render", "butterfly"}, tiny), [] { setenv("MESA_GL_VERSION_OVERRIDE", "2.1", 1); });
+    const auto result =
+        doppel(folder, with({"render", "butterfly"}, tiny), [] { setenv("MESA_GL_VERSION_OVERRIDE", "2.1", 1); });
     EXPECT_EQ(result.code, 4);
     EXPECT_NE(result.err.find("OpenGL 3.3"), std::string::npos) << result.err;
     EXPECT_TRUE(left_nothing(folder));
@@ -181,7 +194,8 @@ TEST(Program, ExitsWith4WhereOpenGLIsTooOld) {
 TEST(Program, ExitsWith130WithinASecondOfCtrlC) {
     for (const char* command : {"render", "simulate"}) {
         const auto folder = fresh_folder();
-        const auto child = start(folder, {command, "butterfly", "--set", "scene.duration_s=3600", "--progress", "none"});
+        const auto child =
+            start(folder, {command, "butterfly", "--set", "scene.duration_s=3600", "--progress", "none"});
         std::this_thread::sleep_for(std::chrono::milliseconds(700));
         const auto asked = std::chrono::steady_clock::now();
         kill(child, SIGINT);
@@ -194,7 +208,8 @@ TEST(Program, ExitsWith130WithinASecondOfCtrlC) {
 
 TEST(Program, ReportsProgressForPeopleAndPrograms) {
     const auto folder = fresh_folder();
-    const auto json = doppel(folder, {"render", "butterfly", "--size", "160x90", "--set", "scene.duration_s=1", "--progress", "json"});
+    const auto json = doppel(
+        folder, {"render", "butterfly", "--size", "160x90", "--set", "scene.duration_s=1", "--progress", "json"});
     EXPECT_EQ(json.err, "");
     std::istringstream lines(json.out);
     nlohmann::json event;

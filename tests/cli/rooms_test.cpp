@@ -55,7 +55,8 @@ TEST(Rooms, KeepTheirLibrariesToThemselves) {
         if (header.starts_with("GL/")) {
             EXPECT_TRUE(room == "picture" && name.starts_with("gl_")) << file;
         }
-        if (header.starts_with("libavformat/") || header.starts_with("libavcodec/") || header.starts_with("libswscale/")) {
+        if (header.starts_with("libavformat/") || header.starts_with("libavcodec/") ||
+            header.starts_with("libswscale/")) {
             EXPECT_EQ(name, "mp4.cpp") << file;
         }
         if (header.starts_with("CLI/")) {

@@ -68,7 +68,8 @@ TEST(Methods, HaveTheirOrder) {
 }
 
 TEST(Methods, AreThoseOfTheRegistry) {
-    for (const auto& method : methods) EXPECT_NO_THROW(make_motion(Model::angles, method.name, Pendulum(), 1e-3)) << method.name;
+    for (const auto& method : methods)
+        EXPECT_NO_THROW(make_motion(Model::angles, method.name, Pendulum(), 1e-3)) << method.name;
     EXPECT_THROW(make_motion(Model::angles, "ruler", Pendulum(), 1e-3), Error);
 }
 
@@ -76,10 +77,11 @@ TEST(Models, AgreeToTheOrderOfTheStep) {
     // the two formulations part by Euler's truncation error, so a quarter of the step leaves a quarter of the distance
     const auto apart = [](long rate) {
         const auto p = released(50, 0);
-        return (end_angles(Model::angles, "euler", p, 3, rate) - end_angles(Model::constraints, "euler", p, 3, rate)).norm();
+        return (end_angles(Model::angles, "euler", p, 3, rate) - end_angles(Model::constraints, "euler", p, 3, rate))
+            .norm();
     };
-    EXPECT_LT(apart(30000), 4e-3);                            // measured 5.4e-4
-    EXPECT_NEAR(apart(30000) / apart(120000), 4, 0.1);        // measured 4.006
+    EXPECT_LT(apart(30000), 4e-3);                      // measured 5.4e-4
+    EXPECT_NEAR(apart(30000) / apart(120000), 4, 0.1);  // measured 4.006
     const auto p = released(50, 0);
     EXPECT_LT((end_angles(Model::angles, "rk4", p, 3, 3000) - end_angles(Model::constraints, "rk4", p, 3, 3000)).norm(),
               1e-9);  // measured 3e-12
@@ -90,8 +92,8 @@ TEST(RungeKutta4, KeepsEnergyAndRods) {
         auto motion = make_motion(model, "rk4", released(90, 90), 1.0 / 30000);
         const double start = motion->observe().energy;
         motion->advance(300'000);
-        EXPECT_NEAR(motion->observe().energy, start, 1e-10);          // J; measured 1e-13, 8e-12
-        EXPECT_LT(motion->observe().length_error, 1e-11);             // m; measured 0, 8e-13
+        EXPECT_NEAR(motion->observe().energy, start, 1e-10);  // J; measured 1e-13, 8e-12
+        EXPECT_LT(motion->observe().length_error, 1e-11);     // m; measured 0, 8e-13
     }
 }
 
@@ -108,7 +110,8 @@ TEST(Euler, LetsTheRodsDriftAsMuchAsWasMeasured) {
 
 TEST(Motion, MirrorImageStaysTheMirrorImage) {
     for (const auto model : {Model::angles, Model::constraints}) {
-        auto left = make_motion(model, "rk4", released(-120, 35), 1e-3), right = make_motion(model, "rk4", released(120, -35), 1e-3);
+        auto left = make_motion(model, "rk4", released(-120, 35), 1e-3),
+             right = make_motion(model, "rk4", released(120, -35), 1e-3);
         left->advance(5000);
         right->advance(5000);
         for (std::size_t link = 0; link < link_count; ++link) {
@@ -120,7 +123,8 @@ TEST(Motion, MirrorImageStaysTheMirrorImage) {
 
 TEST(Motion, AdvancesTheSameInOneGoOrInMany) {
     for (const auto model : {Model::angles, Model::constraints}) {
-        auto once = make_motion(model, "euler", released(90, 90), 1.0 / 30000), often = make_motion(model, "euler", released(90, 90), 1.0 / 30000);
+        auto once = make_motion(model, "euler", released(90, 90), 1.0 / 30000),
+             often = make_motion(model, "euler", released(90, 90), 1.0 / 30000);
         once->advance(30'000);
         for (int i = 0; i < 30'000; ++i) often->advance(1);
         for (std::size_t link = 0; link < link_count; ++link) {
@@ -135,7 +139,8 @@ TEST(Motion, CountsWholeTurnsInBothModels) {
     auto p = released(0, 0);
     p.rate = {12, 12};
     p.angle[1] += 2 * pi;  // a turn ahead from the start
-    const auto angles = end_angles(Model::angles, "rk4", p, 2, 30000), particles = end_angles(Model::constraints, "rk4", p, 2, 30000);
+    const auto angles = end_angles(Model::angles, "rk4", p, 2, 30000),
+               particles = end_angles(Model::constraints, "rk4", p, 2, 30000);
     EXPECT_GT(angles[0], 2 * pi);
     EXPECT_LT((angles - particles).norm(), 1e-8);  // measured 3e-12
 }

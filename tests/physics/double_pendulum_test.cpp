@@ -1,9 +1,10 @@
 #include "physics/double_pendulum.hpp"
+
 #include "physics/rod_chain.hpp"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
@@ -74,7 +75,8 @@ TEST(RodChain, FallsAsTheAnglesDo) {
         Eigen::Vector2d acceleration = Eigen::Vector2d::Zero();
         for (std::size_t link = 0; link < link_count; ++link) {
             const double sin = std::sin(p.angle[link]), cos = std::cos(p.angle[link]), w2 = p.rate[link] * p.rate[link];
-            acceleration += p.length[link] * (expected[static_cast<long>(link)] * Eigen::Vector2d(cos, sin) + w2 * Eigen::Vector2d(-sin, cos));
+            acceleration += p.length[link] * (expected[static_cast<long>(link)] * Eigen::Vector2d(cos, sin) +
+                                              w2 * Eigen::Vector2d(-sin, cos));
             const Eigen::Vector2d found = rate.segment<2>(4 + 2 * static_cast<long>(link));
             EXPECT_LT((found - acceleration).norm(), 1e-11 * (1 + acceleration.norm()));  // measured 1e-14
         }
@@ -106,10 +108,12 @@ TEST(Pendulum, EnergyIsThatOfTheLagrangian) {
         const auto [l1, l2] = p.length;
         const auto [t1, t2] = p.angle;
         const auto [w1, w2] = p.rate;
-        const double kinetic = 0.5 * (m1 + m2) * l1 * l1 * w1 * w1 + 0.5 * m2 * l2 * l2 * w2 * w2 + m2 * l1 * l2 * w1 * w2 * std::cos(t1 - t2);
+        const double kinetic = 0.5 * (m1 + m2) * l1 * l1 * w1 * w1 + 0.5 * m2 * l2 * l2 * w2 * w2 +
+                               m2 * l1 * l2 * w1 * w2 * std::cos(t1 - t2);
         const double potential = -(m1 + m2) * p.gravity * l1 * std::cos(t1) - m2 * p.gravity * l2 * std::cos(t2);
         const DoublePendulum<double> model(p);
-        EXPECT_NEAR(energy(model.bobs(DoublePendulum<double>::start(p)), p.gravity), kinetic + potential, 1e-11);  // measured 6e-14
+        EXPECT_NEAR(energy(model.bobs(DoublePendulum<double>::start(p)), p.gravity), kinetic + potential,
+                    1e-11);  // measured 6e-14
     }
 }
 

@@ -17,13 +17,15 @@ namespace fs = std::filesystem;
 const fs::path goldens = fs::path(DOPPEL_SOURCE_DIR) / "tests/golden";
 
 struct Golden {
-    const char* name;    // of the file
+    const char* name;  // of the file
     const char* preset;
-    long sample;         // none later than 3 s: what comes after depends on the last bit
+    long sample;  // none later than 3 s: what comes after depends on the last bit
     std::vector<std::string> sets;
 };
 
-void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
+void PrintTo(const Golden& golden, std::ostream* out) {
+    *out << golden.name;
+}
 
 class GoldenFrame : public testing::TestWithParam<Golden> {};
 
@@ -48,17 +50,18 @@ TEST_P(GoldenFrame, IsAsItWas) {
     FAIL() << GetParam().name << ": " << verdict.why << "\nexpected, actual and the difference ×16 are in " << folder;
 }
 
-INSTANTIATE_TEST_SUITE_P(Presets, GoldenFrame,
-                         testing::Values(Golden{"butterfly-start", "butterfly", 0, {}}, Golden{"butterfly-3s", "butterfly", 360, {}},
-                                         Golden{"two-methods-3s", "two-methods", 360, {}},
-                                         Golden{"mass-ratio-2s", "mass-ratio", 240, {"video.theme=\"light\""}},
-                                         Golden{"calm-3s", "calm", 360, {"video.panels=[\"pendulums\", \"distance\"]"}},
-                                         Golden{"strips-only", "calm", 360, {"video.panels=[\"distance\", \"energy\"]"}}),
-                         [](const auto& parameter) {
-                             std::string name = parameter.param.name;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Presets, GoldenFrame,
+    testing::Values(Golden{"butterfly-start", "butterfly", 0, {}}, Golden{"butterfly-3s", "butterfly", 360, {}},
+                    Golden{"two-methods-3s", "two-methods", 360, {}},
+                    Golden{"mass-ratio-2s", "mass-ratio", 240, {"video.theme=\"light\""}},
+                    Golden{"calm-3s", "calm", 360, {"video.panels=[\"pendulums\", \"distance\"]"}},
+                    Golden{"strips-only", "calm", 360, {"video.panels=[\"distance\", \"energy\"]"}}),
+    [](const auto& parameter) {
+        std::string name = parameter.param.name;
+        std::replace(name.begin(), name.end(), '-', '_');
+        return name;
+    });
 
 // The policy itself: what must not pass. A golden that lets one of these through guards nothing.
 
@@ -67,14 +70,17 @@ Picture sample_frame() {
     return frame;
 }
 
-void expect_rejected(const Picture& mutated) { EXPECT_FALSE(compare_golden(sample_frame(), mutated).passes); }
+void expect_rejected(const Picture& mutated) {
+    EXPECT_FALSE(compare_golden(sample_frame(), mutated).passes);
+}
 
 /// Every channel of every pixel changed by `change`.
 template <class Change>
 Picture changed(Change&& change) {
     auto picture = sample_frame();
     for (std::size_t i = 0; i < picture.rgba.size(); ++i)
-        if (i % 4 != 3) picture.rgba[i] = static_cast<std::uint8_t>(std::clamp(change(picture.rgba[i]), 0.0, 255.0) + 0.5);
+        if (i % 4 != 3)
+            picture.rgba[i] = static_cast<std::uint8_t>(std::clamp(change(picture.rgba[i]), 0.0, 255.0) + 0.5);
     return picture;
 }
 

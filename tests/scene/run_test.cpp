@@ -7,8 +7,8 @@
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
+
 #include <sstream>
 
 namespace doppel {
@@ -104,7 +104,8 @@ TEST(Run, TableHasTheColumnsOfTheContract) {
 TEST(Run, TableLeavesTheLogRatioEmptyWhereThePairStartsAsOne) {
     const auto out = fresh_folder();
     render(scene_of("two-methods", {"scene.duration_s=0.1"}), {.out = out, .pictures = false});
-    for (const auto& line : lines_of(out / "two-methods/two-methods.csv")) EXPECT_TRUE(line.ends_with("log_ratio") || line.ends_with(","));
+    for (const auto& line : lines_of(out / "two-methods/two-methods.csv"))
+        EXPECT_TRUE(line.ends_with("log_ratio") || line.ends_with(","));
 }
 
 TEST(Run, TableIsTheSameForAnyJobsAndWithOrWithoutPictures) {
@@ -143,7 +144,8 @@ TEST(Run, DrawsTheSameInSequenceAsAlone) {
     const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "video.format=\"png\"", "scene.duration_s=1.5"});
     render(scene, {.out = out});
     for (const long sample : {0L, 1L, 90L, 180L})
-        EXPECT_EQ(read_png(out / fmt::format("butterfly/frames/{:06}.png", sample)).rgba, frame_of(scene, sample).rgba) << sample;
+        EXPECT_EQ(read_png(out / fmt::format("butterfly/frames/{:06}.png", sample)).rgba, frame_of(scene, sample).rgba)
+            << sample;
 }
 
 TEST(Run, ShowsEveryOtherSampleAtHalfTheRate) {
@@ -175,7 +177,8 @@ TEST(Run, LeavesNothingWhenItIsInterrupted) {
         const auto out = fresh_folder();
         std::atomic<bool> stop = false;
         const auto [code, message] = error_of([&] {
-            run(small({fmt::format("video.format=\"{}\"", format)}), {.out = out}, stop, [&](const Progress& p) { stop = p.done == 20; });
+            run(small({fmt::format("video.format=\"{}\"", format)}), {.out = out}, stop,
+                [&](const Progress& p) { stop = p.done == 20; });
         });
         EXPECT_EQ(code, ExitCode::interrupted);
         EXPECT_TRUE(fs::is_empty(out)) << format;
@@ -184,8 +187,8 @@ TEST(Run, LeavesNothingWhenItIsInterrupted) {
 
 TEST(Run, LeavesNothingWhenTheMethodFails) {
     const auto out = fresh_folder();
-    const auto scene = scene_of("butterfly", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000", "video.size=[64, 64]",
-                                              "system.model=\"constraints\""});
+    const auto scene = scene_of("butterfly", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000",
+                                              "video.size=[64, 64]", "system.model=\"constraints\""});
     EXPECT_EQ(error_of([&] { render(scene, {.out = out}); }).first, ExitCode::method_failed);
     EXPECT_TRUE(fs::is_empty(out));
 }
@@ -202,7 +205,8 @@ TEST(Run, NeverMixesOldFramesIntoNewOnes) {
     render(scene, {.out = out, .first = 0, .last = 5});
     render(scene, {.out = out, .first = 10, .last = 12});
     std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(out / "butterfly/frames")) names.insert(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(out / "butterfly/frames"))
+        names.insert(entry.path().filename().string());
     EXPECT_EQ(names, (std::set<std::string>{"000010.png", "000011.png"}));
 }
 

@@ -72,7 +72,8 @@ TEST(AutoModel, IsTheSmallestThatServes) {
 }
 
 TEST(Sides, MayDifferInModelMethodAndStep) {
-    const auto scene = scene_of("butterfly", {"a.model=\"constraints\"", "b.integrator=\"rk4\"", "b.step_s=\"1/1200\"", "scene.duration_s=1"});
+    const auto scene = scene_of(
+        "butterfly", {"a.model=\"constraints\"", "b.integrator=\"rk4\"", "b.step_s=\"1/1200\"", "scene.duration_s=1"});
     EXPECT_EQ(scene.a.model, Model::constraints);
     EXPECT_EQ(scene.b.method.name, "rk4");
     EXPECT_EQ(scene.b.steps_per_sample, 10);
@@ -84,7 +85,8 @@ TEST(Sides, MayDifferInModelMethodAndStep) {
 }
 
 TEST(PairRun, TellsWhereAMethodBrokeDown) {
-    const auto scene = scene_of("butterfly", {"b.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000", "b.model=\"constraints\""});
+    const auto scene = scene_of(
+        "butterfly", {"b.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000", "b.model=\"constraints\""});
     const auto [code, message] = error_of([&] {
         PairRun pair(scene);
         const std::atomic<bool> never = false;

@@ -38,8 +38,8 @@ Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
 
 TEST(Truth, BobsAreWherePhysicsSaysInTheirColour) {
     // released at rest from 37/−61 with unequal rods: sample 0 is known in closed form
-    const auto scene = scene_of("butterfly", {"system.angle_deg=[37, -61]", "b.angle_deg=[-80, 20]", "system.length_m=[1.3, 0.6]",
-                                              "video.trail_s=0"});
+    const auto scene = scene_of("butterfly", {"system.angle_deg=[37, -61]", "b.angle_deg=[-80, 20]",
+                                              "system.length_m=[1.3, 0.6]", "video.trail_s=0"});
     const auto picture = frame_of(scene, 0);
     const auto layout = make_layout(scene);
     const auto& theme = themes[0];
@@ -51,8 +51,10 @@ TEST(Truth, BobsAreWherePhysicsSaysInTheirColour) {
             const double length = link == 0 ? 1.3 : 0.6, angle = radians(starts[side][link]);
             x += length * std::sin(angle);
             y -= length * std::cos(angle);
-            const Point expected{panel.pivot.x + panel.px_per_m * static_cast<float>(x), panel.pivot.y - panel.px_per_m * static_cast<float>(y)};
-            const auto found = blob_at(picture, expected, 1.5f * layout.bob_radius, link == 1 ? theme.sides[side] : theme.bob);
+            const Point expected{panel.pivot.x + panel.px_per_m * static_cast<float>(x),
+                                 panel.pivot.y - panel.px_per_m * static_cast<float>(y)};
+            const auto found =
+                blob_at(picture, expected, 1.5f * layout.bob_radius, link == 1 ? theme.sides[side] : theme.bob);
             EXPECT_NEAR(found.x, expected.x, 0.5);  // measured 0.1 at most
             EXPECT_NEAR(found.y, expected.y, 0.5);
             // the fully covered pixels of the disc: all but a ring of half a pixel
@@ -69,7 +71,8 @@ TEST(Truth, BobsHaveAnAreaLikeTheirMass) {
     const auto& panel = layout.panels->front();
     const auto heavy = blob_at(picture, panel.at(1, 0), 1.5f * layout.bob_radius, themes[0].bob);
     const auto light = blob_at(picture, panel.at(2, 0), 1.5f * layout.bob_radius, themes[0].sides[0]);
-    EXPECT_NEAR(static_cast<double>(heavy.area) / static_cast<double>(light.area), 4, 0.4);  // measured 4.2: the smaller loses more to its edge
+    EXPECT_NEAR(static_cast<double>(heavy.area) / static_cast<double>(light.area), 4,
+                0.4);  // measured 4.2: the smaller loses more to its edge
 }
 
 /// The rows of the strip in which the pixel at `x` has the colour.
@@ -112,7 +115,8 @@ TEST(Truth, TraceIsAtTheDistanceItShows) {
 
 TEST(Truth, TwinsDrawnMirroredAreMirrored) {
     // each panel is the other's mirror image where the starts are
-    const auto scene = scene_of("butterfly", {"system.angle_deg=[70, 120]", "b.angle_deg=[-70, -120]", "video.side_colors=[\"#ff8800\", \"#ff8800\"]"});
+    const auto scene = scene_of("butterfly", {"system.angle_deg=[70, 120]", "b.angle_deg=[-70, -120]",
+                                              "video.side_colors=[\"#ff8800\", \"#ff8800\"]"});
     const auto picture = frame_of(scene, 150);
     const auto layout = make_layout(scene);
     const auto& left = (*layout.panels)[0];
