@@ -11,6 +11,10 @@
 namespace doppel {
 namespace {
 
+long frames_of(const Scene& scene) {
+    return scene.samples / scene.samples_per_frame + 1;
+}
+
 /// How long the simulation will take, from its first samples, s.
 double estimated_simulation(const Scene& scene) {
     using Clock = std::chrono::steady_clock;
@@ -37,7 +41,7 @@ double estimated_pictures(const Scene& scene) {
                       : slow                        ? 8
                       : video.preset == "medium"    ? 4.5
                                                     : 2.5;
-    return 1e-3 * ms * megapixels * static_cast<double>(scene.samples / scene.samples_per_frame + 1);
+    return 1e-3 * ms * megapixels * static_cast<double>(frames_of(scene));
 }
 
 void print_side(const char* name, const Side& side) {
@@ -47,14 +51,13 @@ void print_side(const char* name, const Side& side) {
 
 void print_scene(const Scene& scene) {
     const auto& video = scene.preset.video;
-    const long frames = scene.samples / scene.samples_per_frame + 1;
     fmt::print("{}: {}\n", scene.preset.name, scene.preset.title);
     print_side("a", scene.a);
     print_side("b", scene.b);
     fmt::print("  time   {} s: samples 0 to {} at {} Hz, {} steps in all\n", scene.preset.duration_s.value(),
                scene.samples, scene.preset.sample_hz.text(),
                grouped(scene.samples * (scene.a.steps_per_sample + scene.b.steps_per_sample)));
-    fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames), video.size.width, video.size.height,
+    fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames_of(scene)), video.size.width, video.size.height,
                scene.fps.text(),
                video.format == "png" ? "PNG sequence" : fmt::format("H.264 {}, crf {}", video.preset, video.crf));
     const double simulation = estimated_simulation(scene), pictures = estimated_pictures(scene);

@@ -50,9 +50,9 @@ void apply(toml::table& root, const Override& change) {
     }
     if (given.size() != 1) throw bad_input("{}: \"{}\" is more than one value", change.origin, change.value);
     // moved, not copied: a copy would forget where it comes from
-    std::move(*given.get("value")).visit([&](auto&& node) {
+    std::move(*given.get("value")).visit([&]<class Node>(Node&& node) {
         table->erase(key);
-        table->insert(key, std::move(node));
+        table->insert(key, std::forward<Node>(node));
     });
 }
 

@@ -63,9 +63,9 @@ private:
         try {
             PairRun pair(scene);
             for (long sample = 0; sample < last; ++sample) {
-                auto moment = pair.next(stop);
+                const auto moment = pair.next(stop);
                 cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-                if (!ahead_.push(std::move(moment))) return;
+                if (!ahead_.push(moment)) return;
             }
         } catch (...) {
             fault_ = std::current_exception();

@@ -1,0 +1,66 @@
+#include "picture/gl_objects.hpp"
+
+#include "embedded/picture.hpp"
+#include "numeric/error.hpp"
+
+namespace doppel::gl {
+namespace {
+
+std::string_view shader_source(const std::string& name) {
+    for (const EmbeddedFile& file : picture_files()) {
+        if (file.name == name) return file.contents;
+    }
+    throw io_failed("the shader {} was not built in", name);
+}
+
+/// What the driver says of a shader or program.
+template <class GetLog>
+std::string log(GetLog get, GLuint number) {
+    std::string text(1024, '\0');
+    GLsizei length = 0;
+    get(number, static_cast<GLsizei>(text.size()), &length, text.data());
+    text.resize(static_cast<std::size_t>(length));
+    return text;
+}
+
+/// Compiles a shader into the program, which keeps it.
+void attach(GLuint program, GLenum type, const std::string& name) {
+    const std::string_view source = shader_source(name);
+    const char* text = source.data();
+    const auto length = static_cast<GLint>(source.size());
+    const GLuint shader = CreateShader(type);
+    ShaderSource(shader, 1, &text, &length);
+    CompileShader(shader);
+    AttachShader(program, shader);
+    DeleteShader(shader);
+    GLint compiled = GL_FALSE;
+    GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (!compiled) throw io_failed("shaders/{}: {}", name, log(GetShaderInfoLog, shader));
+}
+
+}  // namespace
+
+Canvas::Canvas(Size size) {
+    while (GetError() != GL_NO_ERROR) {
+    }
+    BindRenderbuffer(GL_RENDERBUFFER, pixels_);
+    RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, size.width, size.height);
+    BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, pixels_);
+    if (GetError() != GL_NO_ERROR || CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+        throw io_failed("OpenGL has no memory for a picture of {} × {} px", size.width, size.height);
+    }
+}
+
+Program::Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[4])
+    : number_(CreateProgram()) {
+    attach(number_, GL_VERTEX_SHADER, vertex);
+    attach(number_, GL_FRAGMENT_SHADER, fragment);
+    for (GLuint location = 0; location < 4; ++location) BindAttribLocation(number_, location, inputs[location]);
+    LinkProgram(number_);
+    GLint linked = GL_FALSE;
+    GetProgramiv(number_, GL_LINK_STATUS, &linked);
+    if (!linked) throw io_failed("shaders/{} and {}: {}", vertex, fragment, log(GetProgramInfoLog, number_));
+}
+
+}  // namespace doppel::gl

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "picture/gl_api.hpp"
+#include "picture/picture.hpp"
+
+#include <string>
+
+namespace doppel::gl {
+
+/// A thing of OpenGL's, known by its number, that lives as long as this. Its context must be current at both ends.
+template <auto& generate, auto& destroy>
+class Object {
+public:
+    Object() { generate(1, &number_); }
+    ~Object() { destroy(1, &number_); }
+    Object(const Object&) = delete;
+    Object& operator=(const Object&) = delete;
+    operator GLuint() const { return number_; }
+
+private:
+    GLuint number_ = 0;
+};
+
+using Buffer = Object<GenBuffers, DeleteBuffers>;
+using Texture = Object<GenTextures, DeleteTextures>;
+using VertexArray = Object<GenVertexArrays, DeleteVertexArrays>;
+
+/// RGBA pixels to draw to, all zero at first. Row 0 is the top of the picture. Throws Error where there is no memory.
+class Canvas {
+public:
+    explicit Canvas(Size size);
+    operator GLuint() const { return framebuffer_; }
+
+private:
+    Object<GenRenderbuffers, DeleteRenderbuffers> pixels_;
+    Object<GenFramebuffers, DeleteFramebuffers> framebuffer_;
+};
+
+/// The shaders NAME.vert and NAME.frag of the folder shaders/, linked.
+class Program {
+public:
+    /// `inputs` of the vertex shader, in the order of their locations.
+    Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[4]);
+    ~Program() { DeleteProgram(number_); }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    operator GLuint() const { return number_; }
+
+private:
+    GLuint number_;
+};
+
+}  // namespace doppel::gl

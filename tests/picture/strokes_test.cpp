@@ -1,0 +1,90 @@
+#include "picture/renderer.hpp"
+#include "pixels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace doppel {
+namespace {
+
+constexpr Size size{160, 120};
+
+Picture drawn(const DisplayList& list) {
+    Renderer renderer(size, {background(size, black)});
+    return renderer.draw(list);
+}
+
+Stroke stroke(std::vector<Point> points, float width, Color color = white) {
+    Stroke made{.vertices = {}, .width = width, .color = color};
+    for (const Point& p : points) made.vertices.push_back({p, 1});
+    return made;
+}
+
+TEST(Stroke, IsAsOpaqueAtItsJointsAndCrossingsAsElsewhere) {
+    // a loop that crosses itself, with joints of all angles, cusps, and a vertex twice
+    std::vector<Point> points{{20, 20}, {140, 100}, {140, 100}, {140, 20}, {20, 100}, {20, 20}, {80, 20}, {20, 22}};
+    for (int i = 0; i <= 60; ++i) {
+        const float angle = static_cast<float>(i) * 0.1f;
+        points.push_back({80 + 30 * std::sin(2 * angle), 60 + 30 * std::cos(3 * angle)});
+    }
+    const Picture picture = drawn({stroke(points, 9, white.with_alpha(0.4f))});
+    int most = 0;
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) most = std::max<int>(most, picture.at(x, y)[0]);
+    }
+    EXPECT_EQ(most, 102);  // 0.4 · 255
+    EXPECT_EQ(picture.at(80, 60)[0], 102);
+    EXPECT_EQ(picture.at(138, 98)[0], 102);
+    EXPECT_EQ(picture.at(140, 60)[0], 102);
+}
+
+TEST(Stroke, OfOneVertexIsADisc) {
+    for (const auto& points : {std::vector<Point>{{40, 50}}, std::vector<Point>{{40, 50}, {40, 50}}}) {
+        const Ink seen = ink(drawn({stroke(points, 20)}));
+        EXPECT_NEAR(seen.area / (std::numbers::pi * 100), 1, 0.005);  // measured 0.0002
+        EXPECT_NEAR(seen.x, 40, 0.05);                                // measured 1e-14
+        EXPECT_NEAR(seen.y, 50, 0.05);
+    }
+}
+
+TEST(Stroke, FadesAlongItself) {
+    Stroke fading{.vertices = {{{10, 60}, 0}, {{150, 60}, 1}}, .width = 8, .color = white};
+    const Picture picture = drawn({fading});
+    for (int x = 10; x < 150; ++x) {
+        EXPECT_NEAR(picture.at(x, 60)[0], 255 * (x + 0.5 - 10) / 140, 1);  // measured 0.5
+    }
+}
+
+TEST(Stroke, CoversWhatLiesWithinHalfItsWidth) {
+    // many more vertices than bends: those skipped may shift an edge by 1/32 px, 8 of 255
+    std::vector<Point> points;
+    for (int i = 0; i <= 5000; ++i) {  // 0.1 px apart at most
+        const float x = 10 + 0.028f * static_cast<float>(i);
+        points.push_back({x, 60 + 40 * std::sin(x / 7)});
+    }
+    const Picture picture = drawn({stroke(points, 3)});
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+            double nearest = 1e9;
+            for (const Point& p : points) nearest = std::min(nearest, std::hypot(x + 0.5 - p.x, y + 0.5 - p.y));
+            ASSERT_NEAR(picture.at(x, y)[0], 255 * std::clamp(0.5 - (nearest - 1.5), 0.0, 1.0), 9);  // measured 8.3
+        }
+    }
+}
+
+TEST(Stroke, LeavesOthersAndTheBackdropAlone) {
+    const Color color = rgb(0x4fb0ff);
+    const Picture picture =
+        drawn({background(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
+    for (const int y : {10, 30, 50}) {
+        EXPECT_EQ(picture.at(40, y)[0], 0x4f);
+        EXPECT_EQ(picture.at(40, y)[2], 0xff);
+    }
+    EXPECT_EQ(picture.at(40, 20)[0], 255);
+    EXPECT_EQ(picture.at(40, 40)[2], 0);
+}
+
+}  // namespace
+}  // namespace doppel
