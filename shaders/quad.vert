@@ -1,6 +1,8 @@
 // quad.vert: a rectangle for one of the fragment shaders beside it.
-// in   at        a corner, px from the picture's top left     local_at  the same from the rectangle's centre, along its axes, px
-//      shape_of  what the fragment shader needs to know       tint_of   sRGB colour and opacity, 0…1
+// in   at        a corner, px from the picture's top left
+//      local_at  the same from the rectangle's centre, along its axes, px
+//      shape_of  what the fragment shader needs to know
+//      tint_of   sRGB colour and opacity, 0…1
 // out  local, shape, tint   the same for the fragment shader
 #version 330 core
 uniform vec2 picture;  // its size, px

@@ -26,7 +26,6 @@ public:
         gl::Clear(GL_COLOR_BUFFER_BIT);
         painter_->load(sketch(backdrop, size, *atlas_), {whole()}, *atlas_);
         painter_->paint(0, whole());
-        // so that the first picture needs no more than any other
         gl::BindFramebuffer(GL_READ_FRAMEBUFFER, *backdrop_);
         gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, *canvas_);
     }
