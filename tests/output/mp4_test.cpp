@@ -4,7 +4,7 @@
 #include "output/video.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 
 using namespace doppel;
 using namespace doppel::test;
@@ -126,10 +126,11 @@ TEST(Mp4, DestroyedUnfinishedStopsAtOnce) {
     const Picture a = noise(large, 1), b = moving_scene(large, 1);
     auto sink = make_mp4_sink(fresh_folder() / "x.mp4", {.size = large, .preset = "medium"});
     for (int k = 0; k < 20; ++k) sink->take(k % 2 ? a : b, whole(large));
-    const auto start = std::chrono::steady_clock::now();
+    // by the clock of the process, which does not run while others have the cores
+    const std::clock_t start = std::clock();
     sink.reset();
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    EXPECT_LT(taken.count(), 0.5);  // measured 0.21, with both cores busy
+    const double taken = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    EXPECT_LT(taken, 0.5);  // s; measured 0.18, and 5.0 where the queue is encoded to its end
 }
 
 TEST(Mp4, NamesItsLibraries) {
