@@ -33,15 +33,18 @@ void place_pendulum(PanelLayout& panel, float words_right, float words_bottom, d
     const Area& area = panel.area;
     float radius = std::min(area.width(), area.height()) / 2 - margin;
     float x = (area.left + area.right) / 2;
-    const auto pivot_y = [&] { return area.bottom - margin - radius; };
+    float y = (area.top + area.bottom) / 2;
     const auto clear = [&] {
-        const float dx = std::max(0.0f, x - words_right), dy = std::max(0.0f, pivot_y() - words_bottom);
+        const float dx = std::max(0.0f, x - words_right), dy = std::max(0.0f, y - words_bottom);
         return dx * dx + dy * dy >= radius * radius;
     };
     while (!clear() && x + radius + margin < area.right) x += 1;
     const float least = radius / 2;
-    while (!clear() && radius > least) radius -= 1;
-    panel.pivot = {x, pivot_y()};
+    while (!clear() && radius > least) {
+        radius -= 1;
+        y = area.bottom - margin - radius;
+    }
+    panel.pivot = {x, y};
     panel.px_per_m = radius / static_cast<float>(reach);
 }
 
