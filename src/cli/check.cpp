@@ -57,8 +57,8 @@ void print_scene(const Scene& scene) {
     fmt::print("  time   {} s: samples 0 to {} at {} Hz, {} steps in all\n", scene.preset.duration_s.value(),
                scene.samples, scene.preset.sample_hz.text(),
                grouped(scene.samples * (scene.a.steps_per_sample + scene.b.steps_per_sample)));
-    fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames_of(scene)), video.size.width, video.size.height,
-               scene.fps.text(),
+    fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames_of(scene)), video.size.width,
+               video.size.height, scene.fps.text(),
                video.format == "png" ? "PNG sequence" : fmt::format("H.264 {}, crf {}", video.preset, video.crf));
     const double simulation = estimated_simulation(scene), pictures = estimated_pictures(scene);
     fmt::print("  takes  about {:.2g} s to simulate, {:.2g} s to render\n", simulation, std::max(simulation, pictures));

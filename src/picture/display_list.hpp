@@ -34,8 +34,8 @@ struct Ring {
     Color color;
 };
 
-/// A path of constant width whose opacity varies along it. It never adds to itself: where it crosses or joins itself the
-/// more opaque part shows.
+/// A path of constant width whose opacity varies along it. It never adds to itself: where it crosses or joins itself
+/// the more opaque part shows.
 struct Stroke {
     struct Vertex {
         Point at;
