@@ -36,11 +36,11 @@ double estimated_pictures(const Scene& scene) {
     const auto& video = scene.preset.video;
     const double megapixels = 1e-6 * video.size.width * video.size.height;
     const bool slow = video.preset.find("slow") != std::string::npos;
-    const double ms = video.format == "png"         ? 4
-                      : video.preset == "ultrafast" ? 1.5
-                      : slow                        ? 8
-                      : video.preset == "medium"    ? 4.5
-                                                    : 2.5;
+    const double ms = video.format == "png"         ? 3.5
+                      : video.preset == "ultrafast" ? 2
+                      : video.preset == "medium"    ? 6
+                      : slow                        ? 12
+                                                    : 3.6;
     return 1e-3 * ms * megapixels * static_cast<double>(frames_of(scene));
 }
 

@@ -24,7 +24,7 @@ void add_run_options(CLI::App& command, RunCommandOptions& options) {
     command.add_option("-o,--out", options.out, "Folder for the results; they go to DIR/NAME/")
         ->type_name("DIR")
         ->capture_default_str();
-    command.add_option("-j,--jobs", options.jobs, "Threads that encode; one a core where not given")
+    command.add_option("-j,--jobs", options.jobs, "Threads that encode; two a core where not given")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
     command.add_option("--progress", options.progress, "How to show progress: auto, bar, plain, json or none")

@@ -188,7 +188,7 @@ void watch_worst(WorstErrors& worst, const Moment& moment) {
 }  // namespace
 
 int run_threads(int jobs) {
-    return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    return jobs > 0 ? jobs : 2 * static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,

@@ -19,7 +19,8 @@ struct RunOptions {
     int jobs = 0;                       // threads that encode or compress; 0 = run_threads() decides
 };
 
-/// The threads that encode where `jobs` of them were asked for: that many, or one a core where it is 0.
+/// The threads that encode where `jobs` of them were asked for: that many, or two a core where it is 0 (x264 waits for
+/// itself otherwise).
 int run_threads(int jobs);
 
 /// How far a run is, as often as a frame is done.
