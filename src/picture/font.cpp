@@ -2,6 +2,7 @@
 
 #include "picture/glyphs.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace doppel {
@@ -38,6 +39,11 @@ TextLine lay_out(std::string_view text, float size, Weight weight) {
         line.width += glyphs::advance(number, size, weight);
     }
     return line;
+}
+
+float fitting_size(std::string_view text, float size, Weight weight, float width) {
+    const float wanted = text_width(text, size, weight);
+    return wanted > width ? size * std::max(width, 0.0f) / wanted : size;
 }
 
 float text_width(std::string_view text, float size, Weight weight) {

@@ -10,6 +10,9 @@ namespace doppel {
 /// How far the pen moves along `text`, px; the same arithmetic that places the glyphs when it is drawn.
 float text_width(std::string_view text, float size, Weight weight = Weight::regular);
 
+/// `size`, or as much less as makes `text` no wider than `width` px.
+float fitting_size(std::string_view text, float size, Weight weight, float width);
+
 /// A line of text as the pen writes it.
 struct TextLine {
     struct Glyph {

@@ -1,5 +1,6 @@
 #include "scene/composer.hpp"
 
+#include "picture/font.hpp"
 #include "scene/wording.hpp"
 
 #include <fmt/format.h>
@@ -45,16 +46,18 @@ DisplayList Composer::backdrop() const {
     const auto& size = scene_.preset.video.size;
     DisplayList list;
     list.push_back(Box{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, theme_.background});
+    // long words shrink until they fit beside the clock, or into their panel
+    const auto fitted = [&](const std::string& text, Point anchor, float px, Weight weight, Color color, float width) {
+        list.push_back(Label{text, anchor, fitting_size(text, px, weight, width), Align::left, weight, color});
+    };
+    const auto speed = speed_words(scene_.preset.video.speed);
+    const auto last_clock = clock(scene_, scene_.time(scene_.samples));
+    fitted(layout_.title, {page.left, page.top + 38 * t}, 40 * t, Weight::bold, theme_.text,
+           page.width() - text_width(last_clock, 40 * t) - 30 * t);
+    fitted(layout_.subtitle, {page.left, page.top + 74 * t}, 22 * t, Weight::regular, theme_.quiet_text,
+           page.width() - text_width(speed, 22 * t) - 30 * t);
     list.push_back(
-        Label{layout_.title, {page.left, page.top + 38 * t}, 40 * t, Align::left, Weight::bold, theme_.text});
-    list.push_back(Label{
-        layout_.subtitle, {page.left, page.top + 74 * t}, 22 * t, Align::left, Weight::regular, theme_.quiet_text});
-    list.push_back(Label{speed_words(scene_.preset.video.speed),
-                         {page.right, page.top + 74 * t},
-                         22 * t,
-                         Align::right,
-                         Weight::regular,
-                         theme_.quiet_text});
+        Label{speed, {page.right, page.top + 74 * t}, 22 * t, Align::right, Weight::regular, theme_.quiet_text});
 
     for (std::size_t side = 0; layout_.panels && side < 2; ++side) {
         const auto& panel = (*layout_.panels)[side];
@@ -64,10 +67,9 @@ DisplayList Composer::backdrop() const {
         list.push_back(
             Ring{panel.pivot, panel.px_per_m * static_cast<float>(reach), std::max(1.5f * u, 1.0f), theme_.grid});
         const float left = area.left + 28 * u;
-        list.push_back(
-            Label{panel.heading, {left, area.top + 50 * t}, 31 * t, Align::left, Weight::bold, theme_.sides[side]});
-        list.push_back(
-            Label{panel.note, {left, area.top + 82 * t}, 21 * t, Align::left, Weight::regular, theme_.quiet_text});
+        const float width = area.right - left - 28 * u;
+        fitted(panel.heading, {left, area.top + 50 * t}, 31 * t, Weight::bold, theme_.sides[side], width);
+        fitted(panel.note, {left, area.top + 82 * t}, 21 * t, Weight::regular, theme_.quiet_text, width);
     }
     if (layout_.distance) compose_strip_backdrop(*layout_.distance, distance_heading, 34 * t, list);
     if (layout_.energy) compose_strip_backdrop(*layout_.energy, "energy error, of the potential range", 30 * t, list);

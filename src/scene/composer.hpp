@@ -35,6 +35,8 @@ private:
     void compose_panel(std::size_t side, DisplayList& list) const;
     void compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color,
                       DisplayList& list) const;
+    void compose_disc(const PanelLayout& panel, Point at, float radius, Color color, DisplayList& list) const;
+    void compose_trail(std::size_t side, Point head, DisplayList& list) const;
     float bob_radius(const Bob<double>& bob) const;
     void compose_distance(DisplayList& list) const;
     void compose_energy(DisplayList& list) const;

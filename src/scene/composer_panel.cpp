@@ -2,16 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace doppel {
 namespace {
 
-float apart(Point a, Point b) {
-    return std::hypot(a.x - b.x, a.y - b.y);
+/// The part of from…to that is in the area, if any (Liang & Barsky 1984).
+std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area& area) {
+    const Point along{to.x - from.x, to.y - from.y};
+    float first = 0, last = 1;                       // shares of the way
+    const auto keep = [&](float step, float room) {  // the side of a border where share · step ≤ room
+        if (step < 0) first = std::max(first, room / step);
+        if (step > 0) last = std::min(last, room / step);
+        return step != 0 || room >= 0;
+    };
+    const bool beside = keep(-along.x, from.x - area.left) && keep(along.x, area.right - from.x) &&
+                        keep(-along.y, from.y - area.top) && keep(along.y, area.bottom - from.y);
+    if (!beside || first > last) return std::nullopt;
+    const auto at = [&](float share) { return Point{from.x + share * along.x, from.y + share * along.y}; };
+    return std::pair{first > 0 ? at(first) : from, last < 1 ? at(last) : to};
 }
 
-Capsule disc(Point at, float radius, Color color) {
-    return {at, at, radius, color};
+float apart(Point a, Point b) {
+    return std::hypot(a.x - b.x, a.y - b.y);
 }
 
 }  // namespace
@@ -50,34 +64,22 @@ void Composer::compose_panel(std::size_t side, DisplayList& list) const {
     const auto& panel = (*layout_.panels)[side];
     const auto& own = side == 0 ? now_.a : now_.b;
     const auto& other = side == 0 ? now_.b : now_.a;
-    const double trail_s = scene_.preset.video.trail_s;
 
     // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
     const Color ghost = mixed(theme_.panel, theme_.sides[1 - side], 0.26f);
     compose_rods(panel, other.bobs, 0.7f * layout_.rod_radius, ghost, list);
-    for (const auto& bob : other.bobs) list.push_back(disc(panel.at(bob.x, bob.y), bob_radius(bob), ghost));
+    for (const auto& bob : other.bobs) compose_disc(panel, panel.at(bob.x, bob.y), bob_radius(bob), ghost, list);
 
-    // the trail of the last bob, fading with its age
-    if (trail_s > 0) {
-        Stroke stroke{{}, std::max(3.4f * layout_.unit, 1.2f), theme_.sides[side]};
-        const double time = scene_.time(now_.sample);
-        const auto freshness = [&](double when) {
-            return static_cast<float>(std::clamp(1 - (time - when) / trail_s, 0.0, 1.0));
-        };
-        for (const auto& point : trails_[side])
-            stroke.vertices.push_back({point.at, std::pow(freshness(point.time), 1.6f)});
-        stroke.vertices.push_back({panel.at(own.bobs.back().x, own.bobs.back().y), 1});
-        list.push_back(std::move(stroke));
-    }
+    if (scene_.preset.video.trail_s > 0) compose_trail(side, panel.at(own.bobs.back().x, own.bobs.back().y), list);
 
     // this side: rods, then the pivot and the bobs, each on a rim that sets it off
     compose_rods(panel, own.bobs, layout_.rod_radius, theme_.rod, list);
-    list.push_back(disc(panel.pivot, 0.4f * layout_.bob_radius, theme_.pivot));
+    compose_disc(panel, panel.pivot, 0.4f * layout_.bob_radius, theme_.pivot, list);
     for (const auto& bob : own.bobs) {
         const Point at = panel.at(bob.x, bob.y);
         const float radius = bob_radius(bob), rim = std::max(2 * layout_.unit, 0.75f);
-        list.push_back(disc(at, radius + rim, theme_.panel));
-        list.push_back(disc(at, radius, &bob == &own.bobs.back() ? theme_.sides[side] : theme_.bob));
+        compose_disc(panel, at, radius + rim, theme_.panel, list);
+        compose_disc(panel, at, radius, &bob == &own.bobs.back() ? theme_.sides[side] : theme_.bob, list);
     }
 }
 
@@ -86,9 +88,34 @@ void Composer::compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, 
     Point joint = panel.pivot;
     for (const auto& bob : bobs) {
         const Point at = panel.at(bob.x, bob.y);
-        list.push_back(Capsule{joint, at, radius, color});
+        if (const auto seen = clipped(joint, at, panel.area))
+            list.push_back(Capsule{seen->first, seen->second, radius, color});
         joint = at;
     }
+}
+
+/// A disc that is at home in the panel; one that a blow-up threw out of it is not shown.
+void Composer::compose_disc(const PanelLayout& panel, Point at, float radius, Color color, DisplayList& list) const {
+    if (panel.area.holds(at)) list.push_back(Capsule{at, at, radius, color});
+}
+
+/// The path of the last bob, fading with its age; broken where it leaves the panel.
+void Composer::compose_trail(std::size_t side, Point head, DisplayList& list) const {
+    const Area& area = (*layout_.panels)[side].area;
+    const double time = scene_.time(now_.sample), trail_s = scene_.preset.video.trail_s;
+    Stroke stroke{{}, std::max(3.4f * layout_.unit, 1.2f), theme_.sides[side]};
+    const auto extend = [&](Point at, double when) {
+        if (!area.holds(at)) {
+            if (!stroke.vertices.empty()) list.push_back(stroke);
+            stroke.vertices.clear();
+            return;
+        }
+        const double freshness = std::clamp(1 - (time - when) / trail_s, 0.0, 1.0);
+        stroke.vertices.push_back({at, static_cast<float>(std::pow(freshness, 1.6))});
+    };
+    for (const auto& point : trails_[side]) extend(point.at, point.time);
+    extend(head, time);
+    if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
 }
 
 /// Area by mass, but never too small to see; px.

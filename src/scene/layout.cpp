@@ -59,7 +59,8 @@ StripLayout strip(const Layout& layout, const Scene& scene, float top, float bot
 }  // namespace
 
 Point PanelLayout::at(double x_m, double y_m) const {
-    return {pivot.x + px_per_m * static_cast<float>(x_m), pivot.y - px_per_m * static_cast<float>(y_m)};
+    const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
+    return {pivot.x + px(x_m), pivot.y - px(y_m)};
 }
 
 Layout make_layout(const Scene& scene) {

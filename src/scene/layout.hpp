@@ -15,6 +15,7 @@ struct Area {
 
     float width() const { return right - left; }
     float height() const { return bottom - top; }
+    bool holds(Point p) const { return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom; }
 };
 
 /// A pendulum's panel and how metres become pixels in it.
@@ -22,8 +23,8 @@ struct PanelLayout {
     Area area;
     Point pivot;  // px
     float px_per_m = 1;
-    std::string heading, note;  // what differs; what else defines the side
-    Point at(double x_m, double y_m) const;
+    std::string heading, note;               // what differs; what else defines the side
+    Point at(double x_m, double y_m) const;  // within a million px of the pivot, wherever a blow-up throws a bob
 };
 
 /// A strip of the chart below: time across, a quantity up.

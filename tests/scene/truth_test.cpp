@@ -1,3 +1,4 @@
+#include "picture/font.hpp"
 #include "picture/theme.hpp"
 #include "scene/support.hpp"
 
@@ -111,6 +112,45 @@ TEST(Truth, TraceIsAtTheDistanceItShows) {
     const auto dot = blob_at(picture, {strip.area.left + 4, static_cast<float>(y)}, 12, themes[0].trace);
     EXPECT_GT(dot.area, 20);
     EXPECT_NEAR(dot.y, y, 0.5);  // measured 0.2
+}
+
+TEST(Truth, ABlowUpStaysInItsPanel) {
+    // Euler with giant steps tears the rods: bobs and trails leave the panel, and must not be drawn over the rest
+    const auto scene =
+        scene_of("butterfly", {"system.model=\"constraints\"", "system.step_s=\"1/120\"", "video.size=[640, 360]"});
+    const auto layout = make_layout(scene);
+    bool outside = false;
+    PairRun pair(scene);
+    const std::atomic<bool> never = false;
+    long sample = 0;
+    for (; sample < 2400 && !outside; ++sample) {
+        const auto moment = pair.next(never);
+        const auto& bob = moment.a.bobs[1];
+        outside = !layout.panels->front().area.holds(layout.panels->front().at(bob.x, bob.y));
+    }
+    ASSERT_TRUE(outside);
+    const auto picture = frame_of(scene, sample - 1), calm = frame_of(scene, 0);
+    const auto& left = (*layout.panels)[0].area;
+    const auto& right = (*layout.panels)[1].area;
+    // the gap between the panels, and what is above them but for the clock
+    for (int y = static_cast<int>(left.top); y < static_cast<int>(left.bottom); ++y)
+        for (int x = static_cast<int>(left.right) + 3; x < static_cast<int>(right.left) - 3; ++x)
+            ASSERT_TRUE(is_color(picture.at(x, y), themes[0].background)) << x << " " << y;
+    for (int y = 0; y < static_cast<int>(left.top) - 8; ++y)
+        for (int x = 0; x < 300; ++x)
+            ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, calm.at(x, y))) << x << " " << y;
+}
+
+TEST(Truth, LongWordsShrinkUntilTheyFit) {
+    const auto scene = scene_of(
+        "butterfly", {"title=\"A title that goes on and on, for as long as a double pendulum swings, and then some\"",
+                      "video.size=[640, 360]"});
+    const auto picture = frame_of(scene, 0), usual = frame_of(scene_of("butterfly", {"video.size=[640, 360]"}), 0);
+    const auto layout = make_layout(scene);
+    const int clock = static_cast<int>(layout.page.right - text_width("30.00 s", 40 * layout.text) - 20 * layout.text);
+    for (int y = 0; y < static_cast<int>(layout.page.top + 50 * layout.text); ++y)
+        for (int x = clock; x < 640; ++x)
+            ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, usual.at(x, y)));
 }
 
 TEST(Truth, TwinsDrawnMirroredAreMirrored) {
