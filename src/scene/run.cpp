@@ -1,8 +1,6 @@
 #include "scene/run.hpp"
 
-#include "analysis/distance.hpp"
 #include "numeric/error.hpp"
-#include "output/csv.hpp"
 #include "output/mp4.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"
@@ -10,6 +8,7 @@
 #include "picture/renderer.hpp"
 #include "scene/composer.hpp"
 #include "scene/manifest.hpp"
+#include "scene/table.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -77,53 +76,6 @@ private:
     std::exception_ptr fault_;
     std::atomic<double> cpu_s_ = 0;
     std::thread thread_;
-};
-
-/// The table of a pair: DESIGN's columns, the same for every model.
-class Table {
-public:
-    explicit Table(const std::filesystem::path& path) : csv_(path, columns()) {}
-
-    void add(const Scene& scene, const Moment& moment, double start_distance) {
-        csv_.add(moment.sample);
-        csv_.add(scene.time(moment.sample));
-        add_side(moment.a, moment.energy_error_a);
-        add_side(moment.b, moment.energy_error_b);
-        csv_.add(moment.distance);
-        const auto ratio = log_ratio(moment.distance, start_distance);
-        ratio ? csv_.add(*ratio) : csv_.add_empty();
-        csv_.end_row();
-    }
-
-    void finish() { csv_.finish(); }
-
-private:
-    static std::vector<std::string> columns() {
-        std::vector<std::string> names{"sample", "time_s"};
-        for (const char side : {'a', 'b'}) {
-            const auto each_link = [&](std::initializer_list<const char*> patterns) {
-                for (std::size_t i = 1; i <= link_count; ++i)
-                    for (const char* pattern : patterns) names.push_back(fmt::format(fmt::runtime(pattern), side, i));
-            };
-            each_link({"{}_theta{}_rad"});
-            each_link({"{}_omega{}_rad_per_s"});
-            each_link({"{}_x{}_m", "{}_y{}_m", "{}_vx{}_m_per_s", "{}_vy{}_m_per_s"});
-            for (const char* name : {"energy_J", "energy_error", "length_error_m"})
-                names.push_back(fmt::format("{}_{}", side, name));
-        }
-        names.insert(names.end(), {"distance", "log_ratio"});
-        return names;
-    }
-
-    void add_side(const Observation& seen, double energy_error) {
-        for (const auto& bob : seen.bobs) csv_.add(bob.theta);
-        for (const auto& bob : seen.bobs) csv_.add(bob.omega);
-        for (const auto& bob : seen.bobs)
-            for (const double value : {bob.x, bob.y, bob.vx, bob.vy}) csv_.add(value);
-        for (const double value : {seen.energy, energy_error, seen.length_error}) csv_.add(value);
-    }
-
-    Csv csv_;
 };
 
 /// Draws the frames and hands them to the video or the sequence.
@@ -208,7 +160,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     if (options.pictures) film.emplace(scene, parts, run_threads(options.jobs), record);
     const auto csv_name = scene.preset.name + ".csv";
     record.files.emplace_back(csv_name, parts.file(csv_name));
-    Table table(record.files.back().second);
+    PairTable table(record.files.back().second);
 
     Simulation simulation(scene, last, stop);
     double start_distance = 0;

@@ -63,21 +63,18 @@ std::string listed(std::span<const std::string_view> choices) {
 
 }  // namespace
 
-std::string place_of(const toml::table& table, std::string_view key, const std::string& path) {
-    for (auto&& [name, node] : table) {
-        if (name.str() != key) continue;
-        const auto& origin = node.source().path;
-        if (origin && origin->starts_with(command_line)) return *origin;
-        return fmt::format("{}:{}:{}", path, name.source().begin.line, name.source().begin.column);
-    }
-    return path;
-}
-
 TomlReader::TomlReader(const toml::table* table, std::string name, std::string path)
     : table_(table), name_(std::move(name)), path_(std::move(path)) {}
 
 std::string TomlReader::place(std::string_view key) const {
-    return table_ ? place_of(*table_, key, path_) : path_;
+    if (!table_) return path_;
+    for (auto&& [name, node] : *table_) {
+        if (name.str() != key) continue;
+        const auto& origin = node.source().path;
+        if (origin && origin->starts_with(command_line)) return *origin;
+        return fmt::format("{}:{}:{}", path_, name.source().begin.line, name.source().begin.column);
+    }
+    return path_;
 }
 
 std::string TomlReader::subject(std::string_view key) const {

@@ -15,9 +15,6 @@
 
 namespace doppel {
 
-/// "path:line:column" of a key, or the command line option that gave it.
-std::string place_of(const toml::table& table, std::string_view key, const std::string& path);
-
 /// Reads one table of a preset key by key. Every read_… leaves its target alone where the key is absent, and throws
 /// Error (exit 2) with place, value and what would be right where it is of the wrong kind. finish() finds the keys
 /// nobody asked for.
@@ -47,6 +44,7 @@ public:
     [[nodiscard]] Error fault(std::string_view key, fmt::format_string<Args...> format, Args&&... args) const {
         return bad_input("{}: {} {}", place(key), subject(key), fmt::format(format, std::forward<Args>(args)...));
     }
+    /// "path:line:column" of a key, the command line option that gave it, or the path where it is absent.
     [[nodiscard]] std::string place(std::string_view key) const;
 
 private:
