@@ -103,8 +103,10 @@ void Composer::compose_energy(DisplayList& list) const {
     const auto& strip = *layout_.energy;
     const float u = layout_.unit, x = strip.time.at(scene_.time(now_.sample));
     list.push_back(vertical_line(x, strip.area.top, strip.area.bottom, std::max(1.6f * u, 1.0f), theme_.cursor));
+    // the first is wider, so that it still shows where both run as one
+    const std::array widths{std::max(4.2f * u, 2.2f), std::max(1.8f * u, 1.0f)};
     for (std::size_t side = 0; side < 2; ++side)
-        list.push_back(Stroke{energy_[side].vertices(), std::max(2.2f * u, 1.0f), theme_.sides[side].with_alpha(0.9f)});
+        list.push_back(Stroke{energy_[side].vertices(), widths[side], theme_.sides[side]});
 }
 
 }  // namespace doppel
