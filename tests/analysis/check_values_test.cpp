@@ -61,6 +61,14 @@ TEST(CheckValues, AverageOverTheMassRatio) {
     }
 }
 
+TEST(CheckValues, LogRatioOverTime) {
+    // figure 2 left; its list begins with sample 1, so that entry n, counted from 0, is sample n + 1
+    const auto d = distances(Model::angles, released(90, 90), Model::angles, released(90.003, 90), 1001);
+    for (const auto& [entry, expected, slack] :
+         {std::tuple{100u, 0.941, 6e-4}, {500u, 1.884, 2e-3}, {1000u, 3.38, 6e-3}})
+        EXPECT_NEAR(log_ratio(d[entry + 1], d[0]).value(), expected, slack) << entry;  // measured 0.941, 1.885, 3.384
+}
+
 TEST(CheckValues, TheTwoFormulationsPart) {
     for (const auto& [angle, greatest, at] : {std::tuple{45.0, 0.633, 4370L}, {50.0, 1.044, 4350L}}) {
         const auto d = distances(Model::angles, released(angle, 0), Model::constraints, released(angle, 0), 4500);
