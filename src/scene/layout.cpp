@@ -17,10 +17,12 @@ Range fitted_distance(const Scene& scene) {
     const double available = start.a.energy + p.potential_range() / 2;  // J, above hanging at rest
     const double speed2 = 2 * available / std::min(p.mass[0], p.mass[1]);
     const double apart2 = std::min(2 * p.reach() * p.reach(), 2 * available / (p.mass[0] * p.gravity) * p.reach());
-    const double high = std::sqrt(std::max(speed2 + apart2, 1e-12));
+    constexpr double decades = 1e60;  // the most an axis spans, whatever the masses and lengths
+    const double most = std::sqrt(speed2 + apart2),
+                 high = std::isfinite(most) ? std::clamp(most, 1e-12, decades) : decades;
     const double low = start.distance > 0 ? start.distance / 2 : high * 1e-8;
     const double top = std::pow(10, std::ceil(2 * std::log10(1.5 * high)) / 2);  // half a decade of air
-    return {std::min(std::pow(10, std::floor(std::log10(low))), top / 10), top};
+    return {std::clamp(std::pow(10, std::floor(std::log10(low))), top / decades, top / 10), top};
 }
 
 Range fitted_energy(const Scene& scene) {
