@@ -1,5 +1,7 @@
 #include "output/fixtures.hpp"
 
+#include "output/video.hpp"
+
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -117,6 +119,17 @@ void expect_error(ExitCode code, const std::vector<std::string>& words, const st
         for (const std::string& part : words)
             EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
     }
+}
+
+void expect_tags(const Video& video) {
+    EXPECT_EQ(video.codec, "h264");
+    EXPECT_EQ(video.pixel_format, "yuv420p");
+    EXPECT_EQ(video.range, "tv");
+    EXPECT_EQ(video.matrix, "bt709");
+    EXPECT_EQ(video.primaries, "bt709");
+    EXPECT_EQ(video.transfer, "bt709");
+    EXPECT_EQ(video.chroma_location, "center");
+    EXPECT_TRUE(video.index_at_front);
 }
 
 }  // namespace doppel::test

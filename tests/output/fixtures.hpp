@@ -37,6 +37,11 @@ public:
     FullDisk& operator=(const FullDisk&) = delete;
 };
 
+struct Video;
+
+/// H.264, yuv420p, BT.709 in limited range, chroma in the centre, the index at the front.
+void expect_tags(const Video& video);
+
 /// What `action` threw: its exit code, and that the message holds `words`.
 void expect_error(ExitCode code, const std::vector<std::string>& words, const std::function<void()>& action);
 

@@ -33,15 +33,8 @@ TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
                                  .title = "Three thousandths of a degree"};
         const Video video = read_video(film(folder / "x.mp4.part", options, 61));
         EXPECT_EQ(video.size, small);
-        EXPECT_EQ(video.codec, "h264");
-        EXPECT_EQ(video.pixel_format, "yuv420p");
-        EXPECT_EQ(video.range, "tv");
-        EXPECT_EQ(video.matrix, "bt709");
-        EXPECT_EQ(video.primaries, "bt709");
-        EXPECT_EQ(video.transfer, "bt709");
-        EXPECT_EQ(video.chroma_location, "center");
+        expect_tags(video);
         EXPECT_EQ(video.title, options.title);
-        EXPECT_TRUE(video.index_at_front);
         EXPECT_EQ(video.average_rate, rate);
         EXPECT_EQ(video.base_rate, rate);
         EXPECT_EQ(video.duration, (Ratio{61 * rate.denominator, rate.numerator}));
