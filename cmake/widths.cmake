@@ -1,0 +1,38 @@
+# compile_for_widths(ROOM SOURCE MACRO)
+# SOURCE, which the room compiles for every processor, once more for each wider kind, with MACRO = the doubles in its
+# registers; which of them runs is chosen at run time. The room sees DOPPEL_WIDE_ENSEMBLES where there are wider kinds.
+# Never with FMA: fused operations round differently. (Eigen would demand it for AVX-512, so it keeps to plain code here.)
+# Always optimized: what is inlined has no name that the linker could take for the same in code for every processor; a test
+# sees to it that no such name is left.
+function(compile_for_widths room source macro)
+    if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+        return()
+    endif()
+    set(flags_4 -mavx2)
+    set(flags_8 -mavx512f -mavx512dq)
+    foreach(width 4 8)
+        set(objects ${room}_width_${width})
+        add_library(${objects} OBJECT ${source})
+        target_compile_options(${objects} PRIVATE ${flags_${width}} -mno-fma -O3 -fno-sanitize=all)
+        target_compile_definitions(${objects} PRIVATE ${macro}=${width} EIGEN_DONT_VECTORIZE NDEBUG)
+        target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${room},INCLUDE_DIRECTORIES>)
+        target_include_directories(${objects} SYSTEM PRIVATE ${EIGEN3_INCLUDE_DIRS}
+                                                             $<TARGET_PROPERTY:${room},INTERFACE_SYSTEM_INCLUDE_DIRECTORIES>)
+        target_sources(${room} PRIVATE $<TARGET_OBJECTS:${objects}>)
+        add_test(NAME ${room}:width_${width}.SharesNoFunction
+                 COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D OBJECT=$<TARGET_OBJECTS:${objects}>
+                         -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE})
+    endforeach()
+    target_compile_definitions(${room} PRIVATE DOPPEL_WIDE_ENSEMBLES)
+endfunction()
+
+# The test: the one global function of OBJECT is the one that is called, and none is weak (V = a weak datum, harmless).
+if(CMAKE_SCRIPT_MODE_FILE)
+    execute_process(COMMAND ${NM} --demangle --defined-only ${OBJECT} OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)
+    string(REGEX MATCHALL "[0-9a-f]+ [TWuwi] [^\n]*" shared "${names}")
+    list(FILTER shared EXCLUDE REGEX " T .*doppel::make_ensemble_block<[48]>\\(")
+    if(shared OR NOT names MATCHES "make_ensemble_block")
+        list(JOIN shared "\n  " shared)
+        message(FATAL_ERROR "${OBJECT} defines what other code may be given:\n  ${shared}")
+    endif()
+endif()

@@ -1,0 +1,159 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace doppel {
+
+/// A number and how fast it changes along N directions: f(x + Σ ε_i e_i) = f(x) + Σ ε_i ∂f·e_i with ε_i ε_j = 0.
+/// Whatever is computed with them carries its exact derivatives along (forward-mode automatic differentiation); a state
+/// whose i-th entry starts with the tangent e_i ends as the Jacobian of the flow.
+///
+/// Comparisons look at the value alone. A number is a constant: its tangents are 0.
+/// Source  Griewank & Walther, Evaluating Derivatives, §3.1.
+template <class Scalar, int N>
+struct Dual {
+    using Tangent = Eigen::Matrix<Scalar, N, 1>;
+
+    Scalar value;
+    Tangent tangent;
+
+    Dual() : Dual(Scalar(0)) {}
+    Dual(const Scalar& constant) : value(constant), tangent(Tangent::Zero()) {}
+    template <class Number>
+    requires(std::is_arithmetic_v<Number> && !std::is_same_v<Number, Scalar>) Dual(Number constant)
+        : Dual(Scalar(constant)) {}
+    template <class Vector>
+    Dual(const Scalar& x, const Eigen::MatrixBase<Vector>& dx) : value(x), tangent(dx) {}
+
+    /// The variable number `direction` at x.
+    static Dual variable(const Scalar& x, Eigen::Index direction) { return {x, Tangent::Unit(direction)}; }
+
+    Dual& operator+=(const Dual& b) {
+        value += b.value;
+        tangent += b.tangent;
+        return *this;
+    }
+    Dual& operator-=(const Dual& b) {
+        value -= b.value;
+        tangent -= b.tangent;
+        return *this;
+    }
+    Dual& operator*=(const Dual& b) { return *this = *this * b; }
+    Dual& operator/=(const Dual& b) { return *this = *this / b; }
+
+    friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+    friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+    friend Dual operator*(const Dual& a, const Dual& b) {
+        return {Scalar(a.value * b.value), a.value * b.tangent + b.value * a.tangent};
+    }
+    friend Dual operator/(const Dual& a, const Dual& b) {
+        // (a/b)′ = (a′ − (a/b) b′) / b
+        const Scalar ratio = a.value / b.value;
+        return {ratio, (a.tangent - ratio * b.tangent) / b.value};
+    }
+    friend Dual operator+(const Dual& a) { return a; }
+    friend Dual operator-(const Dual& a) { return {Scalar(-a.value), -a.tangent}; }
+
+    friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+    friend bool operator!=(const Dual& a, const Dual& b) { return a.value != b.value; }
+    friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
+    friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
+    friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
+    friend bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
+    friend bool isfinite(const Dual& a) {
+        using std::isfinite;
+        return isfinite(a.value) && a.tangent.allFinite();
+    }
+    friend bool isnan(const Dual& a) {
+        using std::isnan;
+        return isnan(a.value);
+    }
+
+    // f(a)′ = f′(a) a′
+
+    friend Dual sin(const Dual& a) {
+        using std::cos, std::sin;
+        return {sin(a.value), Scalar(cos(a.value)) * a.tangent};
+    }
+    friend Dual cos(const Dual& a) {
+        using std::cos, std::sin;
+        return {cos(a.value), Scalar(-sin(a.value)) * a.tangent};
+    }
+    friend Dual tan(const Dual& a) {
+        using std::tan;
+        const Scalar t = tan(a.value);
+        return {t, Scalar(Scalar(1) + t * t) * a.tangent};
+    }
+    friend Dual exp(const Dual& a) {
+        using std::exp;
+        const Scalar e = exp(a.value);
+        return {e, e * a.tangent};
+    }
+    friend Dual log(const Dual& a) {
+        using std::log;
+        return {log(a.value), a.tangent / a.value};
+    }
+    friend Dual abs(const Dual& a) { return a.value < Scalar(0) ? -a : a; }
+    friend Dual atan2(const Dual& y, const Dual& x) {
+        using std::atan2;
+        const Scalar square = x.value * x.value + y.value * y.value;
+        return {atan2(y.value, x.value), (x.value * y.tangent - y.value * x.tangent) / square};
+    }
+    friend Dual atan(const Dual& a) {
+        using std::atan;
+        return {atan(a.value), a.tangent / Scalar(Scalar(1) + a.value * a.value)};
+    }
+
+    // These have no finite slope at the ends of their range, where a constant is still a constant.
+
+    friend Dual sqrt(const Dual& a) {
+        using std::sqrt;
+        const Scalar root = sqrt(a.value);
+        return a.varies() ? Dual{root, a.tangent / Scalar(Scalar(2) * root)} : Dual(root);
+    }
+    friend Dual asin(const Dual& a) {
+        using std::asin, std::sqrt;
+        const Scalar angle = asin(a.value);
+        return a.varies() ? Dual{angle, a.tangent / Scalar(sqrt(Scalar(Scalar(1) - a.value * a.value)))} : Dual(angle);
+    }
+    friend Dual acos(const Dual& a) {
+        using std::acos, std::sqrt;
+        const Scalar angle = acos(a.value);
+        return a.varies() ? Dual{angle, -a.tangent / Scalar(sqrt(Scalar(Scalar(1) - a.value * a.value)))} : Dual(angle);
+    }
+    friend Dual pow(const Dual& a, const Dual& b) {
+        // (a^b)′ = b a^(b−1) a′ + a^b log(a) b′
+        using std::log, std::pow;
+        const Scalar power = pow(a.value, b.value);
+        Dual result(power);
+        if (a.varies()) result.tangent += Scalar(b.value * pow(a.value, Scalar(b.value - Scalar(1)))) * a.tangent;
+        if (b.varies()) result.tangent += Scalar(power * log(a.value)) * b.tangent;
+        return result;
+    }
+
+    bool varies() const { return (tangent.array() != Scalar(0)).any(); }
+};
+
+}  // namespace doppel
+
+/// The range and the precision of its value.
+template <class Scalar, int N>
+struct std::numeric_limits<doppel::Dual<Scalar, N>> : std::numeric_limits<Scalar> {};
+
+template <class Scalar, int N>
+struct Eigen::NumTraits<doppel::Dual<Scalar, N>> : Eigen::GenericNumTraits<doppel::Dual<Scalar, N>> {
+    enum {
+        IsComplex = 0,
+        IsInteger = 0,
+        IsSigned = 1,
+        RequireInitialization = 1,
+        ReadCost = (1 + N) * NumTraits<Scalar>::ReadCost,
+        AddCost = (1 + N) * NumTraits<Scalar>::AddCost,
+        MulCost = (1 + 2 * N) * NumTraits<Scalar>::MulCost
+    };
+    static int digits10() { return NumTraits<Scalar>::digits10(); }
+};

@@ -1,0 +1,27 @@
+#include "numeric/quad.hpp"
+
+#include <fmt/format.h>
+
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace doppel {
+
+Quad parse_quad(std::string_view decimal) {
+#if defined(__aarch64__)
+    return std::strtold(std::string(decimal).c_str(), nullptr);
+#else
+    return Quad(std::string(decimal));
+#endif
+}
+
+std::string text_of(const Quad& value) {
+    auto text = fmt::format("{}", static_cast<double>(value));
+    if (parse_quad(text) == value) return text;
+    std::ostringstream digits;
+    digits << std::setprecision(34) << value;
+    return digits.str();
+}
+
+}  // namespace doppel

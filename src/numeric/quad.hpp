@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+#include <string_view>
+
+// Quad, IEEE binary128: 113 bits, about 34 digits. Where the machine's long double is one, that; else the compiler's
+// software type in Boost's dress.
+#if defined(__aarch64__)
+#include <cmath>
+#include <cstdlib>
+namespace doppel {
+using Quad = long double;
+static_assert(__LDBL_MANT_DIG__ == 113);
+}  // namespace doppel
+#else
+#include <boost/multiprecision/float128.hpp>
+namespace doppel {
+using Quad = boost::multiprecision::float128;
+}
+
+/// Eigen asks for the digits in decimal and for what a number costs.
+template <>
+struct Eigen::NumTraits<doppel::Quad> : Eigen::GenericNumTraits<doppel::Quad> {
+    enum {
+        IsComplex = 0,
+        IsInteger = 0,
+        IsSigned = 1,
+        RequireInitialization = 1,
+        ReadCost = 2,
+        AddCost = 40,
+        MulCost = 40
+    };
+    static int digits10() { return 33; }
+};
+#endif
+
+namespace doppel {
+
+/// The quad nearest to a decimal literal, "90.003"; for text that is a literal (the preset reader sees to that).
+Quad parse_quad(std::string_view decimal);
+
+/// The fewest digits that mean this number: those of the double where its shortest decimal is the same quad ("9.8"),
+/// else 34.
+std::string text_of(const Quad& value);
+
+}  // namespace doppel

@@ -1,0 +1,146 @@
+#include "numeric/lanes.hpp"
+
+#include "integrate/euler.hpp"
+#include "integrate/rk4.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/double_pendulum.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <random>
+
+namespace doppel {
+namespace {
+
+std::uint64_t bits(double x) {
+    return std::bit_cast<std::uint64_t>(x);
+}
+
+/// A different pendulum for every lane.
+Pendulum<double> trial(int number, std::size_t links) {
+    std::mt19937 random(static_cast<unsigned>(number));
+    std::uniform_real_distribution<double> some(0.5, 2);
+    Pendulum<double> p;
+    p.mass.clear(), p.length.clear(), p.angle.clear(), p.rate.clear();
+    for (std::size_t i = 0; i < links; ++i) {
+        p.mass.push_back(some(random));
+        p.length.push_back(some(random));
+        p.angle.push_back(2 * some(random) - 2);
+        p.rate.push_back(some(random) - 1);
+    }
+    return p;
+}
+
+template <class Side>
+Pendulum<Side> side_by_side(std::size_t links) {
+    auto sides = trial(0, links).template cast<Side>();
+    for (int lane = 0; lane < Side::width; ++lane) {
+        const auto p = trial(lane, links);
+        for (std::size_t i = 0; i < links; ++i) {
+            sides.mass[i].set(lane, p.mass[i]);
+            sides.length[i].set(lane, p.length[i]);
+            sides.angle[i].set(lane, p.angle[i]);
+            sides.rate[i].set(lane, p.rate[i]);
+        }
+    }
+    return sides;
+}
+
+/// Whether `steps` of the method give each lane the bits of a double.
+template <class Which, template <class> class Model, int width>
+void expect_the_bits_of_double(std::size_t links) {
+    using Side = Lanes<width>;
+    constexpr long steps = 3000;
+    const double step = 1.0 / 3000;
+    Model<Side> model(side_by_side<Side>(links));
+    typename Which::template Stepper<Model<Side>> stepper(model, Model<Side>::start(side_by_side<Side>(links)),
+                                                          Side(step));
+    stepper.advance(steps);
+    const auto y = stepper.state();
+    for (int lane = 0; lane < width; ++lane) {
+        Model<double> lone(trial(lane, links));
+        typename Which::template Stepper<Model<double>> alone(lone, Model<double>::start(trial(lane, links)), step);
+        alone.advance(steps);
+        for (Eigen::Index i = 0; i < y.size(); ++i)
+            EXPECT_EQ(bits(y[i][lane]), bits(alone.state()[i])) << "lane " << lane << ", entry " << i;
+    }
+}
+
+template <class Scalar>
+using AngleChain3 = AngleChain<Scalar, 3>;
+template <class Scalar>
+using RodChain2 = RodChain<Scalar, 2>;
+template <class Scalar>
+using RodChain3 = RodChain<Scalar, 3>;
+template <class Scalar>
+using LongRodChain = RodChain<Scalar, Eigen::Dynamic>;
+
+template <class Which, int width>
+void expect_all_models_agree() {
+    expect_the_bits_of_double<Which, DoublePendulum, width>(2);
+    expect_the_bits_of_double<Which, AngleChain3, width>(3);
+    expect_the_bits_of_double<Which, RodChain2, width>(2);
+    expect_the_bits_of_double<Which, RodChain3, width>(3);
+}
+
+TEST(Lanes, StepToTheBitsOfDouble) {
+    expect_all_models_agree<Euler, 2>();
+    expect_all_models_agree<Euler, 4>();
+    expect_all_models_agree<Euler, 8>();
+    expect_all_models_agree<Rk4, 2>();
+    expect_all_models_agree<Rk4, 8>();
+    expect_the_bits_of_double<Rk4, LongRodChain, 2>(6);
+}
+
+TEST(Lanes, RoundLikeDouble) {
+    std::mt19937_64 random(1);
+    using Side = Lanes<4>;
+    const auto any = [&] {
+        return std::ldexp(std::uniform_real_distribution<double>(-1, 1)(random), static_cast<int>(random() % 40) - 20);
+    };
+    for (int i = 0; i < 20'000; ++i) {
+        Side a, b;
+        for (int lane = 0; lane < 4; ++lane) a.set(lane, any()), b.set(lane, any());
+        const SinCos<Side> turn(a);
+        for (int lane = 0; lane < 4; ++lane) {
+            const double x = a[lane], y = b[lane];
+            ASSERT_EQ(bits((a + b)[lane]), bits(x + y));
+            ASSERT_EQ(bits((a - b)[lane]), bits(x - y));
+            ASSERT_EQ(bits((a * b + a)[lane]), bits(x * y + x));  // not fused
+            ASSERT_EQ(bits((a / b)[lane]), bits(x / y));
+            ASSERT_EQ(bits(sqrt(abs(a))[lane]), bits(std::sqrt(std::abs(x))));
+            ASSERT_EQ(bits((-a)[lane]), bits(-x));
+            const SinCos<double> alone(x);
+            ASSERT_EQ(bits(turn.sin[lane]), bits(alone.sin));
+            ASSERT_EQ(bits(turn.cos[lane]), bits(alone.cos));
+            ASSERT_EQ(bits(atan2(a, b)[lane]), bits(std::atan2(x, y)));
+        }
+    }
+}
+
+TEST(Lanes, ConstantsKeepTheirSign) {
+    EXPECT_EQ(bits(Lanes<8>(-0.0)[5]), bits(-0.0));
+    EXPECT_EQ(bits(Lanes<8>(0)[5]), bits(0.0));
+    EXPECT_EQ(bits((-Lanes<4>(0.0))[1]), bits(-0.0));
+}
+
+TEST(Lanes, SelectDecidesLaneByLane) {
+    Lanes<4> a(1);
+    a.set(2, 3);
+    a.set(3, std::numeric_limits<double>::quiet_NaN());
+    const auto small = a <= Lanes<4>(2);
+    EXPECT_FALSE(all_of(small));
+    EXPECT_TRUE(all_of(Lanes<4>(1) < Lanes<4>(2)));
+    const auto chosen = select(small, Lanes<4>(10), Lanes<4>(20));
+    EXPECT_EQ(chosen[0], 10);
+    EXPECT_EQ(chosen[1], 10);
+    EXPECT_EQ(chosen[2], 20);
+    EXPECT_EQ(chosen[3], 20);  // what is no number is not small
+}
+
+}  // namespace
+}  // namespace doppel
