@@ -10,23 +10,24 @@ namespace doppel {
 ///
 /// State   (θ1, θ2, ω1, ω2). Angles are not wrapped: whole turns count as flips.
 /// Source  Landau & Lifshitz, Mechanics, §5 problem 1, solved for the accelerations.
-template <class Scalar>
+template <class S>
 struct DoublePendulum {
+    using Scalar = S;
     using State = doppel::State<Scalar, 4>;
 
     Scalar m1, m2;  // kg
     Scalar l1, l2;  // m
     Scalar g;       // m/s²
 
-    explicit DoublePendulum(const Pendulum& p)
+    explicit DoublePendulum(const Pendulum<Scalar>& p)
         : m1(p.mass[0]), m2(p.mass[1]), l1(p.length[0]), l2(p.length[1]), g(p.gravity) {}
 
-    static State start(const Pendulum& p) { return {p.angle[0], p.angle[1], p.rate[0], p.rate[1]}; }
+    static State start(const Pendulum<Scalar>& p) { return released_in_angles<Scalar, 2>(p); }
 
-    /// d/dt of the state. With D = θ1 − θ2 and n = m1 + m2 sin²D:
+    /// dydt ← d/dt of the state. With D = θ1 − θ2 and n = m1 + m2 sin²D:
     ///     θ1″ = [ −m2 sinD (l2 ω2² + l1 ω1² cosD) − g ((m1 + m2) sinθ1 − m2 cosD sinθ2) ] / (l1 n)
     ///     θ2″ = [ sinD ((m1 + m2) l1 ω1² + m2 l2 ω2² cosD) + (m1 + m2) g (sinθ1 cosD − sinθ2) ] / (l2 n)
-    State rate(const State& y) const {
+    void rate(const State& y, State& dydt) const {
         const Scalar &w1 = y[2], &w2 = y[3];
         const SinCos<Scalar> one(y[0]), two(y[1]);
         const Scalar sin_d = one.sin * two.cos - one.cos * two.sin;
@@ -36,18 +37,8 @@ struct DoublePendulum {
         const Scalar pull1 = l1 * w1 * w1, pull2 = l2 * w2 * w2;
         const Scalar a1 = (-m2 * sin_d * (pull2 + pull1 * cos_d) - g * (m * one.sin - m2 * cos_d * two.sin)) / (l1 * n);
         const Scalar a2 = (sin_d * (m * pull1 + m2 * pull2 * cos_d) + m * g * (one.sin * cos_d - two.sin)) / (l2 * n);
-        return {w1, w2, a1, a2};
+        dydt << w1, w2, a1, a2;
     }
-
-    Bobs<Scalar> bobs(const State& y) const {
-        const SinCos<Scalar> one(y[0]), two(y[1]);
-        const Scalar x1 = l1 * one.sin, y1 = -l1 * one.cos, vx1 = l1 * y[2] * one.cos, vy1 = l1 * y[2] * one.sin;
-        return {{{m1, x1, y1, vx1, vy1, y[0], y[2]},
-                 {m2, x1 + l2 * two.sin, y1 - l2 * two.cos, vx1 + l2 * y[3] * two.cos, vy1 + l2 * y[3] * two.sin, y[1],
-                  y[3]}}};
-    }
-
-    Scalar length_error(const State&) const { return Scalar(0); }  // m
 };
 
 }  // namespace doppel

@@ -1,57 +1,88 @@
 #pragma once
 
-#include <array>
+#include "numeric/state.hpp"
+
 #include <cstddef>
+#include <vector>
 
 namespace doppel {
 
-inline constexpr std::size_t link_count = 2;
-
-/// What a double pendulum is made of and how it is released; the same for every model. Link i hangs below link i − 1.
+/// What a chain of point masses on massless rigid rods is made of and how it is released; the same for every model.
+/// Link i hangs below link i − 1.
 ///
 ///     pivot o──l1──● m1        angles θ from the downward vertical, counter-clockwise, rad
 ///                   ╲l2        rates  ω = dθ/dt, rad/s
-///                    ● m2      the pivot is the origin, x to the right, y up
+///                    ● m2 …    the pivot is the origin, x to the right, y up
+template <class Scalar>
 struct Pendulum {
-    std::array<double, link_count> mass{1, 1};    // kg, > 0
-    std::array<double, link_count> length{1, 1};  // m, > 0
-    std::array<double, link_count> angle{};       // rad, at t = 0
-    std::array<double, link_count> rate{};        // rad/s, at t = 0
-    double gravity = 9.8;                         // m/s²
+    std::vector<Scalar> mass{1, 1};    // kg, > 0
+    std::vector<Scalar> length{1, 1};  // m, > 0
+    std::vector<Scalar> angle{0, 0};   // rad, at t = 0
+    std::vector<Scalar> rate{0, 0};    // rad/s, at t = 0
+    Scalar gravity = Scalar(9.8);      // m/s²
+
+    std::size_t links() const { return mass.size(); }
+
+    /// The same in another scalar.
+    template <class To>
+    Pendulum<To> cast() const {
+        const auto all = [](const std::vector<Scalar>& values) {
+            std::vector<To> made;
+            for (const auto& value : values) made.push_back(static_cast<To>(value));
+            return made;
+        };
+        return {all(mass), all(length), all(angle), all(rate), static_cast<To>(gravity)};
+    }
 
     /// Between hanging straight down and standing straight up, J: the scale of its energies.
-    double potential_range() const {
-        double range = 0, reach = 0;
-        for (std::size_t i = 0; i < link_count; ++i) {
+    Scalar potential_range() const {
+        Scalar range(0), reach(0);
+        for (std::size_t i = 0; i < links(); ++i) {
             reach += length[i];
-            range += 2 * mass[i] * gravity * reach;
+            range += Scalar(2) * mass[i] * gravity * reach;
         }
         return range;
     }
 
     /// From the pivot to the end of the outstretched chain, m.
-    double reach() const { return length[0] + length[1]; }
+    Scalar reach() const {
+        Scalar sum(0);
+        for (const auto& l : length) sum += l;
+        return sum;
+    }
 };
 
-/// One mass as every model reports it.
-template <class Scalar>
-struct Bob {
-    Scalar mass;          // kg
-    Scalar x, y, vx, vy;  // m, m/s
-    Scalar theta, omega;  // of the rod above it: rad, rad/s
-};
+/// (θ1 … θN, ω1 … ωN) as released.
+template <class Scalar, int N>
+State<Scalar, times<2, N>> released_in_angles(const Pendulum<Scalar>& p) {
+    const auto n = static_cast<Eigen::Index>(p.links());
+    State<Scalar, times<2, N>> y(2 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        y[i] = p.angle[static_cast<std::size_t>(i)];
+        y[n + i] = p.rate[static_cast<std::size_t>(i)];
+    }
+    return y;
+}
 
-template <class Scalar>
-using Bobs = std::array<Bob<Scalar>, link_count>;
-
-/// Energy, J: zero at rest with every mass level with the pivot. The true motion keeps it.
-///     E = Σ ½ m v² + m g y
-template <class Scalar>
-Scalar energy(const Bobs<Scalar>& bobs, const Scalar& gravity) {
-    Scalar total(0);
-    for (const auto& bob : bobs)
-        total += bob.mass * (Scalar(0.5) * (bob.vx * bob.vx + bob.vy * bob.vy) + gravity * bob.y);
-    return total;
+/// (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) as released.
+template <class Scalar, int N>
+State<Scalar, times<4, N>> released_as_particles(const Pendulum<Scalar>& p) {
+    const auto n = static_cast<Eigen::Index>(p.links());
+    State<Scalar, times<4, N>> y(4 * n);
+    Scalar x(0), height(0), vx(0), vy(0);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const SinCos<Scalar> turn(p.angle[k]);
+        x += p.length[k] * turn.sin;
+        height -= p.length[k] * turn.cos;
+        vx += p.length[k] * p.rate[k] * turn.cos;
+        vy += p.length[k] * p.rate[k] * turn.sin;
+        y[2 * i] = x;
+        y[2 * i + 1] = height;
+        y[2 * n + 2 * i] = vx;
+        y[2 * n + 2 * i + 1] = vy;
+    }
+    return y;
 }
 
 }  // namespace doppel

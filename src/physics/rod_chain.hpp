@@ -1,99 +1,141 @@
 #pragma once
 
-#include "numeric/state.hpp"
+#include "numeric/tridiagonal.hpp"
 #include "physics/pendulum.hpp"
-
-#include <Eigen/Dense>
-
-#include <algorithm>
-#include <cmath>
 
 namespace doppel {
 
-/// The double pendulum as two free particles that constraints hold on their rods (force-based dynamics).
+/// N free particles that constraints hold on the rods of a chain (force-based dynamics).
 ///
-///     C1 = ½ (|q1|² − l1²) = 0,   C2 = ½ (|q2 − q1|² − l2²) = 0
+///     C_k = ½ (|r_k|² − l_k²) = 0,   r_k = q_k − q_{k−1},   q_0 = the pivot
 ///
-/// The multipliers λ of the constraint forces Jᵀλ follow from C″ = 0, as (J M⁻¹ Jᵀ) λ = −J̇ q̇ − J M⁻¹ F. Nothing pulls
-/// the rods back once a method has let them stretch; length_error() says how far they have.
+/// The multipliers λ of the constraint forces Jᵀλ follow from C″ = 0, as (J M⁻¹ Jᵀ) λ = −J̇ q̇ − J M⁻¹ F: for a chain a
+/// tridiagonal system, O(N). Nothing pulls the rods back once a method has let them stretch (stabilise = "none").
 ///
-/// State   (x1, y1, x2, y2, vx1, vy1, vx2, vy2), m and m/s.
+/// State   (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN), m and m/s.
 /// Source  Witkin 1997, Physically Based Modeling: Constrained Dynamics.
-template <class Scalar>
+template <class S, int N>
 struct RodChain {
-    using State = doppel::State<Scalar, 8>;
-    using Vector = Eigen::Matrix<Scalar, 2, 1>;
+    using Scalar = S;
+    using State = doppel::State<Scalar, times<4, N>>;
+    using Half = doppel::State<Scalar, times<2, N>>;  // positions, velocities or accelerations
+    using Multipliers = doppel::State<Scalar, N>;     // one a rod
+    using Matrix = Tridiagonal<Scalar, N>;
 
-    Scalar m1, m2;  // kg
-    Scalar w1, w2;  // 1/kg, their inverses: the diagonal of M⁻¹
-    Scalar l1, l2;  // m
-    Scalar g;       // m/s²
+    Multipliers w;   // 1/kg, inverse masses: the diagonal of M⁻¹
+    Multipliers l2;  // m², squared lengths
+    Scalar g;        // m/s²
 
-    explicit RodChain(const Pendulum& p)
-        : m1(p.mass[0]),
-          m2(p.mass[1]),
-          w1(Scalar(1) / m1),
-          w2(Scalar(1) / m2),
-          l1(p.length[0]),
-          l2(p.length[1]),
-          g(p.gravity) {}
-
-    static State start(const Pendulum& p) {
-        using std::cos;
-        using std::sin;
-        const SinCos<Scalar> one{Scalar(p.angle[0])}, two{Scalar(p.angle[1])};
-        const Vector q1(p.length[0] * one.sin, -p.length[0] * one.cos);
-        const Vector q2(q1.x() + p.length[1] * two.sin, q1.y() - p.length[1] * two.cos);
-        const Vector v1(p.length[0] * p.rate[0] * one.cos, p.length[0] * p.rate[0] * one.sin);
-        const Vector v2(v1.x() + p.length[1] * p.rate[1] * two.cos, v1.y() + p.length[1] * p.rate[1] * two.sin);
-        State y;
-        y << q1, q2, v1, v2;
-        return y;
+    explicit RodChain(const Pendulum<Scalar>& p)
+        : w(rows(p)), l2(rows(p)), g(p.gravity), matrix_(rows(p)), lambda_(Multipliers::Zero(rows(p))) {
+        for (Eigen::Index k = 0; k < w.size(); ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            w[k] = Scalar(1) / p.mass[i];
+            l2[k] = p.length[i] * p.length[i];
+        }
     }
 
-    /// d/dt of the state. With r1 = q1, r2 = q2 − q1 and u their rates, J has the rows (r1, 0) and (−r2, r2), so
-    ///     ⎡ r1·r1/m1    −r1·r2/m1             ⎤ ⎡λ1⎤   ⎡ −u1·u1 + g r1y ⎤
-    ///     ⎣ −r1·r2/m1    r2·r2 (1/m1 + 1/m2)  ⎦ ⎣λ2⎦ = ⎣ −u2·u2         ⎦
-    /// (both masses fall alike, so gravity drops out of the second row).
-    State rate(const State& y) const {
-        const Scalar r1x = y[0], r1y = y[1], r2x = y[2] - y[0], r2y = y[3] - y[1];
-        const Scalar v1x = y[4], v1y = y[5], u2x = y[6] - y[4], u2y = y[7] - y[5];
+    static State start(const Pendulum<Scalar>& p) { return released_as_particles<Scalar, N>(p); }
 
-        const Scalar a11 = (r1x * r1x + r1y * r1y) * w1, a12 = -(r1x * r2x + r1y * r2y) * w1;
-        const Scalar a22 = (r2x * r2x + r2y * r2y) * (w1 + w2);
-        const Scalar b1 = g * r1y - (v1x * v1x + v1y * v1y), b2 = -(u2x * u2x + u2y * u2y);
-        const Scalar inverse = Scalar(1) / (a11 * a22 - a12 * a12);
-        const Scalar lambda1 = (b1 * a22 - b2 * a12) * inverse, lambda2 = (b2 * a11 - b1 * a12) * inverse;
-
-        State rate;
-        rate << v1x, v1y, y[6], y[7],                  //
-            w1 * (lambda1 * r1x - lambda2 * r2x),      //
-            w1 * (lambda1 * r1y - lambda2 * r2y) - g,  //
-            w2 * lambda2 * r2x, w2 * lambda2 * r2y - g;
-        return rate;
+    /// dydt ← d/dt of the state. With u_k = r_k′ the system for λ has the rows
+    ///     −r_{k−1}·r_k λ_{k−1} / m_{k−1} + r_k·r_k (1/m_{k−1} + 1/m_k) λ_k − r_k·r_{k+1} λ_{k+1} / m_k
+    ///         = −u_k·u_k + [k = 1] g r_1y
+    /// (all masses fall alike, so gravity drops out of all rows but the first).
+    void rate(const State& y, State& dydt) {
+        const auto n = w.size();
+        const auto q = y.head(2 * n), v = y.tail(2 * n);
+        fill(q, q, matrix_);
+        for (Eigen::Index k = 0; k < n; ++k) lambda_[k] = -square(v, k);
+        lambda_[0] += g * q[1];
+        matrix_.factor();
+        matrix_.solve(lambda_);
+        dydt.head(2 * n) = v;
+        auto a = dydt.tail(2 * n);
+        for (Eigen::Index k = 0; k < n; ++k) {
+            a[2 * k] = Scalar(0);
+            a[2 * k + 1] = -g;
+        }
+        pull_on(q, lambda_, a);
     }
 
-    Bobs<Scalar> bobs(const State& y) const {
-        const Vector r1 = y.template segment<2>(0), r2 = y.template segment<2>(2) - r1;
-        const Vector v1 = y.template segment<2>(4), u2 = y.template segment<2>(6) - v1;
-        return {{{m1, y[0], y[1], y[4], y[5], angle(r1), turning(r1, v1)},
-                 {m2, y[2], y[3], y[6], y[7], angle(r2), turning(r2, u2)}}};
+    // What methods that keep to the constraints themselves need (physics/constrained.hpp). Positions q, velocities v.
+
+    Eigen::Index constraints() const { return w.size(); }
+
+    /// a ← M⁻¹ F, the accelerations without rods.
+    void free_acceleration(const Half&, const Half&, Half& a) const {
+        for (Eigen::Index k = 0; k < w.size(); ++k) {
+            a[2 * k] = Scalar(0);
+            a[2 * k + 1] = -g;
+        }
     }
 
-    /// The rod that is furthest from its length, m.
-    Scalar length_error(const State& y) const {
-        using std::abs;
-        const Vector r1 = y.template segment<2>(0), r2 = y.template segment<2>(2) - r1;
-        return std::max<Scalar>(abs(r1.norm() - l1), abs(r2.norm() - l2));
+    /// c ← C(q), m²
+    void violation(const Half& q, Multipliers& c) const {
+        for (Eigen::Index k = 0; k < w.size(); ++k) c[k] = (square(q, k) - l2[k]) * Scalar(0.5);
+    }
+
+    /// s ← J(q) v
+    void slip(const Half& q, const Half& v, Multipliers& s) const {
+        for (Eigen::Index k = 0; k < w.size(); ++k)
+            s[k] = along(q, k, 0) * along(v, k, 0) + along(q, k, 1) * along(v, k, 1);
+    }
+
+    /// s ← J̇ v, the part of C″ that is there without any acceleration
+    void curvature(const Half&, const Half& v, Multipliers& s) const {
+        for (Eigen::Index k = 0; k < w.size(); ++k) s[k] = square(v, k);
+    }
+
+    /// v ← v + M⁻¹ Jᵀ(q) λ
+    void pull(const Half& q, const Multipliers& lambda, Half& v) const { pull_on(q, lambda, v); }
+
+    /// x ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ x
+    void solve(const Half& q1, const Half& q0, Multipliers& x) {
+        fill(q1, q0, matrix_);
+        matrix_.factor();
+        matrix_.solve(x);
     }
 
 private:
-    /// From the downward vertical, within (−π, π].
-    static Scalar angle(const Vector& r) {
-        using std::atan2;
-        return atan2(r.x(), -r.y());
+    static Eigen::Index rows(const Pendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.links()); }
+
+    /// Component `axis` of what particle k has more than the one above it.
+    template <class Vector>
+    static Scalar along(const Vector& q, Eigen::Index k, Eigen::Index axis) {
+        return k == 0 ? Scalar(q[axis]) : Scalar(q[2 * k + axis] - q[2 * k - 2 + axis]);
     }
-    static Scalar turning(const Vector& r, const Vector& u) { return (r.x() * u.y() - r.y() * u.x()) / r.dot(r); }
+    template <class Vector>
+    static Scalar square(const Vector& q, Eigen::Index k) {
+        const Scalar x = along(q, k, 0), y = along(q, k, 1);
+        return x * x + y * y;
+    }
+
+    /// J(q1) M⁻¹ Jᵀ(q0)
+    template <class Vector>
+    void fill(const Vector& q1, const Vector& q0, Matrix& matrix) const {
+        const auto dot = [&](Eigen::Index one, Eigen::Index zero) {
+            return along(q1, one, 0) * along(q0, zero, 0) + along(q1, one, 1) * along(q0, zero, 1);
+        };
+        for (Eigen::Index k = 0; k < w.size(); ++k) {
+            matrix.diagonal[k] = dot(k, k) * (k == 0 ? w[0] : Scalar(w[k - 1] + w[k]));
+            if (k + 1 == w.size()) break;
+            matrix.upper[k] = -(dot(k, k + 1) * w[k]);
+            matrix.lower[k] = -(dot(k + 1, k) * w[k]);
+        }
+    }
+
+    template <class Positions, class Vector>
+    void pull_on(const Positions& q, const Multipliers& lambda, Vector& v) const {
+        for (Eigen::Index k = 0; k < w.size(); ++k)
+            for (Eigen::Index axis = 0; axis < 2; ++axis) {
+                Scalar force = lambda[k] * along(q, k, axis);
+                if (k + 1 < w.size()) force -= lambda[k + 1] * along(q, k + 1, axis);
+                v[2 * k + axis] += w[k] * force;
+            }
+    }
+
+    Matrix matrix_;
+    Multipliers lambda_;
 };
 
 }  // namespace doppel

@@ -1,8 +1,10 @@
 #include "physics/double_pendulum.hpp"
 
+#include "physics/angle_chain.hpp"
+#include "physics/bob.hpp"
 #include "physics/rod_chain.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,84 +14,149 @@ namespace doppel {
 namespace {
 
 /// A pendulum with everything unequal, at a state drawn from a seed.
-Pendulum random_pendulum(std::mt19937& random) {
+Pendulum<double> random_pendulum(std::mt19937& random, std::size_t links = 2) {
     std::uniform_real_distribution<double> size(0.3, 3), angle(-3, 3), rate(-5, 5);
-    Pendulum p;
-    p.mass = {size(random), size(random)};
-    p.length = {size(random), size(random)};
-    p.angle = {angle(random), angle(random)};
-    p.rate = {rate(random), rate(random)};
-    p.gravity = 9.8 * size(random);
+    Pendulum<double> p{{}, {}, {}, {}, 9.8 * size(random)};
+    for (std::size_t i = 0; i < links; ++i) {
+        p.mass.push_back(size(random));
+        p.length.push_back(size(random));
+        p.angle.push_back(angle(random));
+        p.rate.push_back(rate(random));
+    }
     return p;
 }
 
-/// θ″ from the equations of motion in matrix form, M θ″ = f, solved by Eigen: another way to the closed form.
-Eigen::Vector2d accelerations_by_mass_matrix(const Pendulum& p) {
-    const auto [m1, m2] = p.mass;
-    const auto [l1, l2] = p.length;
-    const auto [t1, t2] = p.angle;
-    const auto [w1, w2] = p.rate;
-    const double g = p.gravity, c = std::cos(t1 - t2), s = std::sin(t1 - t2);
-    Eigen::Matrix2d mass;
-    mass << (m1 + m2) * l1 * l1, m2 * l1 * l2 * c, m2 * l1 * l2 * c, m2 * l2 * l2;
-    const Eigen::Vector2d force(-m2 * l1 * l2 * s * w2 * w2 - (m1 + m2) * g * l1 * std::sin(t1),
-                                m2 * l1 * l2 * s * w1 * w1 - m2 * g * l2 * std::sin(t2));
-    return mass.inverse() * force;
+/// θ″ from Lagrange's equations in matrix form, M θ″ = f with M_ij = μ_max(i,j) l_i l_j cos(θ_i − θ_j), solved by
+/// Eigen: another way to every model's accelerations.
+Eigen::VectorXd accelerations_by_mass_matrix(const Pendulum<double>& p) {
+    const auto n = p.links();
+    Eigen::MatrixXd mass(n, n);
+    Eigen::VectorXd force(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto below = [&](std::size_t k) {
+            double sum = 0;
+            for (; k < n; ++k) sum += p.mass[k];
+            return sum;
+        };
+        const auto row = static_cast<long>(i);
+        force[row] = -below(i) * p.gravity * p.length[i] * std::sin(p.angle[i]);
+        for (std::size_t j = 0; j < n; ++j) {
+            const double m = below(std::max(i, j)) * p.length[i] * p.length[j], d = p.angle[i] - p.angle[j];
+            mass(row, static_cast<long>(j)) = m * std::cos(d);
+            force[row] -= m * std::sin(d) * p.rate[j] * p.rate[j];
+        }
+    }
+    return mass.ldlt().solve(force);
+}
+
+template <class Model>
+typename Model::State start_rate(const Pendulum<double>& p) {
+    Model model(p);
+    const auto y = Model::start(p);
+    typename Model::State dydt = y;
+    model.rate(y, dydt);
+    return dydt;
 }
 
 TEST(DoublePendulum, ClosedFormSolvesTheMassMatrix) {
     std::mt19937 random(1);
     for (int i = 0; i < 200; ++i) {
         const auto p = random_pendulum(random);
-        const auto rate = DoublePendulum<double>(p).rate(DoublePendulum<double>::start(p));
+        const auto rate = start_rate<DoublePendulum<double>>(p);
         const auto expected = accelerations_by_mass_matrix(p);
         EXPECT_NEAR(rate[2], expected[0], 1e-12 * (1 + expected.norm()));  // measured 4e-15, relative
         EXPECT_NEAR(rate[3], expected[1], 1e-12 * (1 + expected.norm()));
     }
 }
 
-TEST(DoublePendulum, HangsAndStandsStillExactly) {
-    Pendulum p;
-    EXPECT_EQ(DoublePendulum<double>(p).rate({0, 0, 0, 0}), (State<double, 4>::Zero()));
-    p.angle = {0, 0};
-    EXPECT_EQ(RodChain<double>(p).rate(RodChain<double>::start(p)), (State<double, 8>::Zero()));
+TEST(AngleChain, SolvesTheMassMatrixAtAnyLength) {
+    std::mt19937 random(6);
+    for (const std::size_t links : {1u, 2u, 3u, 4u, 7u, 32u})
+        for (int i = 0; i < 20; ++i) {
+            const auto p = random_pendulum(random, links);
+            const auto expected = accelerations_by_mass_matrix(p);
+            const Eigen::VectorXd rate = start_rate<AngleChain<double, Eigen::Dynamic>>(p);
+            const auto n = static_cast<long>(links);
+            EXPECT_LT((rate.tail(n) - expected).norm(), 1e-10 * (1 + expected.norm()))
+                << links;  // measured 2e-13, relative
+            EXPECT_EQ(rate.head(n), Eigen::Map<const Eigen::VectorXd>(p.rate.data(), n));
+        }
+}
+
+TEST(AngleChain, SolveMassIsTheInverseOfTheMassMatrix) {
+    std::mt19937 random(7);
+    for (const std::size_t links : {1u, 2u, 3u, 9u}) {
+        const auto p = random_pendulum(random, links);
+        AngleChain<double, Eigen::Dynamic> chain(p);
+        chain.look(AngleChain<double, Eigen::Dynamic>::start(p));
+        // at rest the forces are those of gravity alone, and M⁻¹ f the accelerations
+        auto resting = p;
+        resting.rate.assign(links, 0);
+        Eigen::VectorXd f(links), a(links);
+        for (std::size_t i = 0; i < links; ++i) {
+            double below = 0;
+            for (std::size_t k = i; k < links; ++k) below += p.mass[k];
+            f[static_cast<long>(i)] = -below * p.gravity * p.length[i] * std::sin(p.angle[i]);
+        }
+        chain.solve_mass(f, a);
+        const auto expected = accelerations_by_mass_matrix(resting);
+        EXPECT_LT((a - expected).norm(), 1e-11 * (1 + expected.norm())) << links;  // measured 6e-15, relative
+    }
+}
+
+TEST(Models, HangAndStandStillExactly) {
+    const Pendulum<double> p{{1, 2, 3}, {1, 2, 0.5}, {0, 0, 0}, {0, 0, 0}, 9.8},
+        two{{1, 2}, {1, 3}, {0, 0}, {0, 0}, 9.8};
+    EXPECT_EQ(start_rate<DoublePendulum<double>>(two), (State<double, 4>::Zero()));
+    EXPECT_EQ((start_rate<AngleChain<double, 3>>(p)), (State<double, 6>::Zero()));
+    EXPECT_EQ((start_rate<RodChain<double, 2>>(two)), (State<double, 8>::Zero()));
 }
 
 TEST(DoublePendulum, MirrorImageMovesAsTheMirrorImage) {
     std::mt19937 random(2);
     for (int i = 0; i < 50; ++i) {
         const auto p = random_pendulum(random);
-        const DoublePendulum<double> model(p);
-        const auto y = DoublePendulum<double>::start(p);
-        EXPECT_EQ(model.rate(-y), -model.rate(y));  // to the last bit: sine and product are odd in double, too
+        auto mirrored = p;
+        for (auto* values : {&mirrored.angle, &mirrored.rate})
+            for (auto& value : *values) value = -value;
+        EXPECT_EQ(start_rate<DoublePendulum<double>>(mirrored),
+                  -start_rate<DoublePendulum<double>>(p));  // to the last bit: sine and product are odd in double, too
+    }
+}
+
+template <int N>
+void expect_falls_as_the_angles_do(std::size_t links, unsigned seed) {
+    std::mt19937 random(seed);
+    for (int i = 0; i < 100; ++i) {
+        const auto p = random_pendulum(random, links);
+        const auto expected = accelerations_by_mass_matrix(p);
+        const Eigen::VectorXd rate = start_rate<RodChain<double, N>>(p);
+        // r″ = l (θ″ (cos, sin) + ω² (−sin, cos)), rod upon rod
+        Eigen::Vector2d acceleration = Eigen::Vector2d::Zero();
+        for (std::size_t link = 0; link < links; ++link) {
+            const double sin = std::sin(p.angle[link]), cos = std::cos(p.angle[link]), w2 = p.rate[link] * p.rate[link];
+            acceleration += p.length[link] * (expected[static_cast<long>(link)] * Eigen::Vector2d(cos, sin) +
+                                              w2 * Eigen::Vector2d(-sin, cos));
+            const Eigen::Vector2d found = rate.segment<2>(2 * static_cast<long>(links + link));
+            EXPECT_LT((found - acceleration).norm(), 1e-10 * (1 + acceleration.norm()));  // measured 3e-13, relative
+        }
     }
 }
 
 TEST(RodChain, FallsAsTheAnglesDo) {
-    std::mt19937 random(3);
-    for (int i = 0; i < 200; ++i) {
-        const auto p = random_pendulum(random);
-        const auto expected = accelerations_by_mass_matrix(p);
-        const auto rate = RodChain<double>(p).rate(RodChain<double>::start(p));
-        // r″ = l (θ″ (cos, sin) + ω² (−sin, cos)), rod upon rod
-        Eigen::Vector2d acceleration = Eigen::Vector2d::Zero();
-        for (std::size_t link = 0; link < link_count; ++link) {
-            const double sin = std::sin(p.angle[link]), cos = std::cos(p.angle[link]), w2 = p.rate[link] * p.rate[link];
-            acceleration += p.length[link] * (expected[static_cast<long>(link)] * Eigen::Vector2d(cos, sin) +
-                                              w2 * Eigen::Vector2d(-sin, cos));
-            const Eigen::Vector2d found = rate.segment<2>(4 + 2 * static_cast<long>(link));
-            EXPECT_LT((found - acceleration).norm(), 1e-11 * (1 + acceleration.norm()));  // measured 1e-14
-        }
-    }
+    expect_falls_as_the_angles_do<2>(2, 3);
+    expect_falls_as_the_angles_do<3>(3, 8);
+    expect_falls_as_the_angles_do<Eigen::Dynamic>(12, 9);
 }
 
 TEST(RodChain, BothModelsReportTheSameBobs) {
     std::mt19937 random(4);
     for (int i = 0; i < 50; ++i) {
         const auto p = random_pendulum(random);
-        const auto angles = DoublePendulum<double>(p).bobs(DoublePendulum<double>::start(p));
-        const auto rods = RodChain<double>(p).bobs(RodChain<double>::start(p));
-        for (std::size_t link = 0; link < link_count; ++link) {
+        const auto angles = bobs_of_angles(p, DoublePendulum<double>::start(p));
+        const auto rods = bobs_of_particles(p, RodChain<double, 2>::start(p));
+        EXPECT_LT(length_error(p, rods), 1e-15);
+        for (std::size_t link = 0; link < 2; ++link) {
             EXPECT_NEAR(angles[link].x, rods[link].x, 1e-14);
             EXPECT_NEAR(angles[link].y, rods[link].y, 1e-14);
             EXPECT_NEAR(angles[link].vx, rods[link].vx, 1e-13);
@@ -104,15 +171,12 @@ TEST(Pendulum, EnergyIsThatOfTheLagrangian) {
     std::mt19937 random(5);
     for (int i = 0; i < 50; ++i) {
         const auto p = random_pendulum(random);
-        const auto [m1, m2] = p.mass;
-        const auto [l1, l2] = p.length;
-        const auto [t1, t2] = p.angle;
-        const auto [w1, w2] = p.rate;
+        const double m1 = p.mass[0], m2 = p.mass[1], l1 = p.length[0], l2 = p.length[1];
+        const double t1 = p.angle[0], t2 = p.angle[1], w1 = p.rate[0], w2 = p.rate[1];
         const double kinetic = 0.5 * (m1 + m2) * l1 * l1 * w1 * w1 + 0.5 * m2 * l2 * l2 * w2 * w2 +
                                m2 * l1 * l2 * w1 * w2 * std::cos(t1 - t2);
         const double potential = -(m1 + m2) * p.gravity * l1 * std::cos(t1) - m2 * p.gravity * l2 * std::cos(t2);
-        const DoublePendulum<double> model(p);
-        EXPECT_NEAR(energy(model.bobs(DoublePendulum<double>::start(p)), p.gravity), kinetic + potential,
+        EXPECT_NEAR(energy(bobs_of_angles(p, DoublePendulum<double>::start(p)), p.gravity), kinetic + potential,
                     1e-11);  // measured 6e-14
     }
 }

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "physics/pendulum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace doppel {
+
+/// One mass as every model reports it.
+template <class Scalar>
+struct Bob {
+    Scalar mass;              // kg
+    Scalar x, y, vx, vy;      // m, m/s
+    Scalar theta{}, omega{};  // of the rod above it, in a chain: rad, rad/s
+};
+
+template <class Scalar>
+using Bobs = std::vector<Bob<Scalar>>;
+
+/// The bobs of a chain from its state in angles.
+template <class Scalar, int N>
+Bobs<Scalar> bobs_of_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
+    Bobs<Scalar> bobs;
+    Scalar x(0), y(0), vx(0), vy(0);
+    const auto n = static_cast<Eigen::Index>(p.links());
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto& l = p.length[static_cast<std::size_t>(i)];
+        const Scalar theta = state[i], omega = state[n + i];
+        const SinCos<Scalar> turn(theta);
+        x += l * turn.sin;
+        y -= l * turn.cos;
+        vx += l * omega * turn.cos;
+        vy += l * omega * turn.sin;
+        bobs.push_back({p.mass[static_cast<std::size_t>(i)], x, y, vx, vy, theta, omega});
+    }
+    return bobs;
+}
+
+/// The bobs of a chain from its state as particles; angles within (−π, π].
+template <class Scalar, int N>
+Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
+    using std::atan2;
+    Bobs<Scalar> bobs;
+    Bob<Scalar> above{};  // the pivot
+    const auto n = static_cast<Eigen::Index>(p.links());
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Index q = 2 * i, v = 2 * n + 2 * i;
+        Bob<Scalar> bob{p.mass[static_cast<std::size_t>(i)], state[q], state[q + 1], state[v], state[v + 1]};
+        const Scalar rx = bob.x - above.x, ry = bob.y - above.y;
+        bob.theta = atan2(rx, Scalar(-ry));
+        bob.omega = (rx * (bob.vy - above.vy) - ry * (bob.vx - above.vx)) / (rx * rx + ry * ry);
+        bobs.push_back(bob);
+        above = bob;
+    }
+    return bobs;
+}
+
+/// The rod that is furthest from its length, m.
+template <class Scalar>
+Scalar length_error(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {
+    using std::abs;
+    using std::sqrt;
+    Scalar worst(0), x(0), y(0);
+    for (std::size_t i = 0; i < bobs.size(); ++i) {
+        const Scalar rx = bobs[i].x - x, ry = bobs[i].y - y;
+        const Scalar error = abs(sqrt(rx * rx + ry * ry) - p.length[i]);
+        if (!(error <= worst)) worst = error;  // not a number counts as worst
+        x = bobs[i].x;
+        y = bobs[i].y;
+    }
+    return worst;
+}
+
+/// Energy, J: zero at rest with every mass level with the pivot. The true motion keeps it.
+///     E = Σ ½ m v² + m g y
+template <class Scalar>
+Scalar energy(const Bobs<Scalar>& bobs, const Scalar& gravity) {
+    Scalar total(0);
+    for (const auto& bob : bobs)
+        total += bob.mass * (Scalar(0.5) * (bob.vx * bob.vx + bob.vy * bob.vy) + gravity * bob.y);
+    return total;
+}
+
+}  // namespace doppel

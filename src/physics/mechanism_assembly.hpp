@@ -1,0 +1,102 @@
+#pragma once
+
+#include "physics/force.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace doppel {
+
+/// A point mass and how it is released.
+template <class Scalar>
+struct Particle {
+    Scalar mass;                                                   // kg, > 0
+    Place<Scalar> place;                                           // m, at t = 0
+    Place<Scalar> velocity = Place<Scalar>(Scalar(0), Scalar(0));  // m/s, at t = 0
+};
+
+/// What a mechanism is made of and how it is released. Constraints and forces name particles by their index, from 0;
+/// messages count from 1.
+template <class Scalar>
+struct Assembly {
+    std::vector<Particle<Scalar>> particles;
+    std::vector<Constraint<Scalar>> constraints;
+    std::vector<Force<Scalar>> forces;
+
+    /// The same in another scalar.
+    template <class To>
+    Assembly<To> cast() const {
+        Assembly<To> made;
+        for (const auto& p : particles)
+            made.particles.push_back(
+                {static_cast<To>(p.mass), p.place.template cast<To>(), p.velocity.template cast<To>()});
+        for (const auto& c : constraints)
+            made.constraints.push_back(
+                std::visit([](const auto& part) -> Constraint<To> { return part.template cast<To>(); }, c));
+        for (const auto& f : forces)
+            made.forces.push_back(
+                std::visit([](const auto& part) -> Force<To> { return part.template cast<To>(); }, f));
+        return made;
+    }
+
+    /// Whether the true motion keeps its energy: no spring is damped.
+    bool conserves_energy() const {
+        for (const auto& force : forces)
+            if (const auto* spring = std::get_if<Spring<Scalar>>(&force); spring && spring->damping != Scalar(0))
+                return false;
+        return true;
+    }
+};
+
+/// "rod 2–4", "rod 2–fixed", "anchor of particle 1", "gravity": a part as messages call it.
+template <class Part>
+std::string words_for(const Part& part) {
+    if constexpr (requires { part.particle; }) {
+        return fmt::format("{} of particle {}", Part::kind, part.particle + 1);
+    } else if constexpr (requires { std::get<std::size_t>(part.b); }) {
+        const auto* b = std::get_if<std::size_t>(&part.b);
+        return fmt::format("{} {}–{}", Part::kind, part.a + 1, b ? fmt::to_string(*b + 1) : "fixed");
+    } else if constexpr (requires { part.b; }) {
+        return fmt::format("{} {}–{}", Part::kind, part.a + 1, part.b + 1);
+    } else {
+        return std::string(Part::kind);
+    }
+}
+
+/// "constraint 5 (rod 2–4)"
+template <class Scalar>
+std::string name_of(std::size_t index, const Constraint<Scalar>& constraint) {
+    const auto words = std::visit([](const auto& part) { return words_for(part); }, constraint);
+    return fmt::format("constraint {} ({})", index + 1, words);
+}
+
+/// "force 2 (spring 1–fixed)"
+template <class Scalar>
+std::string name_of(std::size_t index, const Force<Scalar>& force) {
+    const auto words = std::visit([](const auto& part) { return words_for(part); }, force);
+    return fmt::format("force {} ({})", index + 1, words);
+}
+
+/// Whether an assembly can be built, and released as it says. Throws Error (exit 2) that names the part, the value and
+/// what would be right:
+/// a mass not > 0; a particle that does not exist, or is joined with itself; a rod or circle of length zero, a slot
+/// without direction; a spring not stiff; a start that violates a constraint, in place or in velocity, by more than
+/// 1e-9 of the mechanism's size or speed; a constraint that follows from those before it.
+void check(const Assembly<double>& assembly);
+
+/// One thing to draw. A rod and a spring go from end to end; an anchor is at `from`; a straight slot goes from `from`
+/// to `to`; a circular one has its centre at `from`.
+struct MechanismLine {
+    enum class Kind { rod, spring, anchor, slot_line, slot_circle };
+    Kind kind;
+    End<double> from, to;
+    double radius = 0;  // m, of a circular slot
+};
+
+/// What a picture needs besides the particles: the constraints in their order, then the springs in theirs.
+std::vector<MechanismLine> lines_of(const Assembly<double>& assembly);
+
+}  // namespace doppel

@@ -1,0 +1,267 @@
+#include "physics/mechanism.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+using Particles = std::vector<Particle<double>>;
+
+constexpr double tolerance = 1e-9;  // of the size, or of the greatest speed
+
+std::string text(const Place<double>& place) {
+    return fmt::format("({}, {})", place[0], place[1]);
+}
+
+/// "1, 2 and 4", counted from 1.
+std::string listed(const std::vector<std::size_t>& indices) {
+    std::string all;
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        if (i > 0) all += i + 1 == indices.size() ? " and " : ", ";
+        all += fmt::to_string(indices[i] + 1);
+    }
+    return (indices.size() == 1 ? "constraint " : "constraints ") + all;
+}
+
+bool is_finite(const Place<double>& place) {
+    return std::isfinite(place[0]) && std::isfinite(place[1]);
+}
+
+void check_particles(const Particles& particles) {
+    if (particles.empty()) throw bad_input("the mechanism has no particles; it needs at least one");
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const auto& [mass, place, velocity] = particles[i];
+        if (!(mass > 0) || !std::isfinite(mass))
+            throw bad_input("particle {}: its mass is {} kg; it must be greater than 0", i + 1, mass);
+        if (!is_finite(place))
+            throw bad_input("particle {}: its place is {} m; both must be finite numbers", i + 1, text(place));
+        if (!is_finite(velocity))
+            throw bad_input("particle {}: its velocity is {} m/s; both must be finite numbers", i + 1, text(velocity));
+    }
+}
+
+/// Throws unless every particle that the part names is there.
+class PartCheck {
+public:
+    PartCheck(std::string name, const Particles& particles) : name_(std::move(name)), particles_(particles) {}
+
+    void operator()(const Anchor<double>& anchor) const {
+        exists(anchor.particle);
+        finite("place", anchor.place);
+    }
+    void operator()(const Rod<double>& rod) const {
+        joins(rod.a, rod.b);
+        positive("length", rod.length, "m");
+    }
+    void operator()(const SlotLine<double>& slot) const {
+        exists(slot.particle);
+        finite("point", slot.point);
+        finite("direction", slot.direction);
+        if (slot.direction.isZero(0)) throw bad_input("{}: its direction is (0, 0); it must point somewhere", name_);
+    }
+    void operator()(const SlotCircle<double>& slot) const {
+        exists(slot.particle);
+        finite("centre", slot.centre);
+        positive("radius", slot.radius, "m");
+    }
+    void operator()(const Gravity<double>& gravity) const { finite("g", gravity.g, "m/s²"); }
+    void operator()(const Spring<double>& spring) const {
+        joins(spring.a, spring.b);
+        positive("stiffness", spring.stiffness, "N/m");
+        not_negative("rest length", spring.length, "m");
+        not_negative("damping", spring.damping, "N s/m");
+    }
+    void operator()(const Attraction<double>& attraction) const {
+        joins(attraction.a, attraction.b);
+        finite("G", attraction.constant, "m³/(kg s²)");
+        apart(attraction.a, particles_[attraction.b].place);
+    }
+    void operator()(const Droplet<double>& droplet) const {
+        finite("place", droplet.place);
+        positive("mass", droplet.mass, "kg");
+        finite("G", droplet.constant, "m³/(kg s²)");
+        for (std::size_t i = 0; i < particles_.size(); ++i) apart(i, droplet.place);
+    }
+
+private:
+    void exists(std::size_t particle) const {
+        if (particle >= particles_.size())
+            throw bad_input("{}: there is no particle {}; the mechanism has 1 to {}", name_, particle + 1,
+                            particles_.size());
+    }
+    void joins(std::size_t a, const End<double>& b) const {
+        exists(a);
+        const auto* particle = std::get_if<std::size_t>(&b);
+        if (!particle) return finite("fixed end", std::get<Place<double>>(b));
+        exists(*particle);
+        if (*particle == a)
+            throw bad_input("{}: it joins particle {} with itself; it needs two different ones", name_, a + 1);
+    }
+    void apart(std::size_t particle, const Place<double>& place) const {
+        if (particles_[particle].place == place)
+            throw bad_input("{}: particle {} starts at {} m, where what attracts it is; they must start apart", name_,
+                            particle + 1, text(place));
+    }
+    void finite(std::string_view what, const Place<double>& value) const {
+        if (!is_finite(value))
+            throw bad_input("{}: its {} is {}; both must be finite numbers", name_, what, text(value));
+    }
+    void finite(std::string_view what, double value, std::string_view unit) const {
+        if (!std::isfinite(value))
+            throw bad_input("{}: its {} is {} {}; it must be a finite number", name_, what, value, unit);
+    }
+    void positive(std::string_view what, double value, std::string_view unit) const {
+        if (!(value > 0) || !std::isfinite(value))
+            throw bad_input("{}: its {} is {} {}; it must be greater than 0", name_, what, value, unit);
+    }
+    void not_negative(std::string_view what, double value, std::string_view unit) const {
+        if (!(value >= 0) || !std::isfinite(value))
+            throw bad_input("{}: its {} is {} {}; it must not be negative", name_, what, value, unit);
+    }
+
+    std::string name_;
+    const Particles& particles_;
+};
+
+/// What is wrong with where a constraint's particles start, and what would satisfy it.
+class Remedy {
+public:
+    Remedy(const State<double, Eigen::Dynamic>& q, double error) : q_(q), error_(error) {}
+
+    std::string operator()(const Anchor<double>& anchor) const {
+        const auto place = text(part_of(q_, anchor.particle));
+        return fmt::format("the particle starts at {} m, {:.3g} m from its anchor {} m; anchor it at {}", place, error_,
+                           text(anchor.place), place);
+    }
+    std::string operator()(const Rod<double>& rod) const {
+        const double length = (part_of(q_, rod.a) - place_of(rod.b, q_)).norm();
+        return fmt::format("its ends start {} m apart, {:.3g} m from its length {} m; make the length {}", length,
+                           error_, rod.length, length);
+    }
+    std::string operator()(const SlotLine<double>& slot) const {
+        const auto place = part_of(q_, slot.particle);
+        const Place<double> foot =
+            slot.point + slot.direction * (slot.direction.dot(place - slot.point) / slot.direction.squaredNorm());
+        return fmt::format("the particle starts at {} m, {:.3g} m off the line; start it at {}", text(place), error_,
+                           text(foot));
+    }
+    std::string operator()(const SlotCircle<double>& slot) const {
+        const double radius = (part_of(q_, slot.particle) - slot.centre).norm();
+        return fmt::format(
+            "the particle starts {} m from the centre, {:.3g} m from the radius {} m; make the radius {}", radius,
+            error_, slot.radius, radius);
+    }
+
+private:
+    const State<double, Eigen::Dynamic>& q_;  // m
+    double error_;                            // m
+};
+
+void check_places(const Assembly<double>& assembly, const State<double, Eigen::Dynamic>& q) {
+    double size = q.lpNorm<Eigen::Infinity>();
+    for (const auto& constraint : assembly.constraints) {
+        if (const auto* rod = std::get_if<Rod<double>>(&constraint)) size = std::max(size, rod->length);
+        if (const auto* slot = std::get_if<SlotCircle<double>>(&constraint)) size = std::max(size, slot->radius);
+    }
+    for (std::size_t i = 0; i < assembly.constraints.size(); ++i) {
+        const auto& constraint = assembly.constraints[i];
+        const double error = std::visit([&](const auto& part) { return part.error(q); }, constraint);
+        if (error > tolerance * size)
+            throw bad_input("{}: {}", name_of(i, constraint), std::visit(Remedy(q, error), constraint));
+    }
+}
+
+/// The velocity of the last particle that row `nth` ties, without the part of it that the row forbids: with it and the
+/// others as they are, the row holds.
+std::string velocity_remedy(const Constraint<double>& constraint, const Assembly<double>& assembly,
+                            const State<double, Eigen::Dynamic>& q, Eigen::Index nth, double slip) {
+    std::size_t last = 0;
+    Place<double> gradient = Place<double>::Zero();
+    std::visit(
+        [&](const auto& part) {
+            part.gradient(q, [&](Eigen::Index row, std::size_t particle, const Place<double>& g) {
+                if (row != nth) return;
+                last = particle;
+                gradient = g;
+            });
+        },
+        constraint);
+    const Place<double> velocity = assembly.particles[last].velocity - gradient * (slip / gradient.squaredNorm());
+    return fmt::format("particle {} at {} m/s", last + 1, text(velocity));
+}
+
+void check_velocities(const Assembly<double>& assembly, const State<double, Eigen::Dynamic>& q) {
+    double speed = 0;
+    for (const auto& particle : assembly.particles) speed = std::max(speed, particle.velocity.norm());
+    for (std::size_t i = 0; i < assembly.constraints.size(); ++i) {
+        const auto& constraint = assembly.constraints[i];
+        std::array<double, 2> slips{}, squares{};
+        std::visit(
+            [&](const auto& part) {
+                part.gradient(q, [&](Eigen::Index row, std::size_t particle, const Place<double>& g) {
+                    slips[static_cast<std::size_t>(row)] += g.dot(assembly.particles[particle].velocity);
+                    squares[static_cast<std::size_t>(row)] = g.squaredNorm();
+                });
+            },
+            constraint);
+        for (std::size_t row = 0; row < 2; ++row)
+            if (const double leaving = std::abs(slips[row]); leaving > tolerance * speed * std::sqrt(squares[row]))
+                throw bad_input("{}: the start violates it at {:.3g} m/s; start {}", name_of(i, constraint),
+                                leaving / std::sqrt(squares[row]),
+                                velocity_remedy(constraint, assembly, q, static_cast<Eigen::Index>(row), slips[row]));
+    }
+}
+
+}  // namespace
+
+void check(const Assembly<double>& assembly) {
+    check_particles(assembly.particles);
+    const auto check_part = [&](std::size_t i, const auto& part) {
+        std::visit(PartCheck(name_of(i, part), assembly.particles), part);
+    };
+    for (std::size_t i = 0; i < assembly.constraints.size(); ++i) check_part(i, assembly.constraints[i]);
+    for (std::size_t i = 0; i < assembly.forces.size(); ++i) check_part(i, assembly.forces[i]);
+
+    const auto start = Mechanism<double>::start(assembly);
+    const State<double, Eigen::Dynamic> q = start.head(start.size() / 2);
+    check_places(assembly, q);
+    check_velocities(assembly, q);
+    if (const auto found = Mechanism<double>(assembly).dependence(q))
+        throw bad_input("{} is redundant: it follows from {}; leave it out, or start elsewhere",
+                        name_of(found->constraint, assembly.constraints[found->constraint]), listed(found->others));
+}
+
+Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places) {
+    std::string where;
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2)
+        where += fmt::format("{}({:.6g}, {:.6g})", i == 0 ? "" : ", ", places[i], places[i + 1]);
+    constexpr double farthest = 1e100;  // m; the squares of more soon leave the range of a double
+    if (!std::all_of(places.begin(), places.end(), [](double x) { return std::abs(x) < farthest; }))
+        return method_failed("the particles have come to {} m: the motion blew up; take shorter steps", where);
+    return method_failed(
+        "singular configuration: {} has come to follow from {}, and the forces are not determined; the particles are "
+        "at "
+        "{} m; start so that they do not come there, or leave the constraint out",
+        name, listed(dependence.others), where);
+}
+
+std::vector<MechanismLine> lines_of(const Assembly<double>& assembly) {
+    using Kind = MechanismLine::Kind;
+    std::vector<MechanismLine> lines;
+    for (const auto& constraint : assembly.constraints) {
+        if (const auto* anchor = std::get_if<Anchor<double>>(&constraint))
+            lines.push_back({Kind::anchor, anchor->place, anchor->place});
+        if (const auto* rod = std::get_if<Rod<double>>(&constraint)) lines.push_back({Kind::rod, rod->a, rod->b});
+        if (const auto* slot = std::get_if<SlotLine<double>>(&constraint))
+            lines.push_back({Kind::slot_line, slot->point, Place<double>(slot->point + slot->direction)});
+        if (const auto* slot = std::get_if<SlotCircle<double>>(&constraint))
+            lines.push_back({Kind::slot_circle, slot->centre, slot->centre, slot->radius});
+    }
+    for (const auto& force : assembly.forces)
+        if (const auto* spring = std::get_if<Spring<double>>(&force))
+            lines.push_back({Kind::spring, spring->a, spring->b});
+    return lines;
+}
+
+}  // namespace doppel

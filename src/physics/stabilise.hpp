@@ -1,0 +1,176 @@
+#pragma once
+
+#include "numeric/error.hpp"
+#include "physics/constrained.hpp"
+
+#include <limits>
+
+namespace doppel {
+
+/// to ← to + factor · what, number by number, as the models write: a wider load would wait for their stores.
+template <class Half>
+void add(Half& to, const typename Half::Scalar& factor, const Half& what) {
+    for (Eigen::Index i = 0; i < to.size(); ++i) to[i] += factor * what[i];
+}
+
+/// Brings positions onto their constraints along M⁻¹Jᵀ by Newton's method on the multipliers:
+///     C(q + M⁻¹Jᵀ(q0) λ) = 0 ,     λ ← λ − (J(q) M⁻¹ Jᵀ(q0))⁻¹ C(q) .
+/// It ends where rounding does: when every constraint is met as well as rounded positions can meet it, or when a
+/// correction no longer moves any of them. At least one correction is made, so that no error waits below a tolerance.
+/// For scalars that can be compared, as the errors of its callers are.
+template <Constrained Model>
+class Newton {
+public:
+    using Scalar = typename Model::Scalar;
+    using Half = typename Model::Half;
+    using Multipliers = typename Model::Multipliers;
+
+    static constexpr int limit = 50;  // corrections; four are many
+
+    Multipliers lambda;  // of the last call
+    long solves = 0;     // linear systems so far
+
+    Newton(Model& model, const Half& q)
+        : lambda(Multipliers::Zero(model.constraints())), c_(lambda), floor_(lambda), move_(q) {
+        // rounding q changes C_i by up to ½ ε |q| Σ_j |J_ij|
+        for (Eigen::Index j = 0; j < q.size(); ++j) {
+            move_.setZero();
+            move_[j] = Scalar(1);
+            model.slip(q, move_, c_);
+            floor_ += c_.cwiseAbs();
+        }
+        floor_ *= Scalar(0.5) * epsilon * q.cwiseAbs().maxCoeff();
+    }
+
+    /// q ← the point on the constraints; true if one is found. q0 may be q itself: then the directions follow it.
+    bool onto_constraints(Model& model, const Half& q0, Half& q) {
+        lambda.setZero();
+        for (int i = 0; i < limit; ++i) {
+            model.violation(q, c_);
+            if (i > 0 && met()) return true;
+            correct(model, q0, q);
+            if (i > 0 && move_.cwiseAbs().maxCoeff() <= Scalar(2) * epsilon * q.cwiseAbs().maxCoeff()) return true;
+        }
+        model.violation(q, c_);
+        return false;
+    }
+
+    /// v ← v + M⁻¹Jᵀ(q) λ with J v = 0.
+    void along_constraints(Model& model, const Half& q, Half& v) {
+        model.slip(q, v, c_);
+        model.solve(q, q, c_);
+        lambda = -c_;
+        model.pull(q, lambda, v);
+        ++solves;
+    }
+
+    /// The worst of C where no point was found.
+    double remained() const { return static_cast<double>(Scalar(c_.cwiseAbs().maxCoeff())); }
+
+private:
+    inline static const Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
+
+    bool met() const {
+        for (Eigen::Index i = 0; i < c_.size(); ++i)
+            if (!(c_[i] <= floor_[i] && -c_[i] <= floor_[i])) return false;
+        return true;
+    }
+
+    void correct(Model& model, const Half& q0, Half& q) {
+        model.solve(q, q0, c_);
+        c_ = -c_;
+        move_.setZero();
+        model.pull(q0, c_, move_);
+        lambda += c_;
+        add(q, Scalar(1), move_);
+        ++solves;
+    }
+
+    Multipliers c_;      // C, then what it takes of λ
+    Multipliers floor_;  // of C, in rounding
+    Half move_;
+};
+
+/// A model whose positions go back onto the constraints after every step of any method, then its velocities along them,
+/// both to rounding and along M⁻¹Jᵀ, the shortest way where masses weigh the distance.
+/// Errors  exit 3 where no point on the constraints is found.
+/// Source  Hairer & Wanner, Solving Ordinary Differential Equations II, §VII.2.
+template <Constrained Model>
+class Projected : public Model {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+    using Half = typename Model::Half;
+
+    /// Of what the model itself is made of.
+    template <class Description>
+    explicit Projected(const Description& description)
+        : Model(description), q_(half_of(Model::start(description))), v_(q_), newton_(*this, q_) {}
+
+    void settle(State& y) {
+        const auto n = q_.size();
+        q_ = y.head(n);
+        v_ = y.tail(n);
+        if (!newton_.onto_constraints(*this, q_, q_))
+            throw method_failed(
+                "projection: the constraints are still off by {:.2g} after {} corrections; choose a smaller step_s",
+                newton_.remained(), newton_.limit);
+        newton_.along_constraints(*this, q_, v_);
+        y.head(n) = q_;
+        y.tail(n) = v_;
+    }
+
+private:
+    static Half half_of(const State& start) { return start.head(start.size() / 2); }
+
+    Half q_, v_;
+    Newton<Model> newton_;
+};
+
+/// A model whose constraints pull back like damped springs (critically, at one rate α in 1/s):
+///     C″ = −2α C′ − α² C ,     (J M⁻¹ Jᵀ) λ = −J̇ v − J M⁻¹ F − 2α J v − α² C .
+/// What explicit methods do to a violation bounds the step: α dt < 2 (Euler), < 2.785 (Runge–Kutta 4).
+/// Source  Baumgarte 1972, Stabilization of constraints and integrals of motion in dynamical systems.
+template <Constrained Model>
+class Baumgarte : public Model {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+    using Half = typename Model::Half;
+
+    /// Of what the model itself is made of, and α in 1/s, ≥ 0.
+    template <class Description>
+    Baumgarte(const Description& description, const Scalar& alpha)
+        : Model(description),
+          alpha_(alpha),
+          q_(Half::Zero(Model::start(description).size() / 2)),
+          v_(q_),
+          a_(q_),
+          lambda_(Model::Multipliers::Zero(Model::constraints())),
+          c_(lambda_) {}
+
+    void rate(const State& y, State& dydt) {
+        const auto n = q_.size();
+        q_ = y.head(n);
+        v_ = y.tail(n);
+        this->free_acceleration(q_, v_, a_);
+        this->curvature(q_, v_, lambda_);
+        this->slip(q_, a_, c_);
+        lambda_ += c_;
+        this->slip(q_, v_, c_);
+        lambda_ += (Scalar(2) * alpha_) * c_;
+        this->violation(q_, c_);
+        lambda_ = -(lambda_ + (alpha_ * alpha_) * c_);
+        this->solve(q_, q_, lambda_);
+        this->pull(q_, lambda_, a_);
+        dydt.head(n) = v_;
+        dydt.tail(n) = a_;
+    }
+
+private:
+    Scalar alpha_;
+    Half q_, v_, a_;
+    typename Model::Multipliers lambda_, c_;
+};
+
+}  // namespace doppel

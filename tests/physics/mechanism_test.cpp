@@ -1,0 +1,489 @@
+#include "physics/mechanism.hpp"
+
+#include "allocations.hpp"
+#include "integrate/rk4.hpp"
+#include "numeric/dual.hpp"
+#include "numeric/quad.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace doppel {
+namespace {
+
+static_assert(Constrained<Mechanism<double>> && Constrained<Mechanism<Quad>>);
+
+template <class S>
+using At = Place<S>;
+using P = Place<double>;
+constexpr std::size_t one = 0, two = 1, three = 2, four = 3;  // particles as messages count them
+
+template <class S>
+State<S, Eigen::Dynamic> rate_at_start(const Assembly<S>& assembly) {
+    Mechanism<S> model(assembly);
+    const auto y = model.start(assembly);
+    auto dydt = y;
+    model.rate(y, dydt);
+    return dydt;
+}
+
+/// The state after so many steps of rk4.
+template <class S>
+State<S, Eigen::Dynamic> after(Mechanism<S>& model, const Assembly<S>& assembly, long steps, const S& step) {
+    Rk4::Stepper<Mechanism<S>> stepper(model, model.start(assembly), step);
+    stepper.advance(steps);
+    return stepper.state();
+}
+
+Pendulum<double> random_pendulum(std::mt19937& random) {
+    std::uniform_real_distribution<double> size(0.3, 3), angle(-3, 3), rate(-5, 5);
+    Pendulum<double> p;
+    p.mass = {size(random), size(random)};
+    p.length = {size(random), size(random)};
+    p.angle = {angle(random), angle(random)};
+    p.rate = {rate(random), rate(random)};
+    p.gravity = 9.8 * size(random);
+    return p;
+}
+
+/// The same chain out of parts.
+Assembly<double> parts_of(const Pendulum<double>& p) {
+    const auto y = released_as_particles<double, 2>(p);
+    return {.particles = {{p.mass[0], y.segment<2>(0), y.segment<2>(4)}, {p.mass[1], y.segment<2>(2), y.segment<2>(6)}},
+            .constraints = {Rod<double>{one, P(0, 0), p.length[0]}, Rod<double>{two, one, p.length[1]}},
+            .forces = {Gravity<double>{p.gravity}}};
+}
+
+/// A loop of four bars: two cranks of 1 and 1.5 m on anchored particles 2 m apart, and a coupler.
+Assembly<double> four_bars() {
+    const P left(0.6, 0.8), right(2 + 0.9, 1.2);
+    return {.particles = {{1, P(0, 0)}, {1, left}, {2, right}, {1, P(2, 0)}},
+            .constraints = {Anchor<double>{one, P(0, 0)}, Rod<double>{two, one, 1}, Anchor<double>{four, P(2, 0)},
+                            Rod<double>{three, four, 1.5}, Rod<double>{two, three, (right - left).norm()}},
+            .forces = {Gravity<double>{}}};
+}
+
+TEST(Mechanism, RodsInAChainMoveAsTheChainDoes) {
+    std::mt19937 random(1);
+    for (int i = 0; i < 200; ++i) {
+        const auto p = random_pendulum(random);
+        const auto parts = parts_of(p);
+        check(parts);
+        RodChain<double, 2> chain(p);
+        State<double, 8> expected;
+        chain.rate(chain.start(p), expected);
+        EXPECT_LT((rate_at_start(parts) - expected).norm(), 1e-13 * expected.norm());  // measured 4e-14, absolute
+    }
+}
+
+TEST(Mechanism, RodAndAnchorMakeTheSimplePendulum) {
+    // θ″ = −(g/l) sinθ: at rest, a = l θ″ (cosθ, sinθ); the anchored particle stays
+    Assembly<double> parts{.particles = {{3, P(1, 2)}, {2, P(1 + 1.2, 2 - 1.6)}},
+                           .constraints = {Anchor<double>{one, P(1, 2)}, Rod<double>{two, one, 2}},
+                           .forces = {Gravity<double>{}}};
+    check(parts);
+    const auto dydt = rate_at_start(parts);
+    EXPECT_NEAR(dydt[4], 0, 1e-15);
+    EXPECT_NEAR(dydt[5], 0, 1e-15);
+    EXPECT_NEAR(dydt[6], -9.8 * 0.6 * 0.8, 1e-14);
+    EXPECT_NEAR(dydt[7], -9.8 * 0.6 * 0.6, 1e-14);
+    EXPECT_EQ(Mechanism<double>(parts).length_error(Mechanism<double>::start(parts)), 0);
+}
+
+TEST(Mechanism, BeadOnACircularSlotIsAPendulum) {
+    Assembly<double> rod{.particles = {{2, P(0.6, -0.8), P(1.6, 1.2)}},
+                         .constraints = {Rod<double>{one, P(0, 0), 1}},
+                         .forces = {Gravity<double>{}}};
+    auto slot = rod;
+    slot.constraints = {SlotCircle<double>{one, P(0, 0), 1}};
+    check(slot);
+    EXPECT_EQ(rate_at_start(slot), rate_at_start(rod));
+}
+
+TEST(Mechanism, BeadOnAnInclinedSlotFallsWithGSinAlpha) {
+    // down a slope of 3 : 4, sin α = 3/5
+    Assembly<double> parts{.particles = {{2, P(1, 1)}},
+                           .constraints = {SlotLine<double>{one, P(1, 1), P(4, -3)}},
+                           .forces = {Gravity<double>{10}}};
+    check(parts);
+    const auto dydt = rate_at_start(parts);
+    EXPECT_NEAR(dydt[2], 6 * 0.8, 2e-15);  // measured 0
+    EXPECT_NEAR(dydt[3], -6 * 0.6, 2e-15);
+}
+
+TEST(Mechanism, SpringSwingsAsTheCosine) {
+    // on a slot along x, x″ = −(k/m) (x − l): x = l + A cos(√(k/m) t)
+    Assembly<double> parts{.particles = {{2, P(1.25, 0)}},
+                           .constraints = {SlotLine<double>{one, P(0, 0), P(1, 0)}},
+                           .forces = {Spring<double>{one, P(0, 0), 8, 1}, Gravity<double>{}}};
+    check(parts);
+    Mechanism<double> model(parts);
+    const auto y = after(model, parts, 3000, 1e-3);
+    EXPECT_NEAR(y[0], 1 + 0.25 * std::cos(2 * 3.0), 1e-11);  // measured 4e-13
+    EXPECT_NEAR(y[2], -0.5 * std::sin(2 * 3.0), 1e-11);
+    EXPECT_NEAR(model.energy(y), 0.5 * 8 * 0.25 * 0.25, 1e-12);
+    EXPECT_TRUE(parts.conserves_energy());
+    EXPECT_FALSE(model.feels_velocity());
+}
+
+TEST(Mechanism, DampedSpringDecaysAsItShould) {
+    // r″ = −(k/μ) (r − l) − (c/μ) r′ between two masses, μ = m1 m2 / (m1 + m2):
+    // r = l + A e^(−βt) (cos νt + (β/ν) sin νt) ,  β = c/2μ ,  ν² = k/μ − β²
+    Assembly<double> parts{.particles = {{1, P(0, 0)}, {3, P(0.9, 1.2)}},
+                           .constraints = {},
+                           .forces = {Spring<double>{one, two, 8, 1.25, 0.6}}};
+    check(parts);
+    Mechanism<double> model(parts);
+    const auto y = after(model, parts, 2000, 1e-3);
+    const double mu = 0.75, beta = 0.6 / (2 * mu), nu = std::sqrt(8 / mu - beta * beta), t = 2;
+    const double expected = 1.25 + 0.25 * std::exp(-beta * t) * (std::cos(nu * t) + beta / nu * std::sin(nu * t));
+    EXPECT_NEAR((y.segment<2>(2) - y.segment<2>(0)).norm(), expected, 1e-11);  // measured 5e-13
+    EXPECT_NEAR((y.segment<2>(4) + 3 * y.segment<2>(6)).norm(), 0, 1e-13);     // momentum
+    EXPECT_FALSE(parts.conserves_energy());
+    EXPECT_TRUE(model.feels_velocity());
+}
+
+TEST(Mechanism, AttractionKeepsACircularOrbit) {
+    // two bodies, distance d: ω² = G (m1 + m2) / d³
+    const double G = 2, m1 = 3, m2 = 1, d = 2, omega = std::sqrt(G * (m1 + m2) / (d * d * d));
+    Assembly<double> parts{.particles = {{m1, P(-0.5, 0), P(0, -0.5 * omega)}, {m2, P(1.5, 0), P(0, 1.5 * omega)}},
+                           .constraints = {},
+                           .forces = {Attraction<double>{one, two, G}}};
+    check(parts);
+    Mechanism<double> model(parts);
+    const auto start = model.start(parts);
+    const long steps = 10000;
+    const auto y = after(model, parts, steps, 2 * pi / omega / static_cast<double>(steps));
+    EXPECT_LT((y - start).norm(), 1e-11);  // measured 6e-14
+    EXPECT_NEAR(model.energy(y), -0.5 * G * m1 * m2 / d, 1e-12);
+    const auto momentum = [&](const auto& s) {
+        return m1 * (s[0] * s[5] - s[1] * s[4]) + m2 * (s[2] * s[7] - s[3] * s[6]);
+    };
+    EXPECT_NEAR(momentum(y), momentum(start), 1e-12);
+}
+
+/// A mass that falls, and 0.034 g a mile to its right, as in the study.
+template <class S>
+Assembly<S> beside_a_droplet() {
+    return {.particles = {{S(1), At<S>(S(0), S(0))}},
+            .constraints = {},
+            .forces = {Gravity<S>{}, Droplet<S>{At<S>(S(1609), S(0)), S(34) / S(1000000)}}};
+}
+
+TEST(Mechanism, DropletIsFeltInQuadAndOnlyThere) {
+    // G M / r² = 6.674e-11 · 3.4e-5 / 1609²
+    const auto dydt = rate_at_start(beside_a_droplet<Quad>());
+    const Quad expected = parse_quad("6.674e-11") * parse_quad("3.4e-5") / (Quad(1609) * Quad(1609));
+    EXPECT_NEAR(static_cast<double>(expected), 8.8e-22, 0.05e-22);
+    EXPECT_LT(static_cast<double>(abs(Quad(dydt[2] / expected - 1))), 1e-32);  // measured 0
+
+    // straight above it lightens the mass, but not in double
+    auto above = beside_a_droplet<Quad>();
+    std::get<Droplet<Quad>>(above.forces[1]).place = At<Quad>(Quad(0), Quad(1609));
+    EXPECT_NE(rate_at_start(above)[3], Quad(-98) / Quad(10));
+    EXPECT_EQ(rate_at_start(above.cast<double>())[3], -9.8);
+    EXPECT_EQ(newton_constant<double>(), 6.674e-11);
+    EXPECT_EQ(newton_constant<Quad>(), parse_quad("6.674e-11"));
+}
+
+TEST(Mechanism, ForceIsTheSlopeOfTheEnergy) {
+    using S = Quad;
+    Assembly<S> parts{
+        .particles = {{S(2), At<S>(S(0.3), S(0.1))}, {S(3), At<S>(S(1.5), S(-0.7))}},
+        .constraints = {},
+        .forces = {Gravity<S>{}, Spring<S>{two, one, S(5), S(1)}, Spring<S>{one, At<S>(S(2), S(2)), S(3), S(4)},
+                   Attraction<S>{one, two, S(2)}, Droplet<S>{At<S>(S(-1), S(1)), S(4), S(1)}}};
+    Mechanism<S> model(parts);
+    const auto y = model.start(parts), dydt = rate_at_start(parts);
+    const S h(1e-10);
+    for (Eigen::Index i = 0; i < 4; ++i) {
+        auto up = y, down = y;
+        up[i] += h;
+        down[i] -= h;
+        const S slope = (model.energy(up) - model.energy(down)) / (S(2) * h);
+        const S mass = parts.particles[static_cast<std::size_t>(i / 2)].mass;
+        EXPECT_LT(static_cast<double>(abs(S(mass * dydt[4 + i] + slope))), 1e-17);  // measured 1e-20
+    }
+}
+
+TEST(Mechanism, GradientsAreThoseOfTheValues) {
+    using S = Quad;
+    const std::vector<Constraint<S>> all{
+        Anchor<S>{two, At<S>(S(3), S(4))}, Rod<S>{one, two, S(2)}, Rod<S>{two, At<S>(S(-1), S(5)), S(3)},
+        SlotLine<S>{one, At<S>(S(1), S(1)), At<S>(S(2), S(-3))}, SlotCircle<S>{two, At<S>(S(0), S(1)), S(1)}};
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> number(-2, 2);
+    Assembly<S> parts{
+        .particles = {{S(1), At<S>(S(0), S(0))}, {S(1), At<S>(S(0), S(0))}}, .constraints = {}, .forces = {}};
+    for (const auto& constraint : all) {
+        parts.constraints = {constraint};
+        Mechanism<S> model(parts);
+        State<S, Eigen::Dynamic> q(4), v(4), up(model.constraints()), here(up), down(up), slip(up), bend(up);
+        for (auto* vector : {&q, &v})
+            for (auto& x : *vector) x = S(number(random));
+        const S h(1e-8);
+        model.violation(q + h * v, up);
+        model.violation(q, here);
+        model.violation(q - h * v, down);
+        model.slip(q, v, slip);
+        model.curvature(q, v, bend);
+        for (Eigen::Index row = 0; row < model.constraints(); ++row) {
+            const S first = (up[row] - down[row]) / (S(2) * h);
+            const S second = (up[row] - S(2) * here[row] + down[row]) / (h * h);
+            EXPECT_LT(static_cast<double>(abs(S(slip[row] - first))), 1e-24);   // measured 5e-26
+            EXPECT_LT(static_cast<double>(abs(S(bend[row] - second))), 1e-15);  // measured 4e-18
+        }
+    }
+}
+
+TEST(Mechanism, SolvesForPullsAcrossTwoPlaces) {
+    // J(q1) M⁻¹ Jᵀ(q0) x, put together by pull() and slip(), must come back as x
+    auto parts = four_bars();
+    parts.particles.push_back({1, P(1.5, 2)});  // braced: the matrix fills up as it is factored
+    for (const std::size_t corner : {two, three}) parts.constraints.push_back(Rod<double>{5 - 1, corner, 1});
+    Mechanism<double> model(parts);
+    const State<double, Eigen::Dynamic> q0 = model.start(parts).head(10);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> number(-0.1, 0.1);
+    for (int i = 0; i < 50; ++i) {
+        auto q1 = q0, v = q0;
+        State<double, Eigen::Dynamic> x(model.constraints()), image(model.constraints());
+        for (auto& c : q1) c += number(random);
+        for (auto& c : x) c = number(random);
+        v.setZero();
+        model.pull(q0, x, v);
+        model.slip(q1, v, image);
+        model.solve(q1, q0, image);
+        EXPECT_LT((image - x).norm(), 1e-13);  // measured 4e-16
+    }
+}
+
+TEST(Mechanism, LoopKeepsClosedAndKeepsItsEnergy) {
+    const auto parts = four_bars();
+    check(parts);
+    Mechanism<double> model(parts);
+    const double start = model.energy(model.start(parts));
+    const auto y = after(model, parts, 100000, 1e-4);
+    EXPECT_GT((y - model.start(parts)).norm(), 0.1);  // it has moved
+    EXPECT_NEAR(model.energy(y), start, 1e-8);        // measured 8e-10
+    EXPECT_LT(model.length_error(y), 1e-9);           // measured 2e-11
+}
+
+TEST(Mechanism, CarriesDualNumbers) {
+    // ∂y(T)/∂x of a bead on a spring through rk4, against finite differences
+    using D = Dual<double, 1>;
+    auto parts = four_bars();
+    parts.forces.push_back(Spring<double>{two, P(0, 2), 5, 0.5});
+    const auto end_of = [&](auto stiffness) {
+        using S = decltype(stiffness);
+        auto changed = parts.cast<S>();
+        std::get<Spring<S>>(changed.forces[1]).stiffness = stiffness;
+        Mechanism<S> model(changed);
+        return S(after(model, changed, 100, S(1e-3))[2]);
+    };
+    const double h = 1e-4, slope = (end_of(5 + h) - end_of(5 - h)) / (2 * h);
+    EXPECT_NEAR(end_of(D::variable(5, 0)).tangent[0], slope, 1e-10);  // measured 5e-12
+}
+
+TEST(Mechanism, StepsWithoutAllocating) {
+    auto parts = four_bars();
+    parts.forces.push_back(Spring<double>{two, P(0, 2), 5, 0.5, 0.1});
+    parts.forces.push_back(Attraction<double>{two, three, 1});
+    parts.forces.push_back(Droplet<double>{P(5, 5), 1});
+    parts.constraints.push_back(SlotLine<double>{two, P(0.6, 0.8), P(1, 0)});
+    Mechanism<double> model(parts);
+    const auto y = model.start(parts);
+    auto dydt = y;
+    const State<double, Eigen::Dynamic> q = y.head(8);
+    State<double, Eigen::Dynamic> v = q, c(model.constraints());
+    const long before = allocations();
+    model.rate(y, dydt);
+    model.free_acceleration(q, q, v);
+    model.violation(q, c);
+    model.slip(q, v, c);
+    model.curvature(q, v, c);
+    model.pull(q, c, v);
+    model.solve(q, q, c);
+    EXPECT_EQ(allocations() - before, 0);
+}
+
+TEST(Mechanism, SaysWhatToDraw) {
+    using Kind = MechanismLine::Kind;
+    auto parts = four_bars();
+    parts.constraints.push_back(SlotLine<double>{two, P(0, 1), P(2, 0)});
+    parts.constraints.push_back(SlotCircle<double>{two, P(3, 1), 2});
+    parts.forces.push_back(Spring<double>{two, P(0, 2), 5, 0.5});
+    const auto lines = lines_of(parts);
+    ASSERT_EQ(lines.size(), 8u);
+    EXPECT_EQ(lines[0].kind, Kind::anchor);
+    EXPECT_EQ(lines[1].kind, Kind::rod);
+    EXPECT_EQ(std::get<std::size_t>(lines[1].from), two);
+    EXPECT_EQ(std::get<std::size_t>(lines[1].to), one);
+    EXPECT_EQ(lines[5].kind, Kind::slot_line);
+    EXPECT_EQ(std::get<P>(lines[5].to), P(2, 1));
+    EXPECT_EQ(lines[6].kind, Kind::slot_circle);
+    EXPECT_EQ(lines[6].radius, 2);
+    EXPECT_EQ(lines[7].kind, Kind::spring);
+    EXPECT_EQ(std::get<P>(lines[7].to), P(0, 2));
+}
+
+// What is said of mechanisms that cannot be.
+
+std::string fault_of(const Assembly<double>& parts) {
+    try {
+        check(parts);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::bad_input);
+        return error.what();
+    }
+    return "no fault";
+}
+
+std::string fault_with(const Constraint<double>& constraint) {
+    auto parts = four_bars();
+    parts.constraints.push_back(constraint);
+    return fault_of(parts);
+}
+
+std::string fault_with(const Force<double>& force) {
+    auto parts = four_bars();
+    parts.forces = {force};
+    return fault_of(parts);
+}
+
+TEST(MechanismFault, OfParticles) {
+    EXPECT_EQ(fault_of({}), "the mechanism has no particles; it needs at least one");
+    auto parts = four_bars();
+    parts.particles[1].mass = 0;
+    EXPECT_EQ(fault_of(parts), "particle 2: its mass is 0 kg; it must be greater than 0");
+    parts = four_bars();
+    parts.particles[2].place[1] = std::nan("");
+    EXPECT_EQ(fault_of(parts), "particle 3: its place is (2.9, nan) m; both must be finite numbers");
+    parts = four_bars();
+    parts.particles[2].velocity[0] = INFINITY;
+    EXPECT_EQ(fault_of(parts), "particle 3: its velocity is (inf, 0) m/s; both must be finite numbers");
+}
+
+TEST(MechanismFault, OfParts) {
+    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{one, std::size_t{4}, 1})),
+              "constraint 6 (rod 1–5): there is no particle 5; the mechanism has 1 to 4");
+    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{two, two, 1})),
+              "constraint 6 (rod 2–2): it joins particle 2 with itself; it needs two different ones");
+    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{two, P(0, 0), 0})),
+              "constraint 6 (rod 2–fixed): its length is 0 m; it must be greater than 0");
+    EXPECT_EQ(fault_with(Constraint<double>(SlotCircle<double>{three, P(0, 0), 0})),
+              "constraint 6 (slot-circle of particle 3): its radius is 0 m; it must be greater than 0");
+    EXPECT_EQ(fault_with(Constraint<double>(SlotLine<double>{three, P(0, 0), P(0, 0)})),
+              "constraint 6 (slot-line of particle 3): its direction is (0, 0); it must point somewhere");
+    EXPECT_EQ(fault_with(Constraint<double>(Anchor<double>{one, P(0, INFINITY)})),
+              "constraint 6 (anchor of particle 1): its place is (0, inf); both must be finite numbers");
+    EXPECT_EQ(fault_with(Force<double>(Gravity<double>{std::nan("")})),
+              "force 1 (gravity): its g is nan m/s²; it must be a finite number");
+    EXPECT_EQ(fault_with(Force<double>(Spring<double>{one, P(1, 1), 0, 1})),
+              "force 1 (spring 1–fixed): its stiffness is 0 N/m; it must be greater than 0");
+    EXPECT_EQ(fault_with(Force<double>(Spring<double>{one, two, 1, -1})),
+              "force 1 (spring 1–2): its rest length is -1 m; it must not be negative");
+    EXPECT_EQ(fault_with(Force<double>(Spring<double>{one, two, 1, 1, -1})),
+              "force 1 (spring 1–2): its damping is -1 N s/m; it must not be negative");
+    EXPECT_EQ(fault_with(Force<double>(Attraction<double>{one, one})),
+              "force 1 (attraction 1–1): it joins particle 1 with itself; it needs two different ones");
+    EXPECT_EQ(fault_with(Force<double>(Droplet<double>{P(0.6, 0.8), 1})),
+              "force 1 (droplet): particle 2 starts at (0.6, 0.8) m, where what attracts it is; they must start apart");
+}
+
+TEST(MechanismFault, OfAStartOffTheConstraints) {
+    EXPECT_EQ(
+        fault_with(Constraint<double>(Anchor<double>{two, P(0.5, 0.8)})),
+        "constraint 6 (anchor of particle 2): the particle starts at (0.6, 0.8) m, 0.1 m from its anchor (0.5, 0.8) "
+        "m; anchor it at (0.6, 0.8)");
+    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{two, P(0.6, 0), 1})),
+              "constraint 6 (rod 2–fixed): its ends start 0.8 m apart, 0.2 m from its length 1 m; make the length 0.8");
+    EXPECT_EQ(
+        fault_with(Constraint<double>(SlotLine<double>{two, P(0, 0), P(5, 0)})),
+        "constraint 6 (slot-line of particle 2): the particle starts at (0.6, 0.8) m, 0.8 m off the line; start it at "
+        "(0.6, 0)");
+    EXPECT_EQ(
+        fault_with(Constraint<double>(SlotCircle<double>{two, P(0.6, 0), 1})),
+        "constraint 6 (slot-circle of particle 2): the particle starts 0.8 m from the centre, 0.2 m from the radius 1 "
+        "m; make the radius 0.8");
+}
+
+TEST(MechanismFault, OfAStartThatLeavesTheConstraints) {
+    auto parts = four_bars();
+    parts.particles[0].velocity = P(0, 0.5);
+    EXPECT_EQ(fault_of(parts),
+              "constraint 1 (anchor of particle 1): the start violates it at 0.5 m/s; start particle 1 "
+              "at (0, 0) m/s");
+    Assembly<double> pendulum{
+        .particles = {{1, P(3, 4), P(5, 0)}}, .constraints = {Rod<double>{one, P(0, 0), 5}}, .forces = {}};
+    EXPECT_EQ(fault_of(pendulum),
+              "constraint 1 (rod 1–fixed): the start violates it at 3 m/s; start particle 1 at (3.2, -2.4) m/s");
+    pendulum.particles[0].velocity = P(3.2, -2.4);
+    EXPECT_EQ(fault_of(pendulum), "no fault");
+}
+
+TEST(MechanismFault, OfRedundantConstraints) {
+    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{one, two, 1})),
+              "constraint 6 (rod 1–2) is redundant: it follows from constraint 2; leave it out, or start elsewhere");
+    EXPECT_EQ(
+        fault_with(Constraint<double>(Rod<double>{four, one, 2})),
+        "constraint 6 (rod 4–1) is redundant: it follows from constraints 1 and 3; leave it out, or start elsewhere");
+    EXPECT_EQ(
+        fault_with(Constraint<double>(SlotCircle<double>{two, P(0, 0), 1})),
+        "constraint 6 (slot-circle of particle 2) is redundant: it follows from constraints 1 and 2; leave it out, "
+        "or start elsewhere");
+}
+
+/// A parallelogram of cranks of 1 m and a coupler of 2 m that swings through the place where all three lie in a line:
+/// there it may go on as a parallelogram or crosswise, and nothing decides.
+Assembly<double> parallelogram() {
+    return {.particles = {{1, P(0.6, -0.8), P(6.4, 4.8)}, {1.5, P(2.6, -0.8), P(6.4, 4.8)}},
+            .constraints = {Rod<double>{one, P(0, 0), 1}, Rod<double>{two, P(2, 0), 1}, Rod<double>{one, two, 2}},
+            .forces = {Gravity<double>{}}};
+}
+
+TEST(MechanismFault, OfASingularConfigurationHoweverLongTheSteps) {
+    check(parallelogram());
+    for (const double step : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
+        Mechanism<double> model(parallelogram());
+        Rk4::Stepper<Mechanism<double>> stepper(model, model.start(parallelogram()), step);
+        std::string said = "no fault";
+        try {
+            stepper.advance(std::lround(0.3 / step));
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::method_failed);
+            said = error.what();
+        }
+        EXPECT_EQ(said.substr(0, said.find("; the particles are at (1")),
+                  "singular configuration: constraint 3 (rod 1–2) has come to follow from constraints 1 and 2, and the "
+                  "forces are not determined");
+        EXPECT_NE(said.find(") m; start so that they do not come there, or leave the constraint out"),
+                  std::string::npos);
+    }
+    // up to where it turns back in time, it moves
+    auto slower = parallelogram();
+    for (auto& particle : slower.particles) particle.velocity /= 8;
+    Mechanism<double> model(slower);
+    const double start = model.energy(model.start(slower));
+    EXPECT_NEAR(model.energy(after(model, slower, 20000, 5e-4)), start, 1e-8);  // measured 5e-10
+}
+
+TEST(MechanismFault, OfAMotionThatBlowsUp) {
+    auto parts = four_bars();
+    parts.forces.push_back(Spring<double>{two, P(0, 2), 1e9, 0.5});
+    Mechanism<double> model(parts);
+    try {
+        after(model, parts, 100, 0.1);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        EXPECT_NE(std::string(error.what()).find("the motion blew up; take shorter steps"), std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace doppel

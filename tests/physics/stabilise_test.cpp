@@ -1,0 +1,232 @@
+#include "physics/stabilise.hpp"
+
+#include "integrate/euler.hpp"
+#include "integrate/rk4.hpp"
+#include "numeric/quad.hpp"
+#include "physics/bob.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+using Chain = RodChain<double, 2>;
+
+Pendulum<double> released(double degrees1, double degrees2) {
+    Pendulum<double> p;
+    p.angle = {radians(degrees1), radians(degrees2)};
+    return p;
+}
+
+/// What a run of P1 (90/90) leaves, largest: errors of rods (m), of energy (J), and J v (m²/s).
+struct Errors {
+    double rod = 0, energy = 0, slip = 0;
+};
+template <class Which, class Model>
+Errors errors_of(const Pendulum<double>& p, Model& model, double step, long steps) {
+    typename Which::template Stepper<Model> stepper(model, Model::start(p), step);
+    const double start = energy(bobs_of_particles<double>(p, stepper.state()), p.gravity);
+    Errors errors;
+    for (long i = 0; i < steps; ++i) {
+        stepper.advance(1);
+        const auto bobs = bobs_of_particles<double>(p, stepper.state());
+        typename Model::Multipliers slip = model.w;
+        model.slip(stepper.state().head(4), stepper.state().tail(4), slip);
+        errors.rod = std::max(errors.rod, length_error(p, bobs));
+        errors.energy = std::max(errors.energy, std::abs(energy(bobs, p.gravity) - start));
+        errors.slip = std::max(errors.slip, slip.cwiseAbs().maxCoeff());
+    }
+    return errors;
+}
+
+TEST(Projected, KeepsRodsThatDriftWithoutIt) {
+    const auto p = released(90, 90);
+    Chain bare(p);
+    Projected<Chain> projected(p);
+    const auto drifting = errors_of<Rk4>(p, bare, 1e-3, 10'000);
+    const auto kept = errors_of<Rk4>(p, projected, 1e-3, 10'000);
+    EXPECT_GT(drifting.rod, 1e-8);                  // measured 3.3e-8 m
+    EXPECT_LT(kept.rod, 5e-16);                     // measured 2.2e-16 m
+    EXPECT_LT(kept.slip, 2e-14);                    // measured 1.3e-15 m²/s
+    EXPECT_LT(kept.energy, 3e-8);                   // measured 1.7e-8 J
+    EXPECT_LT(kept.energy, 0.1 * drifting.energy);  // measured a factor 45
+}
+
+TEST(Projected, KeepsRodsUnderEuler) {
+    const auto p = released(90, 90);
+    Chain bare(p);
+    Projected<Chain> projected(p);
+    EXPECT_GT(errors_of<Euler>(p, bare, 1e-3, 5'000).rod, 1e-3);        // measured 0.04 m
+    EXPECT_LT(errors_of<Euler>(p, projected, 1e-3, 5'000).rod, 1e-15);  // measured 4e-16 m
+}
+
+TEST(Projected, KeepsTheOrderOfTheMethod) {
+    // halving the step divides the error by 16
+    const auto p = released(60, -30).cast<Quad>();
+    using Model = RodChain<Quad, 2>;
+    const auto run = [&](long steps) {
+        Projected<Model> model(p);
+        Rk4::Stepper<Projected<Model>> stepper(model, Model::start(p), Quad(0.5) / Quad(steps));
+        stepper.advance(steps);
+        return stepper.state();
+    };
+    const auto coarse = run(400), middle = run(800), fine = run(1600);
+    const Quad ratio = (coarse - middle).cwiseAbs().maxCoeff() / (middle - fine).cwiseAbs().maxCoeff();
+    EXPECT_NEAR(std::log2(static_cast<double>(ratio)), 4, 0.06);  // measured 4.045
+}
+
+TEST(Projected, MovesToTheConstraintsAndNoFurther) {
+    // already there: nothing changes; a heavy mass moves less than a light one
+    Pendulum<double> p = released(40, -20);
+    p.mass = {1, 100};
+    p.rate = {1, -2};
+    Projected<Chain> model(p);
+    const Chain::State start = Chain::start(p);
+    Chain::State y = start;
+    model.settle(y);
+    EXPECT_LT((y - start).cwiseAbs().maxCoeff(), 1e-15);  // measured 3e-16
+    y[3] += 0.01;
+    Chain::State settled = y;
+    model.settle(settled);
+    const double light = (settled - y).head(2).norm(), heavy = (settled - y).segment<2>(2).norm();
+    EXPECT_LT(heavy, 0.05 * light);                                            // measured 0.012
+    EXPECT_LT(length_error(p, bobs_of_particles<double>(p, settled)), 5e-16);  // measured 0
+}
+
+TEST(Projected, ReachesTheDigitsOfTheScalar) {
+    const auto p = released(40, -20).cast<Quad>();
+    using Model = RodChain<Quad, 2>;
+    Projected<Model> model(p);
+    auto y = Model::start(p);
+    y[3] += Quad(0.01);
+    model.settle(y);
+    EXPECT_LT(static_cast<double>(length_error(p, bobs_of_particles<Quad>(p, y))), 5e-34);  // measured 0
+}
+
+TEST(Projected, KeepsARodOfAnyNumberOfLinks) {
+    Pendulum<double> p{{1, 2, 0.5, 1}, {1, 0.5, 2, 1}, {1, 2, 3, 0}, {0, 0, 0, 0}, 9.8};
+    using Model = RodChain<double, Eigen::Dynamic>;
+    Projected<Model> model(p);
+    Rk4::Stepper<Projected<Model>> stepper(model, Model::start(p), 1e-3);
+    stepper.advance(2000);
+    EXPECT_LT(length_error(p, bobs_of_particles<double>(p, stepper.state())), 1e-15);  // measured 2.2e-16 m
+}
+
+TEST(Projected, HangsStill) {
+    const Pendulum<double> p{{1, 2}, {1, 0.5}, {0, 0}, {0, 0}, 9.8};
+    Projected<Chain> model(p);
+    Rk4::Stepper<Projected<Chain>> stepper(model, Chain::start(p), 0.01);
+    stepper.advance(1000);
+    EXPECT_EQ(stepper.state(), Chain::start(p));
+}
+
+TEST(Projected, KeepsTheRodsOfALightFirstMass) {
+    // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings at √(2 m2 g / (l m1))
+    for (const double light : {1e-3, 1e-6, 1e-9, 1e-12}) {
+        auto p = released(30, 30);
+        p.mass[0] = light;
+        Projected<Chain> model(p);
+        const auto errors = errors_of<Rk4>(p, model, 0.1 / std::sqrt(2 * p.gravity / light), 10'000);
+        EXPECT_LT(errors.rod, 1e-15) << light;     // measured 2.2e-16 m
+        EXPECT_LT(errors.energy, 1e-10) << light;  // measured 3.3e-11 J and less
+    }
+}
+
+TEST(Projected, SaysWhenALightMassWouldHaveToJump) {
+    // aligned links that are a millimetre too far apart: the light mass in between would be thrown aside
+    auto p = released(30, 30);
+    p.mass[0] = 1e-9;
+    Projected<Chain> model(p);
+    auto y = Chain::start(p);
+    y[0] += 1e-3;
+    y[3] -= 1e-3;
+    EXPECT_THROW(model.settle(y), Error);
+}
+
+TEST(Projected, SaysWhenThereIsNoWayBack) {
+    // a rod without length has no direction: J M⁻¹ Jᵀ is 0
+    const auto p = released(0, 0);
+    Projected<Chain> model(p);
+    Chain::State y = Chain::State::Zero();
+    try {
+        model.settle(y);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        EXPECT_EQ(std::string(error.what()).rfind("projection: the constraints are still off by ", 0), 0u)
+            << error.what();
+    }
+}
+
+/// How C of a hanging rod, stretched by 1e-9 m, goes on: after `steps` steps of Euler or Runge–Kutta with α dt = z.
+template <class Which>
+double growth(double z, long steps) {
+    const double step = 1e-3;
+    const Pendulum<Quad> p{{Quad(1)}, {Quad(1)}, {Quad(0)}, {Quad(0)}, Quad(9.8)};
+    using Model = Baumgarte<RodChain<Quad, 1>>;
+    Model model(p, Quad(z) / Quad(step));
+    auto start = Model::start(p);
+    start[1] -= Quad(1e-9);
+    typename Which::template Stepper<Model> stepper(model, start, Quad(step));
+    stepper.advance(steps);
+    const Quad error = length_error(p, bobs_of_particles<Quad>(p, stepper.state()));
+    return static_cast<double>(Quad(error / Quad(1e-9)));
+}
+
+TEST(Baumgarte, IsStableBelowTheLimitOfTheMethod) {
+    // C″ = −2α C′ − α² C has the double eigenvalue −α: |R(−α dt)| = 1 at 2 (Euler) and 2.785293563 (Runge–Kutta 4)
+    EXPECT_LT(growth<Euler>(2 * 0.999, 8'000), 1e-2);          // measured 2e-3
+    EXPECT_GT(growth<Euler>(2 * 1.001, 2'000), 1e2);           // measured 2e5
+    EXPECT_LT(growth<Rk4>(2.785293563 * 0.999, 6'000), 1e-2);  // measured 2e-7
+    EXPECT_GT(growth<Rk4>(2.785293563 * 1.001, 800), 1e2);     // measured 6e4
+}
+
+TEST(Baumgarte, AddsNothingOnTheConstraints) {
+    // the same rate as the model's own, whatever α
+    Pendulum<double> p = released(40, -20);
+    p.mass = {1.25, 0.5};
+    p.rate = {1, -2};
+    Chain bare(p);
+    Baumgarte<Chain> held(p, 100);
+    const auto y = Chain::start(p);
+    Chain::State expected, rate;
+    bare.rate(y, expected);
+    held.rate(y, rate);
+    EXPECT_LT((rate - expected).cwiseAbs().maxCoeff(), 1e-11);  // measured 1e-12, α² ε = 2e-12
+}
+
+TEST(Baumgarte, PullsBackAsItsEquationSays) {
+    // C″ = −2α C′ − α² C at a state off the constraints: J a + J̇ v, by the model's own operations
+    Pendulum<double> p = released(40, -20);
+    p.mass = {1.25, 0.5};
+    p.rate = {1, -2};
+    const double alpha = 7;
+    Baumgarte<Chain> model(p, alpha);
+    Chain::State y = Chain::start(p), dydt;
+    y[1] += 0.02;
+    y[6] -= 0.3;
+    model.rate(y, dydt);
+    const Chain::Half q = y.head(4), v = y.tail(4), a = dydt.tail(4);
+    Chain::Multipliers c, slip, second, bend;
+    model.violation(q, c);
+    model.slip(q, v, slip);
+    model.slip(q, a, second);
+    model.curvature(q, v, bend);
+    const Chain::Multipliers error = second + bend + 2 * alpha * slip + alpha * alpha * c;
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-12);  // measured 8e-16
+    EXPECT_GT(c.cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST(Baumgarte, HoldsRodsThatDriftWithoutIt) {
+    const auto p = released(90, 90);
+    Chain bare(p);
+    Baumgarte<Chain> held(p, 10);
+    const auto drifting = errors_of<Rk4>(p, bare, 1e-3, 10'000), stable = errors_of<Rk4>(p, held, 1e-3, 10'000);
+    EXPECT_LT(stable.rod, 0.1 * drifting.rod);  // measured 1.4e-10 m and 3.3e-8 m
+}
+
+}  // namespace
+}  // namespace doppel
