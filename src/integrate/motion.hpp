@@ -1,32 +1,62 @@
 #pragma once
 
-#include "physics/pendulum.hpp"
+#include "numeric/quad.hpp"
+#include "numeric/rational.hpp"
+#include "physics/bob.hpp"
+#include "physics/mechanism_assembly.hpp"
 
+#include <atomic>
 #include <memory>
-#include <string_view>
+#include <optional>
+#include <string>
 
 namespace doppel {
 
-/// The state of a pendulum at one sample, the same for every model.
+enum class Model { angles, constraints, mechanism };
+enum class Precision { in_double, in_quad };
+enum class Stabilise { none, baumgarte, projection };
+
+/// What moves, and how it is stepped; everything exact, so that quad means 34 digits of what was written.
+struct MotionSpec {
+    std::optional<Pendulum<Quad>> chain;  // of every model but a mechanism that is none
+    std::optional<Assembly<Quad>> parts;  // of a mechanism; those of the chain first, where it has one
+    Model model = Model::angles;
+    std::string method = "euler";
+    Precision precision = Precision::in_double;
+    Rational sample_interval{1, 120};  // s
+    long steps_per_sample = 250;       // of methods with a fixed step
+    Quad tolerance = 0;                // of adaptive methods
+    Stabilise stabilise = Stabilise::none;
+    Quad stabilise_rate = 0;  // Baumgarte's α = β, 1/s
+};
+
+/// The state at one sample, the same for every model.
 struct Observation {
-    Bobs<double> bobs;        // angles unwrapped
-    double energy = 0;        // J
-    double length_error = 0;  // of the worst rod, m
+    Bobs<double> bobs;         // angles unwrapped
+    Bobs<Quad> exact;          // the same to all digits, where the precision is quad; else empty
+    double energy = 0;         // J
+    double energy_change = 0;  // J, since the start; in quad the difference is taken in quad
+    double length_error = 0;   // of the worst rod, m
+};
+
+/// What a motion has cost so far.
+struct Effort {
+    long steps = 0, evaluations = 0;  // evaluations of the right-hand side
+    double smallest_step = 0;         // s
 };
 
 /// A mechanism that moves, as the sample loop sees it. Virtual, because it is asked 120 times a second; the steps
-/// inside advance(), 30 000 times a second, are a template behind this door.
+/// behind it, 30 000 times a second, are a template.
 class Motion {
 public:
     virtual ~Motion() = default;
-    virtual void advance(long steps) = 0;
+    /// On to the next sample. Throws Error: exit 3 where a step cannot be made, exit 130 soon after `stop` is set.
+    virtual void advance(const std::atomic<bool>& stop) = 0;
     virtual Observation observe() const = 0;
+    virtual Effort effort() const = 0;
 };
 
-enum class Model { angles, constraints };
-
-/// The model, stepped by the method of that name with steps of `step` seconds, released as `pendulum` says.
-/// Throws Error (exit 2) where no method has that name.
-std::unique_ptr<Motion> make_motion(Model model, std::string_view method, const Pendulum& pendulum, double step);
+/// Throws Error (exit 2) where no method has that name, the method cannot step the model, or the system is faulty.
+std::unique_ptr<Motion> make_motion(const MotionSpec& spec);
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "integrate/method.hpp"
 #include "integrate/tableau.hpp"
 
 #include <array>
@@ -8,38 +9,70 @@
 
 namespace doppel {
 
-/// y + h Σ_j weight_j k_j over the weights that are not zero; which those are is known to the compiler.
-template <const auto& weights, class State, class Slopes, std::size_t... J>
-State advanced(const State& y, const typename State::Scalar& h, const Slopes& k, std::index_sequence<J...>) {
-    using Scalar = typename State::Scalar;
-    State sum = State::Constant(Scalar(-0.0));  // unlike +0, it changes no sum and costs no addition
-    [[maybe_unused]] const auto add = [&]<std::size_t j>() {
-        constexpr Fraction w = weights[j];
-        if constexpr (w.numerator != 0) sum += (Scalar(w.numerator) / Scalar(w.denominator)) * k[j];
-    };
-    (add.template operator()<J>(), ...);
-    return y + h * sum;
-}
+/// An explicit Runge–Kutta method with `table`, at fixed step: any system, any scalar (integrate/method.hpp).
+template <System Model, const auto& table>
+class RungeKutta {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
 
-/// One step of size h with `table`. Any system with rate(State), any scalar; no allocation.
-template <const auto& table, class Model>
-typename Model::State step(const Model& model, const typename Model::State& y, const typename Model::State::Scalar& h) {
-    constexpr std::size_t stages = table.b.size();
-    std::array<typename Model::State, stages> k;
-
-    // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)
-    const auto slope = [&]<std::size_t i>() {
-        static constexpr auto row = table.a[i];
-        k[i] = model.rate(advanced<row>(y, h, k, std::make_index_sequence<i>()));
-    };
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-        (slope.template operator()<I>(), ...);
+    RungeKutta(Model& model, const State& start, const Scalar& step) : model_(model), y_(start), h_(step), sum_(start) {
+        slopes_.fill(start);
+        at_ = start;
     }
-    (std::make_index_sequence<stages>());
 
-    // y + h Σ b_i k_i
-    static constexpr auto b = table.b;
-    return advanced<b>(y, h, k, std::make_index_sequence<stages>());
-}
+    void advance(long steps) {
+        for (long i = 0; i < steps; ++i) step(y_);
+        evaluations_ += steps * static_cast<long>(stages);
+    }
+
+    const State& state() const { return y_; }
+    long evaluations() const { return evaluations_; }
+
+private:
+    static constexpr std::size_t stages = table.b.size();
+
+    void step(State& y) {
+        // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)
+        const auto slope = [&]<std::size_t i>() {
+            if constexpr (i == 0) {
+                model_.rate(y, slopes_[0]);
+            } else {
+                static constexpr auto row = table.a[i];
+                at_ = y;
+                move<row>(at_, std::make_index_sequence<i>());
+                model_.rate(at_, slopes_[i]);
+            }
+        };
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            (slope.template operator()<I>(), ...);
+        }
+        (std::make_index_sequence<stages>());
+
+        // y + h Σ b_i k_i
+        static constexpr auto b = table.b;
+        move<b>(y, std::make_index_sequence<stages>());
+        settle(model_, y);
+    }
+
+    /// y ← y + h Σ_j weight_j k_j over the weights that are not zero; which those are is known to the compiler.
+    template <const auto& weights, std::size_t... J>
+    void move(State& y, std::index_sequence<J...>) {
+        sum_.fill(Scalar(-0.0));  // unlike +0, it changes no sum and costs no addition
+        [[maybe_unused]] const auto add = [&]<std::size_t j>() {
+            constexpr Fraction w = weights[j];
+            if constexpr (w.numerator != 0) sum_ += (Scalar(w.numerator) / Scalar(w.denominator)) * slopes_[j];
+        };
+        (add.template operator()<J>(), ...);
+        y += h_ * sum_;
+    }
+
+    Model& model_;
+    State y_;
+    Scalar h_;
+    long evaluations_ = 0;
+    std::array<State, stages> slopes_;
+    State at_, sum_;
+};
 
 }  // namespace doppel

@@ -2,13 +2,12 @@
 
 #include <array>
 #include <cstddef>
-#include <string_view>
 
 namespace doppel {
 
 /// A fraction as it is printed, exact in every scalar.
 struct Fraction {
-    int numerator = 0, denominator = 1;
+    long numerator = 0, denominator = 1;
 };
 
 /// An explicit Runge–Kutta method of S stages (Butcher's tableau; the systems here do not depend on time, so c is left
@@ -16,9 +15,6 @@ struct Fraction {
 ///     k_i = f(y + h Σ_{j<i} a_ij k_j),   y ← y + h Σ b_i k_i
 template <std::size_t S>
 struct Tableau {
-    std::string_view name;   // in presets
-    std::string_view title;  // in pictures
-    int order;
     std::array<std::array<Fraction, S>, S> a;
     std::array<Fraction, S> b;
 };

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "integrate/dop853.hpp"
+
+#include <array>
+#include <utility>
+
+namespace doppel {
+
+/// The linear multistep methods of order 8 in exact fractions, newest slope first:
+///     predictor  y ← y + h Σ_j b_j f_{n−j}
+///     corrector  y ← y + h Σ_j c_j f_{n+1−j},  f_{n+1} that of the prediction
+/// Source  Adams & Bashforth 1883, Moulton 1926; Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I,
+///         §III.1.
+struct AdamsWeights {
+    static constexpr std::array<Fraction, 8> bashforth{{{434241, 120960},
+                                                        {-1152169, 120960},
+                                                        {2183877, 120960},
+                                                        {-2664477, 120960},
+                                                        {2102243, 120960},
+                                                        {-1041723, 120960},
+                                                        {295767, 120960},
+                                                        {-36799, 120960}}};
+    static constexpr std::array<Fraction, 8> moulton{{{36799, 120960},
+                                                      {139849, 120960},
+                                                      {-121797, 120960},
+                                                      {123133, 120960},
+                                                      {-88547, 120960},
+                                                      {41499, 120960},
+                                                      {-11351, 120960},
+                                                      {1375, 120960}}};
+};
+
+/// Adams–Bashforth–Moulton at fixed step: predict, evaluate, correct, evaluate; two evaluations a step whatever the
+/// order. The first seven steps, for which the past is missing, are taken by dop853, of the same order.
+template <System Model>
+class AdamsStepper {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    AdamsStepper(Model& model, const State& start, const Scalar& step)
+        : model_(model), y_(start), at_(start), sum_(start), h_(step), starter_(start) {
+        past_.fill(start);
+        doppel::slope(model_, y_, past_[0]);
+    }
+
+    void advance(long steps) {
+        for (; steps > 0 && known_ < past_.size(); --steps) start_step();
+        for (; steps > 0; --steps) step();
+    }
+
+    const State& state() const { return y_; }
+    long evaluations() const { return evaluations_; }
+
+private:
+    static constexpr std::size_t order = AdamsWeights::bashforth.size();
+
+    void start_step() {
+        starter_[0] = past_[newest_];
+        starter_.template evaluate<1, Dop853::pair.stages>(model_, y_, h_);
+        starter_.finish(y_, h_, at_);
+        y_.swap(at_);
+        evaluations_ += static_cast<long>(Dop853::pair.stages) - 1;
+        newest_ = known_++;
+        arrive();
+    }
+
+    void step() {
+        sum<AdamsWeights::bashforth>(sum_);
+        at_ = y_ + h_ * sum_;
+        newest_ = (newest_ + 1) % order;  // the oldest slope makes room for the one predicted
+        doppel::slope(model_, at_, past_[newest_]);
+        ++evaluations_;
+        sum<AdamsWeights::moulton>(sum_);
+        y_ += h_ * sum_;
+        arrive();
+    }
+
+    /// At the new state: its slope becomes the newest.
+    void arrive() {
+        settle(model_, y_);
+        doppel::slope(model_, y_, past_[newest_]);
+        ++evaluations_;
+    }
+
+    /// out ← Σ_j weight_j f_{newest−j}
+    template <const auto& weights>
+    void sum(State& out) const {
+        out.fill(Scalar(-0.0));
+        for (std::size_t j = 0; j < order; ++j) out += value<Scalar>(weights[j]) * past_[(newest_ + order - j) % order];
+    }
+
+    Model& model_;
+    State y_, at_, sum_;
+    Scalar h_;
+    std::array<State, order> past_;       // slopes, a ring that ends at `newest_`
+    std::size_t newest_ = 0, known_ = 1;  // the newest slope; how many there are
+    long evaluations_ = 1;
+    Slopes<Model, Dop853::pair> starter_;
+};
+
+struct Adams {
+    static constexpr Method method{"adams", "Adams–Bashforth–Moulton 8", 8, false, "explicit, multistep"};
+    template <System Model>
+    using Stepper = AdamsStepper<Model>;
+};
+
+}  // namespace doppel

@@ -1,0 +1,198 @@
+#pragma once
+
+#include "integrate/embedded_pair.hpp"
+#include "numeric/error.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace doppel {
+
+/// An embedded pair at the step size that a tolerance allows. Steps go where the motion wants them; the output time
+/// lies inside the last one, where the state is interpolated, so that sampling never changes a step.
+///
+/// The error of a step, root mean square over the components of the state, is kept below
+///     tolerance · (1 + |y_i|)
+/// with y_i in rad and rad/s, or m and m/s: one tolerance, absolute and relative alike.
+///
+/// Time is kept as the distance from the start of the last step, in two parts: it neither drifts nor coarsens.
+/// Source  Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, §II.4 to II.6.
+template <System Model, const auto& pair, const Method& method>
+class Adaptive {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    /// Throws Error (exit 2) for a tolerance that the scalar cannot give.
+    Adaptive(Model& model, const State& start, const Scalar& tolerance)
+        : model_(model), tolerance_(tolerance), y0_(start), y1_(start), out_(start), scratch_(start), k_(start) {
+        const Scalar least = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
+        if (!(tolerance >= least))
+            throw bad_input("{}: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", method.name,
+                            static_cast<double>(tolerance), std::numeric_limits<Scalar>::digits10 + 1,
+                            static_cast<double>(least));
+        doppel::slope(model_, y1_, k_[end]);
+        h_ = first_step();
+        evaluations_ = 2;
+    }
+
+    void advance(const Scalar& seconds) {
+        move(seconds);
+        while (offset_ > span_) {
+            move(-span_);
+            step(seconds);
+        }
+        sample();
+    }
+
+    const State& state() const { return out_; }
+    long steps() const { return steps_; }
+    Scalar smallest_step() const { return smallest_; }
+    long evaluations() const { return evaluations_; }
+
+private:
+    static constexpr std::size_t end = pair.stages;  // index of the slope at the end of a step
+    static constexpr bool settles = requires(Model & model, State& y) { model.settle(y); };
+    static constexpr bool error_needs_end = [] {
+        bool needs = false;
+        for (const auto& row : pair.error) needs |= !is_zero(row[end]);
+        return needs;
+    }();
+
+    /// offset ← offset + seconds; what the sum rounds away is kept and comes in with the next.
+    void move(const Scalar& seconds) {
+        const Scalar add = seconds + lost_;
+        const Scalar sum = offset_ + add;
+        const Scalar part = sum - offset_;
+        lost_ = (offset_ - (sum - part)) + (add - part);
+        offset_ = sum;
+    }
+
+    /// One step that the tolerance accepts, from y1. `seconds`, the interval asked for, tells when h has vanished.
+    void step(const Scalar& seconds) {
+        y0_.swap(y1_);
+        k_[0].swap(k_[end]);
+        for (double limit = pair.control.grow;; limit = 1) {
+            if (!(h_ > std::numeric_limits<Scalar>::epsilon() * seconds))
+                throw method_failed(
+                    "{}: no step down to {:.3g} s meets tolerance = {:.3g}; the motion has a singularity "
+                    "there, which no explicit method passes",
+                    method.name, static_cast<double>(h_), static_cast<double>(tolerance_));
+            k_.template evaluate<1, end>(model_, y0_, h_);
+            k_.finish(y0_, h_, y1_);
+            if constexpr (error_needs_end) doppel::slope(model_, y1_, k_[end]);
+            evaluations_ += static_cast<long>(error_needs_end ? end : end - 1);
+
+            const double error = error_of_step();
+            span_ = h_;
+            if (error <= 1) {
+                h_ *= Scalar(growth(error, error_before_, limit));
+                error_before_ = error > 1e-4 ? error : 1e-4;
+                break;
+            }
+            h_ *= Scalar(growth(error, 1, 1));
+        }
+        settle(model_, y1_);
+        if constexpr (settles || !error_needs_end) {
+            doppel::slope(model_, y1_, k_[end]);
+            ++evaluations_;
+        }
+        if (steps_ == 0 || span_ < smallest_) smallest_ = span_;
+        ++steps_;
+        interpolates_ = false;
+    }
+
+    /// h_next / h; no more than `limit`. An error that is not a number shrinks the step.
+    static double growth(double error, double before, double limit) {
+        constexpr StepControl control = pair.control;
+        const double factor = control.safety * std::pow(error, -control.exponent) * std::pow(before, control.memory);
+        if (!(factor > control.shrink)) return control.shrink;
+        return factor < limit ? factor : limit;
+    }
+
+    /// ε, 1 where the tolerance is just met.
+    double error_of_step() {
+        using std::sqrt;
+        static constexpr auto first = pair.error[0];
+        k_.template sum<first>(scratch_);
+        const Scalar e1 = norm_squared(scratch_);
+        if constexpr (pair.error.size() == 1) {
+            return static_cast<double>(Scalar(h_ * sqrt(e1)));
+        } else {
+            static constexpr auto second = pair.error[1];
+            k_.template sum<second>(scratch_);
+            const Scalar e2 = norm_squared(scratch_);
+            if (e1 == Scalar(0)) return 0;
+            return static_cast<double>(Scalar(h_ * e1 / sqrt(e1 + e2 / Scalar(100))));
+        }
+    }
+
+    /// Mean square of the components, each in units of what the tolerance allows it.
+    Scalar norm_squared(const State& error) const {
+        using std::abs;
+        Scalar sum(0);
+        for (Eigen::Index i = 0; i < error.size(); ++i) {
+            const Scalar before = abs(y0_[i]), after = abs(y1_[i]);
+            const Scalar part = error[i] / (tolerance_ * (Scalar(1) + (before < after ? after : before)));
+            sum += part * part;
+        }
+        return sum / Scalar(error.size());
+    }
+
+    /// A step that is rather too short than too long (section II.4, "starting step size").
+    Scalar first_step() {
+        const double size = std::sqrt(static_cast<double>(norm_squared(y1_)));
+        const double slope = std::sqrt(static_cast<double>(norm_squared(k_[end])));
+        const double guess = size < 1e-5 || slope < 1e-5 ? 1e-6 : 0.01 * size / slope;
+        scratch_ = y1_ + Scalar(guess) * k_[end];
+        doppel::slope(model_, scratch_, k_[0]);
+        scratch_ = k_[0] - k_[end];
+        const double curvature = std::sqrt(static_cast<double>(norm_squared(scratch_))) / guess;
+        const double bend = slope > curvature ? slope : curvature;
+        const double step = bend <= 1e-15 ? 1e-3 * guess : std::pow(0.01 / bend, 1.0 / method.order);
+        return Scalar(step < 100 * guess ? step : 100 * guess);
+    }
+
+    /// out ← the state at the output time.
+    void sample() {
+        if (offset_ == span_) {
+            out_ = y1_;
+            return;
+        }
+        if (!interpolates_) {
+            k_.template evaluate<end + 1, Slopes<Model, pair>::all>(model_, y0_, span_);
+            evaluations_ += static_cast<long>(Slopes<Model, pair>::all - end - 1);
+            interpolates_ = true;
+        }
+        const Scalar s = offset_ / span_, rest = Scalar(1) - s;
+        out_.setZero();
+        const auto nest = [&]<std::size_t row>() {
+            static constexpr auto weights = pair.dense[row];
+            k_.template sum<weights>(scratch_);
+            out_ = (row % 2 == 0 ? rest : s) * (span_ * scratch_ + out_);
+        };
+        [&]<std::size_t... i>(std::index_sequence<i...>) {
+            (nest.template operator()<sizeof...(i) - 1 - i>(), ...);
+        }
+        (std::make_index_sequence<pair.dense.size()>());
+        scratch_ = y1_ - y0_;
+        out_ += Scalar(2) * scratch_ - span_ * (k_[0] + k_[end]);
+        out_ = y0_ + s * (scratch_ + rest * (span_ * k_[0] - scratch_ + s * out_));
+        settle(model_, out_);
+    }
+
+    Model& model_;
+    Scalar tolerance_;
+    Scalar h_ = Scalar(0), span_ = Scalar(0);       // s, of the next step and of the last
+    Scalar offset_ = Scalar(0), lost_ = Scalar(0);  // s, from the start of the last step to the output time
+    Scalar smallest_ = Scalar(0);                   // s
+    double error_before_ = 1e-4;
+    long steps_ = 0, evaluations_ = 0;
+    bool interpolates_ = false;  // the slopes for it are those of the last step
+    State y0_, y1_, out_;        // at the start and the end of the last step; at the output time
+    State scratch_;
+    Slopes<Model, pair> k_;
+};
+
+}  // namespace doppel

@@ -1,0 +1,132 @@
+#include "integrate/ensemble.hpp"
+
+#include "integrate/ensemble_block.hpp"
+#include "numeric/error.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace doppel {
+
+EnsembleBlock::~EnsembleBlock() = default;
+
+namespace {
+
+/// The number of a method in EnsembleMethods.
+std::size_t method_number(std::string_view name) {
+    std::size_t number = std::tuple_size_v<EnsembleMethods>;
+    std::string known;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+        const auto look = [&](std::size_t i, const Method& method) {
+            if (method.name == name) number = i;
+            known += (i == 0 ? "" : ", ") + std::string(method.name);
+        };
+        (look(I, std::tuple_element_t<I, EnsembleMethods>::method), ...);
+    }
+    (std::make_index_sequence<std::tuple_size_v<EnsembleMethods>>());
+    if (number == std::tuple_size_v<EnsembleMethods>)
+        throw bad_input("\"{}\" does not step many trials side by side; these do: {}", name, known);
+    return number;
+}
+
+/// The trials' numbers, by quantity, as the blocks are made from them.
+struct Table {
+    std::vector<double> mass, length, angle, rate, gravity;
+
+    explicit Table(std::span<const Pendulum<double>> trials) {
+        const std::size_t links = trials.front().links();
+        const auto gather = [&](std::vector<double>& to, const std::vector<double> Pendulum<double>::*quantity) {
+            for (std::size_t j = 0; j < links; ++j)
+                for (const auto& trial : trials) to.push_back((trial.*quantity)[j]);
+        };
+        gather(mass, &Pendulum<double>::mass);
+        gather(length, &Pendulum<double>::length);
+        gather(angle, &Pendulum<double>::angle);
+        gather(rate, &Pendulum<double>::rate);
+        for (const auto& trial : trials) gravity.push_back(trial.gravity);
+    }
+};
+
+/// A long chain on its own.
+EnsembleBlock* make_lone_block(const EnsembleRequest& request, std::size_t trial) {
+    const auto pendulum = pendulum_of<double>(request, trial);
+    return request.constraints ? with_method<RodChain<double, Eigen::Dynamic>>(request, pendulum)
+                               : with_method<AngleChain<double, Eigen::Dynamic>>(request, pendulum);
+}
+
+auto maker_of(int width) {
+    switch (width) {
+#ifdef DOPPEL_WIDE_ENSEMBLES
+        case 4:
+            return make_ensemble_block<4>;
+        case 8:
+            return make_ensemble_block<8>;
+#endif
+        case 2:
+            return make_ensemble_block<2>;
+        default:
+            return make_lone_block;
+    }
+}
+
+int chosen_width(int asked) {
+    const auto widths = Ensemble::widths();
+    if (asked == 0) return widths.back();
+    if (std::find(widths.begin(), widths.end(), asked) == widths.end())
+        throw bad_input("this processor has no registers of {} doubles; the widest have {}", asked, widths.back());
+    return asked;
+}
+
+}  // namespace
+
+std::vector<int> Ensemble::widths() {
+    std::vector<int> widths{2};
+#ifdef DOPPEL_WIDE_ENSEMBLES
+    if (__builtin_cpu_supports("avx2")) widths.push_back(4);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) widths.push_back(8);
+#endif
+    return widths;
+}
+
+Ensemble::Ensemble(std::span<const Pendulum<double>> trials, EnsembleModel model, std::string_view method, double step,
+                   int width)
+    : trials_(trials.size()), block_(1), width_(1) {
+    if (trials.empty()) throw bad_input("an ensemble needs at least one trial");
+    const std::size_t links = trials.front().links();
+    for (const auto& trial : trials)
+        if (trial.links() != links)
+            throw bad_input("the trials of an ensemble have as many links each: not {} and {}", links, trial.links());
+    if (links <= ensemble_links) {
+        width_ = chosen_width(width);
+        block_ = static_cast<std::size_t>(ensemble_block(width_));
+    }
+
+    const Table table(trials);
+    const EnsembleRequest request{.trials = trials_,
+                                  .links = links,
+                                  .mass = table.mass.data(),
+                                  .length = table.length.data(),
+                                  .angle = table.angle.data(),
+                                  .rate = table.rate.data(),
+                                  .gravity = table.gravity.data(),
+                                  .step = step,
+                                  .constraints = model == EnsembleModel::constraints,
+                                  .method = method_number(method)};
+    const auto make = maker_of(width_);
+    for (std::size_t first = 0; first < trials_; first += block_) blocks_.emplace_back(make(request, first));
+}
+
+void Ensemble::advance(long steps) {
+    for (auto& block : blocks_) block->advance(steps);
+}
+
+State<double, Eigen::Dynamic> Ensemble::state(std::size_t trial) const {
+    const auto& block = *blocks_[trial / block_];
+    State<double, Eigen::Dynamic> y(static_cast<Eigen::Index>(block.dimensions()));
+    for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = block.state(trial % block_, static_cast<std::size_t>(i));
+    return y;
+}
+
+}  // namespace doppel

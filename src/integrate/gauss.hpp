@@ -1,0 +1,215 @@
+#pragma once
+
+#include "integrate/method.hpp"
+#include "numeric/error.hpp"
+#include "physics/canonical.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace doppel {
+
+/// Gauss collocation of S stages. Written with μ_ij = a_ij / b_j the method reads
+///     L_i = h b_i f(z + Σ_j μ_ij L_j) ,     z ← z + Σ L_i ,
+/// and is symplectic when μ_ij + μ_ji = 1, whatever rounding has made of b. So that this holds to the last bit, the
+/// larger one of a pair is rounded and the other is what it leaves.
+/// Source  Butcher 1964; Antoñana, Makazaga & Murua 2017, Reducing and monitoring round-off error propagation for
+///         symplectic implicit Runge–Kutta schemes.
+template <class Scalar, std::size_t S>
+struct Gauss {
+    std::array<Scalar, S> hb;  // s
+    std::array<std::array<Scalar, S>, S> mu;
+
+    explicit Gauss(const Scalar& h) {
+        using std::sqrt;
+        const Scalar half = Scalar(1) / Scalar(2);
+        for (std::size_t i = 0; i < S; ++i) mu[i][i] = half;
+        if constexpr (S == 2) {
+            hb = {h * half, h * half};
+            pair(1, 0, half + sqrt(Scalar(3)) / Scalar(3));
+        } else {
+            static_assert(S == 3);
+            const Scalar root = sqrt(Scalar(15));
+            hb[0] = hb[2] = h * Scalar(5) / Scalar(18);
+            hb[1] = h - Scalar(2) * hb[0];
+            pair(1, 0, half + Scalar(3) * root / Scalar(20));
+            pair(2, 1, mu[1][0]);
+            pair(2, 0, half + Scalar(3) * root / Scalar(25));
+        }
+    }
+
+private:
+    void pair(std::size_t i, std::size_t j, const Scalar& larger) {
+        mu[i][j] = larger;
+        mu[j][i] = Scalar(1) - larger;
+    }
+};
+
+/// Gauss collocation at fixed step in canonical variables z = (θ, p), where it is symplectic: energy stays near its
+/// start for ever. The stages are found by fixed-point iteration, from a guess that continues the slopes of the steps
+/// before, until rounding hides what is left to gain. z is summed with compensation. What all this leaves over is
+/// rounding without a bias, so that the error of the energy walks at random instead of drifting.
+/// Errors  exit 3 where the iteration does not converge: the step is too long.
+/// Source  Hairer, McLachlan & Razakarivony 2008, Achieving Brouwer's law with implicit Runge–Kutta methods;
+///         Hairer, Lubich & Wanner, Geometric Numerical Integration, §VIII.6.
+template <Hamiltonian Model, std::size_t S, const auto& method>
+class GaussCollocation {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    GaussCollocation(Model& model, const State& start, const Scalar& step)
+        : form_(model), gauss_(step), step_(step), y_(start), z_(start), left_over_(start), at_(start) {
+        form_.momenta(y_, z_);
+        left_over_.setZero();
+        moves_.fill(left_over_);
+        slopes_.fill(left_over_);
+        past_.fill(moves_);
+    }
+
+    void advance(long steps) {
+        for (long i = 0; i < steps; ++i) {
+            guess();
+            solve();
+            move();
+            ++done_;
+        }
+        if (steps > 0) form_.velocities(z_, y_);
+    }
+
+    const State& state() const { return y_; }
+    long evaluations() const { return evaluations_; }
+
+private:
+    using Moves = std::array<State, S>;     // L
+    static constexpr long remembered = 10;  // steps
+    static constexpr int limit = 500;       // iterations
+
+    static void add(State& to, const Scalar& factor, const State& what) {
+        for (Eigen::Index c = 0; c < to.size(); ++c) to[c] += factor * what[c];
+    }
+
+    /// Largest change of an iteration, of angles and of momenta.
+    struct Change {
+        Scalar angle, momentum;
+    };
+
+    /// Moves as the polynomials through the past ones of each stage continue; at first, those of a constant slope. (One
+    /// polynomial through all stages would take their errors, of order S + 1 and unlike each other, for motion.)
+    ///     L_i(n) = Σ_a (−1)^(a+1) (k over a) L_i(n − a),   a = 1 … k
+    void guess() {
+        if (known_ == 0) {
+            form_.rate(z_, angles_[0], slopes_[0]);
+            ++evaluations_;
+            for (std::size_t i = 0; i < S; ++i) moves_[i] = gauss_.hb[i] * slopes_[0];
+            return;
+        }
+        for (auto& move : moves_) move.setZero();
+        Scalar weight(-1);
+        for (long a = 1; a <= known_; ++a) {
+            weight *= -Scalar(static_cast<int>(known_ + 1 - a)) / Scalar(static_cast<int>(a));
+            const auto& past = past_[static_cast<std::size_t>((done_ - a) % remembered)];
+            for (std::size_t i = 0; i < S; ++i) add(moves_[i], weight, past[i]);
+        }
+    }
+
+    void solve() {
+        bool angles_done = false, momenta_done = false;
+        const auto n = z_.size() / 2;
+        Change before = iterate();
+        known_ = guessed_well(before) ? std::min(known_ + 1, remembered) : 0;
+        for (int i = 1; i < limit; ++i) {
+            const Change now = iterate();
+            angles_done = angles_done || is_done(now.angle, before.angle, z_.head(n), moves_[0].head(n));
+            momenta_done = momenta_done || is_done(now.momentum, before.momentum, z_.tail(n), moves_[0].tail(n));
+            if (angles_done && momenta_done) return;
+            before = now;
+        }
+        throw method_failed(
+            "{}: step {}: the stages still change by {:.2g} rad after {} iterations; choose a smaller step_s than {:g}",
+            method.name, done_ + 1, static_cast<double>(before.angle), limit, static_cast<double>(step_));
+    }
+
+    /// L_i ← h b_i f(z + Σ_j μ_ij L_j), all from the L before: the processor works on the stages side by side.
+    Change iterate() {
+        const auto n = z_.size();
+        for (std::size_t i = 0; i < S; ++i) {
+            for (Eigen::Index c = 0; c < n; ++c) {
+                Scalar sum = left_over_[c];
+                for (std::size_t j = 0; j < S; ++j) sum += gauss_.mu[i][j] * moves_[j][c];
+                at_[c] = z_[c] + sum;
+            }
+            form_.rate(at_, angles_[i], slopes_[i]);
+        }
+        evaluations_ += static_cast<long>(S);
+
+        Change change{Scalar(0), Scalar(0)};
+        for (std::size_t i = 0; i < S; ++i)
+            for (Eigen::Index c = 0; c < n; ++c) {
+                using std::abs;
+                const Scalar moved = gauss_.hb[i] * slopes_[i][c];
+                const Scalar size = abs(moved - moves_[i][c]);
+                Scalar& largest = c < n / 2 ? change.angle : change.momentum;
+                if (!(size <= largest)) largest = size;
+                moves_[i][c] = moved;
+            }
+        return change;
+    }
+
+    /// Whether the first change was small against the moves; else the next guess forgets the past.
+    bool guessed_well(const Change& first) const {
+        const auto n = z_.size() / 2;
+        return Scalar(4) * first.angle <= moves_[0].head(n).cwiseAbs().maxCoeff() &&
+               Scalar(4) * first.momentum <= moves_[0].tail(n).cwiseAbs().maxCoeff();
+    }
+
+    /// Whether iterating is over: at the rate now / before the next change would be lost in the rounding of the moves;
+    /// or changes no longer shrink, and are small enough to be rounding. A change that is no number is neither.
+    template <class Values, class Moved>
+    static bool is_done(const Scalar& now, const Scalar& before, const Values& values, const Moved& moved) {
+        static const Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
+        const Scalar size = moved.cwiseAbs().maxCoeff();
+        if (now * now <= Scalar(0.125) * epsilon * size * before) return true;
+        return !(now < before) && now <= Scalar(1024) * epsilon * (size + values.cwiseAbs().maxCoeff());
+    }
+
+    /// z ← z + Σ L_i; what z cannot hold is left over for the next step.
+    void move() {
+        for (Eigen::Index c = 0; c < z_.size(); ++c) {
+            Scalar sum = left_over_[c];
+            for (std::size_t i = 0; i < S; ++i) sum += moves_[i][c];
+            const Scalar from = z_[c];
+            z_[c] += sum;
+            left_over_[c] = (from - z_[c]) + sum;
+        }
+        past_[static_cast<std::size_t>(done_ % remembered)] = moves_;
+    }
+
+    Canonical<Model> form_;
+    Gauss<Scalar, S> gauss_;
+    Scalar step_;
+    long done_ = 0, evaluations_ = 0;
+    long known_ = 0;  // past steps to guess from
+    State y_, z_, left_over_;
+    Moves moves_;
+    std::array<Moves, remembered> past_;  // of step n at n modulo `remembered`
+    std::array<typename Canonical<Model>::Angles, S> angles_;
+    State at_;
+    Moves slopes_;
+};
+
+struct Gauss4 {
+    static constexpr Method method{"gauss4", "Gauss collocation 4", 4, false, "implicit, symplectic, time-reversible"};
+    template <Hamiltonian Model>
+    using Stepper = GaussCollocation<Model, 2, method>;
+};
+
+struct Gauss6 {
+    static constexpr Method method{"gauss6", "Gauss collocation 6", 6, false, "implicit, symplectic, time-reversible"};
+    template <Hamiltonian Model>
+    using Stepper = GaussCollocation<Model, 3, method>;
+};
+
+}  // namespace doppel

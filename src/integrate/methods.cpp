@@ -1,0 +1,33 @@
+#include "integrate/methods.hpp"
+
+#include "integrate/registry.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/mechanism.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace doppel {
+
+std::span<const MethodEntry> methods() {
+    static constexpr auto all = [] {
+        constexpr int links = Eigen::Dynamic;
+        std::array<MethodEntry, std::tuple_size_v<Methods>> entries{};
+        std::size_t n = 0;
+        for_each_method([&]<class Which>() {
+            entries[n++] = {Which::method, serves<Which, AngleChain<double, links>>,
+                            serves<Which, RodChain<double, links>>, serves<Which, Mechanism<double>>};
+        });
+        return entries;
+    }();
+    return all;
+}
+
+const MethodEntry* find_method(std::string_view name) {
+    const auto all = methods();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& method) { return method.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace doppel

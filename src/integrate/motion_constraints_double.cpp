@@ -1,0 +1,7 @@
+#include "integrate/motion_constraints.hpp"
+
+namespace doppel {
+
+template std::unique_ptr<Motion> make_constraints_motion<double>(const MotionSpec& spec);
+
+}  // namespace doppel

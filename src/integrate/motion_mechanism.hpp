@@ -1,0 +1,54 @@
+#pragma once
+
+#include "integrate/stepped.hpp"
+#include "physics/mechanism.hpp"
+
+namespace doppel {
+
+/// The particles of a mechanism, which reports its energy and errors itself.
+template <class Scalar>
+struct MechanismView {
+    static constexpr bool follows_turns = false;
+    Mechanism<Scalar> mechanism;
+
+    explicit MechanismView(const Assembly<Scalar>& assembly) : mechanism(assembly) {}
+
+    template <class State>
+    Bobs<Scalar> bobs(const State& y) const {
+        return mechanism.bobs(y);
+    }
+    template <class State>
+    Scalar energy(const State& y, const Bobs<Scalar>&) const {
+        return mechanism.energy(y);
+    }
+    template <class State>
+    Scalar length_error(const State& y, const Bobs<Scalar>&) const {
+        return mechanism.length_error(y);
+    }
+};
+
+/// The same, where the particles hang in a chain, whose angles are known.
+template <class Scalar>
+struct ChainMechanismView : MechanismView<Scalar> {
+    static constexpr bool follows_turns = true;
+    Pendulum<Scalar> pendulum;
+
+    ChainMechanismView(const Assembly<Scalar>& assembly, const Pendulum<Scalar>& chain)
+        : MechanismView<Scalar>(assembly), pendulum(chain) {}
+
+    template <class State>
+    Bobs<Scalar> bobs(const State& y) const {
+        return bobs_of_particles(pendulum, y);
+    }
+};
+
+template <class Scalar>
+std::unique_ptr<Motion> make_mechanism_motion(const MotionSpec& spec) {
+    check(spec.parts->cast<double>());
+    const auto assembly = spec.parts->cast<Scalar>();
+    if (!spec.chain) return stabilised<Mechanism<Scalar>>(spec, assembly, MechanismView<Scalar>(assembly));
+    const auto chain = spec.chain->cast<Scalar>();
+    return stabilised<Mechanism<Scalar>>(spec, assembly, ChainMechanismView<Scalar>(assembly, chain));
+}
+
+}  // namespace doppel

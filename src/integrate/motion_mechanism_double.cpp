@@ -1,0 +1,7 @@
+#include "integrate/motion_mechanism.hpp"
+
+namespace doppel {
+
+template std::unique_ptr<Motion> make_mechanism_motion<double>(const MotionSpec& spec);
+
+}  // namespace doppel

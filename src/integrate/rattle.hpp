@@ -1,0 +1,201 @@
+#pragma once
+
+#include "integrate/method.hpp"
+#include "numeric/quad.hpp"
+#include "physics/rod_chain.hpp"
+#include "physics/stabilise.hpp"
+
+#include <array>
+#include <string_view>
+#include <type_traits>
+
+namespace doppel {
+
+/// Steps of RATTLE, one after another, make one step of the method: fractions γ of it, symmetric, of sum 1. Written are
+/// those before the middle one, in decimal; the middle one is what they leave.
+template <std::size_t S>
+using HalfComposition = std::array<std::string_view, S>;
+
+/// Whether forces depend on velocity (friction). A model may say so of itself, feels_velocity(); of a rod chain it is
+/// known that they do not.
+template <Constrained Model>
+bool forces_feel_velocity(const Model& model) {
+    if constexpr (requires { model.feels_velocity(); })
+        return model.feels_velocity();
+    else
+        return !requires {
+            []<class S, int N>(const RodChain<S, N>&) {}(model);
+        };
+}
+
+/// RATTLE, composed: a step of size h from (q, v) on the constraints to (q1, v1) on them,
+///     u  = v + h/2 a(q, v) + M⁻¹ Jᵀ(q) λ ,     q1 = q + h u ,     λ such that C(q1) = 0 ,
+///     v1 = u + h/2 a(q1, v1) + M⁻¹ Jᵀ(q1) μ ,                     μ such that J(q1) v1 = 0 ,
+/// where a = M⁻¹ F is the acceleration without constraints. u is corrected by the multipliers, never by (q1 − q) / h,
+/// which would cost three digits.
+/// Where forces do not feel velocity, μ is left to the λ of the next step, which acts in the same direction, and found
+/// only for state(): the same motion for half the work. Where they do, v1 is found by iteration, so that a step stays
+/// of second order and time-reversible, although no longer symplectic.
+/// Errors  exit 3 where λ or v1 is not found.
+/// Source  Andersen 1983; Hairer, Lubich & Wanner, Geometric Numerical Integration, §VII.1.4 and §V.3.2.
+template <Constrained Model, const auto& composition, const auto& method>
+class ComposedRattle {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    ComposedRattle(Model& model, const State& start, const Scalar& step)
+        : model_(model),
+          friction_(forces_feel_velocity(model)),
+          y_(start),
+          step_(step),
+          q_(start.head(start.size() / 2)),
+          v_(start.tail(start.size() / 2)),
+          q0_(q_),
+          u_(v_),
+          a_(v_),
+          a_before_(v_),
+          guess_(Multipliers::Zero(model.constraints())),
+          force_(guess_),
+          force_before_(guess_),
+          newton_(model, q_) {
+        constexpr std::size_t before = composition.size();
+        sizes_[before] = step;
+        for (std::size_t i = 0; i < before; ++i) {
+            sizes_[i] = sizes_[2 * before - i] = fraction(composition[i]) * step;
+            sizes_[before] -= Scalar(2) * sizes_[i];
+        }
+        model_.free_acceleration(q_, v_, a_);
+        start_forces();
+    }
+
+    void advance(long steps) {
+        for (long i = 0; i < steps; ++i) {
+            for (const Scalar& h : sizes_) move(h);
+            ++done_;
+        }
+        u_ = v_;
+        if (!friction_) newton_.along_constraints(model_, q_, u_);
+        y_.head(q_.size()) = q_;
+        y_.tail(q_.size()) = u_;
+    }
+
+    const State& state() const { return y_; }
+    long evaluations() const { return newton_.solves; }
+
+private:
+    using Half = typename Model::Half;
+    using Multipliers = typename Model::Multipliers;
+
+    static Scalar fraction(std::string_view decimal) {
+        if constexpr (std::is_constructible_v<Scalar, Quad>)
+            return Scalar(parse_quad(decimal));
+        else
+            return Scalar(static_cast<double>(parse_quad(decimal)));
+    }
+
+    /// The forces of the constraints at the start: (J M⁻¹ Jᵀ) λ / s = −J̇ v − J a.
+    void start_forces() {
+        model_.curvature(q_, v_, force_);
+        model_.slip(q_, a_, guess_);
+        force_ = -(force_ + guess_);
+        model_.solve(q_, q_, force_);
+        force_before_ = force_;
+    }
+
+    void move(const Scalar& h) {
+        const Scalar half = h * Scalar(0.5), span = owed_ + half;
+        look_ahead();
+
+        // u and q1 with the λ that was guessed, then with the right one
+        guess_ *= span;
+        q0_ = q_;
+        u_ = v_;
+        add(u_, half, a_);
+        model_.pull(q0_, guess_, u_);
+        add(q_, h, u_);
+        if (!newton_.onto_constraints(model_, q0_, q_)) fail_to_meet();
+        newton_.lambda /= h;
+        model_.pull(q0_, newton_.lambda, u_);
+        force_ = (guess_ + newton_.lambda) / span;
+
+        // v1
+        model_.free_acceleration(q_, u_, a_);
+        if (friction_) {
+            end_with_friction(half);
+        } else {
+            v_ = u_;
+            add(v_, half, a_);
+            owed_ = half;
+        }
+    }
+
+    /// The forces λ / s of the constraints, guessed from those before: on a straight line where steps are equal.
+    void look_ahead() {
+        guess_ = force_;
+        if constexpr (composition.size() == 0) {
+            guess_ += force_ - force_before_;
+            force_before_ = force_;
+        }
+    }
+
+    void end_with_friction(const Scalar& half) {
+        for (int i = 0; i < newton_.limit; ++i) {
+            v_ = u_;
+            add(v_, half, a_);
+            newton_.along_constraints(model_, q_, v_);
+            a_.swap(a_before_);
+            model_.free_acceleration(q_, v_, a_);
+            if (unchanged()) return;
+        }
+        throw method_failed("{}: step {}: friction is too strong for steps of {:g} s; choose a smaller step_s",
+                            method.name, done_ + 1, static_cast<double>(step_));
+    }
+
+    /// Whether the forces at the velocity that they led to are the same again, to rounding.
+    bool unchanged() const {
+        const Scalar size = a_.cwiseAbs().maxCoeff();
+        return (a_ - a_before_).cwiseAbs().maxCoeff() <= Scalar(4) * std::numeric_limits<Scalar>::epsilon() * size;
+    }
+
+    [[noreturn]] void fail_to_meet() const {
+        throw method_failed(
+            "{}: step {}: the constraints are still off by {:.2g} after {} corrections; choose a smaller step_s than "
+            "{:g}",
+            method.name, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
+    }
+
+    Model& model_;
+    bool friction_;
+    State y_;
+    Scalar step_;
+    std::array<Scalar, 2 * composition.size() + 1> sizes_;
+    long done_ = 0;
+    Half q_, v_, q0_, u_;
+    Half a_, a_before_;                         // M⁻¹ F
+    Multipliers guess_, force_, force_before_;  // λ, and λ / s
+    Scalar owed_ = Scalar(0);                   // s, of the last step, that the next λ acts for as well
+    Newton<Model> newton_;
+};
+
+/// One step of RATTLE a step.
+struct Rattle {
+    static constexpr Method method{"rattle", "RATTLE", 2, false, "symplectic, time-reversible, keeps rods"};
+    static constexpr HalfComposition<0> composition{};
+    template <Constrained Model>
+    using Stepper = ComposedRattle<Model, composition, method>;
+};
+
+/// Kahan & Li 1997: of the symmetric compositions of nine steps with Σγ = 1, Σγ³ = Σγ⁵ = Σγ³m² = 0 (m: where the middle
+/// of a step lies), the one whose largest step, the middle one of 0.7985, is smallest; solved to 40 digits.
+struct Rattle6 {
+    static constexpr Method method{"rattle6", "RATTLE composed to order 6", 6, false,
+                                   "symplectic, time-reversible, keeps rods"};
+    static constexpr HalfComposition<4> composition{
+        "0.3921614440073141392756553300383809325954", "0.3325991367893594386042721253257905699416",
+        "-0.7062461725576393598098453372227639944854", "0.08221359629355080023044270533411341434285"};
+    template <Constrained Model>
+    using Stepper = ComposedRattle<Model, composition, method>;
+};
+
+}  // namespace doppel

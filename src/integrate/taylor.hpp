@@ -1,0 +1,138 @@
+#pragma once
+
+#include "integrate/method.hpp"
+#include "integrate/taylor_lanes.hpp"
+#include "numeric/error.hpp"
+#include "physics/rod_series.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace doppel {
+
+/// The Taylor method. Each step computes the series of the motion to a high order by recurrence, and goes as far as its
+/// last coefficients allow; output times shorten no step, as the series holds anywhere inside one.
+///
+/// Order   p = 10 − ½ ln ε: more than the usual 1 − ½ ln ε, since the work here grows more like p than like p².
+/// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to what the rates amount
+/// to.
+///         Four, because of a motion from rest at 90° three in every four vanish. Rates are the harder part: an angle
+///         errs by about h/p times as much. No step is more than twice the one before.
+/// Rounding of the state is carried over to the next step, and time is kept as a distance from the start of the step.
+/// Source  Jorba & Zou 2005, A software package for the numerical integration of ODEs by means of high-order Taylor
+///         methods, Experimental Mathematics 14:99.
+template <HasSeries Model>
+class TaylorStepper {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    /// `order` from 5 to 64, or 0: by the tolerance. Throws Error (exit 2) for a tolerance that the scalar cannot give.
+    TaylorStepper(Model& model, const State& start, const Scalar& tolerance, int order = 0)
+        : model_(model),
+          tolerance_(checked(plain_value(tolerance))),
+          order_(std::clamp(order == 0 ? order_for(tolerance_) : order, watched + 1, most_orders)),
+          series_(model, order_),
+          base_(start),
+          lost_(State::Zero(start.size())),
+          change_(start),
+          out_(start) {}
+
+    void advance(const Scalar& seconds) {
+        add(offset_, offset_lost_, seconds);
+        while (offset_ > step_) next_step(plain_value(seconds));
+        series_.move(offset_, change_);
+        out_ = base_ + (change_ + lost_);
+        settle(model_, out_);
+    }
+
+    const State& state() const { return out_; }
+    int order() const { return order_; }
+    long steps() const { return steps_; }
+    Scalar smallest_step() const { return smallest_; }
+    /// Orders computed: each costs about what a right-hand side would.
+    long evaluations() const { return steps_ * order_; }
+
+private:
+    static constexpr int watched = 4;  // coefficients that the step goes by
+    static constexpr double growth = 2;
+    static constexpr int most_orders = 64;
+
+    static double checked(double tolerance) {
+        const double least = 4 * plain_value(std::numeric_limits<Scalar>::epsilon());
+        if (!(tolerance >= least))
+            throw bad_input("taylor: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", tolerance,
+                            std::numeric_limits<Scalar>::digits10 + 1, least);
+        return tolerance;
+    }
+
+    static int order_for(double tolerance) { return static_cast<int>(std::lround(10 - 0.5 * std::log(tolerance))); }
+
+    /// Goes to the end of the step and expands the next one there. `seconds`, the interval asked for, tells when steps
+    /// have vanished.
+    void next_step(double seconds) {
+        if (steps_ > 0) {
+            series_.move(step_, change_);
+            for (Eigen::Index i = 0; i < base_.size(); ++i) add(base_[i], lost_[i], change_[i]);
+            settle(model_, base_);
+            add(offset_, offset_lost_, -step_);
+        }
+        series_.expand(base_);
+        const double h = chosen_step();
+        if (!(h > plain_value(std::numeric_limits<Scalar>::epsilon()) * seconds))
+            throw method_failed(
+                "taylor: a step of {:.3g} s is all that tolerance = {:.3g} allows, too little to get on; "
+                "the motion has a singularity there, which no explicit method passes",
+                h, tolerance_);
+        step_ = Scalar(h);
+        if (steps_ == 0 || step_ < smallest_) smallest_ = step_;
+        ++steps_;
+    }
+
+    double chosen_step() const {
+        double exponent = std::numeric_limits<double>::max();  // log2 h
+        for (int k = order_ - watched + 1; k <= order_; ++k) {
+            const double size = series_.size(k);
+            if (!(size <= std::numeric_limits<double>::max()))
+                throw method_failed("taylor: coefficient {} of the series is not finite; the motion has blown up", k);
+            exponent = std::min(exponent, log2_of(tolerance_ / size) / k);
+        }
+        const double longest = series_.longest_step();
+        return std::min({std::exp2(exponent), longest, steps_ == 0 ? longest : growth * plain_value(step_)});
+    }
+
+    /// log2 x within 0.05, by a straight line between powers of two: what comes of it is divided by k.
+    static double log2_of(double x) {
+        constexpr double mean_deviation = 0.043;
+        return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - (1023 - mean_deviation);
+    }
+
+    /// sum + lost ← sum + lost + more, all but exactly. Source  Knuth, The Art of Computer Programming 2, §4.2.2.
+    static void add(Scalar& sum, Scalar& lost, const Scalar& more) {
+        const Scalar all = more + lost, total = sum + all, part = total - sum;
+        lost = (sum - (total - part)) + (all - part);
+        sum = total;
+    }
+
+    Model& model_;
+    double tolerance_;
+    int order_;
+    typename SeriesOf<Model>::type series_;
+    State base_, lost_;                                    // where the step starts, and what rounding took from it
+    State change_, out_;                                   // the state at the output time
+    Scalar step_ = Scalar(0), smallest_ = Scalar(0);       // s
+    Scalar offset_ = Scalar(0), offset_lost_ = Scalar(0);  // s, from the start of the step to the output time
+    long steps_ = 0;
+};
+
+/// The Taylor method, for every model that has a series (physics/model_series.hpp).
+struct Taylor {
+    static constexpr Method method{"taylor", "Taylor series", 0, true, "explicit, order from the tolerance"};
+    template <HasSeries Model>
+    using Stepper = TaylorStepper<Model>;
+};
+
+}  // namespace doppel

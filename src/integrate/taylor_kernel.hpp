@@ -1,0 +1,266 @@
+// The recurrence of AngleSeries for two and three links of double, on packs of four lanes. Without #pragma once:
+// taylor_lanes.cpp includes it once for every instruction set, into a namespace that has Pack, make_pack() and
+// swapped<s>(), which takes lane i from lane i xor s. Each lane has its own sums in an order of its own, so all
+// instruction sets give the same bits.
+//
+// A vector of the plane for each link lies in the lanes like this:
+//     two links      x1 x2 y1 y2                   and a number for each link   a1 a2 a1 a2
+//     three links    x1 x2 x3 0  and  y1 y2 y3 0   and a number for each link   a1 a2 a3 0
+// A linear map is kept by distance: by[s] holds what it makes of lane i xor s for lane i.
+
+[[gnu::always_inline]] inline Pack all(double x) {
+    return make_pack(x, x, x, x);
+}
+[[gnu::always_inline]] inline Pack load(const double* p) {
+    return *reinterpret_cast<const Pack*>(p);
+}
+[[gnu::always_inline]] inline void store(double* p, Pack v) {
+    *reinterpret_cast<Pack*>(p) = v;
+}
+
+/// A vector of the plane for each link.
+template <int N>
+struct Plane {
+    Pack part[N - 1];
+
+    [[gnu::always_inline]] static Plane load_from(const double (&p)[N - 1][4]) {
+        if constexpr (N == 2) return {{load(p[0])}};
+        if constexpr (N == 3) return {{load(p[0]), load(p[1])}};
+    }
+    [[gnu::always_inline]] static Plane from(const double (&x)[N], const double (&y)[N]) {
+        if constexpr (N == 2) return {{make_pack(x[0], x[1], y[0], y[1])}};
+        if constexpr (N == 3) return {{make_pack(x[0], x[1], x[2], 0), make_pack(y[0], y[1], y[2], 0)}};
+    }
+    /// (x, y), the same for all links
+    [[gnu::always_inline]] static Plane both(double x, double y) {
+        if constexpr (N == 2) return {{make_pack(x, x, y, y)}};
+        if constexpr (N == 3) return {{all(x), all(y)}};
+    }
+    [[gnu::always_inline]] void store_to(double (&p)[N - 1][4]) const {
+        store(p[0], part[0]);
+        if constexpr (N == 3) store(p[1], part[1]);
+    }
+    [[gnu::always_inline]] friend Plane operator+(const Plane& a, const Plane& b) {
+        if constexpr (N == 2) return {{a.part[0] + b.part[0]}};
+        if constexpr (N == 3) return {{a.part[0] + b.part[0], a.part[1] + b.part[1]}};
+    }
+    [[gnu::always_inline]] friend Plane operator*(const Plane& a, const Plane& b) {
+        if constexpr (N == 2) return {{a.part[0] * b.part[0]}};
+        if constexpr (N == 3) return {{a.part[0] * b.part[0], a.part[1] * b.part[1]}};
+    }
+    [[gnu::always_inline]] friend Plane operator*(const Plane& a, Pack number) {
+        if constexpr (N == 2) return {{a.part[0] * number}};
+        if constexpr (N == 3) return {{a.part[0] * number, a.part[1] * number}};
+    }
+    /// (y, x)
+    [[gnu::always_inline]] Plane mirrored() const {
+        if constexpr (N == 2) return {{swapped<2>(part[0])}};
+        if constexpr (N == 3) return {{part[1], part[0]}};
+    }
+    /// x + y
+    [[gnu::always_inline]] Pack sum() const {
+        if constexpr (N == 2) return part[0] + swapped<2>(part[0]);
+        if constexpr (N == 3) return part[0] + part[1];
+    }
+    template <int s>
+    [[gnu::always_inline]] Plane exchanged() const {
+        if constexpr (N == 2) return {{swapped<s>(part[0])}};
+        if constexpr (N == 3) return {{swapped<s>(part[0]), swapped<s>(part[1])}};
+    }
+};
+
+/// A linear map from the plane to a number for each link.
+template <int N>
+struct Map {
+    Plane<N> by[4];
+
+    [[gnu::always_inline]] Pack operator()(const Plane<N>& v) const {
+        const auto sum = (by[0] * v + by[1] * v.template exchanged<1>()) +
+                         (by[2] * v.template exchanged<2>() + by[3] * v.template exchanged<3>());
+        if constexpr (N == 2) return sum.part[0];
+        if constexpr (N == 3) return sum.part[0] + sum.part[1];
+    }
+};
+
+/// A number for each link, number(i).
+template <int N, class Number>
+[[gnu::always_inline]] inline Pack numbers(const Number& number) {
+    if constexpr (N == 2) return make_pack(number(0), number(1), number(0), number(1));
+    if constexpr (N == 3) return make_pack(number(0), number(1), number(2), 0);
+}
+
+/// n ← −m⁻¹
+[[gnu::always_inline]] inline void invert(const double (&m)[2][2], double (&n)[2][2]) {
+    const double factor = -1 / (m[0][0] * m[1][1] - m[0][1] * m[1][0]);
+    n[0][0] = m[1][1] * factor;
+    n[0][1] = -(m[0][1] * factor);
+    n[1][0] = -(m[1][0] * factor);
+    n[1][1] = m[0][0] * factor;
+}
+[[gnu::always_inline]] inline void invert(const double (&m)[3][3], double (&n)[3][3]) {
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+            n[j][i] = m[a][c] * m[b][d] - m[a][d] * m[b][c];
+        }
+    const double factor = -1 / (m[0][0] * n[0][0] + m[0][1] * n[1][0] + m[0][2] * n[2][0]);
+    for (auto& row : n)
+        for (double& entry : row) entry *= factor;
+}
+
+/// The recurrence about one state. With D = r_0 ω_k + R_{k−1}, which is (k + 1) r̂_{k+1}, and so F_{k−1} = k F[D]:
+///     R_k     = Σ_{j=2}^k r_j ω_{k+1−j} + r_1 ω_k + r_{k+1} ω_0
+///     ω_{k+1} = −M⁻¹ ( r_0 · F[R_k] + k/(k+1) r_1 · F[D] + 1/(k+1) Σ_{j=2}^k r_j · F_{k−j} ) .
+/// Its time goes by in waiting for ω_{k+1} after ω_k rather than in arithmetic. So everything that can be known earlier
+/// is, and the linear maps through F and M⁻¹ are made once.
+template <int N>
+struct Recurrence {
+    using Vectors = Plane<N>;
+    using Series = LaneSeries<N>;
+
+    const typename Series::Chain& chain;
+    typename Series::Term* const term;
+    const Vectors quarter = Vectors::both(-1, 1);  // of a turn: (x, y) becomes (−y, x)
+    const Vectors weight = Vectors::both(0, chain.gravity);
+    Vectors across0, across1;  // r_0, r_1
+    Vectors turning;           // ω_0 times a quarter turn
+    Map<N> of_newest;          // −M⁻¹ r_0 · F[…]
+    Map<N> of_last;            // −M⁻¹ r_1 · F[…]
+    Pack inverse[4];           // −M⁻¹, by distance
+    Pack rate;                 // ω_k
+    Vectors known;             // R_{k−1}
+
+    /// Rates up to `order` from angles and rates.
+    [[gnu::always_inline]] void run(const SinCos<double>* angles, const double* rates, int order) {
+        start(angles, rates);
+        rate = of_newest(known) + solve((across0 * weight).sum());
+        store(term[1].rate, rate);
+        Vectors across{}, force{};  // r_k, F_{k−2}
+        Pack last{};                // ω_{k−1}
+        for (int k = 1; k < order; ++k) {
+            Vectors p{}, e{};  // Σ_{j=2}^k r_j ω_{k+1−j}, Σ_{j=2}^k r_j · F_{k−j}
+            add_old(k, p, e);
+            if (k == 1) e = across1 * weight;  // F_0 = F[…] + gravity
+            if (k > 2) {
+                const auto across2 = Vectors::load_from(term[2].across);
+                p = (p + across * load(term[1].rate)) + across2 * last;
+                e = (e + across * Vectors::load_from(term[0].force)) + across2 * force;
+            }
+            const double step = chain.inverse[k + 1];
+            const Vectors change = across0 * rate + known;
+            last = rate;
+            force = force_of(change) * all(k);
+            if (k == 1) force = force + weight;
+            force.store_to(term[k - 1].force);
+            across = quarter * change.mirrored() * all(step);
+            across.store_to(term[k + 1].across);
+
+            // r_{k+1} ω_0 = (R_{k−1} + r_0 ω_k) turned, times ω_0/(k + 1); and r_0 turned, times ω_0, is r_1
+            const Vectors next = (p + turning * all(step) * known.mirrored()) + across1 * all(1 + step) * rate;
+            rate = (of_newest(next) + all(step) * solve(e.sum())) + of_last(change * all(k * step));
+            known = next;
+            store(term[k + 1].rate, rate);
+        }
+    }
+
+    [[gnu::always_inline]] void start(const SinCos<double>* angles, const double* rates) {
+        double x[N], y[N], dx[N], dy[N], m[N][N], n[N][N];  // r_0, r_1, M, −M⁻¹
+        for (int i = 0; i < N; ++i) {
+            x[i] = chain.length[i] * angles[i].cos;
+            y[i] = chain.length[i] * angles[i].sin;
+            dx[i] = -(y[i] * rates[i]);
+            dy[i] = x[i] * rates[i];
+        }
+        for (int i = 0; i < N; ++i)
+            for (int j = 0; j < N; ++j) m[i][j] = chain.coupling[i][j] * (x[i] * x[j] + y[i] * y[j]);
+        invert(m, n);
+        of_newest = map_of(x, y, n);
+        of_last = map_of(dx, dy, n);
+        for (int s = 0; s < 4; ++s) inverse[s] = numbers<N>([&](int i) { return (i ^ s) < N ? n[i][i ^ s] : 0; });
+        across0 = Vectors::from(x, y);
+        across1 = Vectors::from(dx, dy);
+        rate = numbers<N>([&](int i) { return rates[i]; });
+        turning = quarter * rate;
+        known = across1 * rate;
+        store(term[0].rate, rate);
+        across1.store_to(term[1].across);
+    }
+
+    /// −M⁻¹ (x, y) · F[…], from n = −M⁻¹
+    [[gnu::always_inline]] Map<N> map_of(const double (&x)[N], const double (&y)[N], const double (&n)[N][N]) const {
+        Map<N> map{};
+        for (int i = 0; i < N; ++i) {
+            const auto row = Vectors::both(x[i], y[i]) * load(chain.coupling[i]);
+            const Pack column = numbers<N>([&](int j) { return n[j][i]; });
+            map.by[0] = map.by[0] + row * column;
+            map.by[1] = map.by[1] + row.template exchanged<1>() * column;
+            map.by[2] = map.by[2] + row.template exchanged<2>() * column;
+            map.by[3] = map.by[3] + row.template exchanged<3>() * column;
+        }
+        return map;
+    }
+
+    /// F[v], in units of μ_i
+    [[gnu::always_inline]] Vectors force_of(const Vectors& v) const {
+        const auto sum = v + v.template exchanged<1>() * load(chain.exchange[1]);
+        if constexpr (N == 2) return sum;
+        return sum + (v.template exchanged<2>() * load(chain.exchange[2]) +
+                      v.template exchanged<3>() * load(chain.exchange[3]));
+    }
+
+    /// −M⁻¹ v
+    [[gnu::always_inline]] Pack solve(Pack v) const {
+        const Pack sum = inverse[0] * v + inverse[1] * swapped<1>(v);
+        if constexpr (N == 2) return sum;
+        return sum + (inverse[2] * swapped<2>(v) + inverse[3] * swapped<3>(v));
+    }
+
+    /// Adds the products for 2 < j < k, and for j = k = 2, from the middle outwards: what came last is added last.
+    [[gnu::always_inline]] void add_old(int k, Vectors& p, Vectors& e) const {
+        Vectors p2{}, e2{};
+        const auto add = [&](int j, Vectors& into_p, Vectors& into_e) __attribute__((always_inline)) {
+            const auto r = Vectors::load_from(term[j].across);
+            into_p = into_p + r * load(term[k + 1 - j].rate);
+            into_e = into_e + r * Vectors::load_from(term[k - j].force);
+        };
+        if (k % 2 == 0) add(k / 2 + 1, p, e);
+        for (int low = (k + 1) / 2, high = k / 2 + 2; low > 2; --low, ++high) {
+            add(low, p, e);
+            add(high, p2, e2);
+        }
+        p = p + p2;
+        e = e + e2;
+    }
+};
+
+template <int N>
+void expand(const typename LaneSeries<N>::Chain& chain, const SinCos<double>* angles, const double* rates,
+            typename LaneSeries<N>::Term* term, int order) {
+    Recurrence<N>{chain, term}.run(angles, rates, order);
+}
+
+/// change ← Σ_{k≥0} ω_k h^{k+1} / (k + 1) and Σ_{k≥1} ω_k h^k, even and odd orders apart.
+template <int N>
+void move(const typename LaneSeries<N>::Chain& chain, const typename LaneSeries<N>::Term* term, int order, double h,
+          double* change) {
+    using Both = Plane<N>;  // numbers for each link, of the angles in place of x and of the rates in place of y
+    const auto coefficient = [&](int k) __attribute__((always_inline)) {
+        return Both::both(chain.inverse[k + 1], 1) * load(term[k].rate);
+    };
+    const Pack square = all(h * h);
+    Both even{}, odd{};
+    int k = order;
+    if (k % 2 == 1) odd = coefficient(k--);
+    for (; k > 0; k -= 2) {
+        even = even * square + coefficient(k);
+        odd = odd * square + coefficient(k - 1);
+    }
+    alignas(32) double sum[2][4];
+    const Both total = even * square + odd * all(h);
+    store(sum[0], total.part[0]);
+    store(sum[1], total.part[N - 2]);
+    for (int i = 0; i < N; ++i) {
+        change[i] = (sum[0][i] + term[0].rate[i]) * h;
+        change[N + i] = sum[1][N == 2 ? i + 2 : i];
+    }
+}

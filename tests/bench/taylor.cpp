@@ -1,0 +1,90 @@
+#include "integrate/taylor.hpp"
+
+#include "numeric/quad.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <string>
+
+// The Taylor method: the time to an angle error at the end that really is within the target, on four released double
+// and triple pendulums; and what a step of a long chain costs.
+
+namespace doppel {
+namespace {
+
+Pendulum<double> from_rest(const std::vector<double>& degrees) {
+    const std::vector<double> ones(degrees.size(), 1.0);
+    Pendulum<double> p{.mass = ones, .length = ones, .angle = {}, .rate = std::vector<double>(degrees.size(), 0.0)};
+    for (double angle : degrees) p.angle.push_back(radians(angle));
+    return p;
+}
+
+template <class Model, class Scalar = typename Model::Scalar>
+typename Model::State end_of(const Pendulum<Scalar>& p, const Scalar& seconds, const Scalar& tolerance) {
+    Model model(p);
+    TaylorStepper<Model> stepper(model, Model::start(p), tolerance);
+    stepper.advance(seconds);
+    return stepper.state();
+}
+
+/// The loosest tolerance, of eight a decade, that keeps the error within the target and whose next two do so too: one
+/// that is not just lucky.
+template <int N>
+double tolerance_for(const Pendulum<double>& p, double seconds, double target) {
+    const auto exact = end_of<AngleChain<Quad, N>>(p.cast<Quad>(), Quad(seconds), Quad(1e-26));
+    int good = 0;
+    for (int eighth = -16; eighth >= -120; --eighth) {
+        const auto end = end_of<AngleChain<double, N>>(p, seconds, std::pow(10, eighth / 8.0));
+        double error = 0;
+        for (int i = 0; i < N; ++i)
+            error = greater(error, std::abs(static_cast<double>(Quad(Quad(end[i]) - exact[i]))));
+        good = error <= target ? good + 1 : 0;
+        if (good == 3) return std::pow(10, (eighth + 2) / 8.0);
+    }
+    return 1e-15;
+}
+
+template <int N>
+void reach(benchmark::State& state, const std::vector<double>& degrees, double seconds, double target) {
+    const auto p = from_rest(degrees);
+    const double tolerance = tolerance_for<N>(p, seconds, target);
+    for (auto _ : state) benchmark::DoNotOptimize(end_of<AngleChain<double, N>>(p, seconds, tolerance));
+    state.counters["tolerance"] = tolerance;
+}
+
+void step_of_chain(benchmark::State& state) {
+    const auto links = static_cast<std::size_t>(state.range(0));
+    auto p = from_rest(std::vector<double>(links, 80.0));
+    for (auto& length : p.length) length = 1 / static_cast<double>(links);
+    using Model = AngleChain<double, Eigen::Dynamic>;
+    Model model(p);
+    TaylorStepper<Model> stepper(model, Model::start(p), 1e-12);
+    stepper.advance(1e-9);
+    const double interval = static_cast<double>(stepper.smallest_step());
+    const long before = stepper.steps();
+    for (auto _ : state) stepper.advance(interval);
+    using Counter = benchmark::Counter;
+    const auto steps = static_cast<double>(stepper.steps() - before);
+    state.counters["s/step"] = Counter(steps, Counter::kIsRate | Counter::kInvert);
+    state.counters["s/step/link"] = Counter(steps * static_cast<double>(links), Counter::kIsRate | Counter::kInvert);
+    state.SetComplexityN(state.range(0));
+}
+BENCHMARK(step_of_chain)->RangeMultiplier(2)->Range(8, 1024)->Complexity()->Unit(benchmark::kMicrosecond);
+
+const bool registered = [] {
+    for (double target : {1e-3, 1e-6, 1e-9, 1e-12}) {
+        const auto add = [&](const std::string& name, auto run) {
+            benchmark::RegisterBenchmark((name + fmt::format("/{:.0e}", target)).c_str(), run)
+                ->Unit(benchmark::kMicrosecond);
+        };
+        add("P1_90_90_10s", [target](benchmark::State& state) { reach<2>(state, {90, 90}, 10, target); });
+        add("P2_30_0_60s", [target](benchmark::State& state) { reach<2>(state, {30, 0}, 60, target); });
+        add("P3_150_90_5s", [target](benchmark::State& state) { reach<2>(state, {150, 90}, 5, target); });
+        add("P4_120_0_0_5s", [target](benchmark::State& state) { reach<3>(state, {120, 0, 0}, 5, target); });
+    }
+    return true;
+}();
+
+}  // namespace
+}  // namespace doppel

@@ -1,0 +1,253 @@
+// The methods that choose their steps from a tolerance: what they achieve, when they sample, when they give up.
+
+#include "integrate/dop853.hpp"
+#include "integrate/dopri5.hpp"
+#include "numeric/quad.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/bob.hpp"
+#include "physics/double_pendulum.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace doppel {
+namespace {
+
+Pendulum<Quad> released_at(const std::vector<int>& degrees) {
+    Pendulum<Quad> p{};
+    p.mass.assign(degrees.size(), Quad(1));
+    p.length = p.mass;
+    p.rate.assign(degrees.size(), Quad(0));
+    p.angle.clear();
+    for (const int angle : degrees) p.angle.push_back(pi_of<Quad>() * angle / 180);
+    p.gravity = Quad(98) / 10;
+    return p;
+}
+
+/// One with nothing equal or zero.
+Pendulum<double> unequal() {
+    return {{1.0, 0.7}, {1.0, 1.3}, {2.0, -0.5}, {0.3, 1.0}, 9.8};
+}
+
+template <class Which, class Model>
+typename Model::State state_after(const Pendulum<typename Model::Scalar>& p, double seconds, double tolerance) {
+    using Scalar = typename Model::Scalar;
+    Model model(p);
+    typename Which::template Stepper<Model> stepper(model, Model::start(p), Scalar(tolerance));
+    stepper.advance(Scalar(seconds));
+    return stepper.state();
+}
+
+/// Errors at the tolerances 1e-4 … 1e-13 stay below factor · tolerance.
+template <class Which, class Model, class Truth>
+void keeps_to_tolerance(const std::vector<int>& degrees, double seconds, const Truth& truth, double factor) {
+    const auto p = released_at(degrees).cast<double>();
+    for (int digits = 4; digits <= 13; ++digits) {
+        const double tolerance = std::pow(10.0, -digits);
+        const auto end = state_after<Which, Model>(p, seconds, tolerance);
+        double error = 0;
+        for (std::size_t i = 0; i < degrees.size(); ++i)
+            error = std::fmax(error, std::abs(static_cast<double>(end[static_cast<Eigen::Index>(i)] -
+                                                                  truth[static_cast<Eigen::Index>(i)])));
+        EXPECT_LT(error, factor * tolerance) << Which::method.name << ", tolerance 1e-" << digits;
+    }
+}
+
+// The angles of the truth are those of a quad run whose own error is below 1e-15. The factors follow the sensitivities
+// of the four motions to their start, 80, 21, 320 and 1040, and the length of the second.
+
+TEST(Tolerance, IsKeptFromNinetyNinety) {
+    const auto truth = state_after<Dop853, DoublePendulum<Quad>>(released_at({90, 90}), 10, 1e-17);
+    keeps_to_tolerance<Dop853, DoublePendulum<double>>({90, 90}, 10, truth, 400);   // measured 170
+    keeps_to_tolerance<Dopri5, DoublePendulum<double>>({90, 90}, 10, truth, 3000);  // measured 1500
+}
+
+TEST(Tolerance, IsKeptWhereTheMotionIsRegular) {
+    const auto truth = state_after<Dop853, DoublePendulum<Quad>>(released_at({30, 0}), 60, 1e-17);
+    keeps_to_tolerance<Dop853, DoublePendulum<double>>({30, 0}, 60, truth, 500);   // measured 210
+    keeps_to_tolerance<Dopri5, DoublePendulum<double>>({30, 0}, 60, truth, 2500);  // measured 1200
+}
+
+TEST(Tolerance, IsKeptFromHighUp) {
+    const auto truth = state_after<Dop853, DoublePendulum<Quad>>(released_at({150, 90}), 5, 1e-17);
+    keeps_to_tolerance<Dop853, DoublePendulum<double>>({150, 90}, 5, truth, 5000);  // measured 2600
+    keeps_to_tolerance<Dopri5, DoublePendulum<double>>({150, 90}, 5, truth, 8000);  // measured 3700
+}
+
+TEST(Tolerance, IsKeptByThreeLinks) {
+    const auto truth = state_after<Dop853, AngleChain<Quad, 3>>(released_at({120, 0, 0}), 5, 1e-17);
+    keeps_to_tolerance<Dop853, AngleChain<double, 3>>({120, 0, 0}, 5, truth, 2000);  // measured 1000
+    keeps_to_tolerance<Dopri5, AngleChain<double, 3>>({120, 0, 0}, 5, truth, 7000);  // measured 3300
+}
+
+TEST(Tolerance, IsKeptInQuadByAnglesAndByRods) {
+    const auto p = released_at({90, 90});
+    const auto angles = state_after<Dop853, DoublePendulum<Quad>>(p, 5, 1e-24);
+    const auto rods = state_after<Dop853, RodChain<Quad, 2>>(p, 5, 1e-24);
+    const auto bobs = bobs_of_particles(p, rods);
+    const auto same = bobs_of_angles(p, angles);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_LT(std::abs(static_cast<double>(bobs[i].x - same[i].x)), 1e-21);
+        EXPECT_LT(std::abs(static_cast<double>(bobs[i].y - same[i].y)), 1e-21);
+    }
+}
+
+template <class Which>
+class Adaptively : public testing::Test {};
+using AdaptiveMethods = testing::Types<Dopri5, Dop853>;
+TYPED_TEST_SUITE(Adaptively, AdaptiveMethods);
+
+TYPED_TEST(Adaptively, SamplingChangesNoStep) {
+    using Model = DoublePendulum<double>;
+    Model model(unequal());
+    typename TypeParam::template Stepper<Model> sampled(model, Model::start(unequal()), 1e-9);
+    typename TypeParam::template Stepper<Model> at_once(model, Model::start(unequal()), 1e-9);
+    for (int i = 0; i < 10240; ++i) sampled.advance(1.0 / 1024);
+    at_once.advance(10);
+    EXPECT_EQ(sampled.state(), at_once.state());
+    EXPECT_EQ(sampled.steps(), at_once.steps());
+    EXPECT_EQ(sampled.smallest_step(), at_once.smallest_step());
+}
+
+TYPED_TEST(Adaptively, TheClockNeitherDriftsNorCoarsens) {
+    // 1/120 is no double: 120 000 of them are 1000 s + 5.6e-14 s, which summing in double would miss by 1e-9 s
+    using Model = DoublePendulum<double>;
+    const auto p = Pendulum<double>{{1, 1}, {1, 1}, {0.1, 0}, {0, 0}};
+    Model model(p);
+    typename TypeParam::template Stepper<Model> sampled(model, Model::start(p), 1e-6);
+    typename TypeParam::template Stepper<Model> at_once(model, Model::start(p), 1e-6);
+    for (int i = 0; i < 120000; ++i) sampled.advance(1.0 / 120);
+    at_once.advance(1000);
+    EXPECT_LT((sampled.state() - at_once.state()).norm(), 1e-12);  // measured 3e-15, 1.5e-13
+}
+
+TYPED_TEST(Adaptively, IsContinuousFromStepToStep) {
+    using Model = DoublePendulum<double>;
+    Model model(unequal());
+    typename TypeParam::template Stepper<Model> stepper(model, Model::start(unequal()), 1e-8);
+    auto before = stepper.state();
+    double jump = 0;
+    for (int i = 0; i < 100000; ++i) {
+        stepper.advance(1e-5);
+        typename Model::State slope;
+        model.rate(before, slope);
+        jump = std::fmax(jump, (stepper.state() - before - 1e-5 * slope).norm());
+        before = stepper.state();
+    }
+    EXPECT_LT(jump, 1e-7);  // the curvature, ½ h² |y″|: measured 7e-8
+}
+
+TYPED_TEST(Adaptively, ServesAModelSizedAtRunTime) {
+    using Fixed = AngleChain<double, 2>;
+    using Dynamic = AngleChain<double, Eigen::Dynamic>;
+    const auto one = state_after<TypeParam, Fixed>(unequal(), 2, 1e-10);
+    const auto other = state_after<TypeParam, Dynamic>(unequal(), 2, 1e-10);
+    EXPECT_LT((one - other).norm(), 1e-12);
+}
+
+TYPED_TEST(Adaptively, AgreesBetweenAnglesAndRods) {
+    const auto angles = state_after<TypeParam, AngleChain<double, 2>>(unequal(), 2, 1e-12);
+    const auto rods = state_after<TypeParam, RodChain<double, 2>>(unequal(), 2, 1e-12);
+    const auto bobs = bobs_of_particles(unequal(), rods);
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_NEAR(std::remainder(bobs[i].theta - angles[static_cast<Eigen::Index>(i)], 2 * pi), 0, 1e-9);
+}
+
+TYPED_TEST(Adaptively, StaysInEquilibrium) {
+    using Model = RodChain<double, 2>;
+    const Pendulum<double> p{{1.0, 0.7}, {1.0, 1.3}};
+    EXPECT_EQ((state_after<TypeParam, Model>(p, 1e6, 1e-9)), Model::start(p));
+}
+
+/// y′ = y², y(0) = 1: 1/(1 − t)
+struct BlowUp {
+    using Scalar = double;
+    using State = doppel::State<double, 1>;
+    void rate(const State& y, State& dydt) const { dydt[0] = y[0] * y[0]; }
+};
+
+/// y′ = −1/(2 √y), y(0) = 1: √(1 − t), and nothing after
+struct Cliff : BlowUp {
+    void rate(const State& y, State& dydt) const { dydt[0] = -1 / (2 * std::sqrt(y[0])); }
+};
+
+template <class Which, class Model>
+std::string failure_of(double seconds) {
+    Model model;
+    typename Model::State start;
+    start << 1;
+    try {
+        typename Which::template Stepper<Model> stepper(model, start, 1e-9);
+        stepper.advance(seconds);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        return error.what();
+    }
+    return {};
+}
+
+TYPED_TEST(Adaptively, SaysWhereTheStepVanishes) {
+    EXPECT_EQ((failure_of<TypeParam, BlowUp>(0.9)), "");
+    for (const auto& message : {failure_of<TypeParam, BlowUp>(2), failure_of<TypeParam, Cliff>(2)}) {
+        EXPECT_NE(message.find("no step down to "), std::string::npos) << message;
+        EXPECT_NE(message.find("tolerance = 1e-09"), std::string::npos) << message;
+    }
+}
+
+TYPED_TEST(Adaptively, FollowsTheClosedForm) {
+    BlowUp model;
+    BlowUp::State start;
+    start << 1;
+    typename TypeParam::template Stepper<BlowUp> stepper(model, start, 1e-12);
+    stepper.advance(0.9);
+    EXPECT_NEAR(stepper.state()[0], 10, 1e-8);
+}
+
+TYPED_TEST(Adaptively, RefusesATolerance) {
+    using Model = DoublePendulum<double>;
+    Model model(unequal());
+    for (const double tolerance : {1e-17, 0.0, -1.0, std::nan("")}) {
+        try {
+            typename TypeParam::template Stepper<Model> stepper(model, Model::start(unequal()), tolerance);
+            ADD_FAILURE() << tolerance;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::bad_input);
+            EXPECT_NE(std::string(error.what()).find("the finest is 9e-16"), std::string::npos) << error.what();
+        }
+    }
+    using Fine = DoublePendulum<Quad>;
+    Fine fine(unequal().cast<Quad>());
+    EXPECT_NO_THROW(
+        (typename TypeParam::template Stepper<Fine>(fine, Fine::start(unequal().cast<Quad>()), Quad(1e-32))));
+}
+
+/// A pendulum in (x, y), put back on its circle; counts how often.
+struct OnTheCircle : RodChain<double, 1> {
+    long settled = 0;
+    explicit OnTheCircle(const Pendulum<double>& p) : RodChain(p) {}
+    void settle(State& y) {
+        y.head<2>().normalize();
+        y.tail<2>() -= y.tail<2>().dot(y.head<2>()) * y.head<2>();
+        ++settled;
+    }
+};
+
+TYPED_TEST(Adaptively, SettlesEveryStepAndEverySample) {
+    const Pendulum<double> p{{1}, {1}, {2}, {0}};
+    OnTheCircle model(p);
+    typename TypeParam::template Stepper<OnTheCircle> stepper(model, OnTheCircle::start(p), 1e-7);
+    for (int i = 0; i < 1000; ++i) {
+        stepper.advance(0.01);
+        EXPECT_NEAR(stepper.state().template head<2>().norm(), 1, 3e-16);
+    }
+    EXPECT_EQ(model.settled, stepper.steps() + 1000);
+    const auto angle = state_after<Dop853, AngleChain<double, 1>>(p, 10, 1e-13);
+    EXPECT_NEAR(stepper.state()[0], std::sin(angle[0]), 1e-4);  // measured 2e-5, 2e-6
+}
+
+}  // namespace
+}  // namespace doppel

@@ -1,0 +1,107 @@
+#include "integrate/ensemble.hpp"
+
+#include "integrate/ensemble_block.hpp"
+#include "numeric/error.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/double_pendulum.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+namespace doppel {
+namespace {
+
+constexpr double step = 1.0 / 3000;
+constexpr long steps = 300;  // more than the 256 after which Euler takes its sines afresh
+
+/// Trials that differ in everything; their number is no multiple of any width.
+std::vector<Pendulum<double>> some_trials(std::size_t links, std::size_t count = 11) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> some(0.5, 2);
+    std::vector<Pendulum<double>> trials(count);
+    for (auto& p : trials) {
+        for (auto* quantity : {&p.mass, &p.length, &p.angle, &p.rate}) {
+            quantity->clear();
+            for (std::size_t i = 0; i < links; ++i) quantity->push_back(some(random));
+        }
+        p.gravity = 5 * some(random);
+    }
+    return trials;
+}
+
+template <class Which, class Model>
+State<double, Eigen::Dynamic> alone(const Pendulum<double>& p) {
+    Model model(p);
+    typename Which::template Stepper<Model> stepper(model, Model::start(p), step);
+    stepper.advance(steps);
+    return stepper.state();
+}
+
+template <class Which, class Model>
+void expect_each_trial_as_alone(EnsembleModel model, std::size_t links) {
+    const auto trials = some_trials(links);
+    for (const int width : Ensemble::widths()) {
+        Ensemble ensemble(trials, model, Which::method.name, step, width);
+        ensemble.advance(100);
+        ensemble.advance(steps - 100);
+        for (std::size_t i = 0; i < trials.size(); ++i)
+            EXPECT_EQ(ensemble.state(i), (alone<Which, Model>(trials[i])))
+                << Which::method.name << ", width " << width << ", trial " << i;
+    }
+}
+
+template <class Which>
+void expect_all_models_as_alone() {
+    expect_each_trial_as_alone<Which, AngleChain<double, 1>>(EnsembleModel::angles, 1);
+    expect_each_trial_as_alone<Which, DoublePendulum<double>>(EnsembleModel::angles, 2);
+    expect_each_trial_as_alone<Which, AngleChain<double, 3>>(EnsembleModel::angles, 3);
+    expect_each_trial_as_alone<Which, RodChain<double, 1>>(EnsembleModel::constraints, 1);
+    expect_each_trial_as_alone<Which, RodChain<double, 2>>(EnsembleModel::constraints, 2);
+    expect_each_trial_as_alone<Which, RodChain<double, 3>>(EnsembleModel::constraints, 3);
+    expect_each_trial_as_alone<Which, RodChain<double, 4>>(EnsembleModel::constraints, 4);
+    expect_each_trial_as_alone<Which, RodChain<double, Eigen::Dynamic>>(EnsembleModel::constraints, 6);
+}
+
+TEST(Ensemble, EachTrialEndsAsAloneAtEveryWidth) {
+    expect_all_models_as_alone<Euler>();
+    expect_all_models_as_alone<SemiImplicitEuler>();
+    expect_all_models_as_alone<Midpoint>();
+    expect_all_models_as_alone<Rk4>();
+}
+
+TEST(Ensemble, TakesTheWidestThatTheProcessorHas) {
+    const auto trials = some_trials(2);
+    EXPECT_EQ(Ensemble(trials, EnsembleModel::angles, "euler", step).width(), Ensemble::widths().back());
+    EXPECT_EQ(Ensemble(trials, EnsembleModel::angles, "euler", step, 2).width(), 2);
+    EXPECT_EQ(Ensemble(some_trials(5), EnsembleModel::angles, "euler", step).width(), 1);
+}
+
+/// The sentence of the error.
+template <class Make>
+std::string refusal(Make make) {
+    try {
+        make();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::bad_input);
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Ensemble, SaysWhatItCannotStep) {
+    const auto trials = some_trials(2);
+    EXPECT_EQ(refusal([&] { Ensemble(trials, EnsembleModel::angles, "dop853", step); }),
+              "\"dop853\" does not step many trials side by side; these do: euler, semi-implicit-euler, midpoint, rk4");
+    auto mixed = trials;
+    mixed.back() = some_trials(3).back();
+    EXPECT_EQ(refusal([&] { Ensemble(mixed, EnsembleModel::angles, "euler", step); }),
+              "the trials of an ensemble have as many links each: not 2 and 3");
+    EXPECT_NE(refusal([&] { Ensemble({}, EnsembleModel::angles, "euler", step); }), "");
+    EXPECT_NE(refusal([&] { Ensemble(trials, EnsembleModel::angles, "euler", step, 3); }), "");
+}
+
+}  // namespace
+}  // namespace doppel

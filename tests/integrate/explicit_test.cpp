@@ -1,0 +1,178 @@
+// The explicit fixed-step methods on linear problems, where what they do is known in closed form; z = step · frequency.
+
+#include "integrate/adams.hpp"
+#include "integrate/euler.hpp"
+#include "integrate/midpoint.hpp"
+#include "integrate/rk4.hpp"
+#include "integrate/semi_implicit_euler.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// q″ = −q: frequency 1, so that z is the step. State (q, v).
+struct Oscillator {
+    using Scalar = double;
+    using State = doppel::State<double, 2>;
+    void rate(const State& y, State& dydt) const { dydt << y[1], -y[0]; }
+};
+
+/// y′ = −y
+struct Decay {
+    using Scalar = double;
+    using State = doppel::State<double, 1>;
+    void rate(const State& y, State& dydt) const { dydt = -y; }
+};
+
+/// |y| after `steps` steps from |y| = 1.
+template <class Which, class Model>
+double size_after(double step, long steps) {
+    Model model;
+    typename Model::State start = Model::State::Zero();
+    start[0] = 1;
+    typename Which::template Stepper<Model> stepper(model, start, step);
+    stepper.advance(steps);
+    return stepper.state().norm();
+}
+
+TEST(Euler, MultipliesTheEnergyByOnePlusZSquared) {
+    for (double z : {0.01, 0.3, 1.5}) EXPECT_NEAR((size_after<Euler, Oscillator>(z, 1)), std::sqrt(1 + z * z), 1e-15);
+}
+
+TEST(Midpoint, MultipliesTheEnergyByOnePlusAQuarterZToTheFourth) {
+    for (double z : {0.01, 0.3, 1.5})
+        EXPECT_NEAR((size_after<Midpoint, Oscillator>(z, 1)), std::sqrt(1 + z * z * z * z / 4), 1e-15);
+}
+
+TEST(Rk4, MultipliesTheEnergyByItsStabilityFunction) {
+    for (double z : {0.3, 1.5, 2.8})
+        EXPECT_NEAR((size_after<Rk4, Oscillator>(z, 1)), std::sqrt(1 - std::pow(z, 6) / 72 + std::pow(z, 8) / 576),
+                    2e-15);
+}
+
+TEST(Rk4, IsStableUpToItsLimits) {
+    const double imaginary = 2 * std::sqrt(2.0);  // of 1 − z⁶/72 + z⁸/576 = 1
+    EXPECT_LT((size_after<Rk4, Oscillator>(0.999 * imaginary, 10000)), 1e-10);
+    EXPECT_GT((size_after<Rk4, Oscillator>(1.001 * imaginary, 10000)), 1e10);
+    const double real = 2.785293563405282;  // of 1 − z + z²/2 − z³/6 + z⁴/24 = 1
+    EXPECT_LT((size_after<Rk4, Decay>(0.999 * real, 10000)), 1e-10);
+    EXPECT_GT((size_after<Rk4, Decay>(1.001 * real, 10000)), 1e10);
+}
+
+TEST(SemiImplicitEuler, KeepsItsInvariant) {
+    // v² + q² − h q v, with velocities first
+    for (double h : {0.01, 0.5, 1.9}) {
+        Oscillator model;
+        SemiImplicitEuler::Stepper<Oscillator> stepper(model, {1, 0.25}, h);
+        const auto invariant = [&] {
+            const double q = stepper.state()[0], v = stepper.state()[1];
+            return v * v + q * q - h * q * v;
+        };
+        const double before = invariant();
+        double worst = 0;
+        for (int i = 0; i < 1000; ++i) {
+            stepper.advance(1);
+            worst = std::fmax(worst, std::abs(invariant() - before));
+        }
+        EXPECT_LT(worst, 1e-13) << "h = " << h;  // measured 1.4e-14
+    }
+}
+
+TEST(SemiImplicitEuler, IsStableUpToTwo) {
+    EXPECT_LT((size_after<SemiImplicitEuler, Oscillator>(0.999 * 2, 1000)), 100.0);  // on an ellipse 1 : 45
+    EXPECT_GT((size_after<SemiImplicitEuler, Oscillator>(1.001 * 2, 1000)), 1e10);
+}
+
+TEST(SemiImplicitEuler, MovesPositionsWithTheNewVelocities) {
+    Oscillator model;
+    SemiImplicitEuler::Stepper<Oscillator> stepper(model, {1, 0}, 0.5);
+    stepper.advance(1);
+    EXPECT_EQ(stepper.state()[1], -0.5);
+    EXPECT_EQ(stepper.state()[0], 0.75);
+    EXPECT_EQ(stepper.evaluations(), 1);
+}
+
+TEST(Adams, WeightsIntegratePolynomialsExactly) {
+    // the slope t^k at t = 0, −1, … −7 (predictor) or 1, 0, … −6 (corrector), integrated from 0 to 1
+    const auto integral = [](const std::array<Fraction, 8>& weights, long newest, int k) {
+        long sum = 0;
+        for (std::size_t j = 0; j < weights.size(); ++j) {
+            long power = 1;
+            for (int i = 0; i < k; ++i) power *= newest - static_cast<long>(j);
+            sum += weights[j].numerator * power;
+        }
+        return sum * (k + 1);
+    };
+    for (int k = 0; k < 8; ++k) {
+        EXPECT_EQ(integral(AdamsWeights::bashforth, 0, k), 120960) << k;
+        EXPECT_EQ(integral(AdamsWeights::moulton, 1, k), 120960) << k;
+    }
+}
+
+TEST(Adams, TakesTwoEvaluationsAStep) {
+    Oscillator model;
+    Adams::Stepper<Oscillator> stepper(model, {1, 0}, 0.1);
+    stepper.advance(7);
+    const long begun = stepper.evaluations();
+    EXPECT_EQ(begun, 1 + 7 * 12);
+    stepper.advance(100);
+    EXPECT_EQ(stepper.evaluations() - begun, 200);
+}
+
+/// An oscillator that is put back on the unit circle after every step, and remembers the last state it was asked about.
+struct Settled : Oscillator {
+    State last;
+    void rate(const State& y, State& dydt) {
+        last = y;
+        Oscillator::rate(y, dydt);
+    }
+    void settle(State& y) const { y.normalize(); }
+};
+
+TEST(Adams, TakesItsSlopesWhereTheModelSettled) {
+    Settled model;
+    Adams::Stepper<Settled> stepper(model, {1, 0}, 0.1);
+    for (int i = 0; i < 40; ++i) {
+        stepper.advance(1);
+        EXPECT_EQ(model.last, stepper.state());
+        EXPECT_NEAR(stepper.state().norm(), 1, 1e-15);
+    }
+}
+
+template <class Which>
+class FixedStep : public testing::Test {};
+using FixedSteps = testing::Types<Euler, SemiImplicitEuler, Midpoint, Rk4, Adams>;
+TYPED_TEST_SUITE(FixedStep, FixedSteps);
+
+TYPED_TEST(FixedStep, SteppingInPiecesIsTheSame) {
+    Pendulum<double> p{{1.0, 0.7, 2.0}, {1.0, 1.3, 0.4}, {1.2, -0.3, 2.0}, {0.1, 0.0, -0.5}};
+    using Fixed = RodChain<double, 3>;
+    using Dynamic = RodChain<double, Eigen::Dynamic>;
+    Fixed one(p), many(p);
+    Dynamic dynamic(p);
+    typename TypeParam::template Stepper<Fixed> at_once(one, Fixed::start(p), 0.001);
+    typename TypeParam::template Stepper<Fixed> in_pieces(many, Fixed::start(p), 0.001);
+    typename TypeParam::template Stepper<Dynamic> sized_at_run_time(dynamic, Dynamic::start(p), 0.001);
+    at_once.advance(200);
+    for (long steps : {1, 2, 4, 0, 3, 90, 100}) in_pieces.advance(steps);
+    sized_at_run_time.advance(200);
+    EXPECT_EQ(at_once.state(), in_pieces.state());
+    EXPECT_LT((at_once.state() - sized_at_run_time.state()).norm(), 1e-13);  // measured 0
+}
+
+TYPED_TEST(FixedStep, StaysInEquilibrium) {
+    Pendulum<double> p{{1.0, 0.7}, {1.0, 1.3}};
+    using Rods = RodChain<double, 2>;
+    Rods model(p);
+    const auto start = Rods::start(p);
+    typename TypeParam::template Stepper<Rods> stepper(model, start, 0.01);
+    stepper.advance(1000);
+    EXPECT_EQ(stepper.state(), start);
+}
+
+}  // namespace
+}  // namespace doppel

@@ -1,0 +1,342 @@
+#include "integrate/rattle.hpp"
+
+#include "integrate/rk4.hpp"
+#include "physics/bob.hpp"
+#include "physics/canonical.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// Unequal links, in motion.
+template <class Scalar>
+Pendulum<Scalar> unequal(int links = 2) {
+    Pendulum<double> p{{1.25, 0.5, 0.75}, {0.75, 1.5, 0.5}, {1.5, -0.5, 0.25}, {0.25, -1, 2}, 9.8};
+    for (auto* values : {&p.mass, &p.length, &p.angle, &p.rate}) values->resize(static_cast<std::size_t>(links));
+    return p.template cast<Scalar>();
+}
+
+/// Drag on every particle, −k v a unit of mass: forces that depend on velocity.
+template <class Scalar, int N>
+struct Dragged : RodChain<Scalar, N> {
+    using Half = typename RodChain<Scalar, N>::Half;
+    using State = typename RodChain<Scalar, N>::State;
+    Scalar k = Scalar(0.5);  // 1/s
+
+    using RodChain<Scalar, N>::RodChain;
+    bool feels_velocity() const { return true; }
+    void free_acceleration(const Half& q, const Half& v, Half& a) const {
+        RodChain<Scalar, N>::free_acceleration(q, v, a);
+        a -= k * v;
+    }
+};
+
+template <class Which, class Model>
+typename Model::State after(const Pendulum<typename Model::Scalar>& p, const typename Model::State& start,
+                            const typename Model::Scalar& step, long steps) {
+    Model model(p);
+    typename Which::template Stepper<Model> stepper(model, start, step);
+    stepper.advance(steps);
+    return stepper.state();
+}
+
+template <class State>
+double distance(const State& a, const State& b) {
+    return static_cast<double>((a - b).cwiseAbs().maxCoeff());
+}
+
+/// How many times the error halves when the step does, from three step sizes.
+template <class Which, class Model>
+double measured_order(int links, long steps) {
+    const auto p = unequal<Quad>(links);
+    const auto run = [&](long n) { return after<Which, Model>(p, Model::start(p), Quad(0.5) / Quad(n), n); };
+    const auto coarse = run(steps), middle = run(2 * steps), fine = run(4 * steps);
+    return std::log2(distance(coarse, middle) / distance(middle, fine));
+}
+
+TEST(Rattle, HasItsOrder) {
+    EXPECT_NEAR((measured_order<Rattle, RodChain<Quad, 2>>(2, 128)), 2, 0.01);                // measured 2.0002
+    EXPECT_NEAR((measured_order<Rattle6, RodChain<Quad, 2>>(2, 128)), 6, 0.01);               // measured 5.999
+    EXPECT_NEAR((measured_order<Rattle6, RodChain<Quad, Eigen::Dynamic>>(3, 128)), 6, 0.01);  // measured 6.001
+}
+
+TEST(Rattle, KeepsItsOrderUnderFriction) {
+    EXPECT_NEAR((measured_order<Rattle, Dragged<Quad, 2>>(2, 128)), 2, 0.01);   // measured 2.0002
+    EXPECT_NEAR((measured_order<Rattle6, Dragged<Quad, 2>>(2, 128)), 6, 0.01);  // measured 5.999
+}
+
+TEST(Rattle, ConvergesToTheMotionInAngles) {
+    const auto p = unequal<Quad>();
+    using Angles = DoublePendulum<Quad>;
+    const auto bobs = bobs_of_particles<Quad>(
+        p, after<Rattle6, RodChain<Quad, 2>>(p, RodChain<Quad, 2>::start(p), Quad(1) / Quad(1000), 500));
+    const auto truth = after<Rk4, Angles>(p, Angles::start(p), Quad(1) / Quad(20000), 10000);
+    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[0].theta - truth[0]))), 1e-15);  // measured 4e-17
+    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[1].theta - truth[1]))), 1e-15);  // measured 4e-17
+}
+
+TEST(Rattle6, MeetsTheConditionsOfOrderSix) {
+    // Σγ = 1 by construction, Σγ³ = Σγ⁵ = Σγ³m² = 0
+    std::vector<Quad> gammas;
+    Quad middle(1), at(0), third(0), fifth(0), mixed(0);
+    for (const auto text : Rattle6::composition) gammas.push_back(parse_quad(text));
+    for (const auto& gamma : gammas) middle -= Quad(2) * gamma;
+    gammas.push_back(middle);
+    for (std::size_t i = 4; i > 0; --i) gammas.push_back(gammas[i - 1]);
+    for (const auto& gamma : gammas) {
+        const Quad half_way = at + gamma / Quad(2), cube = gamma * gamma * gamma;
+        third += cube;
+        fifth += cube * gamma * gamma;
+        mixed += cube * half_way * half_way;
+        at += gamma;
+    }
+    EXPECT_LT(std::abs(static_cast<double>(third)), 1e-33);  // measured 2e-34
+    EXPECT_LT(std::abs(static_cast<double>(fifth)), 1e-33);  // measured 1e-34
+    EXPECT_LT(std::abs(static_cast<double>(mixed)), 1e-33);  // measured 4e-35
+    // Kahan & Li print 0.39216144400731413927925056 … 0.79854399093482996339895035
+    EXPECT_LT(std::abs(static_cast<double>(Quad(gammas[0] - parse_quad("0.39216144400731413927925056")))), 1e-20);
+    EXPECT_LT(std::abs(static_cast<double>(Quad(middle - parse_quad("0.79854399093482996339895035")))), 1e-25);
+}
+
+/// How far SᵀJS is from J, where S is the Jacobian of one step in (θ, p), by differences in Quad.
+template <class Which>
+double symplecticity_error(const Quad& step) {
+    using Model = RodChain<Quad, 2>;
+    auto p = unequal<Quad>();
+    DoublePendulum<Quad> angles(p);
+    Canonical<DoublePendulum<Quad>> form(angles);
+    using State = DoublePendulum<Quad>::State;
+    const auto one = [&](const State& z) {
+        State y;
+        form.velocities(z, y);
+        for (Eigen::Index i = 0; i < 2; ++i) {
+            p.angle[static_cast<std::size_t>(i)] = y[i];
+            p.rate[static_cast<std::size_t>(i)] = y[2 + i];
+        }
+        const auto bobs = bobs_of_particles<Quad>(p, after<Which, Model>(p, Model::start(p), step, 1));
+        y << bobs[0].theta, bobs[1].theta, bobs[0].omega, bobs[1].omega;
+        State end;
+        form.momenta(y, end);
+        return end;
+    };
+    State z;
+    form.momenta(DoublePendulum<Quad>::start(p), z);
+    Eigen::Matrix<Quad, 4, 4> s, j;
+    const Quad difference(1e-11);
+    for (Eigen::Index i = 0; i < 4; ++i) {
+        State less = z, more = z;
+        less[i] -= difference;
+        more[i] += difference;
+        s.col(i) = (one(more) - one(less)) / (Quad(2) * difference);
+    }
+    j.setZero();
+    for (Eigen::Index i = 0; i < 2; ++i) {
+        j(i, i + 2) = Quad(1);
+        j(i + 2, i) = Quad(-1);
+    }
+    return static_cast<double>(Quad((s.transpose() * j * s - j).cwiseAbs().maxCoeff()));
+}
+
+TEST(Rattle, IsSymplectic) {
+    const Quad step(0.05);
+    EXPECT_LT(symplecticity_error<Rattle>(step), 1e-21);   // measured 3e-23
+    EXPECT_LT(symplecticity_error<Rattle6>(step), 1e-21);  // measured 2e-23
+    EXPECT_GT(symplecticity_error<Rk4>(step), 1e-7);       // measured 5e-6
+}
+
+/// There and back again: how far from the start.
+template <class Which>
+double way_back(double step, long steps) {
+    using Model = RodChain<double, 2>;
+    const auto p = unequal<double>();
+    const Model::State start = Model::start(p);
+    Model::State end = after<Which, Model>(p, start, step, steps);
+    end.tail(4) *= -1;
+    end = after<Which, Model>(p, end, step, steps);
+    end.tail(4) *= -1;
+    return distance(end, start);
+}
+
+TEST(Rattle, ReturnsWhenTimeIsReversed) {
+    EXPECT_LT(way_back<Rattle>(0.005, 400), 1e-12);  // measured 6e-15
+    EXPECT_LT(way_back<Rattle6>(0.02, 100), 1e-12);  // measured 2e-14
+    EXPECT_GT(way_back<Rk4>(0.02, 100), 1e-5);       // measured 9e-5
+}
+
+/// What a run leaves: errors of energy (J) and rods (m), largest in its first and its last tenth.
+struct Errors {
+    double early = 0, late = 0, rod = 0;
+};
+template <class Which, class Model = RodChain<double, 2>>
+Errors errors_of(const Pendulum<double>& p, double step, long steps) {
+    Model model(p);
+    typename Which::template Stepper<Model> stepper(model, Model::start(p), step);
+    const double start = energy(bobs_of_particles<double>(p, stepper.state()), p.gravity);
+    Errors errors;
+    for (int part = 0; part < 1000; ++part) {
+        stepper.advance(steps / 1000);
+        const auto bobs = bobs_of_particles<double>(p, stepper.state());
+        const double error = std::abs(energy(bobs, p.gravity) - start);
+        if (part < 100) errors.early = std::max(errors.early, error);
+        if (part >= 900) errors.late = std::max(errors.late, error);
+        errors.rod = std::max(errors.rod, length_error(p, bobs));
+    }
+    return errors;
+}
+
+Pendulum<double> released(double degrees1, double degrees2) {
+    Pendulum<double> p;
+    p.angle = {radians(degrees1), radians(degrees2)};
+    return p;
+}
+
+TEST(Rattle, KeepsEnergyAndRodsOverAHundredThousandPeriods) {
+    // the slow mode of 30/0 takes 1.9 s: 1.9e5 s in steps of a twentieth of a second
+    const auto errors = errors_of<Rattle>(released(30, 0), 0.05, 3'800'000);
+    EXPECT_LT(errors.late, 1.3 * errors.early);  // measured 1.14
+    EXPECT_LT(errors.late, 0.1);                 // measured 0.040 J
+    EXPECT_LT(errors.rod, 1e-15);                // measured 2.2e-16 m
+}
+
+TEST(Rattle, KeepsEnergyWhereRungeKuttaDrifts) {
+    const auto explicit_ = errors_of<Rk4, Projected<RodChain<double, 2>>>(released(30, 0), 0.02, 20'000);
+    EXPECT_GT(explicit_.late, 5 * explicit_.early);  // measured 10
+    const auto symplectic = errors_of<Rattle6>(released(30, 0), 0.02, 20'000);
+    EXPECT_LT(symplectic.late, 1.2 * symplectic.early);  // measured 1.07
+}
+
+TEST(Rattle, KeepsWhatWasMeasuredOn90And90) {
+    const auto plain = errors_of<Rattle>(released(90, 90), 1e-3, 10'000);
+    EXPECT_LT(std::max(plain.early, plain.late), 1e-3);  // measured 8.4e-4 J
+    EXPECT_LT(plain.rod, 1e-15);                         // measured 4.4e-16 m
+    const auto composed = errors_of<Rattle6>(released(90, 90), 1e-3, 10'000);
+    EXPECT_LT(std::max(composed.early, composed.late), 1e-11);  // measured 1.7e-12 J
+    EXPECT_LT(composed.rod, 1e-15);                             // measured 2.2e-16 m
+}
+
+/// A pendulum of one link that swings a hundred-thousandth of a radian, after steps of z / √(g/l).
+Quad least_energy(double z, long steps, Quad& largest) {
+    const Pendulum<Quad> p{{Quad(1)}, {Quad(1)}, {Quad(1e-5)}, {Quad(0)}, Quad(9.8)};
+    using Model = RodChain<Quad, 1>;
+    Model model(p);
+    const Quad step = Quad(z) / sqrt(p.gravity);
+    Rattle::Stepper<Model> stepper(model, Model::start(p), step);
+    const Quad zero = -p.gravity;
+    const auto above = [&] { return Quad(energy(bobs_of_particles<Quad>(p, stepper.state()), p.gravity) - zero); };
+    const Quad first = above();
+    Quad least = first;
+    largest = first;
+    for (long i = 0; i < steps; ++i) {
+        stepper.advance(1);
+        const Quad now = above();
+        if (now < least) least = now;
+        if (now > largest) largest = now;
+    }
+    largest /= first;
+    return least / first;
+}
+
+TEST(Rattle, KeepsEnergyWithinAQuarterOfZSquared) {
+    // leapfrog on the linear oscillator keeps v² + (1 − z²/4) ω² q²: energy falls by z²/4 at the bottom, and never
+    // rises
+    for (const double z : {0.1, 0.5, 1.5}) {
+        Quad largest;
+        const Quad least = least_energy(z, 2000, largest);
+        EXPECT_NEAR(static_cast<double>(least), 1 - z * z / 4, 1e-4 * z * z);  // measured equal to 6 digits
+        EXPECT_NEAR(static_cast<double>(largest), 1, 1e-9);
+    }
+}
+
+TEST(Rattle, IsStableUpToZOfTwo) {
+    Quad largest;
+    least_energy(2 * 0.999, 300, largest);
+    EXPECT_LT(static_cast<double>(largest), 1.001);
+    least_energy(2 * 1.001, 80, largest);
+    EXPECT_GT(static_cast<double>(largest), 1e4);  // measured 4e5
+}
+
+TEST(Rattle, FeelsFriction) {
+    // the same equations by Runge–Kutta: Baumgarte with α = 0 adds nothing to them
+    const auto p = unequal<double>();
+    using Model = Dragged<double, 2>;
+    const auto start = Model::start(p), end = after<Rattle6, Model>(p, start, 1e-3, 1000);
+    Baumgarte<Model> model(p, 0);
+    Rk4::Stepper<Baumgarte<Model>> other(model, start, 1e-4);
+    other.advance(10'000);
+    EXPECT_LT(distance(end, other.state()), 1e-12);  // measured 3e-14
+    const auto lost =
+        energy(bobs_of_particles<double>(p, start), p.gravity) - energy(bobs_of_particles<double>(p, end), p.gravity);
+    EXPECT_GT(lost, 1);  // measured 4.6 J
+}
+
+TEST(Rattle, SaysWhenFrictionIsTooStrong) {
+    const auto p = unequal<double>();
+    using Model = Dragged<double, 2>;
+    Model model(p);
+    model.k = 1e4;
+    Rattle::Stepper<Model> stepper(model, Model::start(p), 0.001);
+    EXPECT_THROW(stepper.advance(1), Error);
+}
+
+TEST(Rattle, StepsDoNotDependOnHowTheyAreAskedFor) {
+    using Model = RodChain<double, 2>;
+    const auto p = unequal<double>();
+    Model model(p);
+    Rattle6::Stepper<Model> one_by_one(model, Model::start(p), 0.01);
+    EXPECT_EQ(one_by_one.state(), Model::start(p));
+    for (int i = 0; i < 50; ++i) one_by_one.advance(1);
+    EXPECT_EQ(one_by_one.state(), (after<Rattle6, Model>(p, Model::start(p), 0.01, 50)));
+}
+
+TEST(Rattle, IsTheSameForAnyNumberOfLinks) {
+    const auto p = unequal<double>(3);
+    const auto fixed = after<Rattle6, RodChain<double, 3>>(p, RodChain<double, 3>::start(p), 0.01, 50);
+    using Chain = RodChain<double, Eigen::Dynamic>;
+    const auto dynamic = after<Rattle6, Chain>(p, Chain::start(p), 0.01, 50);
+    EXPECT_LT(distance<Chain::State>(fixed, dynamic), 1e-12);  // measured 0
+}
+
+TEST(Rattle, HangsStill) {
+    using Model = RodChain<double, 2>;
+    const Pendulum<double> p{{1, 2}, {1, 0.5}, {0, 0}, {0, 0}, 9.8};
+    const Model::State start = Model::start(p), plain = after<Rattle, Model>(p, start, 0.01, 100'000);
+    EXPECT_EQ(plain.head(4), start.head(4));
+    EXPECT_LT(distance(plain, start), 1e-15);  // measured 0
+    const Model::State composed = after<Rattle6, Model>(p, start, 0.01, 100'000);
+    EXPECT_EQ(composed.head(4), start.head(4));
+    EXPECT_LT(distance(composed, start), 1e-15);  // measured 0
+}
+
+TEST(Rattle, KeepsTheRodsOfALightFirstMass) {
+    // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings like a bead on a string under the
+    // weight of m2, at ω = √(2 m2 g / (l m1)), where steps are stable below 2 / ω
+    for (const double light : {1e-3, 1e-6, 1e-9, 1e-12}) {
+        auto p = released(30, 30);
+        p.mass[0] = light;
+        const double fastest = std::sqrt(2 * p.gravity / light);
+        const auto errors = errors_of<Rattle>(p, 0.1 / fastest, 10'000);
+        EXPECT_LT(errors.rod, 1e-15) << light;  // measured 2.2e-16 m
+        EXPECT_LT(errors.late, 1e-5) << light;  // measured 1.8e-6 J and less
+    }
+    auto p = released(30, 31);
+    p.mass[0] = 1e-9;
+    EXPECT_THROW(errors_of<Rattle>(p, 1e-4, 10'000), Error);
+}
+
+TEST(Rattle, SaysWhenTheStepIsTooLong) {
+    try {
+        errors_of<Rattle>(released(150, 90), 1.0, 1000);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        const std::string text = error.what();
+        EXPECT_EQ(text.rfind("rattle: step ", 0), 0u) << text;
+        EXPECT_NE(text.find("choose a smaller step_s than 1"), std::string::npos) << text;
+    }
+}
+
+}  // namespace
+}  // namespace doppel

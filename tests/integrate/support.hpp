@@ -1,0 +1,39 @@
+#pragma once
+
+#include "integrate/motion.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+
+inline Pendulum<double> released(double theta1_deg, double theta2_deg) {
+    Pendulum<double> p;
+    p.angle = {radians(theta1_deg), radians(theta2_deg)};
+    return p;
+}
+
+/// A chain that goes by a fixed step of 1/rate s; one step a sample.
+inline MotionSpec stepping(Model model, std::string_view method, const Pendulum<double>& p, long rate) {
+    MotionSpec spec;
+    spec.chain = p.cast<Quad>();
+    spec.model = model;
+    spec.method = method;
+    spec.sample_interval = {1, rate};
+    spec.steps_per_sample = 1;
+    return spec;
+}
+
+/// The motion that a spec comes to, and its samples.
+struct Course {
+    std::unique_ptr<Motion> motion;
+    std::atomic<bool> never = false;
+
+    explicit Course(const MotionSpec& spec) : motion(make_motion(spec)) {}
+    Observation observe() const { return motion->observe(); }
+    Observation advance(long samples) {
+        for (long i = 0; i < samples; ++i) motion->advance(never);
+        return motion->observe();
+    }
+};
+
+}  // namespace doppel

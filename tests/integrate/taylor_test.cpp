@@ -1,0 +1,418 @@
+#include "integrate/taylor.hpp"
+
+#include "integrate/rk4.hpp"
+#include "numeric/dual.hpp"
+#include "numeric/quad.hpp"
+#include "physics/bob.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numeric>
+
+namespace doppel {
+namespace {
+
+template <class Scalar, int N>
+using Stepper = TaylorStepper<AngleChain<Scalar, N>>;
+
+Pendulum<double> from_rest(const std::vector<double>& degrees) {
+    const std::vector<double> ones(degrees.size(), 1.0);
+    Pendulum<double> p{.mass = ones, .length = ones, .angle = {}, .rate = std::vector<double>(degrees.size(), 0.0)};
+    for (double angle : degrees) p.angle.push_back(radians(angle));
+    return p;
+}
+
+/// Nothing equal, everything moving.
+Pendulum<double> uneven(std::size_t links) {
+    Pendulum<double> p{.mass = {}, .length = {}, .angle = {}, .rate = {}};
+    for (std::size_t i = 0; i < links; ++i) {
+        const auto k = static_cast<double>(i);
+        p.mass.push_back(0.4 + 0.5 * std::fmod(1.7 * k, 2.0));
+        p.length.push_back(1.3 - 0.6 * std::fmod(0.7 * k, 1.3));
+        p.angle.push_back(1.1 * std::sin(3 * k + 1));
+        p.rate.push_back(2.3 * std::cos(5 * k));
+    }
+    return p;
+}
+
+/// Where a motion ends.
+template <class Model, class Scalar = typename Model::Scalar>
+typename Model::State end_of(const Pendulum<Scalar>& p, const Scalar& seconds, const Scalar& tolerance, int order = 0) {
+    Model model(p);
+    TaylorStepper<Model> stepper(model, Model::start(p), tolerance, order);
+    stepper.advance(seconds);
+    return stepper.state();
+}
+
+/// The greatest difference of an angle.
+template <class One, class Other>
+double angle_error(const One& one, const Other& other) {
+    double worst = 0;
+    for (Eigen::Index i = 0; i < one.size() / 2; ++i)
+        worst = greater(worst, std::abs(static_cast<double>(Quad(one[i]) - Quad(other[i]))));
+    return worst;
+}
+
+/// A problem, how sensitive its end is to its start, and its end to some 27 digits.
+template <int N>
+struct Problem {
+    Pendulum<double> pendulum;
+    double seconds, sensitivity;
+
+    const State<Quad, 2 * N>& end() const {
+        static std::map<std::vector<double>, State<Quad, 2 * N>> known;
+        auto [found, is_new] = known.try_emplace(pendulum.angle);
+        if (is_new) found->second = end_of<AngleChain<Quad, N>>(pendulum.cast<Quad>(), Quad(seconds), Quad(1e-30));
+        return found->second;
+    }
+    double error(double tolerance, int order = 0) const {
+        return angle_error(end_of<AngleChain<double, N>>(pendulum, seconds, tolerance, order), end());
+    }
+};
+
+const Problem<2> p1{from_rest({90, 90}), 10, 80}, p2{from_rest({30, 0}), 60, 21}, p3{from_rest({150, 90}), 5, 320};
+const Problem<3> p4{from_rest({120, 0, 0}), 5, 1040};
+
+/// Calls test(name, problem) for all.
+template <class Test>
+void for_each_problem(Test&& test) {
+    test("P1", p1);
+    test("P2", p2);
+    test("P3", p3);
+    test("P4", p4);
+}
+
+// --- the series
+
+/// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks like h^order only if every
+/// coefficient is right. In quad; y′ by central differences.
+template <class Model>
+double residual(const Pendulum<double>& p, int order, double h) {
+    const auto q = p.cast<Quad>();
+    Model model(q);
+    const typename Model::State start = Model::start(q);
+    typename SeriesOf<Model>::type series(model, order);
+    series.expand(start);
+    const auto moved = [&](const Quad& by) {
+        typename Model::State change = start;
+        series.move(by, change);
+        return typename Model::State(start + change);
+    };
+    const Quad at(h), d(1e-9);
+    typename Model::State rate = start;
+    model.rate(moved(at), rate);
+    rate -= (Quad(8) * (moved(at + d) - moved(at - d)) - (moved(at + d + d) - moved(at - d - d))) / (Quad(12) * d);
+    double worst = 0;
+    for (const Quad& difference : rate) worst = greater(worst, std::abs(static_cast<double>(difference)));
+    return worst;
+}
+
+template <class Model>
+void expect_series_solves(const Pendulum<double>& p) {
+    for (int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
+        const double h = 4e-3, ratio = residual<Model>(p, order, 2 * h) / residual<Model>(p, order, h);
+        EXPECT_NEAR(std::log2(ratio), order, 0.25) << order;  // measured within 0.09
+    }
+}
+
+TEST(TaylorSeries, SolvesTheEquationsOfMotionOrderByOrder) {
+    expect_series_solves<AngleChain<Quad, 2>>(uneven(2));
+    expect_series_solves<AngleChain<Quad, 3>>(uneven(3));
+    expect_series_solves<AngleChain<Quad, Eigen::Dynamic>>(uneven(1));
+    expect_series_solves<AngleChain<Quad, Eigen::Dynamic>>(uneven(6));
+    expect_series_solves<DoublePendulum<Quad>>(uneven(2));
+    expect_series_solves<RodChain<Quad, 2>>(uneven(2));
+    expect_series_solves<RodChain<Quad, Eigen::Dynamic>>(uneven(5));
+}
+
+/// Coefficient k of the rates: what a series of order k has more than one of order k − 1, at h = 1.
+template <class Series, class Scalar, int M>
+State<Scalar, M / 2> coefficient(const Pendulum<Scalar>& p, const State<Scalar, M>& y, int k) {
+    Series with(p, k), without(p, k - 1);
+    State<Scalar, M> one = y, other = y;
+    with.expand(y);
+    with.move(Scalar(1), one);
+    without.expand(y);
+    without.move(Scalar(1), other);
+    return (one - other).template tail<M / 2>();
+}
+
+template <int N>
+void expect_lanes_like_quad() {
+    const auto p = uneven(N);
+    const auto y = AngleChain<double, N>::start(p);
+    for (int k = 2; k <= 24; ++k) {
+        const auto lanes = coefficient<LaneSeries<N>>(p, y, k);
+        const auto chain = coefficient<AngleSeries<double, N>>(p, y, k);
+        const auto quad =
+            coefficient<AngleSeries<Quad, N>>(p.template cast<Quad>(), State<Quad, 2 * N>(y.template cast<Quad>()), k);
+        const double size = static_cast<double>(Quad(quad.cwiseAbs().maxCoeff()));
+        for (int i = 0; i < N; ++i) {
+            EXPECT_NEAR(lanes[i], static_cast<double>(quad[i]), 1e-12 * size) << k;  // measured 1e-13
+            EXPECT_NEAR(chain[i], static_cast<double>(quad[i]), 1e-12 * size) << k;  // measured 2e-13
+        }
+    }
+}
+
+TEST(TaylorSeries, LanesHoldTheSameCoefficients) {
+    expect_lanes_like_quad<2>();
+    expect_lanes_like_quad<3>();
+}
+
+template <int N>
+void expect_same_bits() {
+    const auto p = uneven(N);
+    const auto y = AngleChain<double, N>::start(p);
+    for (int order : {5, 8, 13, 24, 33}) {
+        LaneSeries<N> wide(p, order, true), narrow(p, order, false);
+        auto one = y, other = y;
+        wide.expand(y);
+        wide.move(0.02, one);
+        narrow.expand(y);
+        narrow.move(0.02, other);
+        EXPECT_EQ(std::memcmp(one.data(), other.data(), sizeof(one)), 0);
+        for (int k = 0; k <= order; ++k) EXPECT_EQ(wide.size(k), narrow.size(k));
+    }
+}
+
+TEST(TaylorSeries, GivesTheSameBitsWithTwoLanesAndFour) {
+    if (!has_four_lanes()) GTEST_SKIP() << "this processor has no AVX2";
+    expect_same_bits<2>();
+    expect_same_bits<3>();
+}
+
+// --- the motion
+
+template <int N>
+void expect_rods_agree(const char* name, const Problem<N>& problem) {
+    const auto p = problem.pendulum.template cast<Quad>();
+    const auto rods = bobs_of_particles(p, end_of<RodChain<Quad, N>>(p, Quad(problem.seconds), Quad(1e-30)));
+    const auto angles = bobs_of_angles(p, problem.end());
+    double worst = 0;
+    for (std::size_t i = 0; i < N; ++i) {
+        worst = greater(worst, std::abs(static_cast<double>(Quad(rods[i].x - angles[i].x))));
+        worst = greater(worst, std::abs(static_cast<double>(Quad(rods[i].y - angles[i].y))));
+    }
+    std::printf("%s: angles and rods in quad end %.1e m apart\n", name, worst);
+    EXPECT_LT(worst, 1e-26) << name;  // measured 2e-28, 6e-29, 2e-29, 3e-29
+}
+
+TEST(Taylor, TwoFormulationsAgreeInQuad) {
+    for_each_problem([](const char* name, const auto& problem) { expect_rods_agree(name, problem); });
+}
+
+TEST(Taylor, ErrsByWhatTheToleranceAndTheSensitivityAllow) {
+    for_each_problem([](const char* name, const auto& problem) {
+        for (double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+            const double error = problem.error(tolerance);
+            EXPECT_LT(error, 3 * problem.sensitivity * tolerance) << name << " at " << tolerance;  // measured ≤ 0.9
+        }
+        EXPECT_LT(problem.error(1e-15), 2e-15 * problem.sensitivity) << name;  // measured 6e-14, 3e-15, 7e-15, 1e-13
+    });
+}
+
+TEST(Taylor, ComesThroughTheVanishingCoefficientsAtEveryOrder) {
+    // from rest at 90/90 three in four coefficients vanish, whatever the order
+    for (int order : {8, 9, 10, 11, 12, 13, 14, 15, 16, 20, 24})
+        for (double tolerance : {1e-6, 1e-9})
+            EXPECT_LT(p1.error(tolerance, order), 80 * tolerance) << order;  // measured ≤ 42 tolerance
+}
+
+TEST(Taylor, ReturnsAfterTheExactPeriod) {
+    // Gauss 1799: T = 2π √(l/g) / agm(1, cos(A/2)). A quarter of it leads to the bottom.
+    using Model = AngleChain<Quad, Eigen::Dynamic>;
+    for (double amplitude : {5.0, 90.0, 170.0, 179.9}) {
+        const auto p = from_rest({amplitude}).cast<Quad>();
+        Quad a(1), b = cos(p.angle[0] / Quad(2));
+        for (int i = 0; i < 12; ++i) {
+            const Quad mean = (a + b) / Quad(2);
+            b = sqrt(a * b);
+            a = mean;
+        }
+        const Quad period = Quad(2) * pi_of<Quad>() * sqrt(p.length[0] / p.gravity) / a;
+        const Quad bottom = end_of<Model>(p, Quad(period / Quad(4)), Quad(1e-28))[0];
+        EXPECT_LT(std::abs(static_cast<double>(bottom)), 1e-25) << amplitude;  // measured 2e-30
+        const auto back = end_of<Model>(p, period, Quad(1e-28));
+        EXPECT_LT(std::abs(static_cast<double>(Quad(back[0] - p.angle[0]))), 1e-25) << amplitude;  // measured 3e-27
+    }
+}
+
+TEST(Taylor, KeepsEnergy) {
+    const auto p = p2.pendulum;
+    AngleChain<double, 2> model(p);
+    TaylorStepper stepper(model, AngleChain<double, 2>::start(p), 1e-15);
+    const double start = energy(bobs_of_angles(p, stepper.state()), p.gravity);
+    double worst = 0;
+    for (int i = 0; i < 200; ++i) {
+        stepper.advance(5);
+        worst = greater(worst, std::abs(energy(bobs_of_angles(p, stepper.state()), p.gravity) - start));
+    }
+    EXPECT_LT(worst, 1e-12);  // J, of −27; measured 6e-14
+}
+
+TEST(Taylor, HoldsInsideEveryStep) {
+    // some twenty samples a step, against quad
+    const auto p = p1.pendulum;
+    AngleChain<double, 2> model(p);
+    AngleChain<Quad, 2> exact_model(p.cast<Quad>());
+    TaylorStepper stepper(model, AngleChain<double, 2>::start(p), 1e-13);
+    TaylorStepper exact(exact_model, AngleChain<Quad, 2>::start(p.cast<Quad>()), Quad(1e-25));
+    for (int i = 0; i < 600; ++i) {
+        stepper.advance(0x1p-8);
+        exact.advance(Quad(0x1p-8));
+        for (int k = 0; k < 4; ++k)
+            ASSERT_NEAR(stepper.state()[k], static_cast<double>(exact.state()[k]), 1e-12);  // measured 2e-13
+    }
+}
+
+TEST(Taylor, StepsAlikeHoweverItIsSampled) {
+    const auto p = p1.pendulum;
+    AngleChain<double, 2> model(p), other_model(p);
+    TaylorStepper once(model, AngleChain<double, 2>::start(p), 1e-12);
+    TaylorStepper often(other_model, AngleChain<double, 2>::start(p), 1e-12);
+    once.advance(10);
+    for (int i = 0; i < 100000; ++i) often.advance(1e-4);
+    EXPECT_EQ(once.steps(), often.steps());
+    EXPECT_EQ(once.smallest_step(), often.smallest_step());
+    EXPECT_EQ(once.evaluations(), once.steps() * once.order());
+    for (int k = 0; k < 4; ++k)
+        EXPECT_NEAR(once.state()[k], often.state()[k], 1e-13);  // measured 2e-14: 1e-4 is no double
+    often.advance(0);
+    EXPECT_EQ(once.steps(), often.steps());
+}
+
+TEST(Taylor, AllModelsOfOneChainAgree) {
+    const auto two = uneven(2), three = uneven(3);
+    const auto exact = end_of<AngleChain<Quad, 2>>(two.cast<Quad>(), Quad(3), Quad(1e-25));
+    const auto near = [](const auto& exact_end, const auto& end) {
+        EXPECT_LT(angle_error(exact_end, end), 1e-11);
+    };  // measured ≤ 6e-13
+    near(exact, end_of<AngleChain<double, 2>>(two, 3.0, 1e-13));
+    near(exact, end_of<DoublePendulum<double>>(two, 3.0, 1e-13));
+    near(exact, end_of<AngleChain<double, Eigen::Dynamic>>(two, 3.0, 1e-13));
+    near(exact, end_of<DoublePendulum<Quad>>(two.cast<Quad>(), Quad(3), Quad(1e-20)));
+    const auto exact3 = end_of<AngleChain<Quad, 3>>(three.cast<Quad>(), Quad(3), Quad(1e-25));
+    near(exact3, end_of<AngleChain<double, 3>>(three, 3.0, 1e-14));
+    near(exact3, end_of<AngleChain<double, Eigen::Dynamic>>(three, 3.0, 1e-14));
+    const auto bobs = bobs_of_angles(three, State<double, 6>(exact3.cast<double>()));
+    const auto rods = bobs_of_particles(three, end_of<RodChain<double, 3>>(three, 3.0, 1e-14));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(bobs[i].x, rods[i].x, 1e-11);
+}
+
+TEST(Taylor, LongChainsFollowRungeKutta) {
+    for (const auto& [links, steps] : {std::pair{8, 4000L}, std::pair{64, 3000L}}) {
+        auto p = uneven(static_cast<std::size_t>(links));
+        for (auto& l : p.length) l /= links;
+        for (auto& rate : p.rate) rate = 0;
+        using Model = AngleChain<double, Eigen::Dynamic>;
+        Model model(p);
+        const double step = 5e-6;
+        Rk4::Stepper<Model> rk4(model, Model::start(p), step);
+        rk4.advance(steps);
+        const auto end = end_of<Model>(p, step * static_cast<double>(steps), 1e-13);
+        const auto& expected = rk4.state();
+        ASSERT_GT((expected - Model::start(p)).head(links).cwiseAbs().maxCoeff(), 0.01);
+        EXPECT_LT(angle_error(expected, end), 1e-9) << links;  // measured 5e-14
+    }
+}
+
+TEST(Taylor, StaysInEquilibriumExactly) {
+    for (std::size_t links : {1, 2, 3, 5}) {
+        const auto p = from_rest(std::vector<double>(links, 0.0));
+        const auto expect_still = [&]<class Model>(std::type_identity<Model>) {
+            Model model(p);
+            TaylorStepper<Model> stepper(model, Model::start(p), 1e-12);
+            stepper.advance(1000);
+            EXPECT_EQ(stepper.state(), Model::start(p));
+            EXPECT_LT(stepper.steps(), 2000);
+        };
+        expect_still(std::type_identity<AngleChain<double, Eigen::Dynamic>>());
+        if (links == 2) expect_still(std::type_identity<AngleChain<double, 2>>());
+        if (links == 3) expect_still(std::type_identity<AngleChain<double, 3>>());
+    }
+}
+
+TEST(Taylor, FliesFreelyWithoutGravity) {
+    // no gravity, and the second bob all but massless: the first turns at its rate for ever
+    Pendulum<double> p{.mass = {1, 1e-30}, .length = {1, 1}, .angle = {0.5, 0.5}, .rate = {2, 2}, .gravity = 0};
+    const auto end = end_of<AngleChain<double, 2>>(p, 100.0, 1e-14);
+    EXPECT_NEAR(end[0], 200.5, 1e-8);  // measured 2e-9: each step may err by ε × rate × time left
+    EXPECT_NEAR(end[1], 200.5, 1e-8);
+}
+
+TEST(Taylor, CarriesDerivatives) {
+    // the Jacobian of the flow against central differences
+    using Number = Dual<double, 4>;
+    const auto p = uneven(2);
+    auto q = p.cast<Number>();
+    for (std::size_t i = 0; i < 2; ++i) {
+        q.angle[i] = Number::variable(p.angle[i], static_cast<Eigen::Index>(i));
+        q.rate[i] = Number::variable(p.rate[i], static_cast<Eigen::Index>(i) + 2);
+    }
+    const auto end = end_of<DoublePendulum<Number>>(q, Number(2), Number(1e-14));
+    for (std::size_t j = 0; j < 4; ++j) {
+        const double small = 1e-4;
+        const auto moved = [&](double by) {
+            auto other = p;
+            (j < 2 ? other.angle[j] : other.rate[j - 2]) += by;
+            return end_of<AngleChain<double, 2>>(other, 2.0, 1e-15);
+        };
+        const State<double, 4> slope =
+            (8 * (moved(small) - moved(-small)) - (moved(2 * small) - moved(-2 * small))) / (12 * small);
+        for (int i = 0; i < 4; ++i) {
+            EXPECT_NEAR(end[i].tangent[static_cast<Eigen::Index>(j)], slope[i], 1e-9);  // measured 2e-11
+        }
+    }
+}
+
+TEST(Taylor, KeepsRodsWhereTheModelSettles) {
+    using Model = Projected<RodChain<double, 2>>;
+    const auto p = p1.pendulum;
+    const auto bobs = bobs_of_particles(p, end_of<Model>(p, 10.0, 1e-12));
+    const auto expected = bobs_of_angles(p, p1.end().cast<double>().eval());
+    EXPECT_LT(length_error(p, bobs), 4e-16);                                           // m; measured 0
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(bobs[i].x, expected[i].x, 1e-10);  // measured 8e-12
+    static_assert(!HasSeries<Baumgarte<RodChain<double, 2>>>);
+}
+
+// --- what it refuses
+
+template <class Action>
+std::string error_of(ExitCode code, Action&& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), code);
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(Taylor, RefusesWhatTheScalarCannotGive) {
+    const auto p = p1.pendulum;
+    EXPECT_EQ(error_of(ExitCode::bad_input, [&] { end_of<AngleChain<double, 2>>(p, 1.0, 1e-16); }),
+              "taylor: tolerance = 1e-16 cannot be met with 16 digits; the finest is 9e-16");
+    EXPECT_EQ(error_of(ExitCode::bad_input, [&] { end_of<AngleChain<Quad, 2>>(p.cast<Quad>(), Quad(1), Quad(1e-34)); }),
+              "taylor: tolerance = 1e-34 cannot be met with 34 digits; the finest is 8e-34");
+    EXPECT_NE(error_of(ExitCode::bad_input, [&] { end_of<AngleChain<double, 2>>(p, 1.0, std::nan("")); }), "no error");
+}
+
+TEST(Taylor, SaysWhenTheMotionBlowsUp) {
+    auto p = p1.pendulum;
+    p.rate = {1e200, -1e200};
+    EXPECT_EQ(error_of(ExitCode::method_failed, [&] { end_of<AngleChain<double, 2>>(p, 1.0, 1e-12); }).substr(0, 19),
+              "taylor: coefficient");
+    p.rate = {std::nan(""), 0};
+    EXPECT_NE(error_of(ExitCode::method_failed, [&] { end_of<AngleChain<double, 2>>(p, 1.0, 1e-12); }), "no error");
+    EXPECT_NE(error_of(ExitCode::method_failed, [&] { end_of<AngleChain<double, Eigen::Dynamic>>(p, 1.0, 1e-12); }),
+              "no error");
+    p.rate = {1e9, -3e9};
+    EXPECT_EQ(error_of(ExitCode::method_failed, [&] { end_of<AngleChain<double, 2>>(p, 1e9, 1e-12); }).substr(0, 17),
+              "taylor: a step of");
+}
+
+}  // namespace
+}  // namespace doppel
