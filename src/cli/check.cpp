@@ -15,8 +15,13 @@ long frames_of(const Scene& scene) {
     return scene.samples / scene.samples_per_frame + 1;
 }
 
-/// How long the simulation will take, from its first samples, s.
-double estimated_simulation(const Scene& scene) {
+/// What a look at the first samples tells of the whole run.
+struct Estimate {
+    double seconds = 0;  // to simulate
+    long steps_a = 0, steps_b = 0;
+};
+
+Estimate estimated_simulation(const Scene& scene) {
     using Clock = std::chrono::steady_clock;
     PairRun pair(scene);
     const std::atomic<bool> never = false;
@@ -28,7 +33,10 @@ double estimated_simulation(const Scene& scene) {
         pair.next(never);
         ++samples;
     }
-    return samples == 0 ? 0 : elapsed() * static_cast<double>(scene.samples) / static_cast<double>(samples);
+    if (samples == 0) return {};
+    const double share = static_cast<double>(scene.samples) / static_cast<double>(samples);
+    const auto whole = [&](const Effort& effort) { return std::lround(static_cast<double>(effort.steps) * share); };
+    return {elapsed() * share, whole(pair.effort_a()), whole(pair.effort_b())};
 }
 
 /// Drawing and encoding, s; measured on two cores, in ms a megapixel.
@@ -45,8 +53,10 @@ double estimated_pictures(const Scene& scene) {
 }
 
 void print_side(const char* name, const Side& side) {
-    fmt::print("  {}      {}, {}, step {} s, {} steps a sample\n         {}: {}\n", name, name_of(side.model),
-               side.method.title, side.step.text(), grouped(side.steps_per_sample), name_of(side.model), side.why);
+    const auto steps = side.method.adaptive ? std::string("its own steps")
+                                            : fmt::format("{} steps a sample", grouped(side.motion.steps_per_sample));
+    fmt::print("  {}      {}, {}, {}, {}\n         {}: {}\n", name, name_of(side.motion.model), side.method.title,
+               pace_words(side), steps, name_of(side.motion.model), side.why);
 }
 
 void print_scene(const Scene& scene) {
@@ -54,14 +64,17 @@ void print_scene(const Scene& scene) {
     fmt::print("{}: {}\n", scene.preset.name, scene.preset.title);
     print_side("a", scene.a);
     print_side("b", scene.b);
-    fmt::print("  time   {} s: samples 0 to {} at {} Hz, {} steps in all\n", scene.preset.duration_s.value(),
-               scene.samples, scene.preset.sample_hz.text(),
-               grouped(scene.samples * (scene.a.steps_per_sample + scene.b.steps_per_sample)));
+    const auto estimate = estimated_simulation(scene);
+    const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
+    fmt::print("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all\n", scene.preset.duration_s.value(),
+               scene.samples, scene.preset.sample_hz.text(), adaptive ? "about " : "",
+               grouped(estimate.steps_a + estimate.steps_b));
     fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames_of(scene)), video.size.width,
                video.size.height, scene.fps.text(),
                video.format == "png" ? "PNG sequence" : fmt::format("H.264 {}, crf {}", video.preset, video.crf));
-    const double simulation = estimated_simulation(scene), pictures = estimated_pictures(scene);
-    fmt::print("  takes  about {:.2g} s to simulate, {:.2g} s to render\n", simulation, std::max(simulation, pictures));
+    const double pictures = estimated_pictures(scene);
+    fmt::print("  takes  about {:.2g} s to simulate, {:.2g} s to render\n", estimate.seconds,
+               std::max(estimate.seconds, pictures));
 }
 
 }  // namespace

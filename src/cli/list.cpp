@@ -1,19 +1,46 @@
 #include "cli/commands.hpp"
+#include "integrate/methods.hpp"
 #include "scene/preset.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace doppel {
+namespace {
+
+void list_presets() {
+    const auto presets = builtin_presets();
+    std::size_t width = 0;
+    for (const auto& preset : presets) width = std::max(width, preset.name.size());
+    for (const auto& preset : presets) fmt::print("{:<{}}  {}\n", preset.name, width, read_preset(preset).title);
+}
+
+/// A table: value of `integrator`, order, step or tolerance, models, properties.
+void list_methods() {
+    fmt::print("{:<20} {:>5}  {:<10} {:<32} {}\n", "integrator", "order", "goes by", "models", "properties");
+    for (const auto& method : methods()) {
+        std::vector<std::string_view> models;
+        if (method.angles) models.emplace_back("angles");
+        if (method.constraints) models.emplace_back("constraints");
+        if (method.mechanism) models.emplace_back("mechanism");
+        fmt::print("{:<20} {:>5}  {:<10} {:<32} {}: {}\n", method.name,
+                   method.order == 0 ? "any" : fmt::format("{}", method.order),
+                   method.adaptive ? "tolerance" : "step_s", fmt::format("{}", fmt::join(models, ", ")), method.title,
+                   method.properties);
+    }
+}
+
+}  // namespace
 
 void add_list(CLI::App& app) {
-    app.add_subcommand("list", "The presets and their titles")->callback([] {
-        const auto presets = builtin_presets();
-        std::size_t width = 0;
-        for (const auto& preset : presets) width = std::max(width, preset.name.size());
-        for (const auto& preset : presets) fmt::print("{:<{}}  {}\n", preset.name, width, read_preset(preset).title);
-    });
+    auto what = std::make_shared<std::string>("presets");
+    auto& command = *app.add_subcommand("list", "The presets and their titles; list methods: what steps them");
+    command.add_option("WHAT", *what, "presets or methods")
+        ->check(CLI::IsMember({"presets", "methods"}))
+        ->capture_default_str();
+    command.callback([what] { *what == "methods" ? list_methods() : list_presets(); });
 }
 
 }  // namespace doppel

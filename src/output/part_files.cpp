@@ -102,6 +102,15 @@ fs::path PartFiles::add_part(const std::string& name) {
     return part;
 }
 
+void PartFiles::keep_only(const std::string& name, const std::string& new_name) {
+    std::erase_if(parts_, [&](const Part& part) {
+        if (part.target == folder_ / name) return false;
+        remove_quietly(part.written);
+        return true;
+    });
+    for (Part& part : parts_) part.target = folder_ / new_name;
+}
+
 void PartFiles::publish() {
     for (Part& part : parts_) {
         if (fs::is_directory(part.written) && fs::is_directory(part.target))

@@ -24,6 +24,9 @@ public:
     /// The same for a folder NAME, made empty as NAME.part/. Publishing replaces an older folder NAME as a whole.
     std::filesystem::path directory(const std::string& name);
 
+    /// Of the parts so far only `name` is kept, and will be published as `new_name`; the others are removed.
+    void keep_only(const std::string& name, const std::string& new_name);
+
     /// Gives every part its name, in the order they were asked for. Throws Error (exit 4); then nothing of this run
     /// stays.
     void publish();

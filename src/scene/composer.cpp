@@ -36,9 +36,9 @@ Composer::Composer(const Scene& scene)
     : scene_(scene),
       layout_(make_layout(scene)),
       theme_(themed(scene.preset.video)),
-      heaviest_(std::max(
-          {scene.a.pendulum.mass[0], scene.a.pendulum.mass[1], scene.b.pendulum.mass[0], scene.b.pendulum.mass[1]})),
-      energy_unit_(std::max(scene.a.pendulum.potential_range(), scene.b.pendulum.potential_range())) {}
+      heaviest_(std::max(*std::max_element(scene.a.mass.begin(), scene.a.mass.end()),
+                         *std::max_element(scene.b.mass.begin(), scene.b.mass.end()))),
+      energy_unit_(std::max(scene.a.energy_unit, scene.b.energy_unit)) {}
 
 DisplayList Composer::backdrop() const {
     const float t = layout_.text, u = layout_.unit;
@@ -63,9 +63,8 @@ DisplayList Composer::backdrop() const {
         const auto& panel = (*layout_.panels)[side];
         const auto& area = panel.area;
         list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
-        const double reach = std::max(scene_.a.pendulum.reach(), scene_.b.pendulum.reach());
-        list.push_back(
-            Ring{panel.pivot, panel.px_per_m * static_cast<float>(reach), std::max(1.5f * u, 1.0f), theme_.grid});
+        if (layout_.reach > 0) list.push_back(Ring{panel.center, layout_.reach, std::max(1.5f * u, 1.0f), theme_.grid});
+        compose_tracks(side, list);
         const float left = area.left + 28 * u;
         const float width = area.right - left - 28 * u;
         fitted(panel.heading, {left, area.top + 50 * t}, 31 * t, Weight::bold, theme_.sides[side], width);
@@ -91,11 +90,9 @@ void Composer::add(const Moment& moment) {
     }
     if (layout_.energy) {
         const auto& strip = *layout_.energy;
-        if (moment.sample == 0) start_energy_ = {moment.a.energy, moment.b.energy};
-        const std::array energy{moment.a.energy, moment.b.energy};
+        const std::array change{moment.a.energy_change, moment.b.energy_change};
         for (std::size_t side = 0; side < 2; ++side)
-            energy_[side].add(
-                {strip.time.at(time), strip.value.at(std::abs(energy[side] - start_energy_[side]) / energy_unit_)});
+            energy_[side].add({strip.time.at(time), strip.value.at(std::abs(change[side]) / energy_unit_)});
     }
     if (!parted_ && moment.distance >= parted_at && moment.sample > 0) parted_ = time;
 }

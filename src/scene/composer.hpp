@@ -33,8 +33,11 @@ private:
 
     void extend_trail(std::size_t side, const Bob<double>& bob, double time);
     void compose_panel(std::size_t side, DisplayList& list) const;
-    void compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color,
-                      DisplayList& list) const;
+    void compose_lines(std::size_t side, const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color,
+                       DisplayList& list) const;
+    void compose_tracks(std::size_t side, DisplayList& list) const;
+    void compose_pivots(std::size_t side, DisplayList& list) const;
+    const std::vector<MechanismLine>& lines(std::size_t side) const;
     void compose_disc(const PanelLayout& panel, Point at, float radius, Color color, DisplayList& list) const;
     void compose_trail(std::size_t side, Point head, DisplayList& list) const;
     float bob_radius(const Bob<double>& bob) const;
@@ -50,7 +53,6 @@ private:
     Theme theme_;
     double heaviest_;     // kg
     double energy_unit_;  // J: one for both sides, or the side that starts near E = 0 would look far worse
-    std::array<double, 2> start_energy_{};  // J
     Moment now_;
     std::array<std::deque<TrailPoint>, 2> trails_;
     std::array<std::optional<std::pair<Bob<double>, double>>, 2> last_bob_;

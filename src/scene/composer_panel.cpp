@@ -67,30 +67,89 @@ void Composer::compose_panel(std::size_t side, DisplayList& list) const {
 
     // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
     const Color ghost = mixed(theme_.panel, theme_.sides[1 - side], 0.26f);
-    compose_rods(panel, other.bobs, 0.7f * layout_.rod_radius, ghost, list);
+    compose_lines(1 - side, panel, other.bobs, 0.7f * layout_.rod_radius, ghost, list);
     for (const auto& bob : other.bobs) compose_disc(panel, panel.at(bob.x, bob.y), bob_radius(bob), ghost, list);
 
     if (scene_.preset.video.trail_s > 0) compose_trail(side, panel.at(own.bobs.back().x, own.bobs.back().y), list);
 
     // this side: rods, then the pivot and the bobs, each on a rim that sets it off
-    compose_rods(panel, own.bobs, layout_.rod_radius, theme_.rod, list);
-    compose_disc(panel, panel.pivot, 0.4f * layout_.bob_radius, theme_.pivot, list);
+    compose_lines(side, panel, own.bobs, layout_.rod_radius, theme_.rod, list);
+    compose_pivots(side, list);
     for (const auto& bob : own.bobs) {
         const Point at = panel.at(bob.x, bob.y);
-        const float radius = bob_radius(bob), rim = std::max(2 * layout_.unit, 0.75f);
+        const bool last = &bob == &own.bobs.back();
+        const float radius = last ? std::max(bob_radius(bob), layout_.last_bob_radius) : bob_radius(bob);
+        const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
         compose_disc(panel, at, radius + rim, theme_.panel, list);
-        compose_disc(panel, at, radius, &bob == &own.bobs.back() ? theme_.sides[side] : theme_.bob, list);
+        compose_disc(panel, at, radius, last ? theme_.sides[side] : theme_.bob, list);
     }
 }
 
-void Composer::compose_rods(const PanelLayout& panel, const Bobs<double>& bobs, float radius, Color color,
-                            DisplayList& list) const {
-    Point joint = panel.pivot;
-    for (const auto& bob : bobs) {
-        const Point at = panel.at(bob.x, bob.y);
-        if (const auto seen = clipped(joint, at, panel.area))
-            list.push_back(Capsule{seen->first, seen->second, radius, color});
-        joint = at;
+const std::vector<MechanismLine>& Composer::lines(std::size_t side) const {
+    return (side == 0 ? scene_.a : scene_.b).lines;
+}
+
+/// Rods, and springs as thin zigzags.
+void Composer::compose_lines(std::size_t side, const PanelLayout& panel, const Bobs<double>& bobs, float radius,
+                             Color color, DisplayList& list) const {
+    const auto at = [&](const End<double>& end) {
+        if (const auto* bob = std::get_if<std::size_t>(&end)) return panel.at(bobs[*bob].x, bobs[*bob].y);
+        const auto& place = std::get<Place<double>>(end);
+        return panel.at(place[0], place[1]);
+    };
+    const auto draw = [&](Point from, Point to, float width) {
+        if (const auto seen = clipped(from, to, panel.area))
+            list.push_back(Capsule{seen->first, seen->second, width, color});
+    };
+    for (const auto& line : lines(side)) {
+        if (line.kind == MechanismLine::Kind::rod) draw(at(line.from), at(line.to), radius);
+        if (line.kind != MechanismLine::Kind::spring) continue;
+        constexpr int turns = 16;
+        const Point from = at(line.from), to = at(line.to), along{to.x - from.x, to.y - from.y};
+        const float length = std::max(apart(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
+        Point last = from;
+        for (int i = 1; i <= turns; ++i) {
+            const float share = (static_cast<float>(i) - 0.5f) / turns, side_way = i % 2 == 0 ? swing : -swing;
+            const Point next{from.x + share * along.x - side_way * along.y,
+                             from.y + share * along.y + side_way * along.x};
+            draw(last, next, 0.45f * radius);
+            last = next;
+        }
+        draw(last, to, 0.45f * radius);
+    }
+}
+
+/// Slots that bobs slide in.
+void Composer::compose_tracks(std::size_t side, DisplayList& list) const {
+    const auto& panel = (*layout_.panels)[side];
+    const float width = std::max(1.5f * layout_.unit, 1.0f);
+    for (const auto& line : lines(side)) {
+        const auto* from = std::get_if<Place<double>>(&line.from);
+        if (!from) continue;
+        const Point at = panel.at((*from)[0], (*from)[1]);
+        if (line.kind == MechanismLine::Kind::slot_circle)
+            list.push_back(Ring{at, panel.px_per_m * static_cast<float>(line.radius), width, theme_.grid});
+        const auto* to = std::get_if<Place<double>>(&line.to);
+        if (line.kind != MechanismLine::Kind::slot_line || !to) continue;
+        // on beyond both ends, to the edges of the panel
+        const Point end = panel.at((*to)[0], (*to)[1]), along{end.x - at.x, end.y - at.y};
+        const float far = (panel.area.width() + panel.area.height()) / std::max(apart(at, end), 1e-3f);
+        if (const auto seen = clipped({at.x - far * along.x, at.y - far * along.y},
+                                      {at.x + far * along.x, at.y + far * along.y}, panel.area))
+            list.push_back(Capsule{seen->first, seen->second, width / 2, theme_.grid});
+    }
+}
+
+/// Where the fixed ends are.
+void Composer::compose_pivots(std::size_t side, DisplayList& list) const {
+    const auto& panel = (*layout_.panels)[side];
+    for (const auto& line : lines(side)) {
+        using Kind = MechanismLine::Kind;
+        if (line.kind == Kind::slot_line || line.kind == Kind::slot_circle) continue;
+        const bool one_end = line.kind == Kind::anchor;
+        for (const auto* end : {&line.from, one_end ? nullptr : &line.to})
+            if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr)
+                compose_disc(panel, panel.at((*place)[0], (*place)[1]), 0.4f * layout_.bob_radius, theme_.pivot, list);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "scene/layout.hpp"
 
 #include "picture/font.hpp"
+#include "scene/survey.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>
@@ -9,16 +10,46 @@
 namespace doppel {
 namespace {
 
+/// What the panels show, m.
+struct View {
+    double x = 0, y = 0;   // its centre
+    double width, height;  // of a chain the circle that it reaches
+    bool is_circle = true;
+};
+
+/// The circle that the outstretched chain reaches; of a mechanism, the places that it visits.
+View fitted_view(const Scene& scene, const std::optional<Survey>& seen) {
+    if (!seen) {
+        const double across = 2 * std::max(scene.a.reach, scene.b.reach);
+        return {.width = across, .height = across};
+    }
+    double left = seen->left, right = seen->right, bottom = seen->bottom, top = seen->top;
+    for (const auto* side : {&scene.a, &scene.b})
+        for (const auto& line : side->lines)
+            for (const auto* end : {&line.from, &line.to})
+                if (const auto* place = std::get_if<Place<double>>(end)) {
+                    left = std::min(left, (*place)[0] - line.radius);
+                    right = std::max(right, (*place)[0] + line.radius);
+                    bottom = std::min(bottom, (*place)[1] - line.radius);
+                    top = std::max(top, (*place)[1] + line.radius);
+                }
+    const double least = 1e-3 * std::max({right - left, top - bottom, 1e-6});
+    const View view{(left + right) / 2, (bottom + top) / 2, std::max(right - left, least),
+                    std::max(top - bottom, least), false};
+    return std::isfinite(view.width + view.height) ? view : View{.width = 2, .height = 2, .is_circle = false};
+}
+
 /// The distance axis where the preset names none: from the decade of the start to beyond two strangers of the same
 /// energy.
-Range fitted_distance(const Scene& scene) {
+Range fitted_distance(const Scene& scene, const std::optional<Survey>& seen) {
     const auto start = PairRun(scene).next(std::atomic<bool>(false));
-    const auto& p = scene.a.pendulum;
-    const double available = start.a.energy + p.potential_range() / 2;  // J, above hanging at rest
-    const double speed2 = 2 * available / std::min(p.mass[0], p.mass[1]);
-    const double apart2 = std::min(2 * p.reach() * p.reach(), 2 * available / (p.mass[0] * p.gravity) * p.reach());
+    const auto& side = scene.a;
+    const double available = start.a.energy + side.energy_unit / 2;  // J, above hanging at rest
+    const double speed2 = 2 * available / *std::min_element(side.mass.begin(), side.mass.end());
+    const double apart2 =
+        std::min(2 * side.reach * side.reach, 2 * available / (side.mass[0] * side.gravity) * side.reach);
     constexpr double decades = 1e60;  // the most an axis spans, whatever the masses and lengths
-    const double most = std::sqrt(speed2 + apart2),
+    const double most = seen ? seen->largest_distance : std::sqrt(speed2 + apart2),
                  high = std::isfinite(most) ? std::clamp(most, 1e-12, decades) : decades;
     const double low = start.distance > 0 ? start.distance / 2 : high * 1e-8;
     const double top = std::pow(10, std::ceil(2 * std::log10(1.5 * high)) / 2);  // half a decade of air
@@ -30,8 +61,18 @@ Range fitted_energy(const Scene& scene) {
     return low_order ? Range{1e-8, 1} : Range{1e-16, 1};
 }
 
+/// The places that a mechanism visits as large as the panel allows, below the words.
+void place_mechanism(PanelLayout& panel, float words_bottom, const View& view, float margin) {
+    const Area& area = panel.area;
+    const float width = area.width() - 2 * margin, height = area.bottom - words_bottom - 2 * margin;
+    panel.center = {(area.left + area.right) / 2, (words_bottom + area.bottom) / 2};
+    panel.center_x = view.x;
+    panel.center_y = view.y;
+    panel.px_per_m = std::min(width / static_cast<float>(view.width), height / static_cast<float>(view.height));
+}
+
 /// The circle of the outstretched chain as large as the panel allows, beside or below the words in its top left corner.
-void place_pendulum(PanelLayout& panel, float words_right, float words_bottom, double reach, float margin) {
+void place_pendulum(PanelLayout& panel, float words_right, float words_bottom, const View& view, float margin) {
     const Area& area = panel.area;
     float radius = std::min(area.width(), area.height()) / 2 - margin;
     float x = (area.left + area.right) / 2;
@@ -46,8 +87,10 @@ void place_pendulum(PanelLayout& panel, float words_right, float words_bottom, d
         radius -= 1;
         y = area.bottom - margin - radius;
     }
-    panel.pivot = {x, y};
-    panel.px_per_m = radius / static_cast<float>(reach);
+    panel.center = {x, y};
+    panel.center_x = view.x;
+    panel.center_y = view.y;
+    panel.px_per_m = 2 * radius / static_cast<float>(view.width);
 }
 
 StripLayout strip(const Layout& layout, const Scene& scene, float top, float bottom, const Range& range) {
@@ -62,7 +105,7 @@ StripLayout strip(const Layout& layout, const Scene& scene, float top, float bot
 
 Point PanelLayout::at(double x_m, double y_m) const {
     const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
-    return {pivot.x + px(x_m), pivot.y - px(y_m)};
+    return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
 }
 
 Layout make_layout(const Scene& scene) {
@@ -75,6 +118,8 @@ Layout make_layout(const Scene& scene) {
     layout.page = {std::round(60 * u), std::round(28 * u), width - std::round(60 * u), height - std::round(26 * u)};
     layout.title = scene.preset.title;
     layout.subtitle = scene_words(scene);
+    std::optional<Survey> seen;
+    if (scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism) seen = survey(scene);
 
     // from the bottom up: words of the time axis, strips, panels; the header has what is left
     const float header = layout.page.top + 96 * t;
@@ -94,13 +139,13 @@ Layout make_layout(const Scene& scene) {
             layout.energy = strip(layout, scene, energy_top, bottom, video.energy_range.value_or(fitted_energy(scene)));
         if (video.distance)
             layout.distance = strip(layout, scene, bottom - all, bottom - energy - gap,
-                                    video.distance_range.value_or(fitted_distance(scene)));
+                                    video.distance_range.value_or(fitted_distance(scene, seen)));
         bottom -= all + caption + 4 * u;
     }
     if (!video.pendulums) return layout;
 
     const auto words = side_words(scene);
-    const double reach = std::max(scene.a.pendulum.reach(), scene.b.pendulum.reach());
+    const auto view = fitted_view(scene, seen);
     const float gap = std::round(24 * u), panel_width = std::floor((layout.page.width() - gap) / 2);
     layout.panels.emplace();
     for (std::size_t side = 0; side < 2; ++side) {
@@ -115,12 +160,22 @@ Layout make_layout(const Scene& scene) {
     for (const auto& panel : *layout.panels)
         words_width =
             std::max({words_width, text_width(panel.heading, 31 * t, Weight::bold), text_width(panel.note, 21 * t)});
-    for (auto& panel : *layout.panels)
-        place_pendulum(panel, panel.area.left + 28 * u + words_width + 8 * u,
-                       panel.area.top + (panel.note.empty() ? 60 : 92) * t, reach, 30 * u);
-    const float radius = static_cast<float>(reach) * layout.panels->front().px_per_m;
-    layout.bob_radius = 0.068f * radius;
-    layout.rod_radius = std::max(0.0115f * radius, 0.8f);
+    for (auto& panel : *layout.panels) {
+        const float words_bottom = panel.area.top + (panel.note.empty() ? 60 : 92) * t;
+        if (view.is_circle)
+            place_pendulum(panel, panel.area.left + 28 * u + words_width + 8 * u, words_bottom, view, 30 * u);
+        else
+            place_mechanism(panel, words_bottom, view, 40 * u);
+    }
+    const float px_per_m = layout.panels->front().px_per_m;
+    const float radius = px_per_m * static_cast<float>(std::max(view.width, view.height)) / 2;
+    layout.reach = view.is_circle ? radius : 0;
+    // the bobs of a long chain do not hide its rods
+    const float link = view.is_circle ? radius / static_cast<float>(scene.a.mass.size()) : radius;
+    const float size = view.is_circle ? 1 : 0.6f;  // a mechanism has more to show
+    layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), 0.8f);
+    layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
+    if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
     return layout;
 }
 

@@ -21,10 +21,11 @@ struct Area {
 /// A pendulum's panel and how metres become pixels in it.
 struct PanelLayout {
     Area area;
-    Point pivot;  // px
+    Point center;                       // px, where (center_x, center_y) is
+    double center_x = 0, center_y = 0;  // m: the pivot of a chain
     float px_per_m = 1;
     std::string heading, note;               // what differs; what else defines the side
-    Point at(double x_m, double y_m) const;  // within a million px of the pivot, wherever a blow-up throws a bob
+    Point at(double x_m, double y_m) const;  // within a million px of the centre, wherever a blow-up throws a bob
 };
 
 /// A strip of the chart below: time across, a quantity up.
@@ -41,9 +42,11 @@ struct Layout {
     std::string title, subtitle;
     std::optional<std::array<PanelLayout, 2>> panels;
     std::optional<StripLayout> distance, energy;
-    float bob_radius = 0;   // px, of the heaviest
-    float rod_radius = 0;   // half its width, px
-    float time_labels = 0;  // their baseline, px
+    float reach = 0;            // px, the radius of the circle that an outstretched chain reaches; 0 = none to show
+    float bob_radius = 0;       // px, of the heaviest
+    float last_bob_radius = 0;  // px, at least, of the one that leaves the trail; of long chains
+    float rod_radius = 0;       // half its width, px
+    float time_labels = 0;      // their baseline, px
 };
 
 Layout make_layout(const Scene& scene);

@@ -38,24 +38,89 @@ Json json_of(const std::string& toml) {
     return Json::parse(text.str());
 }
 
-std::string side_toml(const SideSpec& side) {
-    constexpr const char* models[] = {"auto", "angles", "constraints"};
-    return fmt::format(
-        "links = {}\nmass_kg = [{}]\nlength_m = [{}]\nangle_deg = [{}]\nomega_deg_per_s = [{}]\ngravity_m_per_s2 = {}\n"
-        "model = \"{}\"\nintegrator = \"{}\"\nstep_s = {}\nprecision = \"double\"\n",
-        link_count, fmt::join(side.mass_kg, ", "), fmt::join(side.length_m, ", "), fmt::join(side.angle_deg, ", "),
-        fmt::join(side.omega_deg_per_s, ", "), side.gravity_m_per_s2, models[static_cast<int>(side.model)],
-        side.integrator, ratio(side.step_s));
+std::string numbers(const std::vector<Quad>& values) {
+    std::vector<std::string> texts;
+    for (const auto& value : values) texts.push_back(text_of(value));
+    return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-Json side_json(const Side& side, double energy_error, double length_error) {
-    return {{"model", name_of(side.model)},
-            {"why", side.why},
-            {"integrator", side.method.name},
-            {"step_s", side.step.text()},
-            {"steps_per_sample", side.steps_per_sample},
-            {"worst_energy_error", energy_error},
-            {"worst_length_error_m", length_error}};
+std::string pair_text(const std::array<Quad, 2>& xy) {
+    return fmt::format("[{}, {}]", text_of(xy[0]), text_of(xy[1]));
+}
+
+std::string end_text(const EndSpec& end) {
+    const auto* name = std::get_if<std::string>(&end);
+    return name ? quoted(*name) : pair_text(std::get<std::array<Quad, 2>>(end));
+}
+
+std::string particle_toml(const char* side, const ParticleSpec& particle) {
+    return fmt::format("\n[[{}.particle]]\nname = {}\nmass_kg = {}\nposition_m = {}\nvelocity_m_per_s = {}\n", side,
+                       quoted(particle.name), text_of(particle.mass_kg), pair_text(particle.position_m),
+                       pair_text(particle.velocity_m_per_s));
+}
+
+std::string part_toml(const char* side, const char* what, const PartSpec& part) {
+    auto text = fmt::format("\n[[{}.{}]]\nkind = {}\n", side, what, quoted(part.kind));
+    const auto add = [&](std::string_view key, const std::string& value) {
+        text += fmt::format("{} = {}\n", key, value);
+    };
+    if (!part.name.empty()) add("name", quoted(part.name));
+    if (!part.particle.empty()) add("particle", quoted(part.particle));
+    if (part.from) add("from", end_text(*part.from));
+    if (part.to) add("to", end_text(*part.to));
+    if (part.position_m) add("position_m", pair_text(*part.position_m));
+    if (part.kind == "slot-line") add("direction", pair_text(part.direction));
+    if (part.length_m) add(part.kind == "slot-circle" ? "radius_m" : "length_m", text_of(*part.length_m));
+    if (part.kind == "spring") {
+        add("stiffness_N_per_m", text_of(part.stiffness_N_per_m));
+        add("damping_N_s_per_m", text_of(part.damping_N_s_per_m));
+    }
+    if (part.kind == "droplet") add("mass_kg", text_of(part.mass_kg));
+    if (part.constant) add("constant_m3_per_kg_s2", text_of(*part.constant));
+    return text;
+}
+
+std::string chain_toml(const SideSpec& side) {
+    return fmt::format("links = {}\nmass_kg = {}\nlength_m = {}\nangle_deg = {}\nomega_deg_per_s = {}\n", side.links(),
+                       numbers(side.mass_kg), numbers(side.length_m), numbers(side.angle_deg),
+                       numbers(side.omega_deg_per_s));
+}
+
+/// [a] or [b] with everything in it.
+std::string side_toml(const char* name, const SideSpec& side) {
+    constexpr const char* models[] = {"auto", "angles", "constraints", "mechanism"};
+    constexpr const char* precisions[] = {"double", "quad"};
+    constexpr const char* stabilise[] = {"none", "baumgarte", "projection"};
+    auto text = fmt::format("\n[{}]\n{}", name, side.particles.empty() ? chain_toml(side) : "");
+    text += fmt::format(
+        "gravity_m_per_s2 = {}\n"
+        "model = \"{}\"\nintegrator = \"{}\"\nprecision = \"{}\"\nstabilise = \"{}\"\n",
+        text_of(side.gravity_m_per_s2), models[static_cast<int>(side.model)], side.integrator,
+        precisions[static_cast<int>(side.precision)], stabilise[static_cast<int>(side.stabilise)]);
+    if (side.step_s) text += fmt::format("step_s = {}\n", ratio(*side.step_s));
+    if (side.tolerance) text += fmt::format("tolerance = {}\n", text_of(*side.tolerance));
+    if (side.stabilise == Stabilise::baumgarte)
+        text += fmt::format("stabilise_rate_per_s = {}\n", text_of(side.stabilise_rate_per_s));
+    for (const auto& particle : side.particles) text += particle_toml(name, particle);
+    for (const auto& part : side.constraints) text += part_toml(name, "constraint", part);
+    for (const auto& part : side.forces) text += part_toml(name, "force", part);
+    return text;
+}
+
+Json side_json(const Side& side, const Effort& effort, double energy_error, double length_error) {
+    Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
+    if (side.method.adaptive) {
+        json["tolerance"] = static_cast<double>(side.motion.tolerance);
+    } else {
+        json["step_s"] = side.step.text();
+        json["steps_per_sample"] = side.motion.steps_per_sample;
+    }
+    json["steps"] = effort.steps;
+    json["evaluations"] = effort.evaluations;
+    json["smallest_step_s"] = effort.smallest_step;
+    json["worst_energy_error"] = energy_error;
+    json["worst_length_error_m"] = length_error;
+    return json;
 }
 
 /// A file of the run, or every file of a folder.
@@ -80,7 +145,7 @@ std::string resolved_toml(const Preset& preset) {
 
     auto text = fmt::format("title = {}\n\n[scene]\nkind = \"pair\"\nduration_s = {}\nsample_hz = {}\n",
                             quoted(preset.title), ratio(preset.duration_s), ratio(preset.sample_hz));
-    text += fmt::format("\n[a]\n{}\n[b]\n{}", side_toml(preset.a), side_toml(preset.b));
+    text += side_toml("a", preset.a) + side_toml("b", preset.b);
     text += fmt::format(
         "\n[video]\nsize = [{}, {}]\nspeed = {}\nformat = \"{}\"\npreset = \"{}\"\ncrf = {}\ntheme = \"{}\"\n",
         video.size.width, video.size.height, ratio(video.speed), video.format, video.preset, video.crf, video.theme);
@@ -100,17 +165,16 @@ void write_manifest(const std::filesystem::path& path, const Scene& scene, const
     Json files = Json::object();
     for (const auto& [name, where] : record.files) add_files(files, name, where);
 
-    const long steps = record.last_sample * (scene.a.steps_per_sample + scene.b.steps_per_sample);
-    const Json manifest = {
+    Json manifest = {
         {"doppel", {{"version", version()}, {"revision", revision()}}},
         {"preset", scene.preset.name},
         {"resolved_preset", json_of(resolved_toml(scene.preset))},
         {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
         {"frames",
          {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", scene.samples_per_frame}}},
-        {"steps", steps},
-        {"a", side_json(scene.a, record.worst.energy_a, record.worst.length_a)},
-        {"b", side_json(scene.b, record.worst.energy_b, record.worst.length_b)},
+        {"steps", record.effort_a.steps + record.effort_b.steps},
+        {"a", side_json(scene.a, record.effort_a, record.worst.energy_a, record.worst.length_a)},
+        {"b", side_json(scene.b, record.effort_b, record.worst.energy_b, record.worst.length_b)},
         {"largest_distance", record.largest_distance},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",
@@ -123,6 +187,7 @@ void write_manifest(const std::filesystem::path& path, const Scene& scene, const
             {"encode_and_rest", record.encode_cpu_s}}}}},
         {"files", files},
     };
+    if (!record.failure.empty()) manifest["failed"] = record.failure;
     OutputFile file(path);
     file.write(manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     file.close();

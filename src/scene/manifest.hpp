@@ -26,6 +26,8 @@ struct RunRecord {
     double wall_s = 0, cpu_s = 0;
     WorstErrors worst;
     double largest_distance = 0;
+    Effort effort_a, effort_b;
+    std::string failure;                                               // what ended the run, where something did
     std::vector<std::pair<std::string, std::filesystem::path>> files;  // name, and where its bytes are now
 };
 

@@ -1,29 +1,71 @@
 #pragma once
 
+#include "integrate/motion.hpp"
+#include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
-#include "physics/pendulum.hpp"
 #include "picture/color.hpp"
 #include "picture/picture.hpp"
 
 #include <array>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace doppel {
 
-enum class ModelChoice { automatic, angles, constraints };
+/// Where neither preset nor command line says how finely to step.
+inline constexpr Rational usual_step{1, 30000};  // s, the study's
+inline const Quad usual_tolerance = parse_quad("1e-12"), usual_quad_tolerance = parse_quad("1e-28");
 
-/// One side of the pair, as [system] with [a] or [b] on top describes it. Angles stay in degrees, as they were written.
+enum class ModelChoice { automatic, angles, constraints, mechanism };
+
+/// An end of a rod or a spring: the name of a particle, or a fixed place, m.
+using EndSpec = std::variant<std::string, std::array<Quad, 2>>;
+
+/// [[system.particle]]: a point mass and how it is released.
+struct ParticleSpec {
+    std::string name;
+    Quad mass_kg = 1;
+    std::array<Quad, 2> position_m{}, velocity_m_per_s{};
+};
+
+/// [[system.constraint]] or [[system.force]]: what its kind needs; lengths and places that are not given are those of
+/// the start.
+struct PartSpec {
+    std::string name, kind;
+    std::string particle;                           // anchor, slots
+    std::optional<EndSpec> from, to;                // rod, spring, attraction
+    std::optional<std::array<Quad, 2>> position_m;  // anchor; a point of a straight slot; centre of a circle; droplet
+    std::array<Quad, 2> direction{1, 0};            // of a straight slot
+    std::optional<Quad> length_m;                   // rod, spring at rest; radius of a circle
+    Quad stiffness_N_per_m = 1, damping_N_s_per_m = 0;
+    Quad mass_kg = 1;              // droplet
+    std::optional<Quad> constant;  // attraction, droplet: G, m³/(kg s²)
+};
+
+/// One side of the pair, as [system] with [a] or [b] on top describes it. Numbers are those written, to 34 digits;
+/// angles stay in degrees.
 struct SideSpec {
-    std::array<double, link_count> mass_kg{1, 1};
-    std::array<double, link_count> length_m{1, 1};
-    std::array<double, link_count> angle_deg{90, 90};
-    std::array<double, link_count> omega_deg_per_s{0, 0};
-    double gravity_m_per_s2 = 9.8;
+    std::vector<Quad> mass_kg{1, 1};
+    std::vector<Quad> length_m{1, 1};
+    std::vector<Quad> angle_deg{90, 90};
+    std::vector<Quad> omega_deg_per_s{0, 0};
+    Quad gravity_m_per_s2 = Quad(98) / 10;
     ModelChoice model = ModelChoice::automatic;
     std::string integrator = "euler";
-    Rational step_s{1, 30000};
+    bool integrator_from_command_line = false;
+    std::optional<Rational> step_s;  // of methods with a fixed step
+    std::optional<Quad> tolerance;   // of adaptive methods
+    Precision precision = Precision::in_double;
+    Stabilise stabilise = Stabilise::none;
+    Quad stabilise_rate_per_s = 10;       // Baumgarte's α = β
+    std::vector<ParticleSpec> particles;  // in place of a chain
+    std::vector<PartSpec> constraints, forces;
+
+    std::size_t links() const { return mass_kg.size(); }
+    /// Whether it takes more than a chain under gravity.
+    bool is_mechanism() const { return !particles.empty() || !constraints.empty() || !forces.empty(); }
 };
 
 /// An axis from `low` to `high`, both > 0.

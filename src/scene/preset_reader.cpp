@@ -1,6 +1,7 @@
 #include "integrate/methods.hpp"
 #include "picture/theme.hpp"
 #include "scene/preset.hpp"
+#include "scene/side_reader.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <algorithm>
@@ -14,14 +15,13 @@ using namespace std::string_view_literals;
 constexpr std::array encoder_presets{"ultrafast"sv, "superfast"sv, "veryfast"sv, "faster"sv,  "fast"sv,
                                      "medium"sv,    "slow"sv,      "slower"sv,   "veryslow"sv};
 constexpr std::array formats{"mp4"sv, "png"sv};
-constexpr std::array model_names{"auto"sv, "angles"sv, "constraints"sv};
 constexpr std::array kinds{"pair"sv};
-constexpr std::array precisions{"double"sv};
 constexpr std::array panel_names{"pendulums"sv, "distance"sv, "energy"sv};
 constexpr int smallest_picture = 64, largest_picture = 16384;  // px; more than any GL takes, which says so itself
 
-toml::table parse(const std::string& text, const std::string& path) {
+toml::table parse(const std::string& text, const std::string& path, TomlTexts& texts) {
     try {
+        texts[path] = text;
         return toml::parse(text, path);
     } catch (const toml::parse_error& fault) {
         const auto at = fault.source().begin;
@@ -30,7 +30,7 @@ toml::table parse(const std::string& text, const std::string& path) {
 }
 
 /// Puts the value of `change` into the tables of `root`, in place of what is there.
-void apply(toml::table& root, const Override& change) {
+void apply(toml::table& root, const Override& change, TomlTexts& texts) {
     auto dot = change.key.find('.');
     toml::table* table = &root;
     std::string key = change.key;
@@ -43,7 +43,8 @@ void apply(toml::table& root, const Override& change) {
     }
     toml::table given;
     try {
-        given = toml::parse("value = " + change.value, change.origin);
+        auto& text = texts[change.origin] = "value = " + change.value;
+        given = toml::parse(text, change.origin);
     } catch (const toml::parse_error& fault) {
         throw bad_input("{}: \"{}\" is no TOML value ({}); strings want quotes: '{}=\"{}\"'", change.origin,
                         change.value, fault.description(), change.key, change.value);
@@ -56,39 +57,14 @@ void apply(toml::table& root, const Override& change) {
     });
 }
 
-void apply(toml::table& root, const std::vector<Override>& overrides) {
+void apply(toml::table& root, const std::vector<Override>& overrides, TomlTexts& texts) {
     for (std::size_t i = 0; i < overrides.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j)
             if (overrides[i].key == overrides[j].key)
                 throw bad_input("{} is given twice: {} and {}", overrides[i].key, overrides[j].origin,
                                 overrides[i].origin);
-        apply(root, overrides[i]);
+        apply(root, overrides[i], texts);
     }
-}
-
-/// Reads [system], [a] or [b]: whatever `side` has already stays where the table does not say otherwise.
-void read_side(TomlReader& table, SideSpec& side) {
-    int links = link_count;
-    table.read_whole("links", links, 1, 1'000'000);
-    if (links != link_count) throw table.fault("links", "must be 2, the double pendulum; it is {}", links);
-    table.read_positives("mass_kg", side.mass_kg, "one a link");
-    table.read_positives("length_m", side.length_m, "one a link");
-    table.read_numbers("angle_deg", side.angle_deg, "one a link");
-    table.read_numbers("omega_deg_per_s", side.omega_deg_per_s, "one a link");
-    table.read_positive("gravity_m_per_s2", side.gravity_m_per_s2);
-
-    std::string model(model_names[static_cast<std::size_t>(side.model)]), precision = "double";
-    table.read_choice("model", model, model_names);
-    side.model =
-        static_cast<ModelChoice>(std::find(model_names.begin(), model_names.end(), model) - model_names.begin());
-    std::vector<std::string_view> names;
-    for (const auto& method : methods) names.push_back(method.name);
-    table.read_choice("integrator", side.integrator, names);
-    table.read_positive_ratio("step_s", side.step_s);
-    table.read_choice("precision", precision, precisions);
-    if (table.has("tolerance"))
-        throw table.fault("tolerance", "is for adaptive methods; \"{}\" goes by step_s", side.integrator);
-    table.finish();
 }
 
 void read_video(TomlReader& table, VideoSpec& video) {
@@ -178,7 +154,8 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
 /// Steps, samples and frames must fall on each other exactly.
 void check_rates(const Preset& preset, const TomlReader& scene, const TomlReader& video) {
     for (const auto* side : {&preset.a, &preset.b}) {
-        const auto rate = quotient({1, 1}, side->step_s);
+        if (find_method(side->integrator)->adaptive) continue;
+        const auto rate = quotient({1, 1}, side->step_s.value_or(usual_step));
         const auto steps = rate ? quotient(*rate, preset.sample_hz) : std::nullopt;
         if (!steps || !steps->is_whole())
             throw scene.fault("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}; {} do",
@@ -213,29 +190,33 @@ void check_rates(const Preset& preset, const TomlReader& scene, const TomlReader
 }  // namespace
 
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
-    auto root = parse(source.text, source.path);
-    apply(root, overrides);
+    TomlTexts texts;
+    auto root = parse(source.text, source.path, texts);
+    apply(root, overrides, texts);
 
     Preset preset;
     preset.name = preset.title = source.name;
-    TomlReader top(&root, "", source.path);
+    TomlReader top(&root, "", source.path, texts);
     top.read_text("title", preset.title);
 
-    TomlReader scene(top.read_table("scene"), "[scene]", source.path);
+    TomlReader scene(top.read_table("scene"), "[scene]", source.path, texts);
     std::string kind = "pair";
     scene.read_choice("kind", kind, kinds);
     scene.read_positive_ratio("duration_s", preset.duration_s);
     scene.read_positive_ratio("sample_hz", preset.sample_hz);
     scene.finish();
 
-    TomlReader system(top.read_table("system"), "[system]", source.path);
+    TomlReader system(top.read_table("system"), "[system]", source.path, texts);
     read_side(system, preset.a);
     preset.b = preset.a;
-    TomlReader a(top.read_table("a"), "[a]", source.path), b(top.read_table("b"), "[b]", source.path);
+    TomlReader a(top.read_table("a"), "[a]", source.path, texts), b(top.read_table("b"), "[b]", source.path, texts);
     read_side(a, preset.a);
     read_side(b, preset.b);
+    if (preset.a.links() != preset.b.links())
+        throw b.fault("links", "must be that of the other side, so that the two can be compared; they are {} and {}",
+                      preset.a.links(), preset.b.links());
 
-    TomlReader video(top.read_table("video"), "[video]", source.path);
+    TomlReader video(top.read_table("video"), "[video]", source.path, texts);
     read_video(video, preset.video);
     top.finish();
     check_rates(preset, scene, video);

@@ -8,12 +8,14 @@
 #include "picture/renderer.hpp"
 #include "scene/composer.hpp"
 #include "scene/manifest.hpp"
+#include "scene/rescue.hpp"
 #include "scene/table.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -54,8 +56,12 @@ public:
         return *moment;
     }
 
-    /// CPU time of the thread, s; whole once the last moment was taken.
+    /// CPU time of the thread, s, and what the sides have cost; whole once the last moment was taken.
     double cpu_s() const { return cpu_s_; }
+    std::pair<Effort, Effort> efforts() {
+        const std::lock_guard hold(mutex_);
+        return efforts_;
+    }
 
 private:
     void work(const Scene& scene, long last, const std::atomic<bool>& stop) {
@@ -64,6 +70,10 @@ private:
             for (long sample = 0; sample < last; ++sample) {
                 const auto moment = pair.next(stop);
                 cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+                {
+                    const std::lock_guard hold(mutex_);
+                    efforts_ = {pair.effort_a(), pair.effort_b()};
+                }
                 if (!ahead_.push(moment)) return;
             }
         } catch (...) {
@@ -75,6 +85,8 @@ private:
     Queue<Moment> ahead_{256};
     std::exception_ptr fault_;
     std::atomic<double> cpu_s_ = 0;
+    std::mutex mutex_;
+    std::pair<Effort, Effort> efforts_;
     std::thread thread_;
 };
 
@@ -137,6 +149,35 @@ void watch_worst(WorstErrors& worst, const Moment& moment) {
     worst.length_b = std::max(worst.length_b, moment.b.length_error);
 }
 
+/// "NAME.failed.csv": what stays of a run that broke down.
+std::string failed_name(const std::string& name, const std::string& ending) {
+    return name + ".failed" + ending;
+}
+
+/// A failed run's files from before are no news beside a whole one.
+void remove_failed(const std::filesystem::path& folder, const std::string& name, const char* ending) {
+    std::error_code ignored;
+    std::filesystem::remove(folder / failed_name(name, ending), ignored);
+}
+
+/// Keeps the samples before the break-down, under a name that says so, with a manifest; throws the error that tells
+/// where they are, and which step would have held.
+[[noreturn]] void keep_failed(const Scene& scene, const BreakDown& fault, RunRecord& record, PartFiles& parts,
+                              const std::atomic<bool>& stop) {
+    const auto& name = scene.preset.name;
+    const auto advice = step_that_holds(scene, fault, stop);
+    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    record.failure = fmt::format("{}; {}", fault.what(), advice);
+    record.last_sample = fault.sample - 1;
+    const auto csv = failed_name(name, ".csv"), manifest = failed_name(name, ".json");
+    parts.keep_only(name + ".csv", csv);
+    std::erase_if(record.files, [&](const auto& file) { return file.first != name + ".csv"; });
+    record.files.front().first = csv;
+    write_manifest(parts.file(manifest), scene, record);
+    parts.publish();
+    throw method_failed("{}; the samples before are in {}", record.failure, (parts.folder() / csv).string());
+}
+
 }  // namespace
 
 int run_threads(int jobs) {
@@ -160,23 +201,32 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     if (options.pictures) film.emplace(scene, parts, run_threads(options.jobs), record);
     const auto csv_name = scene.preset.name + ".csv";
     record.files.emplace_back(csv_name, parts.file(csv_name));
-    PairTable table(record.files.back().second);
+    PairTable table(record.files.back().second, scene);
 
     Simulation simulation(scene, last, stop);
+    const auto take_efforts = [&] { std::tie(record.effort_a, record.effort_b) = simulation.efforts(); };
     double start_distance = 0;
     for (long sample = 0, done = 0; sample < last; ++sample) {
-        const auto moment = simulation.next();
+        Moment moment;
+        try {
+            moment = simulation.next();
+        } catch (const BreakDown& fault) {
+            take_efforts();
+            table.finish();
+            keep_failed(scene, fault, record, parts, stop);
+        }
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
         if (sample == 0) start_distance = moment.distance;
         watch_worst(record.worst, moment);
         record.largest_distance = std::max(record.largest_distance, moment.distance);
         if (film) film->add(moment);
         if (sample < first) continue;
-        table.add(scene, moment, start_distance);
+        table.add(moment, start_distance);
         if (sample % stride != 0) continue;
         if (film) film->shoot(moment, record);
         report({++done, total});
     }
+    take_efforts();
     table.finish();
     if (film) film->finish();
 
@@ -188,6 +238,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     write_manifest(parts.file(manifest), scene, record);
     if (stop) throw Error(ExitCode::interrupted, "interrupted");
     parts.publish();
+    for (const char* ending : {".csv", ".json"}) remove_failed(parts.folder(), scene.preset.name, ending);
 
     RunResult result{.files = {}, .frames = record.frames, .samples = last - first, .wall_s = record.wall_s};
     for (const auto& file : record.files) result.files.push_back(parts.folder() / file.first);

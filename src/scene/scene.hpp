@@ -2,22 +2,29 @@
 
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
+#include "numeric/error.hpp"
+#include "physics/mechanism_assembly.hpp"
 #include "scene/preset.hpp"
 
 #include <atomic>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace doppel {
 
 /// One side with everything chosen.
 struct Side {
-    Pendulum pendulum;
-    Model model;
+    MotionSpec motion;
     std::string why;  // this model
-    Method method;
-    Rational step;          // s
-    long steps_per_sample;  // exact
+    MethodEntry method;
+    Rational step{0, 1};       // s; of methods with a fixed step
+    std::vector<double> mass;  // kg, a bob each
+    bool has_angles = true;    // a chain, whose bobs hang one below the other
+    double gravity = 0;        // m/s²
+    double energy_unit = 0;    // J, what an error of its energy is measured by in pictures (the potential range)
+    double reach = 0;          // m, from the pivot to the end of the outstretched chain; of a mechanism, its size
+    std::vector<MechanismLine> lines;  // what is drawn besides the bobs
 };
 
 /// What a preset comes to: the models chosen, the clock in whole numbers.
@@ -31,9 +38,10 @@ struct Scene {
     double time(long sample) const;  // s
 };
 
+/// Throws Error (exit 2) where a system is faulty, or the two sides differ by less than their precision can tell.
 Scene make_scene(const Preset& preset);
 
-std::string_view name_of(Model model);  // as in presets: "angles", "constraints"
+std::string_view name_of(Model model);  // as in presets: "angles", "constraints", "mechanism"
 
 /// Both sides and how they differ at one sample.
 struct Moment {
@@ -43,26 +51,53 @@ struct Moment {
     double distance = 0;                            // state space, analysis/distance.hpp
 };
 
+/// A side whose method broke down (exit 3).
+struct BreakDown : Error {
+    BreakDown(const std::string& message, char side_name, long at_sample)
+        : Error(ExitCode::method_failed, message), side(side_name), sample(at_sample) {}
+    char side;    // 'a' or 'b'
+    long sample;  // the first that is wrong
+};
+
+/// Steps one side from sample to sample, and watches it.
+class SideRun {
+public:
+    /// `name` = 'a' or 'b', for errors.
+    SideRun(const Scene& scene, const Side& side, char name);
+
+    /// Sample 0, then 1, 2, … Throws BreakDown with time and quantity where a number is no longer finite, the energy is
+    /// out of all proportion, a rod is off by its own length, or a step cannot be made; exit 130 soon after `stop` is
+    /// set.
+    Observation next(const std::atomic<bool>& stop);
+
+    double energy_error(const Observation& seen) const;  // relative
+    Effort effort() const { return motion_->effort(); }
+
+private:
+    BreakDown broken(const std::string& what) const;
+    void watch(const Observation& seen);
+
+    const Scene& scene_;
+    const Side& side_;
+    char name_;
+    std::unique_ptr<Motion> motion_;
+    double energy_scale_ = 1, largest_energy_ = 0, longest_rod_ = 0;  // J, J, m
+    long sample_ = -1;
+};
+
 /// Steps the pair from sample to sample.
 class PairRun {
 public:
-    explicit PairRun(const Scene& scene);
+    explicit PairRun(const Scene& scene) : a_(scene, scene.a, 'a'), b_(scene, scene.b, 'b') {}
 
-    /// Sample 0, then 1, 2, … Throws Error: exit 3 with side and time where a state is no longer finite, exit 130 soon
-    /// after `stop` is set.
+    /// Sample 0, then 1, 2, … Throws as SideRun does.
     Moment next(const std::atomic<bool>& stop);
 
-private:
-    struct Runner {
-        const Side& side;
-        std::unique_ptr<Motion> motion;
-        double start_energy, energy_scale;  // J
-    };
-    static Runner runner(const Side& side);
-    Observation advanced(Runner& runner, std::string_view name, const std::atomic<bool>& stop) const;
+    Effort effort_a() const { return a_.effort(); }
+    Effort effort_b() const { return b_.effort(); }
 
-    const Scene& scene_;
-    Runner a_, b_;
+private:
+    SideRun a_, b_;
     long sample_ = -1;
 };
 

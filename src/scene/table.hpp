@@ -10,15 +10,16 @@ namespace doppel {
 /// The table of a pair, a row a sample; the same columns for every model. Throws Error (exit 4), as Csv does.
 class PairTable {
 public:
-    explicit PairTable(const std::filesystem::path& path);
+    PairTable(const std::filesystem::path& path, const Scene& scene);
 
     /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers.
-    void add(const Scene& scene, const Moment& moment, double start_distance);
+    void add(const Moment& moment, double start_distance);
     void finish() { csv_.finish(); }
 
 private:
-    void add_side(const Observation& seen, double energy_error);
+    void add_side(const Side& side, const Observation& seen, double energy_error);
 
+    const Scene& scene_;
     Csv csv_;
 };
 

@@ -61,10 +61,24 @@ std::string listed(std::span<const std::string_view> choices) {
     return text;
 }
 
+/// The number that stands in `text` at a line and column (counted in characters, from 1), without its underscores.
+std::string literal_at(std::string_view text, const toml::source_position& at) {
+    for (toml::source_index line = 1; line < at.line; ++line) text.remove_prefix(text.find('\n') + 1);
+    const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; };  // UTF-8
+    for (toml::source_index column = 1; column < at.column; ++column) {
+        text.remove_prefix(1);
+        while (!text.empty() && continues(text.front())) text.remove_prefix(1);
+    }
+    text = text.substr(0, text.find_first_not_of("0123456789+-._eE"));
+    std::string digits;
+    std::copy_if(text.begin(), text.end(), std::back_inserter(digits), [](char byte) { return byte != '_'; });
+    return digits;
+}
+
 }  // namespace
 
-TomlReader::TomlReader(const toml::table* table, std::string name, std::string path)
-    : table_(table), name_(std::move(name)), path_(std::move(path)) {}
+TomlReader::TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts)
+    : table_(table), name_(std::move(name)), path_(std::move(path)), texts_(&texts) {}
 
 std::string TomlReader::place(std::string_view key) const {
     if (!table_) return path_;
@@ -113,6 +127,45 @@ double TomlReader::number(std::string_view key, std::string_view element, const 
     if (!value) throw bad_input("{}: {} must be a number; {}", place(key), subject(name), found(node));
     if (!std::isfinite(*value)) throw bad_input("{}: {} must be finite; it is {}", place(key), subject(name), *value);
     return *value;
+}
+
+Quad TomlReader::exact(std::string_view key, std::string_view element, const toml::node& node) const {
+    const double rounded = number(key, element, node);
+    if (const auto* whole = node.as_integer()) return Quad(whole->get());
+    const auto& origin = node.source().path;
+    const auto text = texts_->find(origin ? *origin : path_);
+    return text == texts_->end() ? Quad(rounded) : parse_quad(literal_at(text->second, node.source().begin));
+}
+
+void TomlReader::read_number(std::string_view key, Quad& into) {
+    if (const auto* node = find(key)) into = exact(key, "", *node);
+}
+
+void TomlReader::read_positive(std::string_view key, Quad& into) {
+    read_number(key, into);
+    if (has(key) && !(into > 0)) throw fault(key, "must be > 0; it is {}", text_of(into));
+}
+
+void TomlReader::read_numbers(std::string_view key, std::span<Quad> into, std::string_view one_each) {
+    const auto* node = find(key);
+    if (!node) return;
+    if (node->is_number()) {
+        std::fill(into.begin(), into.end(), exact(key, "", *node));
+        return;
+    }
+    const auto* array = node->as_array();
+    if (!array)
+        throw fault(key, "must be a number, or an array of {} numbers, {}; {}", into.size(), one_each, found(*node));
+    if (array->size() != into.size())
+        throw fault(key, "must have {} numbers, {}; it has {}: {}", into.size(), one_each, array->size(), shown(*node));
+    for (std::size_t i = 0; i < into.size(); ++i) into[i] = exact(key, fmt::format("[{}]", i), *array->get(i));
+}
+
+void TomlReader::read_positives(std::string_view key, std::span<Quad> into, std::string_view one_each) {
+    read_numbers(key, into, one_each);
+    for (std::size_t i = 0; has(key) && i < into.size(); ++i)
+        if (!(into[i] > 0))
+            throw bad_input("{}: {}[{}] must be > 0; it is {}", place(key), subject(key), i, text_of(into[i]));
 }
 
 void TomlReader::read_number(std::string_view key, double& into) {
@@ -184,6 +237,33 @@ const toml::table* TomlReader::read_table(std::string_view key) {
     const auto* node = find(key);
     if (node && !node->is_table()) throw fault(key, "must be a table; {}", found(*node));
     return node ? node->as_table() : nullptr;
+}
+
+std::vector<const toml::table*> TomlReader::read_tables(std::string_view key) {
+    std::vector<const toml::table*> tables;
+    const auto* node = find(key);
+    if (!node) return tables;
+    const auto* array = node->as_array();
+    if (!array || !array->is_array_of_tables())
+        throw fault(key, "must be written as [[{}.{}]] tables; {}", bare_name(), key, found(*node));
+    for (const auto& element : *array) tables.push_back(element.as_table());
+    return tables;
+}
+
+void TomlReader::read_pair(std::string_view key, std::array<Quad, 2>& into) {
+    const auto* node = find(key);
+    if (node && !node->is_array()) throw fault(key, "must be two numbers, [x, y]; {}", found(*node));
+    read_numbers(key, into, "x and y");
+}
+
+bool TomlReader::is_text(std::string_view key) {
+    const auto* node = find(key);
+    return node && node->is_string();
+}
+
+bool TomlReader::from_command_line(std::string_view key) {
+    const auto* node = find(key);
+    return node && node->source().path && node->source().path->starts_with(command_line);
 }
 
 void TomlReader::finish() const {

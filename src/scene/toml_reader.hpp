@@ -1,11 +1,14 @@
 #pragma once
 
 #include "numeric/error.hpp"
+#include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 
 #include <toml++/toml.h>
 
+#include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -15,13 +18,17 @@
 
 namespace doppel {
 
+/// The text behind every TOML document that was read, by the path its nodes carry: numbers mean their decimals, which
+/// only the text still has.
+using TomlTexts = std::map<std::string, std::string>;
+
 /// Reads one table of a preset key by key. Every read_… leaves its target alone where the key is absent, and throws
 /// Error (exit 2) with place, value and what would be right where it is of the wrong kind. finish() finds the keys
 /// nobody asked for.
 class TomlReader {
 public:
     /// `name` = how errors call it, "[video]"; `table` may be null: then all keys are absent.
-    TomlReader(const toml::table* table, std::string name, std::string path);
+    TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts);
 
     bool has(std::string_view key);
     void read_text(std::string_view key, std::string& into);
@@ -33,8 +40,27 @@ public:
     void read_positive(std::string_view key, double& into);
     void read_numbers(std::string_view key, std::span<double> into, std::string_view one_each);
     void read_positives(std::string_view key, std::span<double> into, std::string_view one_each);
+    /// The same to all digits of what is written.
+    void read_number(std::string_view key, Quad& into);
+    void read_positive(std::string_view key, Quad& into);
+    /// One number for all, or an array with one each.
+    void read_numbers(std::string_view key, std::span<Quad> into, std::string_view one_each);
+    void read_positives(std::string_view key, std::span<Quad> into, std::string_view one_each);
     std::optional<std::vector<std::string>> read_texts(std::string_view key);
     const toml::table* read_table(std::string_view key);
+    /// The tables of [[key]]; none where it is absent.
+    std::vector<const toml::table*> read_tables(std::string_view key);
+    /// Two numbers, x and y.
+    void read_pair(std::string_view key, std::array<Quad, 2>& into);
+    bool is_text(std::string_view key);
+    /// The name without brackets, "system".
+    std::string_view bare_name() const { return std::string_view(name_).substr(1, name_.size() - 2); }
+    /// A reader of a table inside this one, for errors called `name`.
+    TomlReader inner(const toml::table* table, std::string name) const {
+        return {table, std::move(name), path_, *texts_};
+    }
+    /// Whether the key was given on the command line, and not in the preset's file.
+    bool from_command_line(std::string_view key);
 
     /// Throws if the table has a key that was not asked for, and names the nearest that was.
     void finish() const;
@@ -51,9 +77,11 @@ private:
     const toml::node* find(std::string_view key);
     std::string subject(std::string_view key) const;
     double number(std::string_view key, std::string_view element, const toml::node& node) const;
+    Quad exact(std::string_view key, std::string_view element, const toml::node& node) const;
 
     const toml::table* table_;
     std::string name_, path_;
+    const TomlTexts* texts_;
     std::set<std::string, std::less<>> known_;
 };
 

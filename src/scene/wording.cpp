@@ -8,7 +8,13 @@
 namespace doppel {
 namespace {
 
-constexpr std::array<std::string_view, link_count> subscripts{"₁", "₂"};
+/// 12 → "₁₂"
+std::string subscript(std::size_t number) {
+    constexpr std::array<std::string_view, 10> digits{"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
+    std::string text;
+    for (const char digit : fmt::format("{}", number)) text += digits[static_cast<std::size_t>(digit - '0')];
+    return text;
+}
 
 /// One thing that can be said of a side; the same place in both sides' lists is about the same thing.
 struct Statement {
@@ -21,24 +27,72 @@ std::string step_words(const Rational& step) {
 }
 
 std::string model_words(const Side& side) {
-    return std::string(name_of(side.model));
+    std::string words(name_of(side.motion.model));
+    if (side.motion.stabilise == Stabilise::baumgarte) words += " (Baumgarte)";
+    if (side.motion.stabilise == Stabilise::projection) words += " (projected)";
+    if (side.motion.precision == Precision::in_quad) words += " in quad";
+    return words;
 }
 
-std::vector<Statement> statements(const SideSpec& spec, const Side& side) {
-    std::vector<Statement> all;
-    const auto each_link = [&](std::string_view symbol, const auto& values, std::string_view unit, bool angle = false) {
-        for (std::size_t i = 0; i < link_count; ++i)
-            all.push_back({fmt::format("{}{} = {}{}", symbol, subscripts[i], values[i], unit), angle});
+/// A quantity of all links, in both sides' lists of the same length: link by link in short chains; in long ones what
+/// the links have in common, or the links in which the sides differ.
+void say_links(std::string_view symbol, const std::vector<Quad>& values, const std::vector<Quad>& others,
+               std::string_view unit, bool angle, std::vector<Statement>& all) {
+    constexpr std::size_t most_listed = 3;
+    const auto alike = [](const std::vector<Quad>& of) {
+        return std::all_of(of.begin(), of.end(), [&](const Quad& value) { return value == of[0]; });
     };
-    each_link("θ", spec.angle_deg, "°", true);
-    each_link("ω", spec.omega_deg_per_s, "°/s");
-    each_link("m", spec.mass_kg, " kg");
-    each_link("l", spec.length_m, " m");
-    all.push_back({fmt::format("g = {} m/s²", spec.gravity_m_per_s2)});
+    const bool listed = values.size() <= most_listed;
+    if (!listed && alike(values) && alike(others)) {
+        all.push_back({fmt::format("all {} = {}{}", symbol, text_of(values[0]), unit), angle});
+        return;
+    }
+    if (!listed && values == others) {
+        all.push_back(
+            {fmt::format("{0}₁ = {1}{3}, {0}₂ = {2}{3} …", symbol, text_of(values[0]), text_of(values[1]), unit),
+             angle});
+        return;
+    }
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (listed || values[i] != others[i])
+            all.push_back({fmt::format("{}{} = {}{}", symbol, subscript(i + 1), text_of(values[i]), unit), angle});
+}
+
+std::vector<Statement> statements(const SideSpec& spec, const SideSpec& other, const Side& side) {
+    std::vector<Statement> all;
+    if (spec.particles.empty()) {
+        say_links("θ", spec.angle_deg, other.angle_deg, "°", true, all);
+        say_links("ω", spec.omega_deg_per_s, other.omega_deg_per_s, "°/s", false, all);
+        say_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
+        say_links("l", spec.length_m, other.length_m, " m", false, all);
+    }
+    const auto place = [](const std::array<Quad, 2>& xy) {
+        return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1]));
+    };
+    for (const auto& particle : spec.particles) {
+        all.push_back({fmt::format("{} at {} m", particle.name, place(particle.position_m))});
+        all.push_back({fmt::format("{} {} m/s", particle.name, place(particle.velocity_m_per_s))});
+        all.push_back({fmt::format("{} {} kg", particle.name, text_of(particle.mass_kg))});
+    }
+    all.push_back({fmt::format("g = {} m/s²", text_of(spec.gravity_m_per_s2))});
     all.push_back({model_words(side)});
     all.push_back({std::string(side.method.title)});
-    all.push_back({step_words(side.step)});
+    all.push_back({pace_words(side)});
     return all;
+}
+
+std::string system_words(const SideSpec& side) {
+    if (!side.particles.empty()) return fmt::format("mechanisms of {} masses", side.particles.size());
+    switch (side.links()) {
+        case 1:
+            return "pendulums";
+        case 2:
+            return "double pendulums";
+        case 3:
+            return "triple pendulums";
+        default:
+            return fmt::format("chains of {} links", side.links());
+    }
 }
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -46,6 +100,10 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 }  // namespace
+
+std::string pace_words(const Side& side) {
+    return side.method.adaptive ? fmt::format("tolerance {}", text_of(side.motion.tolerance)) : step_words(side.step);
+}
 
 std::string grouped(long number) {
     auto digits = fmt::format("{}", number);
@@ -55,13 +113,14 @@ std::string grouped(long number) {
 }
 
 std::array<SideWords, 2> side_words(const Scene& scene) {
-    const std::array all{statements(scene.preset.a, scene.a), statements(scene.preset.b, scene.b)};
+    const std::array all{statements(scene.preset.a, scene.preset.b, scene.a),
+                         statements(scene.preset.b, scene.preset.a, scene.b)};
     std::array<SideWords, 2> words;
     for (std::size_t side = 0; side < 2; ++side) {
         std::vector<std::string> differs, start;
         for (std::size_t i = 0; i < all[side].size(); ++i) {
             const auto& statement = all[side][i];
-            if (all[0][i].text != all[1][i].text)
+            if (i >= all[1 - side].size() || all[0][i].text != all[1][i].text)
                 differs.push_back(statement.text);
             else if (statement.is_start_angle)
                 start.push_back(statement.text);
@@ -69,7 +128,12 @@ std::array<SideWords, 2> side_words(const Scene& scene) {
         if (differs.empty()) differs.push_back(side == 0 ? "a" : "b, the same");
         // a heading holds two statements; more go to the note
         constexpr std::size_t most = 2;
+        constexpr std::size_t most_noted = 4;
         start.insert(start.begin(), differs.begin() + static_cast<long>(std::min(most, differs.size())), differs.end());
+        if (start.size() > most_noted) {
+            start.resize(most_noted);
+            start.back() = "…";
+        }
         differs.resize(std::min(most, differs.size()));
         words[side] = {joined(differs), joined(start)};
     }
@@ -78,14 +142,18 @@ std::array<SideWords, 2> side_words(const Scene& scene) {
 
 std::string scene_words(const Scene& scene) {
     const auto at_rest = [](const SideSpec& side) {
+        const auto rests = [](const ParticleSpec& particle) {
+            return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;
+        };
+        if (!side.particles.empty()) return std::all_of(side.particles.begin(), side.particles.end(), rests);
         return std::all_of(side.omega_deg_per_s.begin(), side.omega_deg_per_s.end(),
-                           [](double rate) { return rate == 0; });
+                           [](const Quad& rate) { return rate == 0; });
     };
     std::vector<std::string> common;
-    if (scene.a.model == scene.b.model) common.push_back(model_words(scene.a));
+    if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));
     if (scene.a.method.name == scene.b.method.name) common.emplace_back(scene.a.method.title);
-    if (scene.a.step == scene.b.step) common.push_back(step_words(scene.a.step));
-    return fmt::format("two double pendulums{}{}{}",
+    if (pace_words(scene.a) == pace_words(scene.b)) common.push_back(pace_words(scene.a));
+    return fmt::format("two {}{}{}{}", system_words(scene.preset.a),
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));
 }

@@ -17,6 +17,9 @@ std::array<SideWords, 2> side_words(const Scene& scene);
 /// What both sides have in common: "two double pendulums, released at rest · angles, explicit Euler, 1/30 000 s".
 std::string scene_words(const Scene& scene);
 
+/// How finely a side is stepped: "1/30 000 s", "tolerance 1e-12".
+std::string pace_words(const Side& side);
+
 /// 30000 → "30 000" with thin spaces.
 std::string grouped(long number);
 

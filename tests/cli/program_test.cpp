@@ -96,7 +96,7 @@ TEST(Program, ListsShowsAndChecks) {
     const auto check = doppel(folder, {"check", "butterfly"});
     EXPECT_EQ(check.code, 0);
     for (const char* words :
-         {"angles, explicit Euler, step 1/30000 s, 250 steps a sample", "the smallest model that serves",
+         {"angles, explicit Euler, 1/30 000 s, 250 steps a sample", "the smallest model that serves",
           "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3 601 frames of 1920×1080", "to render"})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
     EXPECT_FALSE(fs::exists(folder / "out"));
@@ -148,8 +148,20 @@ TEST(Program, ExitsWith3WhereTheMethodFails) {
         folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.step_s=\"1/3\"", "--set",
                  "scene.sample_hz=3", "--set", "scene.duration_s=3000", "--set", "system.model=\"constraints\""});
     EXPECT_EQ(result.code, 3);
-    EXPECT_NE(result.err.find("doppel: butterfly: side a broke down: by t = "), std::string::npos) << result.err;
-    EXPECT_TRUE(left_nothing(folder));
+    EXPECT_NE(result.err.find("doppel: butterfly: side a broke down by t = "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("halved until it held: step_s = \"1/"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("the samples before are in out/butterfly/butterfly.failed.csv"), std::string::npos);
+    EXPECT_TRUE(fs::exists(folder / "out/butterfly/butterfly.failed.json"));
+    EXPECT_FALSE(fs::exists(folder / "out/butterfly/butterfly.csv"));
+}
+
+TEST(Program, ListsItsMethods) {
+    const auto list = doppel(fresh_folder(), {"list", "methods"});
+    EXPECT_EQ(list.code, 0);
+    for (const auto* line :
+         {"euler                    1  step_s     angles, constraints, mechanism",
+          "taylor                 any  tolerance", "rattle6                  6  step_s     constraints, mechanism"})
+        EXPECT_NE(list.out.find(line), std::string::npos) << list.out;
 }
 
 TEST(Program, ExitsWith4WhereNothingCanBeWritten) {

@@ -47,27 +47,30 @@ INSTANTIATE_TEST_SUITE_P(
              "presets/x.toml:2:1: [system] omega_deg_per_s[0] must be finite; it is inf"},
         Case{"[system]\nangle_deg = [1, 2, 3]",
              "presets/x.toml:2:1: [system] angle_deg must have 2 numbers, one a link; it has 3: [1, 2, 3]"},
-        Case{"[system]\nangle_deg = 90",
-             "presets/x.toml:2:1: [system] angle_deg must be an array of 2 numbers, one a link; it is a whole number "
-             "(90)"},
+        Case{"[system]\nangle_deg = \"90\"",
+             "presets/x.toml:2:1: [system] angle_deg must be a number, or an array of 2 numbers, one a link; it is a "
+             "string (\"90\")"},
         Case{"[system]\nangle_deg = [90, \"90\"]",
              "presets/x.toml:2:1: [system] angle_deg[1] must be a number; it is a string (\"90\")"},
         Case{"[system]\ngravity_m_per_s2 = 0", "presets/x.toml:2:1: [system] gravity_m_per_s2 must be > 0; it is 0"},
         Case{"[system]\ngravity_m_per_s2 = true",
              "presets/x.toml:2:1: [system] gravity_m_per_s2 must be a number; it is a boolean (true)"},
-        Case{"[system]\nlinks = 3", "presets/x.toml:2:1: [system] links must be 2, the double pendulum; it is 3"},
+        Case{
+            "[b]\nlinks = 3",
+            "presets/x.toml:2:1: [b] links must be that of the other side, so that the two can be compared; they are 2 "
+            "and 3"},
         Case{"[system]\nlinks = 2.0",
              "presets/x.toml:2:1: [system] links must be a whole number; it is a decimal number (2)"},
-        Case{"[system]\nlinks = 0", "presets/x.toml:2:1: [system] links must be from 1 to 1000000; it is 0"},
+        Case{"[system]\nlinks = 0", "presets/x.toml:2:1: [system] links must be from 1 to 10000; it is 0"},
         Case{
             "[system]\nmodel = \"angels\"",
-            R"(presets/x.toml:2:1: [system] model must be "auto", "angles" or "constraints"; it is "angels"; did you mean "angles"?)"},
+            R"(presets/x.toml:2:1: [system] model must be "auto", "angles", "constraints" or "mechanism"; it is "angels"; did you mean "angles"?)"},
         Case{"[system]\nintegrator = \"magic\"",
-             R"(presets/x.toml:2:1: [system] integrator must be "euler" or "rk4"; it is "magic")"},
+             R"(presets/x.toml:2:1: [system] integrator must be "euler", "semi-implicit-euler", "midpoint", "rk4", "dopri5", "dop853", "adams", "gauss4", "gauss6", "taylor", "rattle" or "rattle6"; it is "magic")"},
         Case{"[system]\nintegrator = 4",
              "presets/x.toml:2:1: [system] integrator must be a string; it is a whole number (4)"},
-        Case{"[system]\nprecision = \"quad\"",
-             R"(presets/x.toml:2:1: [system] precision must be "double"; it is "quad")"},
+        Case{"[system]\nprecision = \"half\"",
+             R"(presets/x.toml:2:1: [system] precision must be "double" or "quad"; it is "half")"},
         Case{"[system]\ntolerance = 1e-9",
              R"(presets/x.toml:2:1: [system] tolerance is for adaptive methods; "euler" goes by step_s)"},
         Case{"[system]\nstep_s = \"fast\"",
@@ -151,8 +154,8 @@ TEST(Overrides, GoOnTopOfThePreset) {
     const auto scene =
         scene_of("butterfly", {"system.integrator=\"rk4\"", "b.angle_deg=[80, 70]", "scene.duration_s=2"});
     EXPECT_EQ(scene.a.method.name, "rk4");
-    EXPECT_EQ(scene.preset.b.angle_deg, (std::array{80.0, 70.0}));
-    EXPECT_EQ(scene.preset.a.angle_deg, (std::array{90.0, 90.0}));
+    EXPECT_EQ(scene.preset.b.angle_deg, (std::vector<Quad>{80, 70}));
+    EXPECT_EQ(scene.preset.a.angle_deg, (std::vector<Quad>{90, 90}));
     EXPECT_EQ(scene.samples, 240);
 }
 

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <fstream>
+#include <set>
 #include <sstream>
 
 namespace doppel {
@@ -179,12 +181,31 @@ TEST(Run, LeavesNothingWhenItIsInterrupted) {
     }
 }
 
-TEST(Run, LeavesNothingWhenTheMethodFails) {
+TEST(Run, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     const auto out = fresh_folder();
     const auto scene = scene_of("butterfly", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000",
                                               "video.size=[64, 64]", "system.model=\"constraints\""});
-    EXPECT_EQ(error_of([&] { render(scene, {.out = out}); }).first, ExitCode::method_failed);
-    EXPECT_TRUE(fs::is_empty(out));
+    const auto [code, message] = error_of([&] { render(scene, {.out = out}); });
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("butterfly.failed.csv"), std::string::npos) << message;
+
+    // two files, no video and nothing that looks whole
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(out / "butterfly")) names.insert(entry.path().filename());
+    EXPECT_EQ(names, (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
+    const auto manifest = nlohmann::json::parse(std::ifstream(out / "butterfly" / "butterfly.failed.json"));
+    const std::string failure = manifest["failed"];
+    EXPECT_EQ(message.rfind(failure, 0), 0u);
+    std::ifstream table(out / "butterfly" / "butterfly.failed.csv");
+    long rows = -1;  // the header
+    for (std::string line; std::getline(table, line);) ++rows;
+    EXPECT_EQ(rows, manifest["samples"]["last"].get<long>() + 1);
+    EXPECT_GT(rows, 1);
+
+    // a whole run takes them away
+    render(scene_of("butterfly", {"scene.duration_s=0.1", "video.size=[64, 64]"}), {.out = out});
+    EXPECT_FALSE(fs::exists(out / "butterfly" / "butterfly.failed.csv"));
+    EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
 }
 
 TEST(Run, RefusesFramesThatAreNotThere) {

@@ -52,8 +52,8 @@ TEST(Truth, BobsAreWherePhysicsSaysInTheirColour) {
             const double length = link == 0 ? 1.3 : 0.6, angle = radians(starts[side][link]);
             x += length * std::sin(angle);
             y -= length * std::cos(angle);
-            const Point expected{panel.pivot.x + panel.px_per_m * static_cast<float>(x),
-                                 panel.pivot.y - panel.px_per_m * static_cast<float>(y)};
+            const Point expected{panel.center.x + panel.px_per_m * static_cast<float>(x),
+                                 panel.center.y - panel.px_per_m * static_cast<float>(y)};
             const auto found =
                 blob_at(picture, expected, 1.5f * layout.bob_radius, link == 1 ? theme.sides[side] : theme.bob);
             EXPECT_NEAR(found.x, expected.x, 0.5);  // measured 0.1 at most
@@ -165,8 +165,9 @@ TEST(Truth, TwinsDrawnMirroredAreMirrored) {
     const int reach = static_cast<int>(2.2f * left.px_per_m);
     for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach / 2; dx <= reach / 2; ++dx) {
-            const auto* l = picture.at(static_cast<int>(left.pivot.x) + dx, static_cast<int>(left.pivot.y) + dy);
-            const auto* r = picture.at(static_cast<int>(right.pivot.x) - dx - 1, static_cast<int>(right.pivot.y) + dy);
+            const auto* l = picture.at(static_cast<int>(left.center.x) + dx, static_cast<int>(left.center.y) + dy);
+            const auto* r =
+                picture.at(static_cast<int>(right.center.x) - dx - 1, static_cast<int>(right.center.y) + dy);
             for (int c = 0; c < 3; ++c) differing += std::abs(l[c] - r[c]) > 40;
         }
     EXPECT_LT(differing, 40);  // measured 0, where both pivots are at whole or both at half pixels

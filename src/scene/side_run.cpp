@@ -1,0 +1,89 @@
+#include "analysis/energy_error.hpp"
+#include "scene/scene.hpp"
+#include "scene/wording.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// The first number of the observation that is none, in words; nothing where all are finite.
+std::optional<std::string> not_finite(const Observation& seen, bool has_angles) {
+    for (std::size_t i = 0; i < seen.bobs.size(); ++i) {
+        const auto& bob = seen.bobs[i];
+        const auto name = [&](std::string_view symbol, double value) {
+            return fmt::format("{}{} is {}", symbol, i + 1, value);
+        };
+        if (has_angles && !std::isfinite(bob.omega)) return name("the rate ω", bob.omega);
+        if (has_angles && !std::isfinite(bob.theta)) return name("the angle θ", bob.theta);
+        if (!std::isfinite(bob.x) || !std::isfinite(bob.y)) return name("the place of mass ", bob.x + bob.y);
+        if (!std::isfinite(bob.vx) || !std::isfinite(bob.vy)) return name("the velocity of mass ", bob.vx + bob.vy);
+    }
+    if (!std::isfinite(seen.energy)) return fmt::format("the energy is {}", seen.energy);
+    if (!std::isfinite(seen.length_error)) return fmt::format("the rod error is {}", seen.length_error);
+    return std::nullopt;
+}
+
+double kinetic_energy(const Bobs<double>& bobs) {
+    double sum = 0;
+    for (const auto& bob : bobs) sum += 0.5 * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
+    return sum;
+}
+
+/// Errors say whose they are.
+std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
+    try {
+        return make_motion(side.motion);
+    } catch (const Error& fault) {
+        throw Error(fault.code(), fmt::format("{}: side {}: {}", scene.preset.name, name, fault.what()));
+    }
+}
+
+}  // namespace
+
+SideRun::SideRun(const Scene& scene, const Side& side, char name)
+    : scene_(scene), side_(side), name_(name), motion_(motion_of(scene, side, name)) {
+    const auto start = motion_->observe();
+    energy_scale_ = doppel::energy_scale(start.energy, side.energy_unit);
+    // ten times all the energy there is: no true motion gains that
+    largest_energy_ = 10 * (side.energy_unit + std::abs(start.energy) + kinetic_energy(start.bobs));
+    longest_rod_ = side.reach;
+}
+
+double SideRun::energy_error(const Observation& seen) const {
+    return seen.energy_change / energy_scale_;
+}
+
+BreakDown SideRun::broken(const std::string& what) const {
+    return {fmt::format("{}: side {} broke down by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_,
+                        scene_.time(sample_), what, name_of(side_.motion.model), side_.method.title, pace_words(side_)),
+            name_, sample_};
+}
+
+void SideRun::watch(const Observation& seen) {
+    if (const auto fault = not_finite(seen, side_.has_angles)) throw broken(*fault);
+    if (seen.energy_change > largest_energy_)
+        throw broken(
+            fmt::format("the energy has grown by {:.3g} J, more than ten times what there is", seen.energy_change));
+    if (seen.length_error > longest_rod_)
+        throw broken(fmt::format("a rod is off by {:.3g} m, more than all of them are long", seen.length_error));
+}
+
+Observation SideRun::next(const std::atomic<bool>& stop) {
+    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    ++sample_;
+    if (sample_ > 0) {
+        try {
+            motion_->advance(stop);
+        } catch (const Error& fault) {
+            if (fault.code() != ExitCode::method_failed) throw;
+            throw broken(fault.what());
+        }
+    }
+    auto seen = motion_->observe();
+    watch(seen);
+    return seen;
+}
+
+}  // namespace doppel
