@@ -4,6 +4,7 @@
 #include "scene/nearest.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace doppel {
 namespace {
@@ -35,6 +36,7 @@ public:
         return particle ? assembly_.particles[*particle].place : std::get<Place<Quad>>(end);
     }
     Quad apart(const End<Quad>& one, const End<Quad>& other) const {
+        using std::sqrt;
         const Place<Quad> r = start(one) - start(other);
         return sqrt(Quad(r[0] * r[0] + r[1] * r[1]));
     }

@@ -149,7 +149,8 @@ void Composer::compose_pivots(std::size_t side, DisplayList& list) const {
         const bool one_end = line.kind == Kind::anchor;
         for (const auto* end : {&line.from, one_end ? nullptr : &line.to})
             if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr)
-                compose_disc(panel, panel.at((*place)[0], (*place)[1]), 0.4f * layout_.bob_radius, theme_.pivot, list);
+                compose_disc(panel, panel.at((*place)[0], (*place)[1]),
+                             std::max(0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius), theme_.pivot, list);
     }
 }
 

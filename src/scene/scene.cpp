@@ -4,6 +4,7 @@
 #include "analysis/energy_error.hpp"
 #include "numeric/error.hpp"
 #include "scene/choose.hpp"
+#include "scene/precision.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +16,30 @@ double Scene::time(long sample) const {
            static_cast<double>(preset.sample_hz.numerator);
 }
 
+namespace {
+
+/// Errors say whose they are.
+Side side_of(const Preset& preset, const SideSpec& spec, char name) {
+    try {
+        return make_side(spec, preset.sample_hz);
+    } catch (const Error& fault) {
+        throw Error(fault.code(), fmt::format("{}: side {}: {}", preset.name, name, fault.what()));
+    }
+}
+
+}  // namespace
+
 Scene make_scene(const Preset& preset) {
     Scene scene{.preset = preset,
-                .a = make_side(preset.a, preset.sample_hz),
-                .b = make_side(preset.b, preset.sample_hz),
+                .a = side_of(preset, preset.a, 'a'),
+                .b = side_of(preset, preset.b, 'b'),
                 .samples = product(preset.duration_s, preset.sample_hz)->numerator,
                 .fps = {},
                 .samples_per_frame = 1};
     const auto samples_a_second = *product(preset.sample_hz, preset.video.speed);
     scene.fps = preset.video.fps.value_or(samples_a_second);
     scene.samples_per_frame = quotient(samples_a_second, scene.fps)->numerator;
+    check_precision(scene);
     return scene;
 }
 

@@ -56,6 +56,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"two-methods-3s", "two-methods", 360, {}},
                     Golden{"mass-ratio-2s", "mass-ratio", 240, {"video.theme=\"light\""}},
                     Golden{"calm-3s", "calm", 360, {"video.panels=[\"pendulums\", \"distance\"]"}},
+                    Golden{"triple-2s", "triple", 240, {}}, Golden{"whip-1s", "whip", 120, {"video.theme=\"light\""}},
+                    Golden{"springs-2s", "springs", 240, {"scene.duration_s=3"}},
+                    Golden{"loop-2s", "loop", 240, {"scene.duration_s=3"}},
                     Golden{"strips-only", "calm", 360, {"video.panels=[\"distance\", \"energy\"]"}}),
     [](const auto& parameter) {
         std::string name = parameter.param.name;

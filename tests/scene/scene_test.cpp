@@ -73,6 +73,74 @@ TEST(AutoModel, IsTheSmallestThatServes) {
     EXPECT_NE(scene.a.why.find("closed form"), std::string::npos);
 }
 
+TEST(AutoModel, SaysWhyItIsAnotherOne) {
+    const auto why = [](const std::vector<std::string>& arguments) {
+        const auto scene = scene_of("butterfly", arguments);
+        return std::pair{scene.a.motion.model, scene.a.why};
+    };
+    EXPECT_EQ(why({"system.integrator=\"rattle\""}),
+              (std::pair{Model::constraints, std::string("\"rattle\" steps particles on their rods")}));
+    EXPECT_EQ(why({"system.stabilise=\"projection\""}),
+              (std::pair{Model::constraints, std::string("only constraints can be stabilised")}));
+    EXPECT_EQ(make_scene(read_preset({"x", "x.toml", "[system]\nlinks = 7"})).a.motion.model, Model::angles);
+}
+
+TEST(Numbers, MeanTheirDecimals) {
+    const auto preset =
+        read_preset({"x", "x.toml", "[system]\nangle_deg = [90.003, 1_0.1]\ngravity_m_per_s2 = 9.80665"},
+                    sets({"b.mass_kg=[0.1, +1e-1]"}));
+    EXPECT_EQ(preset.a.angle_deg[0], Quad(90003) / 1000);
+    EXPECT_EQ(preset.a.angle_deg[1], Quad(101) / 10);
+    EXPECT_EQ(preset.a.gravity_m_per_s2, Quad(980665) / 100000);
+    EXPECT_EQ(preset.b.mass_kg[0], Quad(1) / 10);
+    EXPECT_EQ(preset.b.mass_kg[1], Quad(1) / 10);
+    EXPECT_NE(preset.b.mass_kg[0], Quad(0.1));
+    // degrees turn into radians with π to 34 digits
+    const auto angle = make_scene(preset).a.motion.chain->angle[0];
+    const auto expected = parse_quad("1.57084868667245644911862940236281");  // 90.003 π / 180
+    EXPECT_LT(abs(angle - expected), parse_quad("1e-31"));
+    EXPECT_EQ(text_of(parse_quad("90.003")), "90.003");
+    EXPECT_EQ(parse_quad(text_of(Quad(1) / 3)), Quad(1) / 3);
+}
+
+TEST(Numbers, ThatDoubleCannotTellApartAskForQuad) {
+    const std::vector<std::string> apart{"b.angle_deg=[90.00000000000000000001, 90]"};
+    const auto [code, message] = error_of([&] { scene_of("butterfly", apart); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_EQ(
+        message,
+        "butterfly: angle_deg[0] is 90 on side a and 90.00000000000000000001 on side b, the same number in double: "
+        "both sides would move identically. Set precision = \"quad\"");
+    auto in_quad = apart;
+    in_quad.emplace_back("system.precision=\"quad\"");
+    EXPECT_NO_THROW(scene_of("butterfly", in_quad));
+}
+
+TEST(Rivals, TheCommandLineDropsWhatThePresetSaysForAnotherKind) {
+    // butterfly has step_s = "1/30000"
+    const auto adaptive = scene_of("butterfly", {"system.integrator=\"taylor\""});
+    EXPECT_FALSE(adaptive.preset.a.step_s);
+    EXPECT_EQ(adaptive.a.motion.tolerance, usual_tolerance);
+    const auto given = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1e-9"});
+    EXPECT_EQ(given.b.motion.tolerance, parse_quad("1e-9"));
+    const auto fixed = scene_of("whip", {"system.integrator=\"rk4\""});
+    EXPECT_FALSE(fixed.preset.a.tolerance);
+    EXPECT_EQ(fixed.a.step, usual_step);
+    // a side of its own in the preset
+    const auto mixed =
+        make_scene(read_preset({"x", "x.toml", "[system]\nstep_s = \"1/600\"\n[b]\nintegrator = \"dop853\""}));
+    EXPECT_EQ(mixed.a.step, (Rational{1, 600}));
+    EXPECT_EQ(mixed.b.motion.tolerance, usual_tolerance);
+
+    const auto message = [](const std::vector<std::string>& arguments) {
+        return error_of([&] { scene_of("butterfly", arguments); }).second;
+    };
+    EXPECT_EQ(message({"system.integrator=\"taylor\"", "system.step_s=0.001"}),
+              R"(--set system.step_s: [system] step_s is for methods with a fixed step; "taylor" goes by tolerance)");
+    EXPECT_EQ(message({"system.tolerance=1e-9"}),
+              R"(--set system.tolerance: [system] tolerance is for adaptive methods; "euler" goes by step_s)");
+}
+
 TEST(Sides, MayDifferInModelMethodAndStep) {
     const auto scene = scene_of(
         "butterfly", {"a.model=\"constraints\"", "b.integrator=\"rk4\"", "b.step_s=\"1/1200\"", "scene.duration_s=1"});
