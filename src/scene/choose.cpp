@@ -58,6 +58,7 @@ void measure(Side& side) {
     side.has_angles = side.motion.chain.has_value();
     if (!side.motion.parts) return;
     const auto parts = side.motion.parts->cast<double>();
+    check(parts);
     side.lines = lines_of(parts);
     if (side.has_angles) return;
     // no chain: its size is that of its start, and its energies those of falling that far
@@ -92,7 +93,7 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
         motion.tolerance =
             spec.tolerance.value_or(spec.precision == Precision::in_quad ? usual_quad_tolerance : usual_tolerance);
     } else {
-        side.step = spec.step_s.value_or(usual_step);
+        side.step = spec.step();
         motion.steps_per_sample = quotient(motion.sample_interval, side.step)->numerator;
     }
     motion.stabilise = spec.stabilise;

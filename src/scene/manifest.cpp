@@ -97,8 +97,8 @@ std::string side_toml(const char* name, const SideSpec& side) {
         "model = \"{}\"\nintegrator = \"{}\"\nprecision = \"{}\"\nstabilise = \"{}\"\n",
         text_of(side.gravity_m_per_s2), models[static_cast<int>(side.model)], side.integrator,
         precisions[static_cast<int>(side.precision)], stabilise[static_cast<int>(side.stabilise)]);
-    if (side.step_s) text += fmt::format("step_s = {}\n", ratio(*side.step_s));
-    if (side.tolerance) text += fmt::format("tolerance = {}\n", text_of(*side.tolerance));
+    text += find_method(side.integrator)->adaptive ? fmt::format("tolerance = {}\n", text_of(side.allowed_error()))
+                                                   : fmt::format("step_s = {}\n", ratio(side.step()));
     if (side.stabilise == Stabilise::baumgarte)
         text += fmt::format("stabilise_rate_per_s = {}\n", text_of(side.stabilise_rate_per_s));
     for (const auto& particle : side.particles) text += particle_toml(name, particle);

@@ -63,6 +63,12 @@ struct SideSpec {
     std::vector<ParticleSpec> particles;  // in place of a chain
     std::vector<PartSpec> constraints, forces;
 
+    /// How finely to step where nothing was given, too.
+    Rational step() const { return step_s.value_or(usual_step); }
+    Quad allowed_error() const {
+        return tolerance.value_or(precision == Precision::in_quad ? usual_quad_tolerance : usual_tolerance);
+    }
+
     std::size_t links() const { return mass_kg.size(); }
     /// Whether it takes more than a chain under gravity.
     bool is_mechanism() const { return !particles.empty() || !constraints.empty() || !forces.empty(); }

@@ -155,7 +155,7 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
 void check_rates(const Preset& preset, const TomlReader& scene, const TomlReader& video) {
     for (const auto* side : {&preset.a, &preset.b}) {
         if (find_method(side->integrator)->adaptive) continue;
-        const auto rate = quotient({1, 1}, side->step_s.value_or(usual_step));
+        const auto rate = quotient({1, 1}, side->step());
         const auto steps = rate ? quotient(*rate, preset.sample_hz) : std::nullopt;
         if (!steps || !steps->is_whole())
             throw scene.fault("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}; {} do",
