@@ -40,9 +40,9 @@ inline constexpr bool has_carried_euler<DoublePendulum<Scalar>> = is_machine_num
 template <class Scalar, int N>
 inline constexpr bool has_carried_euler<RodChain<Scalar, N>> = is_machine_number<Scalar> && (N == 2 || N == 3);
 
-/// Sine and cosine, times one factor, of an angle that advances by small steps. They turn with it,
-///     sin(θ+δ) = sinθ + cosθ sinδ − sinθ (1 − cosδ),   cos(θ+δ) = cosθ − sinθ sinδ − cosθ (1 − cosδ),
-/// by the series of sinδ and cosδ, which for |δ| ≤ 2⁻⁸ leave less than 2⁻⁵⁷ out; larger steps take them afresh.
+/// Sine and cosine, times one factor, of an angle that advances by small steps. They turn with it by three shears,
+///     u = cosθ − t sinθ,   sin(θ+δ) = sinθ + sinδ u,   cos(θ+δ) = u − t sin(θ+δ),   t = tan(δ/2),
+/// with the series of sinδ and t, which for |δ| ≤ largest leave less than 2⁻⁵⁶ out.
 template <class Scalar>
 struct TurningAngle {
     Scalar sin, cos;
@@ -63,20 +63,21 @@ struct TurningAngle {
         cos *= factor;
     }
 
+    static constexpr double largest = 1.0 / 1024;
+
     /// Turns by d, where square = d².
     [[gnu::always_inline]] void turn(const Scalar& d, const Scalar& square) {
-        const Scalar third = (d * square) * (square * Scalar(1.0 / 120) - Scalar(1.0 / 6));  // sinδ − δ
-        const Scalar second = square * (square * Scalar(1.0 / 24) - Scalar(0.5));            // cosδ − 1
-        const Scalar s = sin, c = cos;
-        sin = (s + c * d) + (c * third + s * second);
-        cos = (c - s * d) + (c * second - s * third);
+        const Scalar t = d * (Scalar(0.5) + square * Scalar(1.0 / 24));
+        const Scalar u = cos - t * sin;
+        sin += (d * (Scalar(1) - square * Scalar(1.0 / 6))) * u;
+        cos = u - t * sin;
     }
 };
 
 /// The double pendulum needs sine and cosine of θ1 and of D = θ2 − θ1 alone. With the tensions of the rods T1, T2
-/// (physics/angle_chain.hpp), the masses' ratio m1/m2 = ratio and q = ω1² + (g/l1) cosθ1:
-///     θ1″ = (ω2² l2/l1 + q cosD) f − (g/l1) sinθ1
-///     θ2″ = −((1 + ratio) q l1/l2 + ω2² cosD) f,      f = sinD / (ratio + sin²D)
+/// (physics/angle_chain.hpp), L = l2/l1, q = ω1² + (g/l1) cosθ1 and sine and cosine of D as S = sinD / L, C = cosD / L:
+///     θ1″ = (ω2² + q C) f − (g/l1) sinθ1
+///     θ2″ = −(q lever + ω2² C) f,      f = S / (ratio + S²),   ratio = (m1/m2) / L²,   lever = (1 + m1/m2) / L²
 template <class Scalar>
 class CarriedEuler<DoublePendulum<Scalar>> {
 public:
@@ -84,13 +85,25 @@ public:
     using State = typename Model::State;
 
     CarriedEuler(const Model& model, const State& start, const Scalar& step) : start_(start), h_(step) {
-        by_ = {model.m1 / model.m2, step * step * model.g / model.l1, model.l2 / model.l1,
-               (Scalar(1) + model.m1 / model.m2) * model.l1 / model.l2};
+        using std::abs, std::sqrt;
+        const Scalar longer = model.l2 / model.l1, masses = model.m1 / model.m2, square = longer * longer;
+        inverse_longer_ = Scalar(1) / longer;
+        gravity_ = step * step * model.g / model.l1;
+        by_ = {masses / square, (Scalar(1) + masses) / square};
         now_.theta1 = start[0];
         now_.theta2 = start[1];
         now_.way1 = step * start[2];
         now_.way2 = step * start[3];
         look(now_);
+
+        // While δ1 and δD stay within the largest turn, (h ω2)² ≤ 4 largest² and f ≤ L / (2 √(m1/m2)); so in one step
+        // neither grows by more than
+        const Scalar largest = Turning::largest * Turning::largest, q = largest + abs(gravity_);
+        const Scalar growth =
+            (Scalar(4) * largest + q * inverse_longer_ + q * by_.lever + Scalar(4) * largest * inverse_longer_) *
+                longer / sqrt(masses) +
+            abs(gravity_);
+        slow_ = Scalar(Turning::largest) - Scalar(double(block)) * growth;
     }
 
     DOPPEL_COMPONENTS_APART void advance(long steps) { run(steps); }
@@ -102,76 +115,85 @@ public:
     long evaluations() const { return taken_; }
 
 private:
+    using Turning = TurningAngle<Scalar>;
+    static constexpr long looks_every = 256;  // steps; turning errs by some 1e-16 each, and errors add up
+    static constexpr long block = 16;         // steps between two looks at how fast all turns
+
     [[gnu::always_inline]] void run(long steps) {
+        using std::abs;
+        Now now = now_;  // here, so that the compiler keeps it in registers
+        const Constants by = by_;
         while (steps > 0) {
-            const long some = std::min(steps, looks_every - taken_ % looks_every);
-            Now now = now_;  // here, so that the compiler keeps it in registers
-            const Constants by = by_;
-            for (long i = 0; i < some; ++i) step(now, by);
+            const long some = std::min({steps, block, looks_every - taken_ % looks_every});
+            if (all_of((abs(now.way1) <= slow_) & (abs(now.way2 - now.way1) <= slow_))) [[likely]] {
+                for (long i = 0; i < some; ++i) step(now, by);
+            } else {
+                now_ = now;
+                for (long i = 0; i < some; ++i) step_fast();
+                now = now_;
+            }
             taken_ += some;
             steps -= some;
-            if (taken_ % looks_every == 0) look(now);
-            now_ = now;
+            if (taken_ % looks_every == 0) {
+                now_ = now;
+                look(now_);
+                now = now_;
+            }
         }
+        now_ = now;
     }
 
-    static constexpr long looks_every = 256;  // steps; turning errs by some 1e-16 each, and errors add up
-
     struct Constants {
-        Scalar ratio;    // m1/m2
-        Scalar gravity;  // h² g/l1
-        Scalar longer;   // l2/l1
-        Scalar lever;    // (1 + m1/m2) l1/l2
+        Scalar ratio, lever;  // as above
     };
     struct Now {
         Scalar theta1, theta2;
-        Scalar way1, way2;              // h ω
-        TurningAngle<Scalar> one, two;  // of θ1, times h² g/l1; of D
+        Scalar way1, way2;  // h ω
+        Turning one, two;   // of θ1, times h² g/l1; of D, times 1/L
     };
 
-    void look(Now& now) const {
-        now.one.look(by_.gravity, now.theta1);
-        now.two.look(Scalar(1), now.theta2 - now.theta1);
+    [[gnu::noinline]] void look(Now& now) const {
+        now.one.look(gravity_, now.theta1);
+        now.two.look(inverse_longer_, now.theta2 - now.theta1);
     }
 
     [[gnu::always_inline]] static void step(Now& now, const Constants& by) {
         const Scalar d1 = now.way1, d = now.way2 - now.way1;
-        const Scalar square1 = d1 * d1, square2 = now.way2 * now.way2, square = d * d;
+        const Scalar square1 = d1 * d1, square2 = now.way2 * now.way2;
         const auto [sin, cos] = now.two;
 
         // h² times the accelerations
         const Scalar f = sin / (by.ratio + sin * sin);
         const Scalar q = square1 + now.one.cos;
-        const Scalar a1 = (square2 * by.longer + q * cos) * f - now.one.sin;
+        const Scalar a1 = (square2 + q * cos) * f;
         const Scalar a2 = (q * by.lever + square2 * cos) * f;
 
         now.theta1 += now.way1;
         now.theta2 += now.way2;
-        now.way1 += a1;
+        now.way1 = (now.way1 - now.one.sin) + a1;
         now.way2 -= a2;
         now.one.turn(d1, square1);
-        now.two.turn(d, square);
-        const Scalar largest(1.0 / (256 * 256));
-        const auto slow = (square1 <= largest) & (square <= largest);  // false where it is no number
-        if (!all_of(slow)) [[unlikely]] {
-            Now copy = now;  // so that `now` itself may stay in registers
-            look_where_fast(copy, by, square1 <= largest, square <= largest);
-            now = copy;
-        }
+        now.two.turn(d, d * d);
     }
 
-    /// Takes afresh, in the lanes that turn too fast, what turning would get wrong.
-    template <class Mask>
-    [[gnu::noinline]] static void look_where_fast(Now& now, const Constants& by, const Mask& slow1, const Mask& slow2) {
-        TurningAngle<Scalar> one, two;
-        one.look(by.gravity, now.theta1);
-        two.look(Scalar(1), now.theta2 - now.theta1);
-        now.one = {select(slow1, now.one.sin, one.sin), select(slow1, now.one.cos, one.cos)};
-        now.two = {select(slow2, now.two.sin, two.sin), select(slow2, now.two.cos, two.cos)};
+    /// A step that takes afresh, in the lanes that turn too fast, what turning would get wrong.
+    [[gnu::noinline]] void step_fast() {
+        using std::abs;
+        const Scalar d1 = now_.way1, d = now_.way2 - now_.way1;
+        const auto slow1 = abs(d1) <= Scalar(Turning::largest), slow = abs(d) <= Scalar(Turning::largest);
+        Now turned = now_;
+        step(turned, by_);
+        now_ = turned;
+        if (all_of(slow1 & slow)) return;
+        look(now_);
+        now_.one = {select(slow1, turned.one.sin, now_.one.sin), select(slow1, turned.one.cos, now_.one.cos)};
+        now_.two = {select(slow, turned.two.sin, now_.two.sin), select(slow, turned.two.cos, now_.two.cos)};
     }
 
     State start_;
-    Scalar h_;  // s
+    Scalar h_;                         // s
+    Scalar gravity_, inverse_longer_;  // h² g/l1, 1/L
+    Scalar slow_;  // h ω1 and h (ω2 − ω1) up to which no turn of the next block is too large for the series
     Constants by_;
     Now now_;
     long taken_ = 0;  // steps
@@ -193,19 +215,21 @@ public:
 
     CarriedEuler(const Model& model, const State& start, const Scalar& step) : start_(start), h_(step) {
         by_.gravity = step * step * model.g;
-        by_.rho2 = model.w[1] / model.w[0];
-        by_.kappa2 = Scalar(1) + by_.rho2;
+        const Scalar rho2 = model.w[1] / model.w[0];
+        by_.kappa2 = Scalar(1) + rho2;
         if constexpr (N == 3) {
-            const Scalar rho3 = model.w[2] / model.w[0];
-            by_.kappa3 = (by_.rho2 + rho3) / (by_.rho2 * by_.rho2);
-            by_.inverse2 = Scalar(1) / by_.rho2;
-            by_.ratio3 = rho3 / by_.rho2;
+            by_.kappa3 = (rho2 + model.w[2] / model.w[0]) / (rho2 * rho2);
+            scale3_ = rho2;
         }
         for (Eigen::Index k = 0; k < N; ++k) {
             now_.r[k] = relative(start, k, 0);
             now_.u[k] = relative(start, k, 2 * N);
             now_.u[k].x *= step;
             now_.u[k].y *= step;
+        }
+        if constexpr (N == 3) {
+            now_.r[2] = now_.r[2] * (Scalar(1) / scale3_);
+            now_.u[2] = now_.u[2] * (Scalar(1) / scale3_);
         }
         mark_resting(model);
     }
@@ -218,8 +242,8 @@ public:
         State y;
         Pair q{Scalar(0), Scalar(0)}, v = q;
         for (Eigen::Index k = 0; k < N; ++k) {
-            q = {q.x + now_.r[k].x, q.y + now_.r[k].y};
-            v = {v.x + now_.u[k].x, v.y + now_.u[k].y};
+            q = q + (k == 2 ? now_.r[k] * scale3_ : now_.r[k]);
+            v = v + (k == 2 ? now_.u[k] * scale3_ : now_.u[k]);
             y[2 * k] = q.x;
             y[2 * k + 1] = q.y;
             y[2 * N + 2 * k] = v.x / h_;
@@ -257,9 +281,8 @@ private:
         Pair r[N], u[N];
     };
     struct Constants {
-        Scalar gravity;                   // h² g
-        Scalar rho2, kappa2;              // as above
-        Scalar kappa3, inverse2, ratio3;  // κ_3, 1/ρ_2, ρ_3/ρ_2
+        Scalar gravity;         // h² g
+        Scalar kappa2, kappa3;  // as above
     };
 
     static constexpr int width = [] {
@@ -304,11 +327,10 @@ private:
         const Scalar inverse = Scalar(1) / (a1 * a2 - b1 * b1);
         const Scalar s1 = (by.gravity * r1.y - u1.x * u1.x) - u1.y * u1.y, s2 = dot(u2, u2);  // −s_2
         const Pair p1 = (r1 * inverse) * (a2 * s1 - b1 * s2), p2 = (r2 * inverse) * (b1 * s1 - a1 * s2);
-        const Pair on1 = p1 - p2;
         now.r[0] = r1 + u1;
         now.r[1] = r2 + u2;
-        now.u[0] = {u1.x + on1.x, u1.y + (on1.y - by.gravity)};
-        now.u[1] = u2 + (p2 * by.rho2 - on1);
+        now.u[0] = {u1.x + (p1.x - p2.x), u1.y + ((p1.y - p2.y) - by.gravity)};
+        now.u[1] = u2 + (p2 * by.kappa2 - p1);
     }
 
     [[gnu::always_inline]] static void step_three(Now& now, const Constants& by) {
@@ -318,25 +340,22 @@ private:
         const Scalar m23 = a2 * a3 - b2 * b2, square1 = b1 * b1, m12 = a1 * a2 - square1;
         const Scalar inverse = Scalar(1) / (a1 * m23 - square1 * a3);
         const Scalar s1 = (by.gravity * r1.y - u1.x * u1.x) - u1.y * u1.y;
-        const Scalar s2 = dot(u2, u2), s3 = dot(u3, u3) * by.inverse2;  // −s_2, −s_3
-        const Scalar below = a3 * s2 + b2 * s3;
-        const Scalar x1 = m23 * s1 - b1 * below;
-        const Scalar x2 = (a3 * b1) * s1 - a1 * below;
-        const Scalar x3 = (b1 * b2) * s1 - ((a1 * b2) * s2 + m12 * s3);
-        const Pair p1 = (r1 * inverse) * x1;
-        const Pair p2 = (r2 * inverse) * x2;
-        const Pair p3 = (r3 * inverse) * x3;
-        const Pair on1 = p1 - p2, on2 = p2 * by.rho2 - p3;
+        const Scalar s2 = dot(u2, u2), s3 = dot(u3, u3);  // −s_2, −s_3
+        const Scalar below = a3 * s2 + b2 * s3, above = b1 * s1;
+        const Pair p1 = (r1 * inverse) * (m23 * s1 - b1 * below);
+        const Pair p2 = (r2 * inverse) * (a3 * above - a1 * below);
+        const Pair p3 = (r3 * inverse) * (b2 * (above - a1 * s2) - m12 * s3);
         now.r[0] = r1 + u1;
         now.r[1] = r2 + u2;
         now.r[2] = r3 + u3;
-        now.u[0] = {u1.x + on1.x, u1.y + (on1.y - by.gravity)};
-        now.u[1] = u2 + (on2 - on1);
-        now.u[2] = u3 + (p3 * by.ratio3 - on2);
+        now.u[0] = {u1.x + (p1.x - p2.x), u1.y + ((p1.y - p2.y) - by.gravity)};
+        now.u[1] = u2 + (p2 * by.kappa2 - (p1 + p3));
+        now.u[2] = u3 + (p3 * by.kappa3 - p2);
     }
 
     State start_;
-    Scalar h_;  // s
+    Scalar h_;          // s
+    Scalar scale3_{1};  // ρ_2
     Constants by_{};
     Now now_;
     std::array<bool, width> rests_{};
