@@ -30,6 +30,7 @@ std::string step_that_holds(const Scene& scene, const BreakDown& fault, const st
     Effort effort;
     if (side.method.adaptive) {
         holds(scene, side, fault, stop, effort);
+        if (effort.smallest_step == 0) return "not even a first step held";
         return fmt::format("the smallest step that held was {:.3g} s; a smaller tolerance may hold",
                            effort.smallest_step);
     }

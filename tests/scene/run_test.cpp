@@ -208,6 +208,21 @@ TEST(Run, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
 }
 
+TEST(Run, OfAnAdaptiveMethodSaysWhichStepHeld) {
+    const auto failure = [](const std::vector<std::string>& arguments) {
+        auto all = arguments;
+        all.emplace_back("scene.duration_s=2");
+        const auto scene = scene_of("butterfly", all);
+        return error_of([&] { run(scene, {.out = fresh_folder(), .pictures = false}, never, [](const Progress&) {}); });
+    };
+    const auto [code, message] = failure({"system.integrator=\"taylor\"", "system.tolerance=1000"});
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("the smallest step that held was 0.9"), std::string::npos) << message;
+    const auto hopeless = failure({"system.integrator=\"dop853\"", "system.length_m=[1e-200, 1]"});
+    EXPECT_EQ(hopeless.first, ExitCode::method_failed);
+    EXPECT_NE(hopeless.second.find("not even a first step held"), std::string::npos) << hopeless.second;
+}
+
 TEST(Run, RefusesFramesThatAreNotThere) {
     const auto [code, message] = error_of([&] { render(small(), {.out = fresh_folder(), .first = 60, .last = 62}); });
     EXPECT_EQ(code, ExitCode::bad_input);
