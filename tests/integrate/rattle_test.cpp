@@ -1,5 +1,6 @@
 #include "integrate/rattle.hpp"
 
+#include "integrate/flow.hpp"
 #include "integrate/rk4.hpp"
 #include "physics/bob.hpp"
 #include "physics/canonical.hpp"
@@ -33,20 +34,6 @@ struct Dragged : RodChain<Scalar, N> {
         a -= k * v;
     }
 };
-
-template <class Which, class Model>
-typename Model::State after(const Pendulum<typename Model::Scalar>& p, const typename Model::State& start,
-                            const typename Model::Scalar& step, long steps) {
-    Model model(p);
-    typename Which::template Stepper<Model> stepper(model, start, step);
-    stepper.advance(steps);
-    return stepper.state();
-}
-
-template <class State>
-double distance(const State& a, const State& b) {
-    return static_cast<double>((a - b).cwiseAbs().maxCoeff());
-}
 
 /// How many times the error halves when the step does, from three step sizes.
 template <class Which, class Model>
@@ -124,20 +111,7 @@ double symplecticity_error(const Quad& step) {
     };
     State z;
     form.momenta(DoublePendulum<Quad>::start(p), z);
-    Eigen::Matrix<Quad, 4, 4> s, j;
-    const Quad difference(1e-11);
-    for (Eigen::Index i = 0; i < 4; ++i) {
-        State less = z, more = z;
-        less[i] -= difference;
-        more[i] += difference;
-        s.col(i) = (one(more) - one(less)) / (Quad(2) * difference);
-    }
-    j.setZero();
-    for (Eigen::Index i = 0; i < 2; ++i) {
-        j(i, i + 2) = Quad(1);
-        j(i + 2, i) = Quad(-1);
-    }
-    return static_cast<double>(Quad((s.transpose() * j * s - j).cwiseAbs().maxCoeff()));
+    return doppel::symplecticity_error(one, z);
 }
 
 TEST(Rattle, IsSymplectic) {
