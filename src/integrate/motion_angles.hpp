@@ -13,9 +13,7 @@ std::unique_ptr<Motion> make_angles_motion(const MotionSpec& spec) {
     const auto made = [&]<class Model>(std::type_identity<Model>) {
         return stepped(spec, Model(p), Model::start(p), AnglesView<Scalar>{p});
     };
-    if (p.links() == 2) {
-        return made(std::type_identity<DoublePendulum<Scalar>>());
-    }
+    if (p.links() == 2) return made(std::type_identity<DoublePendulum<Scalar>>());
     if constexpr (std::is_same_v<Scalar, double>)
         if (p.links() == 3) return made(std::type_identity<AngleChain<Scalar, 3>>());
     return made(std::type_identity<AngleChain<Scalar, Eigen::Dynamic>>());

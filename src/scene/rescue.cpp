@@ -34,6 +34,7 @@ std::string step_that_holds(const Scene& scene, const BreakDown& fault, const st
         return fmt::format("the smallest step that held was {:.3g} s; a smaller tolerance may hold",
                            effort.smallest_step);
     }
+    auto finest = side.step;                 // that was tried
     constexpr long most_steps = 20'000'000;  // a few seconds for a double pendulum
     for (int halvings = 1; halvings < 40 && !stop; ++halvings) {
         const auto half = quotient(side.step, {2, 1});
@@ -44,8 +45,9 @@ std::string step_that_holds(const Scene& scene, const BreakDown& fault, const st
         if (side.motion.steps_per_sample > most_steps / (bobs * std::max(1L, fault.sample))) break;
         if (holds(scene, side, fault, stop, effort))
             return fmt::format("halved until it held: step_s = \"{}\" comes further", side.step.text());
+        finest = side.step;
     }
-    return fmt::format("no step down to {} s holds either", side.step.text());
+    return fmt::format("no step down to {} s held", finest.text());
 }
 
 }  // namespace doppel

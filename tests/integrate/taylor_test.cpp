@@ -1,5 +1,6 @@
 #include "integrate/taylor.hpp"
 
+#include "integrate/pendulums.hpp"
 #include "integrate/rk4.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
@@ -17,26 +18,6 @@ namespace {
 
 template <class Scalar, int N>
 using Stepper = TaylorStepper<AngleChain<Scalar, N>>;
-
-Pendulum<double> from_rest(const std::vector<double>& degrees) {
-    const std::vector<double> ones(degrees.size(), 1.0);
-    Pendulum<double> p{.mass = ones, .length = ones, .angle = {}, .rate = std::vector<double>(degrees.size(), 0.0)};
-    for (double angle : degrees) p.angle.push_back(radians(angle));
-    return p;
-}
-
-/// Nothing equal, everything moving.
-Pendulum<double> uneven(std::size_t links) {
-    Pendulum<double> p{.mass = {}, .length = {}, .angle = {}, .rate = {}};
-    for (std::size_t i = 0; i < links; ++i) {
-        const auto k = static_cast<double>(i);
-        p.mass.push_back(0.4 + 0.5 * std::fmod(1.7 * k, 2.0));
-        p.length.push_back(1.3 - 0.6 * std::fmod(0.7 * k, 1.3));
-        p.angle.push_back(1.1 * std::sin(3 * k + 1));
-        p.rate.push_back(2.3 * std::cos(5 * k));
-    }
-    return p;
-}
 
 /// Where a motion ends.
 template <class Model, class Scalar = typename Model::Scalar>
@@ -84,107 +65,6 @@ void for_each_problem(Test&& test) {
     test("P3", p3);
     test("P4", p4);
 }
-
-// --- the series
-
-/// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks like h^order only if every
-/// coefficient is right. In quad; y′ by central differences.
-template <class Model>
-double residual(const Pendulum<double>& p, int order, double h) {
-    const auto q = p.cast<Quad>();
-    Model model(q);
-    const typename Model::State start = Model::start(q);
-    typename SeriesOf<Model>::type series(model, order);
-    series.expand(start);
-    const auto moved = [&](const Quad& by) {
-        typename Model::State change = start;
-        series.move(by, change);
-        return typename Model::State(start + change);
-    };
-    const Quad at(h), d(1e-9);
-    typename Model::State rate = start;
-    model.rate(moved(at), rate);
-    rate -= (Quad(8) * (moved(at + d) - moved(at - d)) - (moved(at + d + d) - moved(at - d - d))) / (Quad(12) * d);
-    double worst = 0;
-    for (const Quad& difference : rate) worst = greater(worst, std::abs(static_cast<double>(difference)));
-    return worst;
-}
-
-template <class Model>
-void expect_series_solves(const Pendulum<double>& p) {
-    for (int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
-        const double h = 4e-3, ratio = residual<Model>(p, order, 2 * h) / residual<Model>(p, order, h);
-        EXPECT_NEAR(std::log2(ratio), order, 0.25) << order;  // measured within 0.09
-    }
-}
-
-TEST(TaylorSeries, SolvesTheEquationsOfMotionOrderByOrder) {
-    expect_series_solves<AngleChain<Quad, 2>>(uneven(2));
-    expect_series_solves<AngleChain<Quad, 3>>(uneven(3));
-    expect_series_solves<AngleChain<Quad, Eigen::Dynamic>>(uneven(1));
-    expect_series_solves<AngleChain<Quad, Eigen::Dynamic>>(uneven(6));
-    expect_series_solves<DoublePendulum<Quad>>(uneven(2));
-    expect_series_solves<RodChain<Quad, 2>>(uneven(2));
-    expect_series_solves<RodChain<Quad, Eigen::Dynamic>>(uneven(5));
-}
-
-/// Coefficient k of the rates: what a series of order k has more than one of order k − 1, at h = 1.
-template <class Series, class Scalar, int M>
-State<Scalar, M / 2> coefficient(const Pendulum<Scalar>& p, const State<Scalar, M>& y, int k) {
-    Series with(p, k), without(p, k - 1);
-    State<Scalar, M> one = y, other = y;
-    with.expand(y);
-    with.move(Scalar(1), one);
-    without.expand(y);
-    without.move(Scalar(1), other);
-    return (one - other).template tail<M / 2>();
-}
-
-template <int N>
-void expect_lanes_like_quad() {
-    const auto p = uneven(N);
-    const auto y = AngleChain<double, N>::start(p);
-    for (int k = 2; k <= 24; ++k) {
-        const auto lanes = coefficient<LaneSeries<N>>(p, y, k);
-        const auto chain = coefficient<AngleSeries<double, N>>(p, y, k);
-        const auto quad =
-            coefficient<AngleSeries<Quad, N>>(p.template cast<Quad>(), State<Quad, 2 * N>(y.template cast<Quad>()), k);
-        const double size = static_cast<double>(Quad(quad.cwiseAbs().maxCoeff()));
-        for (int i = 0; i < N; ++i) {
-            EXPECT_NEAR(lanes[i], static_cast<double>(quad[i]), 1e-12 * size) << k;  // measured 1e-13
-            EXPECT_NEAR(chain[i], static_cast<double>(quad[i]), 1e-12 * size) << k;  // measured 2e-13
-        }
-    }
-}
-
-TEST(TaylorSeries, LanesHoldTheSameCoefficients) {
-    expect_lanes_like_quad<2>();
-    expect_lanes_like_quad<3>();
-}
-
-template <int N>
-void expect_same_bits() {
-    const auto p = uneven(N);
-    const auto y = AngleChain<double, N>::start(p);
-    for (int order : {5, 8, 13, 24, 33}) {
-        LaneSeries<N> wide(p, order, true), narrow(p, order, false);
-        auto one = y, other = y;
-        wide.expand(y);
-        wide.move(0.02, one);
-        narrow.expand(y);
-        narrow.move(0.02, other);
-        EXPECT_EQ(std::memcmp(one.data(), other.data(), sizeof(one)), 0);
-        for (int k = 0; k <= order; ++k) EXPECT_EQ(wide.size(k), narrow.size(k));
-    }
-}
-
-TEST(TaylorSeries, GivesTheSameBitsWithTwoLanesAndFour) {
-    if (!has_four_lanes()) GTEST_SKIP() << "this processor has no AVX2";
-    expect_same_bits<2>();
-    expect_same_bits<3>();
-}
-
-// --- the motion
 
 template <int N>
 void expect_rods_agree(const char* name, const Problem<N>& problem) {

@@ -2,6 +2,7 @@
 
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"
+#include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <Eigen/Cholesky>
@@ -12,19 +13,6 @@
 
 namespace doppel {
 namespace {
-
-/// A pendulum with everything unequal, at a state drawn from a seed.
-Pendulum<double> random_pendulum(std::mt19937& random, std::size_t links = 2) {
-    std::uniform_real_distribution<double> size(0.3, 3), angle(-3, 3), rate(-5, 5);
-    Pendulum<double> p{{}, {}, {}, {}, 9.8 * size(random)};
-    for (std::size_t i = 0; i < links; ++i) {
-        p.mass.push_back(size(random));
-        p.length.push_back(size(random));
-        p.angle.push_back(angle(random));
-        p.rate.push_back(rate(random));
-    }
-    return p;
-}
 
 /// θ″ from Lagrange's equations in matrix form, M θ″ = f with M_ij = μ_max(i,j) l_i l_j cos(θ_i − θ_j), solved by
 /// Eigen: another way to every model's accelerations.

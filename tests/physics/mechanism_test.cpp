@@ -1,9 +1,10 @@
 #include "physics/mechanism.hpp"
 
 #include "allocations.hpp"
-#include "integrate/rk4.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
+#include "physics/mechanisms.hpp"
+#include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
@@ -14,12 +15,9 @@
 namespace doppel {
 namespace {
 
-static_assert(Constrained<Mechanism<double>> && Constrained<Mechanism<Quad>>);
+using namespace counted;
 
-template <class S>
-using At = Place<S>;
-using P = Place<double>;
-constexpr std::size_t one = 0, two = 1, three = 2, four = 3;  // particles as messages count them
+static_assert(Constrained<Mechanism<double>> && Constrained<Mechanism<Quad>>);
 
 template <class S>
 State<S, Eigen::Dynamic> rate_at_start(const Assembly<S>& assembly) {
@@ -30,40 +28,12 @@ State<S, Eigen::Dynamic> rate_at_start(const Assembly<S>& assembly) {
     return dydt;
 }
 
-/// The state after so many steps of rk4.
-template <class S>
-State<S, Eigen::Dynamic> after(Mechanism<S>& model, const Assembly<S>& assembly, long steps, const S& step) {
-    Rk4::Stepper<Mechanism<S>> stepper(model, model.start(assembly), step);
-    stepper.advance(steps);
-    return stepper.state();
-}
-
-Pendulum<double> random_pendulum(std::mt19937& random) {
-    std::uniform_real_distribution<double> size(0.3, 3), angle(-3, 3), rate(-5, 5);
-    Pendulum<double> p;
-    p.mass = {size(random), size(random)};
-    p.length = {size(random), size(random)};
-    p.angle = {angle(random), angle(random)};
-    p.rate = {rate(random), rate(random)};
-    p.gravity = 9.8 * size(random);
-    return p;
-}
-
 /// The same chain out of parts.
 Assembly<double> parts_of(const Pendulum<double>& p) {
     const auto y = released_as_particles<double, 2>(p);
     return {.particles = {{p.mass[0], y.segment<2>(0), y.segment<2>(4)}, {p.mass[1], y.segment<2>(2), y.segment<2>(6)}},
             .constraints = {Rod<double>{one, P(0, 0), p.length[0]}, Rod<double>{two, one, p.length[1]}},
             .forces = {Gravity<double>{p.gravity}}};
-}
-
-/// A loop of four bars: two cranks of 1 and 1.5 m on anchored particles 2 m apart, and a coupler.
-Assembly<double> four_bars() {
-    const P left(0.6, 0.8), right(2 + 0.9, 1.2);
-    return {.particles = {{1, P(0, 0)}, {1, left}, {2, right}, {1, P(2, 0)}},
-            .constraints = {Anchor<double>{one, P(0, 0)}, Rod<double>{two, one, 1}, Anchor<double>{four, P(2, 0)},
-                            Rod<double>{three, four, 1.5}, Rod<double>{two, three, (right - left).norm()}},
-            .forces = {Gravity<double>{}}};
 }
 
 TEST(Mechanism, RodsInAChainMoveAsTheChainDoes) {
@@ -328,161 +298,6 @@ TEST(Mechanism, SaysWhatToDraw) {
     EXPECT_EQ(lines[6].radius, 2);
     EXPECT_EQ(lines[7].kind, Kind::spring);
     EXPECT_EQ(std::get<P>(lines[7].to), P(0, 2));
-}
-
-// What is said of mechanisms that cannot be.
-
-std::string fault_of(const Assembly<double>& parts) {
-    try {
-        check(parts);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::bad_input);
-        return error.what();
-    }
-    return "no fault";
-}
-
-std::string fault_with(const Constraint<double>& constraint) {
-    auto parts = four_bars();
-    parts.constraints.push_back(constraint);
-    return fault_of(parts);
-}
-
-std::string fault_with(const Force<double>& force) {
-    auto parts = four_bars();
-    parts.forces = {force};
-    return fault_of(parts);
-}
-
-TEST(MechanismFault, OfParticles) {
-    EXPECT_EQ(fault_of({}), "the mechanism has no particles; it needs at least one");
-    auto parts = four_bars();
-    parts.particles[1].mass = 0;
-    EXPECT_EQ(fault_of(parts), "particle 2: its mass is 0 kg; it must be greater than 0");
-    parts = four_bars();
-    parts.particles[2].place[1] = std::nan("");
-    EXPECT_EQ(fault_of(parts), "particle 3: its place is (2.9, nan) m; both must be finite numbers");
-    parts = four_bars();
-    parts.particles[2].velocity[0] = INFINITY;
-    EXPECT_EQ(fault_of(parts), "particle 3: its velocity is (inf, 0) m/s; both must be finite numbers");
-}
-
-TEST(MechanismFault, OfParts) {
-    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{one, std::size_t{4}, 1})),
-              "constraint 6 (rod 1–5): there is no particle 5; the mechanism has 1 to 4");
-    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{two, two, 1})),
-              "constraint 6 (rod 2–2): it joins particle 2 with itself; it needs two different ones");
-    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{two, P(0, 0), 0})),
-              "constraint 6 (rod 2–fixed): its length is 0 m; it must be greater than 0");
-    EXPECT_EQ(fault_with(Constraint<double>(SlotCircle<double>{three, P(0, 0), 0})),
-              "constraint 6 (slot-circle of particle 3): its radius is 0 m; it must be greater than 0");
-    EXPECT_EQ(fault_with(Constraint<double>(SlotLine<double>{three, P(0, 0), P(0, 0)})),
-              "constraint 6 (slot-line of particle 3): its direction is (0, 0); it must point somewhere");
-    EXPECT_EQ(fault_with(Constraint<double>(Anchor<double>{one, P(0, INFINITY)})),
-              "constraint 6 (anchor of particle 1): its place is (0, inf); both must be finite numbers");
-    EXPECT_EQ(fault_with(Force<double>(Gravity<double>{std::nan("")})),
-              "force 1 (gravity): its g is nan m/s²; it must be a finite number");
-    EXPECT_EQ(fault_with(Force<double>(Spring<double>{one, P(1, 1), 0, 1})),
-              "force 1 (spring 1–fixed): its stiffness is 0 N/m; it must be greater than 0");
-    EXPECT_EQ(fault_with(Force<double>(Spring<double>{one, two, 1, -1})),
-              "force 1 (spring 1–2): its rest length is -1 m; it must not be negative");
-    EXPECT_EQ(fault_with(Force<double>(Spring<double>{one, two, 1, 1, -1})),
-              "force 1 (spring 1–2): its damping is -1 N s/m; it must not be negative");
-    EXPECT_EQ(fault_with(Force<double>(Attraction<double>{one, one})),
-              "force 1 (attraction 1–1): it joins particle 1 with itself; it needs two different ones");
-    EXPECT_EQ(fault_with(Force<double>(Droplet<double>{P(0.6, 0.8), 1})),
-              "force 1 (droplet): particle 2 starts at (0.6, 0.8) m, where what attracts it is; they must start apart");
-}
-
-TEST(MechanismFault, OfAStartOffTheConstraints) {
-    EXPECT_EQ(
-        fault_with(Constraint<double>(Anchor<double>{two, P(0.5, 0.8)})),
-        "constraint 6 (anchor of particle 2): the particle starts at (0.6, 0.8) m, 0.1 m from its anchor (0.5, 0.8) "
-        "m; anchor it at (0.6, 0.8)");
-    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{two, P(0.6, 0), 1})),
-              "constraint 6 (rod 2–fixed): its ends start 0.8 m apart, 0.2 m from its length 1 m; make the length 0.8");
-    EXPECT_EQ(
-        fault_with(Constraint<double>(SlotLine<double>{two, P(0, 0), P(5, 0)})),
-        "constraint 6 (slot-line of particle 2): the particle starts at (0.6, 0.8) m, 0.8 m off the line; start it at "
-        "(0.6, 0)");
-    EXPECT_EQ(
-        fault_with(Constraint<double>(SlotCircle<double>{two, P(0.6, 0), 1})),
-        "constraint 6 (slot-circle of particle 2): the particle starts 0.8 m from the centre, 0.2 m from the radius 1 "
-        "m; make the radius 0.8");
-}
-
-TEST(MechanismFault, OfAStartThatLeavesTheConstraints) {
-    auto parts = four_bars();
-    parts.particles[0].velocity = P(0, 0.5);
-    EXPECT_EQ(fault_of(parts),
-              "constraint 1 (anchor of particle 1): the start violates it at 0.5 m/s; start particle 1 "
-              "at (0, 0) m/s");
-    Assembly<double> pendulum{
-        .particles = {{1, P(3, 4), P(5, 0)}}, .constraints = {Rod<double>{one, P(0, 0), 5}}, .forces = {}};
-    EXPECT_EQ(fault_of(pendulum),
-              "constraint 1 (rod 1–fixed): the start violates it at 3 m/s; start particle 1 at (3.2, -2.4) m/s");
-    pendulum.particles[0].velocity = P(3.2, -2.4);
-    EXPECT_EQ(fault_of(pendulum), "no fault");
-}
-
-TEST(MechanismFault, OfRedundantConstraints) {
-    EXPECT_EQ(fault_with(Constraint<double>(Rod<double>{one, two, 1})),
-              "constraint 6 (rod 1–2) is redundant: it follows from constraint 2; leave it out, or start elsewhere");
-    EXPECT_EQ(
-        fault_with(Constraint<double>(Rod<double>{four, one, 2})),
-        "constraint 6 (rod 4–1) is redundant: it follows from constraints 1 and 3; leave it out, or start elsewhere");
-    EXPECT_EQ(
-        fault_with(Constraint<double>(SlotCircle<double>{two, P(0, 0), 1})),
-        "constraint 6 (slot-circle of particle 2) is redundant: it follows from constraints 1 and 2; leave it out, "
-        "or start elsewhere");
-}
-
-/// A parallelogram of cranks of 1 m and a coupler of 2 m that swings through the place where all three lie in a line:
-/// there it may go on as a parallelogram or crosswise, and nothing decides.
-Assembly<double> parallelogram() {
-    return {.particles = {{1, P(0.6, -0.8), P(6.4, 4.8)}, {1.5, P(2.6, -0.8), P(6.4, 4.8)}},
-            .constraints = {Rod<double>{one, P(0, 0), 1}, Rod<double>{two, P(2, 0), 1}, Rod<double>{one, two, 2}},
-            .forces = {Gravity<double>{}}};
-}
-
-TEST(MechanismFault, OfASingularConfigurationHoweverLongTheSteps) {
-    check(parallelogram());
-    for (const double step : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
-        Mechanism<double> model(parallelogram());
-        Rk4::Stepper<Mechanism<double>> stepper(model, model.start(parallelogram()), step);
-        std::string said = "no fault";
-        try {
-            stepper.advance(std::lround(0.3 / step));
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::method_failed);
-            said = error.what();
-        }
-        EXPECT_EQ(said.substr(0, said.find("; the particles are at (1")),
-                  "singular configuration: constraint 3 (rod 1–2) has come to follow from constraints 1 and 2, and the "
-                  "forces are not determined");
-        EXPECT_NE(said.find(") m; start so that they do not come there, or leave the constraint out"),
-                  std::string::npos);
-    }
-    // up to where it turns back in time, it moves
-    auto slower = parallelogram();
-    for (auto& particle : slower.particles) particle.velocity /= 8;
-    Mechanism<double> model(slower);
-    const double start = model.energy(model.start(slower));
-    EXPECT_NEAR(model.energy(after(model, slower, 20000, 5e-4)), start, 1e-8);  // measured 5e-10
-}
-
-TEST(MechanismFault, OfAMotionThatBlowsUp) {
-    auto parts = four_bars();
-    parts.forces.push_back(Spring<double>{two, P(0, 2), 1e9, 0.5});
-    Mechanism<double> model(parts);
-    try {
-        after(model, parts, 100, 0.1);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::method_failed);
-        EXPECT_NE(std::string(error.what()).find("the motion blew up; take shorter steps"), std::string::npos)
-            << error.what();
-    }
 }
 
 }  // namespace
