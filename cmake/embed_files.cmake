@@ -1,4 +1,4 @@
-# cmake -D ROOM=… -D OUTPUT=….cpp -D FILES=a;b -P embed_files.cmake: writes the source and header that hold the files.
+# cmake -D ROOM=… -D OUTPUT=….cpp -D SOURCE=… -D FILES=a;b -P embed_files.cmake: writes the source and header that hold the files.
 set(arrays "")
 set(table "")
 set(number 0)
@@ -6,7 +6,8 @@ foreach(file IN LISTS FILES)
     file(READ ${file} bytes HEX)
     string(REGEX REPLACE "(................................)" "\\1\n" bytes "${bytes}")
     string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
-    get_filename_component(name ${file} NAME)
+    file(RELATIVE_PATH name ${SOURCE} ${file})
+    string(REGEX REPLACE "^[^/]+/" "" name ${name})
     string(APPEND arrays "constexpr unsigned char file_${number}[] = {\n${bytes}};\n")
     string(APPEND table "    {\"${name}\", {reinterpret_cast<const char*>(file_${number}), sizeof file_${number}}},\n")
     math(EXPR number "${number} + 1")

@@ -6,7 +6,7 @@
 #include "physics/rod_chain.hpp"
 
 #include <algorithm>
-#include <string>
+#include <array>
 
 namespace doppel {
 
@@ -14,21 +14,16 @@ EnsembleBlock::~EnsembleBlock() = default;
 
 namespace {
 
-/// The number of a method in EnsembleMethods.
+constexpr std::size_t ensemble_methods = std::tuple_size_v<EnsembleMethods>;
+
+constexpr auto method_names = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{std::tuple_element_t<I, EnsembleMethods>::method.name...};
+}
+(std::make_index_sequence<ensemble_methods>());
+
+/// The number of a method in EnsembleMethods; ensemble_methods where it is none of them.
 std::size_t method_number(std::string_view name) {
-    std::size_t number = std::tuple_size_v<EnsembleMethods>;
-    std::string known;
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-        const auto look = [&](std::size_t i, const Method& method) {
-            if (method.name == name) number = i;
-            known += (i == 0 ? "" : ", ") + std::string(method.name);
-        };
-        (look(I, std::tuple_element_t<I, EnsembleMethods>::method), ...);
-    }
-    (std::make_index_sequence<std::tuple_size_v<EnsembleMethods>>());
-    if (number == std::tuple_size_v<EnsembleMethods>)
-        throw bad_input("\"{}\" does not step many trials side by side; these do: {}", name, known);
-    return number;
+    return static_cast<std::size_t>(std::find(method_names.begin(), method_names.end(), name) - method_names.begin());
 }
 
 /// The trials' numbers, by quantity, as the blocks are made from them.
@@ -81,6 +76,10 @@ int chosen_width(int asked) {
 
 }  // namespace
 
+bool Ensemble::serves(std::string_view method) {
+    return method_number(method) < ensemble_methods;
+}
+
 std::vector<int> Ensemble::widths() {
     std::vector<int> widths{2};
 #ifdef DOPPEL_WIDE_ENSEMBLES
@@ -103,6 +102,9 @@ Ensemble::Ensemble(std::span<const Pendulum<double>> trials, EnsembleModel model
         block_ = static_cast<std::size_t>(ensemble_block(width_));
     }
 
+    if (!serves(method))
+        throw bad_input("\"{}\" does not step many trials side by side; these do: {}", method,
+                        fmt::join(method_names, ", "));
     const Table table(trials);
     const EnsembleRequest request{.trials = trials_,
                                   .links = links,
@@ -123,10 +125,15 @@ void Ensemble::advance(long steps) {
 }
 
 State<double, Eigen::Dynamic> Ensemble::state(std::size_t trial) const {
-    const auto& block = *blocks_[trial / block_];
-    State<double, Eigen::Dynamic> y(static_cast<Eigen::Index>(block.dimensions()));
-    for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = block.state(trial % block_, static_cast<std::size_t>(i));
+    State<double, Eigen::Dynamic> y;
+    read(trial, y);
     return y;
+}
+
+void Ensemble::read(std::size_t trial, State<double, Eigen::Dynamic>& y) const {
+    const auto& block = *blocks_[trial / block_];
+    y.resize(static_cast<Eigen::Index>(block.dimensions()));
+    block.read(trial % block_, y.data());
 }
 
 }  // namespace doppel

@@ -35,6 +35,11 @@ public:
 
     /// The state of a trial as its model keeps it: (θ1 … θN, ω1 … ωN) or (x1, y1 … , vx1, vy1 …).
     State<double, Eigen::Dynamic> state(std::size_t trial) const;
+    /// The same into `y`, which keeps its memory.
+    void read(std::size_t trial, State<double, Eigen::Dynamic>& y) const;
+
+    /// Whether a method steps ensembles: explicit, of fixed step.
+    static bool serves(std::string_view method);
 
     /// The widths that this processor and this build have, narrowest first.
     static std::vector<int> widths();

@@ -28,13 +28,14 @@ public:
 
     void advance(long steps) override { stepper_.advance(steps); }
     std::size_t dimensions() const override { return static_cast<std::size_t>(stepper_.state().size()); }
-    double state(std::size_t lane, std::size_t entry) const override {
+    void read(std::size_t lane, double* entries) const override {
         const auto& y = stepper_.state();
-        const Scalar& value = y[static_cast<Eigen::Index>(entry)];
-        if constexpr (is_lanes<Scalar>)
-            return value[static_cast<int>(lane)];
-        else
-            return value;
+        for (Eigen::Index i = 0; i < y.size(); ++i) {
+            if constexpr (is_lanes<Scalar>)
+                entries[i] = y[i][static_cast<int>(lane)];
+            else
+                entries[i] = y[i];
+        }
     }
 
 private:

@@ -26,8 +26,8 @@ public:
     virtual ~EnsembleBlock();
     virtual void advance(long steps) = 0;
     virtual std::size_t dimensions() const = 0;
-    /// Number `entry` of the state of trial `lane` of the block.
-    virtual double state(std::size_t lane, std::size_t entry) const = 0;
+    /// Writes the state of trial `lane` of the block, dimensions() numbers, to `entries`.
+    virtual void read(std::size_t lane, double* entries) const = 0;
 };
 
 /// The trials of one block: twice the doubles of a register, for while one half waits for its results the other works.

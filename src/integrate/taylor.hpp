@@ -3,6 +3,7 @@
 #include "integrate/method.hpp"
 #include "integrate/taylor_lanes.hpp"
 #include "numeric/error.hpp"
+#include "physics/mechanism_series.hpp"
 #include "physics/rod_series.hpp"
 
 #include <algorithm>

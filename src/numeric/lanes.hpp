@@ -130,6 +130,26 @@ struct Lanes {
         return r;
     }
 
+    [[gnu::always_inline]] friend Lanes greater(const Lanes& a, const Lanes& b) { return select(a < b, b, a); }
+    [[gnu::always_inline]] friend Lanes lesser(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
+
+    /// log2 a within 0.05 for a > 0, a straight line between powers of two; −1023 of zero.
+    [[gnu::always_inline]] friend Lanes rough_log2(const Lanes& a) {
+        // the bits of a double are its logarithm; put below the point of a number they are a double again
+        Lanes r;
+        for (int k = 0; k < parts; ++k)
+            r.v[k] = (Doubles((Masks(a.v[k]) >> 11) | std::int64_t(0x4330000000000000)) - 0x1p52) * 0x1p-41 -
+                     (1023 - rough_deviation);
+        return r;
+    }
+    /// 2^a within 4 % for |a| < 1000: the inverse of rough_log2.
+    [[gnu::always_inline]] friend Lanes rough_exp2(const Lanes& a) {
+        Lanes r;
+        for (int k = 0; k < parts; ++k)
+            r.v[k] = Doubles(Masks((a.v[k] + (1023 - rough_deviation)) * 0x1p41 + 0x1p52) << 11 & INT64_MAX);
+        return r;
+    }
+
     friend Lanes sqrt(const Lanes& a) {
         return each(a, [](double x) { return std::sqrt(x); });
     }
@@ -161,6 +181,8 @@ struct Lanes {
     }
 
 private:
+    static constexpr double rough_deviation = 0.043;  // the mean one
+
     template <class Function>
     [[gnu::always_inline]] static Lanes each(const Lanes& a, Function function) {
         Lanes r;

@@ -19,10 +19,10 @@ struct Bob {
 template <class Scalar>
 using Bobs = std::vector<Bob<Scalar>>;
 
-/// The bobs of a chain from its state in angles.
+/// The bobs of a chain from its state in angles, into `bobs`, which keeps its memory.
 template <class Scalar, int N>
-Bobs<Scalar> bobs_of_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
-    Bobs<Scalar> bobs;
+void place_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, Bobs<Scalar>& bobs) {
+    bobs.clear();
     Scalar x(0), y(0), vx(0), vy(0);
     const auto n = static_cast<Eigen::Index>(p.links());
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -35,23 +35,38 @@ Bobs<Scalar> bobs_of_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& s
         vy += l * omega * turn.sin;
         bobs.push_back({p.mass[static_cast<std::size_t>(i)], x, y, vx, vy, theta, omega});
     }
+}
+
+template <class Scalar, int N>
+Bobs<Scalar> bobs_of_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
+    Bobs<Scalar> bobs;
+    place_angles(p, state, bobs);
     return bobs;
 }
 
-/// The bobs of a chain from its state as particles; angles within (−π, π].
+/// The bobs of a chain from its state as particles, without their angles, into `bobs`, which keeps its memory.
+template <class Scalar, int N>
+void place_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, Bobs<Scalar>& bobs) {
+    const auto n = static_cast<Eigen::Index>(p.links());
+    bobs.resize(p.links());
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Index q = 2 * i, v = 2 * n + 2 * i;
+        const auto k = static_cast<std::size_t>(i);
+        bobs[k] = {p.mass[k], state[q], state[q + 1], state[v], state[v + 1]};
+    }
+}
+
+/// The same with their angles, within (−π, π].
 template <class Scalar, int N>
 Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
     using std::atan2;
     Bobs<Scalar> bobs;
+    place_particles(p, state, bobs);
     Bob<Scalar> above{};  // the pivot
-    const auto n = static_cast<Eigen::Index>(p.links());
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Index q = 2 * i, v = 2 * n + 2 * i;
-        Bob<Scalar> bob{p.mass[static_cast<std::size_t>(i)], state[q], state[q + 1], state[v], state[v + 1]};
+    for (auto& bob : bobs) {
         const Scalar rx = bob.x - above.x, ry = bob.y - above.y;
         bob.theta = atan2(rx, Scalar(-ry));
         bob.omega = (rx * (bob.vy - above.vy) - ry * (bob.vx - above.vx)) / (rx * rx + ry * ry);
-        bobs.push_back(bob);
         above = bob;
     }
     return bobs;

@@ -19,6 +19,9 @@ struct Dependence {
 /// Exit 3: what the dependence means for a motion that has come to these places, (x1, y1, x2, y2 …) in m.
 Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places);
 
+template <class Scalar>
+class MechanismSeries;
+
 /// Particles, constraints and forces in a vertical plane: any mechanism of them, loops too.
 ///
 ///     M q″ = F(q, q′) + Jᵀ λ ,   J = ∂C/∂q ,   (J M⁻¹ Jᵀ) λ = −J̇ q′ − J M⁻¹ F
@@ -153,6 +156,8 @@ struct Mechanism {
     }
 
 private:
+    friend MechanismSeries<Scalar>;  // made of the same parts, with the same errors (physics/mechanism_series.hpp)
+
     using Gradients = typename ConstraintSet<Scalar>::Gradients;
 
     static Masses<Scalar> masses_of(const Assembly<Scalar>& assembly) {

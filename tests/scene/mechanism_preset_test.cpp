@@ -124,8 +124,8 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
     EXPECT_EQ(fault(bead + "links = 2").substr(0, 30), "presets/x.toml:7:1: [[system.p");
     EXPECT_EQ(fault("[system]\nlinks = 2\n[[system.particle]]\nname = \"a\""),
               "presets/x.toml:2:1: [system] links describes a chain, and [[system.particle]] another system; give one");
-    EXPECT_EQ(fault("[system]\nintegrator = \"taylor\"\n[[system.particle]]\nname = \"a\""),
-              R"(presets/x.toml:2:1: [system] integrator "taylor" serves angles and constraints, not a mechanism)");
+    EXPECT_EQ(fault("[system]\nintegrator = \"gauss4\"\n[[system.particle]]\nname = \"a\""),
+              R"(presets/x.toml:2:1: [system] integrator "gauss4" serves angles, not a mechanism)");
     EXPECT_EQ(
         fault("[system]\nmodel = \"angles\"\n[[system.particle]]\nname = \"a\""),
         R"(presets/x.toml:2:1: [system] model must be "mechanism" or "auto" with particles, constraints or forces; it is "angles")");

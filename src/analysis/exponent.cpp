@@ -1,0 +1,140 @@
+#include "analysis/exponent.hpp"
+
+#include "analysis/tangent.hpp"
+#include "numeric/error.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/double_pendulum.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <vector>
+
+namespace doppel {
+namespace {
+
+/// The growth of one tangent, told in logarithms.
+template <class Model>
+class Growth {
+public:
+    using State = typename TangentMotion<Model>::State;
+
+    Growth(const Pendulum<double>& p, const ExponentSpec& spec, const NaturalUnits& units)
+        : motion_(p, spec.tolerance), size_(static_cast<Eigen::Index>(2 * p.links())), unit_(units.time) {
+        // a direction that no symmetry knows: 1, 1/2, 1/3 …
+        typename Model::State start = Model::start(p.cast<typename Model::Scalar>());
+        for (Eigen::Index i = 0; i < size_; ++i)
+            start[i].tangent[0] = 1 / static_cast<double>(i + 1) / (i < size_ / 2 ? 1 : unit_);
+        State y(2 * size_);
+        TangentFlow<Model>::from_dual(start, y);
+        last_ = log_norm(y);
+        motion_.set_down(y);
+    }
+
+    /// How much ln|δ| grows in so many seconds.
+    double advance(double seconds) {
+        constexpr double huge = 13.8, many_turns = 100;  // a million-fold, rad
+        motion_.advance(seconds);
+        State y = motion_.state();
+        const double now = log_norm(y), growth = now - last_;
+        last_ = now;
+        if (std::abs(now) > huge || y.head(size_ / 2).cwiseAbs().maxCoeff() > many_turns) {
+            y.tail(size_) *= std::exp(-now);
+            last_ = log_norm(y);
+            motion_.set_down(y);
+        }
+        return growth;
+    }
+
+private:
+    /// ln of the tangent's Euclidean norm, rates times the natural unit of time.
+    double log_norm(const State& y) const {
+        const auto half = size_ / 2;
+        const double square =
+            y.segment(size_, half).squaredNorm() + unit_ * unit_ * y.segment(size_ + half, half).squaredNorm();
+        return 0.5 * std::log(square);
+    }
+
+    TangentMotion<Model> motion_;
+    Eigen::Index size_;  // of the state alone
+    double unit_;        // s
+    double last_;
+};
+
+void check(const ExponentSpec& spec) {
+    if (!(spec.transient_s > 0 && spec.duration_s > spec.transient_s))
+        throw bad_input("an exponent takes a transient > 0 s and a duration beyond it; they are {} s and {} s",
+                        spec.transient_s, spec.duration_s);
+    if (spec.blocks < 2) throw bad_input("an exponent takes at least 2 blocks; there are {}", spec.blocks);
+}
+
+/// Mean and uncertainty of the local exponents of blocks. Its parts:
+///     standard error      of the mean over the blocks
+///     finite time         what a tangent that grows like t, as that of a regular motion does, would show by now
+Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
+    const auto n = static_cast<double>(local.size());
+    double mean = 0, square = 0;
+    for (const double value : local) mean += value / n;
+    for (const double value : local) square += (value - mean) * (value - mean);
+    const double standard_error = std::sqrt(square / (n * (n - 1)));
+    const double finite_time = std::log(spec.duration_s / spec.transient_s) / (spec.duration_s - spec.transient_s);
+    return {mean, std::hypot(standard_error, finite_time)};
+}
+
+template <class Model>
+Exponent measured(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
+    const NaturalUnits units(p);
+    Growth<Model> growth(p, spec, units);
+    const auto exponent_over = [&](double seconds) {
+        const long parts = parts_of(seconds, units);
+        double sum = 0;
+        for (long i = 0; i < parts; ++i) {
+            if (stop) throw Error(ExitCode::interrupted, "interrupted");
+            sum += growth.advance(seconds / static_cast<double>(parts));
+        }
+        return sum / seconds;
+    };
+    exponent_over(spec.transient_s);
+    std::vector<double> local;
+    for (int i = 0; i < spec.blocks; ++i)
+        local.push_back(exponent_over((spec.duration_s - spec.transient_s) / spec.blocks));
+    return summary(local, spec);
+}
+
+}  // namespace
+
+bool is_regular(const Exponent& exponent) {
+    return exponent.value <= 2 * exponent.uncertainty;
+}
+
+Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
+    check(spec);
+    if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
+    if (p.links() == 2) return measured<DoublePendulum<Dual<double, 1>>>(p, spec, stop);
+    return measured<AngleChain<Dual<double, 1>, Eigen::Dynamic>>(p, spec, stop);
+}
+
+/// M θ″ = −K θ near an equilibrium, with M_ij = μ_max(i,j) l_i l_j cosθ_i cosθ_j and K_ii = μ_i g l_i cosθ_i, μ as in
+/// physics/angle_chain.hpp. The exponent is √−κ for the least κ with K x = κ M x, or 0.
+std::optional<double> equilibrium_exponent(const Pendulum<double>& p) {
+    const auto n = static_cast<Eigen::Index>(p.links());
+    Eigen::MatrixXd mass(n, n), stiffness = Eigen::MatrixXd::Zero(n, n);
+    double hanging = 0;  // μ_i, kg
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+        const auto k = static_cast<std::size_t>(i);
+        const SinCos<double> turn(p.angle[k]);
+        constexpr double rounding = 1e-14;
+        if (p.rate[k] != 0 || (p.gravity != 0 && std::abs(turn.sin) > rounding)) return std::nullopt;
+        hanging += p.mass[k];
+        stiffness(i, i) = hanging * p.gravity * p.length[k] * turn.cos;
+        for (Eigen::Index j = 0; j <= i; ++j) {
+            const auto other = static_cast<std::size_t>(j);
+            mass(i, j) = mass(j, i) = hanging * p.length[k] * p.length[other] * std::cos(p.angle[k] - p.angle[other]);
+        }
+    }
+    if (p.gravity == 0) return 0.0;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, -solver.eigenvalues()[0]));
+}
+
+}  // namespace doppel

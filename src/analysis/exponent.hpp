@@ -1,0 +1,36 @@
+#pragma once
+
+#include "physics/pendulum.hpp"
+
+#include <atomic>
+#include <optional>
+
+namespace doppel {
+
+struct ExponentSpec {
+    double duration_s = 500;  // of the motion, the transient included
+    double transient_s = 50;  // left out at the start, while the tangent finds its direction; > 0
+    double tolerance = 1e-7;  // of dop853, state and tangent alike; energy keeps to 3e-7 of its range over 500 s
+    int blocks = 20;          // that what follows the transient is cut into, for the standard error
+};
+
+/// The largest Lyapunov exponent, λ = lim ln|δ(t)|/t.
+struct Exponent {
+    double value;        // 1/s
+    double uncertainty;  // 1/s: standard error and finite time, as one standard deviation
+};
+
+/// Whether the exponent cannot be told from 0, as for regular motion: below twice its uncertainty.
+bool is_regular(const Exponent& exponent);
+
+/// The largest exponent of the motion that `p` is released into, any number of links, by the tangent equations.
+/// One released at an equilibrium, to rounding, stays there: its exponent is exact.
+/// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:21.
+/// Errors  exit 2 where the spec makes no sense, exit 3 where dop853 breaks down, exit 130 soon after `stop` is set.
+Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
+
+/// The exponent in closed form, 1/s, where the release is an equilibrium: at rest and all links upright or hanging to
+/// rounding (or g = 0). Nothing elsewhere.
+std::optional<double> equilibrium_exponent(const Pendulum<double>& p);
+
+}  // namespace doppel

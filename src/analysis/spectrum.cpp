@@ -1,0 +1,120 @@
+#include "analysis/spectrum.hpp"
+
+#include "analysis/tangent.hpp"
+#include "numeric/error.hpp"
+#include "physics/canonical.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// All tangents to a motion, kept upright: now and then their frame is turned into an orthonormal one, and what it has
+/// stretched by is told in logarithms. Frames are canonical, (δθ, δp), where the flow keeps the volume: the logarithms
+/// sum to 0 at any time.
+/// Source  Shimada & Nagashima 1979, Progress of Theoretical Physics 61:1605; Benettin et al. 1980, Meccanica 15:21.
+template <class Model, int N>
+class Frame {
+public:
+    static constexpr int size = 2 * N;
+    using Matrix = Eigen::Matrix<double, size, size>;
+    using Column = Eigen::Matrix<double, size, 1>;
+
+    Frame(const Pendulum<double>& p, double tolerance, const NaturalUnits& units)
+        : model_(p.cast<Number>()), canonical_(model_), motion_(p, tolerance) {
+        double mass = 0;
+        for (const double m : p.mass) mass += m;
+        unit_.template head<N>().setOnes();
+        unit_.template tail<N>().setConstant(mass * units.length * units.length / units.time);
+        canonical_.momenta(Model::start(p.cast<Number>()), z_);
+        set_down(Matrix::Identity());
+    }
+
+    /// What ln|δ_i| grow by in so many seconds.
+    Column advance(double seconds) {
+        motion_.advance(seconds);
+        TangentFlow<Model>::to_dual(motion_.state(), y_);
+        canonical_.momenta(y_, z_);
+        Matrix frame;
+        for (int i = 0; i < size; ++i) frame.row(i) = z_[i].tangent.transpose() / unit_[i];
+        const Eigen::HouseholderQR<Matrix> qr(frame);
+        set_down(qr.householderQ() * Matrix::Identity());
+        return qr.matrixQR().diagonal().cwiseAbs().array().log();
+    }
+
+private:
+    using Number = typename Model::Scalar;
+
+    /// Goes on from the values of z with the frame's columns for tangents.
+    void set_down(const Matrix& frame) {
+        for (int i = 0; i < size; ++i) z_[i].tangent = unit_[i] * frame.row(i).transpose();
+        canonical_.velocities(z_, y_);
+        typename TangentMotion<Model>::State all;
+        TangentFlow<Model>::from_dual(y_, all);
+        motion_.set_down(all);
+    }
+
+    Model model_;
+    Canonical<Model> canonical_;
+    TangentMotion<Model> motion_;
+    Column unit_;  // of angles and momenta: 1 and N m s
+    typename Model::State y_, z_;
+};
+
+template <class Model, int N>
+std::vector<SpectrumSample> estimates(const Pendulum<double>& p, const SpectrumSpec& spec,
+                                      const std::atomic<bool>& stop) {
+    const NaturalUnits units(p);
+    Frame<Model, N> frame(p, spec.tolerance, units);
+    const double interval = spec.duration_s / spec.samples;
+    const long parts = parts_of(interval, units);
+    typename Frame<Model, N>::Column sum = Frame<Model, N>::Column::Zero();
+    std::vector<SpectrumSample> samples;
+    for (int k = 1; k <= spec.samples; ++k) {
+        for (long i = 0; i < parts; ++i) {
+            if (stop) throw Error(ExitCode::interrupted, "interrupted");
+            sum += frame.advance(interval / static_cast<double>(parts));
+        }
+        const double time = spec.duration_s * k / spec.samples;
+        samples.push_back({time, {}});
+        for (const double logarithm : sum) samples.back().exponents.push_back(logarithm / time);
+    }
+    return samples;
+}
+
+template <int N>
+using DualChain = AngleChain<Dual<double, 2 * N>, N>;
+
+}  // namespace
+
+std::vector<SpectrumSample> lyapunov_spectrum(const Pendulum<double>& p, const SpectrumSpec& spec,
+                                              const std::atomic<bool>& stop) {
+    if (!(spec.duration_s > 0) || spec.samples < 1)
+        throw bad_input("a spectrum takes a duration > 0 s and at least one sample; they are {} s and {}",
+                        spec.duration_s, spec.samples);
+    switch (p.links()) {
+        case 1:
+            return estimates<DualChain<1>, 1>(p, spec, stop);
+        case 2:
+            return estimates<DoublePendulum<Dual<double, 4>>, 2>(p, spec, stop);
+        case 3:
+            return estimates<DualChain<3>, 3>(p, spec, stop);
+        case 4:
+            return estimates<DualChain<4>, 4>(p, spec, stop);
+        default:
+            throw bad_input("a spectrum is for 1 to 4 links; there are {}", p.links());
+    }
+}
+
+double pair_mismatch(const SpectrumSample& sample) {
+    double worst = 0;
+    const auto& all = sample.exponents;
+    for (std::size_t i = 0; i < all.size() / 2; ++i)
+        worst = std::max(worst, std::abs(all[i] + all[all.size() - 1 - i]));
+    return worst;
+}
+
+}  // namespace doppel

@@ -1,0 +1,90 @@
+#pragma once
+
+#include "analysis/natural_units.hpp"
+#include "integrate/dop853.hpp"
+#include "numeric/dual.hpp"
+#include "physics/pendulum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace doppel {
+
+/// A model's state y and D tangents to it as one system of plain numbers, so that a method's control of its error sees
+/// them all:
+///     y′ = f(y) ,    δ′ = Df(y) δ
+/// both from one evaluation of f in dual numbers. `Model` is one over Dual<double, D>.
+///
+/// State   (y, δ_1 … δ_D).
+/// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:9.
+template <class Model>
+class TangentFlow {
+public:
+    using Scalar = double;
+    using DualState = typename Model::State;
+    using Number = typename Model::Scalar;
+    static constexpr int directions = Number::Tangent::RowsAtCompileTime;
+    using State = doppel::State<double, times<1 + directions, DualState::RowsAtCompileTime>>;
+
+    explicit TangentFlow(const Pendulum<double>& p)
+        : model_(p.cast<Number>()), y_(Model::start(p.cast<Number>())), rate_(y_) {}
+
+    void rate(const State& all, State& rates) {
+        to_dual(all, y_);
+        model_.rate(y_, rate_);
+        from_dual(rate_, rates);
+    }
+
+    static void to_dual(const State& all, DualState& y) {
+        const auto n = y.size();
+        for (Eigen::Index i = 0; i < n; ++i) {
+            y[i].value = all[i];
+            for (Eigen::Index d = 0; d < directions; ++d) y[i].tangent[d] = all[n * (1 + d) + i];
+        }
+    }
+
+    static void from_dual(const DualState& y, State& all) {
+        const auto n = y.size();
+        for (Eigen::Index i = 0; i < n; ++i) {
+            all[i] = y[i].value;
+            for (Eigen::Index d = 0; d < directions; ++d) all[n * (1 + d) + i] = y[i].tangent[d];
+        }
+    }
+
+private:
+    Model model_;
+    DualState y_, rate_;
+};
+
+/// Into how many parts to cut an interval, so that no tangent outgrows its numbers within one.
+inline long parts_of(double seconds, const NaturalUnits& units) {
+    return std::max(1L, std::lround(std::ceil(seconds / (4 * units.time))));
+}
+
+/// The motion of a pendulum and its tangents by dop853, from where it is set down again and again: error control knows
+/// only their size, so tangents are to be neither huge nor tiny, and angles not many turns.
+template <class Model>
+class TangentMotion {
+public:
+    using Flow = TangentFlow<Model>;
+    using State = typename Flow::State;
+
+    TangentMotion(const Pendulum<double>& p, double tolerance)
+        : flow_(p), tolerance_(tolerance), links_(static_cast<Eigen::Index>(p.links())) {}
+
+    void set_down(State y) {
+        for (Eigen::Index i = 0; i < links_; ++i) y[i] = std::remainder(y[i], 2 * pi);
+        stepper_.emplace(flow_, y, tolerance_);
+    }
+    void advance(double seconds) { stepper_->advance(seconds); }
+    const State& state() const { return stepper_->state(); }
+
+private:
+    Flow flow_;
+    double tolerance_;
+    Eigen::Index links_;
+    std::optional<Dop853::Stepper<Flow>> stepper_;
+};
+
+}  // namespace doppel

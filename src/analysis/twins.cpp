@@ -1,0 +1,101 @@
+#include "analysis/twins.hpp"
+
+#include "analysis/distance.hpp"
+#include "numeric/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace doppel {
+namespace {
+
+bool same(const Pendulum<double>& a, const Pendulum<double>& b) {
+    return a.mass == b.mass && a.length == b.length && a.angle == b.angle && a.rate == b.rate && a.gravity == b.gravity;
+}
+
+/// The pendulums of one side, or of both where they obey the same equations, each of them once.
+class Crowd {
+public:
+    explicit Crowd(TwinSide side) : side_(std::move(side)) {}
+
+    /// The number of this pendulum, which is new or was there.
+    std::size_t add(const Pendulum<double>& pendulum) {
+        const auto known =
+            std::find_if(members_.begin(), members_.end(), [&](const auto& p) { return same(p, pendulum); });
+        if (known != members_.end()) return static_cast<std::size_t>(known - members_.begin());
+        members_.push_back(pendulum);
+        return members_.size() - 1;
+    }
+
+    void start(const TwinRun& run, int width) {
+        ensemble_.emplace(members_, side_.model, side_.method,
+                          run.sample_interval / static_cast<double>(side_.steps_per_sample), width);
+        seen_.resize(members_.size());
+        look();
+    }
+
+    void advance() {
+        ensemble_->advance(side_.steps_per_sample);
+        look();
+    }
+
+    const Bobs<double>& seen(std::size_t member) const { return seen_[member]; }
+
+private:
+    void look() {
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            ensemble_->read(i, state_);
+            if (side_.model == EnsembleModel::angles)
+                place_angles(members_[i], state_, seen_[i]);
+            else
+                place_particles(members_[i], state_, seen_[i]);
+        }
+    }
+
+    TwinSide side_;
+    std::vector<Pendulum<double>> members_;
+    std::optional<Ensemble> ensemble_;
+    State<double, Eigen::Dynamic> state_;
+    std::vector<Bobs<double>> seen_;
+};
+
+}  // namespace
+
+std::size_t twins_block(int width) {
+    return 2 * static_cast<std::size_t>(width == 0 ? Ensemble::widths().back() : width);
+}
+
+void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
+                        const std::atomic<bool>& stop, int width) {
+    std::vector<Crowd> crowds;
+    crowds.emplace_back(run.a);
+    if (run.b != run.a) crowds.emplace_back(run.b);
+    auto &crowd_a = crowds.front(), &crowd_b = crowds.back();
+    std::vector<std::pair<std::size_t, std::size_t>> members;
+    for (const auto& pair : twins) members.emplace_back(crowd_a.add(pair.a), crowd_b.add(pair.b));
+    for (auto& crowd : crowds) crowd.start(run, width);
+
+    const auto distance = [&](std::size_t i) {
+        return state_space_distance(crowd_a.seen(members[i].first), crowd_b.seen(members[i].second));
+    };
+    std::vector<double> start, sum(twins.size());
+    std::vector<long> counted(twins.size());
+    for (std::size_t i = 0; i < twins.size(); ++i) start.push_back(distance(i));
+    for (long n = 1; n <= run.samples; ++n) {
+        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        for (auto& crowd : crowds) crowd.advance();
+        for (std::size_t i = 0; i < twins.size(); ++i)
+            if (const auto ratio = log_ratio(distance(i), start[i])) {
+                sum[i] += *ratio;
+                ++counted[i];
+            }
+    }
+    for (std::size_t i = 0; i < twins.size(); ++i) {
+        const double mean = sum[i] / static_cast<double>(counted[i]);
+        averages[i] = std::isfinite(mean) ? mean : std::numeric_limits<double>::quiet_NaN();
+    }
+}
+
+}  // namespace doppel

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "integrate/ensemble.hpp"
+
+#include <atomic>
+#include <span>
+#include <string>
+
+namespace doppel {
+
+/// Two pendulums to be compared, of as many links each.
+struct Twins {
+    Pendulum<double> a, b;
+};
+
+/// The equations and the step of one side of all twins.
+struct TwinSide {
+    EnsembleModel model = EnsembleModel::angles;
+    std::string method = "euler";
+    long steps_per_sample = 250;
+    friend bool operator==(const TwinSide&, const TwinSide&) = default;
+};
+
+struct TwinRun {
+    TwinSide a, b;
+    double sample_interval = 1.0 / 120;  // s
+    long samples = 3000;                 // without the one at the start
+};
+
+/// How many pendulums are best stepped at once at a register width, 0 for the widest.
+std::size_t twins_block(int width = 0);
+
+/// The study's measure of chaos, for each of the twins: the mean of ln(d_n / d_0) over the samples n = 1 … N, d the
+/// distance in state space (Kao 2022). Samples at which the two are one are left out; NaN where none is left, or the
+/// motion broke down.
+///
+/// Every trial is the same to the bit at every width and in any company: each lane does what a lone double would, and
+/// each mean is summed in the order of its samples. Pendulums that several twins share are stepped once.
+///
+/// Errors: those of Ensemble; exit 130 soon after `stop` is set.
+void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
+                        const std::atomic<bool>& stop, int width = 0);
+
+}  // namespace doppel

@@ -1,0 +1,114 @@
+#include "integrate/flips.hpp"
+
+#include "integrate/ensemble.hpp"
+#include "integrate/flips_kernel.hpp"
+#include "numeric/error.hpp"
+#include "numeric/state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace doppel {
+
+namespace {
+
+/// g l_i Σ_{k≥i} m_k, J: half of what it takes to lift rod i from hanging to upright.
+double weight(const Pendulum<double>& p, std::size_t rod) {
+    double below = 0;
+    for (std::size_t k = rod; k < p.links(); ++k) below += p.mass[k];
+    return p.gravity * p.length[rod] * below;
+}
+
+/// J above hanging at rest; so measured, a heavy rod that hangs takes no digits from a light one.
+double energy_of(const Pendulum<double>& p) {
+    double energy = 0, vx = 0, vy = 0;
+    for (std::size_t i = 0; i < p.links(); ++i) {
+        const SinCos<double> turn(p.angle[i]);
+        const double half = std::sin(0.5 * p.angle[i]);
+        vx += p.length[i] * p.rate[i] * turn.cos;
+        vy += p.length[i] * p.rate[i] * turn.sin;
+        energy += 2 * weight(p, i) * half * half + 0.5 * p.mass[i] * (vx * vx + vy * vy);
+    }
+    return energy;
+}
+
+/// The least of it with a rod upright, J; where gravity pulls up, standing upright takes none.
+double least_energy_to_flip(const Pendulum<double>& p) {
+    if (p.gravity < 0) return -std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < p.links(); ++i) least = std::min(least, 2 * weight(p, i));
+    return least;
+}
+
+auto finder_of(int asked) {
+    const auto widths = Ensemble::widths();
+    if (asked != 0 && std::find(widths.begin(), widths.end(), asked) == widths.end())
+        throw bad_input("this processor has no registers of {} doubles; the widest have {}", asked, widths.back());
+    switch (asked == 0 ? widths.back() : asked) {
+#ifdef DOPPEL_WIDE_ENSEMBLES
+        case 4:
+            return find_flips<4>;
+        case 8:
+            return find_flips<8>;
+#endif
+        default:
+            return find_flips<2>;
+    }
+}
+
+void check(const Pendulum<double>& p, std::span<const Release> releases, const FlipSpec& spec,
+           std::span<double> times) {
+    if (p.links() != 2) throw bad_input("flips are found for double pendulums, not for {} links", p.links());
+    if (releases.size() != times.size())
+        throw bad_input("{} releases have {} times to be written", releases.size(), times.size());
+    if (!(spec.duration > 0 && std::isfinite(spec.duration)))
+        throw bad_input("flips are looked for during a positive time; it is {} s", spec.duration);
+    if (!(spec.tolerance >= 1e-15 && spec.tolerance <= 1))
+        throw bad_input("the tolerance of flips lies between 1e-15 and 1 rad/s; it is {:.3g}", spec.tolerance);
+}
+
+}  // namespace
+
+bool flip_is_forbidden(const Pendulum<double>& pendulum) {
+    return energy_of(pendulum) < least_energy_to_flip(pendulum);
+}
+
+void first_flips(const Pendulum<double>& pendulum, std::span<const Release> releases, const FlipSpec& spec,
+                 std::span<double> times, const std::atomic<bool>& stop, int width) {
+    check(pendulum, releases, spec, times);
+    const auto find = finder_of(width);
+
+    // what is known beforehand; the rest is marked by a negative time
+    Pendulum<double> released = pendulum;
+    const double least = least_energy_to_flip(pendulum);
+    for (std::size_t i = 0; i < releases.size(); ++i) {
+        released.angle[0] = releases[i].theta1;
+        released.angle[1] = releases[i].theta2;
+        const bool is_beyond = std::max(std::abs(releases[i].theta1), std::abs(releases[i].theta2)) > pi;
+        times[i] = is_beyond ? 0 : energy_of(released) < least ? std::numeric_limits<double>::infinity() : -1;
+    }
+
+    const auto& [mass, length, angle, rate, gravity] = pendulum;
+    const double swing = std::sqrt(std::min(length[0], length[1]) / std::abs(gravity));  // s, a rod's natural time
+    const FlipRequest request{.chain = {gravity / length[0], 1 + mass[0] / mass[1], length[1] / length[0]},
+                              .omega = {rate[0], rate[1]},
+                              .duration = spec.duration,
+                              .allowed = std::log2(spec.tolerance),
+                              .longest = std::min(swing, spec.duration),
+                              .count = releases.size(),
+                              .releases = releases.data(),
+                              .times = times.data(),
+                              .stop = &stop};
+    switch (find(request)) {
+        case FlipOutcome::found:
+            return;
+        case FlipOutcome::stopped:
+            throw Error(ExitCode::interrupted, "interrupted");
+        case FlipOutcome::broken:
+            throw method_failed("flips: no step of 1e-9 s meets tolerance = {:.3g}; the motion has broken down",
+                                spec.tolerance);
+    }
+}
+
+}  // namespace doppel

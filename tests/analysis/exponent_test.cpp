@@ -1,0 +1,150 @@
+#include "analysis/exponent.hpp"
+
+#include "analysis/tangent.hpp"
+#include "integrate/pendulums.hpp"
+#include "integrate/taylor.hpp"
+#include "numeric/error.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/double_pendulum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+const std::atomic<bool> never = false;
+
+TEST(Exponent, OfEquilibriaInClosedForm) {
+    // unit masses and lengths: λ² = g (2 + √2) upright, √2 g with the lower link hanging from the upright upper one
+    const auto exponent = [](const std::vector<double>& degrees) {
+        const Exponent e = largest_exponent(from_rest(degrees), {}, never);
+        EXPECT_EQ(e.uncertainty, 0);
+        return e.value;
+    };
+    EXPECT_EQ(exponent({0, 0}), 0);
+    EXPECT_EQ(exponent({0, 360, -360}), 0);
+    EXPECT_NEAR(exponent({180}), std::sqrt(9.8), 1e-13);                               // measured 0
+    EXPECT_NEAR(exponent({180, 180}), std::sqrt(9.8 * (2 + std::sqrt(2.0))), 1e-13);   // measured 9e-16
+    EXPECT_NEAR(exponent({-180, 540}), std::sqrt(9.8 * (2 + std::sqrt(2.0))), 1e-13);  // measured 9e-16
+    EXPECT_NEAR(exponent({180, 0}), std::sqrt(9.8 * std::sqrt(2.0)), 1e-13);           // measured 4e-16
+    EXPECT_NEAR(exponent({0, 180}), std::sqrt(9.8 * std::sqrt(2.0)), 1e-13);           // measured 4e-16
+    auto adrift = from_rest({70, -20});
+    adrift.gravity = 0;
+    EXPECT_EQ(equilibrium_exponent(adrift), 0.0);
+    EXPECT_FALSE(equilibrium_exponent(from_rest({180, 0.001})));
+    adrift.rate[1] = 1e-9;
+    EXPECT_FALSE(equilibrium_exponent(adrift));
+}
+
+TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
+    // at the upright equilibrium but for a rate that starts the integration, and so briefly that it stays there
+    for (const std::size_t links : {1, 2, 3, 5}) {
+        auto p = uneven(links);
+        std::fill(p.angle.begin(), p.angle.end(), pi);
+        std::fill(p.rate.begin(), p.rate.end(), 0.0);
+        const double exact = equilibrium_exponent(p).value();
+        p.rate[0] = 1e-30;
+        const ExponentSpec spec{.duration_s = 20 / exact, .transient_s = 15 / exact, .tolerance = 1e-10, .blocks = 2};
+        EXPECT_NEAR(largest_exponent(p, spec, never).value / exact, 1, 2e-5) << links;  // measured 4e-6
+    }
+}
+
+TEST(Exponent, TangentIsTheDifferenceOfNeighbours) {
+    using Flow = TangentFlow<DoublePendulum<Dual<double, 1>>>;
+    const auto p = uneven(2);
+    const State<double, 4> direction(1, -0.5, 2, 0.3);
+    Flow::State start;
+    start << DoublePendulum<double>::start(p), direction;
+    TangentMotion<DoublePendulum<Dual<double, 1>>> motion(p, 1e-12);
+    motion.set_down(start);
+    motion.advance(3);
+    const auto neighbour = [&](double apart) {
+        DoublePendulum<double> model(p);
+        Taylor::Stepper<DoublePendulum<double>> stepper(model, start.head<4>() + apart * direction, 1e-14);
+        stepper.advance(3);
+        return stepper.state();
+    };
+    const State<double, 4> difference = (neighbour(1e-5) - neighbour(-1e-5)) / 2e-5;
+    EXPECT_LT((motion.state().tail<4>() - difference).norm() / difference.norm(),
+              1e-7);  // measured 1.2e-8, of the differences
+}
+
+TEST(Exponent, TellsRegularFromChaotic) {
+    const auto exponent = [](const std::vector<double>& degrees) {
+        return largest_exponent(from_rest(degrees), {.duration_s = 300, .transient_s = 30}, never);
+    };
+    for (const double angle : {0.1, 10.0, 30.0, 45.0, 60.0}) EXPECT_TRUE(is_regular(exponent({angle, 0}))) << angle;
+    for (const double angle : {75.0, 90.0, 120.0, 179.0}) EXPECT_FALSE(is_regular(exponent({angle, 0}))) << angle;
+    EXPECT_TRUE(is_regular(exponent({150})));  // one link
+    EXPECT_TRUE(is_regular(exponent({5, 5, 5})));
+    EXPECT_FALSE(is_regular(exponent({90, 90, 90})));
+}
+
+TEST(Exponent, OfRegularMotionIsThatOfLinearGrowth) {
+    // the tangent of a single pendulum grows like t, whose exponent is ln(T/t0) / (T − t0); its oscillation adds more
+    const ExponentSpec spec{.duration_s = 1000, .transient_s = 100};
+    const double linear = std::log(10.0) / 900;
+    const Exponent e = largest_exponent(from_rest({120}), spec, never);
+    EXPECT_NEAR(e.value / linear, 1, 0.25);  // measured 0.16
+    EXPECT_GE(e.uncertainty, linear);
+    EXPECT_LT(e.uncertainty, 2 * linear);
+}
+
+TEST(Exponent, UncertaintyIsTheScatterOfLikeMotions) {
+    // starts so close that they sample one chaotic sea, and soon independently
+    constexpr int runs = 16;
+    double mean = 0, uncertainty = 0;
+    std::vector<double> values;
+    for (int k = 0; k < runs; ++k) {
+        const auto e = largest_exponent(from_rest({140 + 1e-3 * k, 0}), {.duration_s = 120, .transient_s = 20}, never);
+        values.push_back(e.value);
+        mean += e.value / runs;
+        uncertainty += e.uncertainty * e.uncertainty / runs;
+    }
+    double scatter = 0;
+    for (const double value : values) scatter += (value - mean) * (value - mean) / (runs - 1);
+    EXPECT_NEAR(scatter / uncertainty, 1, 0.7);  // measured 0.09
+}
+
+TEST(Exponent, ScalesWithTheUnits) {
+    // four times the lengths: the same motion at half the speed; masses cancel
+    auto p = from_rest({130, 20});
+    const auto e = largest_exponent(p, {.duration_s = 10, .transient_s = 2, .tolerance = 1e-11}, never);
+    for (auto& length : p.length) length *= 4;
+    for (auto& mass : p.mass) mass *= 7;
+    const auto slow = largest_exponent(p, {.duration_s = 20, .transient_s = 4, .tolerance = 1e-11}, never);
+    EXPECT_NEAR(slow.value / e.value, 0.5, 1e-9);              // measured 9e-12
+    EXPECT_NEAR(slow.uncertainty / e.uncertainty, 0.5, 1e-9);  // measured 6e-12
+}
+
+TEST(Exponent, RefusesWhatMakesNoSense) {
+    const auto p = from_rest({90, 90});
+    for (const ExponentSpec& spec : {ExponentSpec{.duration_s = 10, .transient_s = 10},
+                                     {.transient_s = 0},
+                                     {.duration_s = NAN},
+                                     {.blocks = 1},
+                                     {.tolerance = 0}}) {
+        try {
+            largest_exponent(p, spec, never);
+            ADD_FAILURE() << "no error";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::bad_input);
+        }
+    }
+}
+
+TEST(Exponent, StopsWhenTold) {
+    const std::atomic<bool> stop = true;
+    try {
+        largest_exponent(from_rest({90, 90}), {}, stop);
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::interrupted);
+    }
+}
+
+}  // namespace
+}  // namespace doppel

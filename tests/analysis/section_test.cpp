@@ -1,0 +1,179 @@
+#include "analysis/section.hpp"
+
+#include "integrate/pendulums.hpp"
+#include "integrate/rk4.hpp"
+#include "integrate/taylor.hpp"
+#include "numeric/error.hpp"
+#include "physics/bob.hpp"
+#include "physics/canonical.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+using Model = DoublePendulum<double>;
+const std::atomic<bool> never = false;
+
+/// The state in angles at a point of the section.
+State<double, 4> state_at(const Pendulum<double>& p, const SectionPoint& point) {
+    State<double, 4> y;
+    Canonical<Model>(Model(p)).velocities(State<double, 4>(0, point.theta2, point.p1, point.p2), y);
+    return y;
+}
+
+/// Above that of hanging at rest, J.
+double energy_above(const Pendulum<double>& p, const State<double, 4>& y) {
+    return energy(bobs_of_angles(p, y), p.gravity) + p.potential_range() / 2;
+}
+
+Pendulum<double> odd_one() {
+    auto p = uneven(2);
+    p.mass = {0.7, 1.6};
+    p.length = {1.3, 0.6};
+    return p;
+}
+
+TEST(Section, PointsAreOnItAndHaveTheEnergyAskedFor) {
+    for (const double energy_J : {3.0, 15.0, 40.0, 140.0})
+        for (const auto& release : releases_of_energy(odd_one(), energy_J, 4)) {
+            const auto points = poincare_section(release, {.crossings = 50}, never);
+            ASSERT_EQ(points.size(), 50u);
+            for (const auto& point : points) {
+                const auto y = state_at(release, point);
+                EXPECT_NEAR(energy_above(release, y) / energy_J, 1, 1e-9);  // measured 4e-12
+                EXPECT_GT(y[2], 0);
+                EXPECT_LE(std::abs(point.theta2), pi);
+            }
+        }
+}
+
+TEST(Section, PointsAreLocatedInTime) {
+    // the motion at the time told, by the same method at finer tolerance without any look back
+    const auto release = releases_of_energy(odd_one(), 15, 3)[2];
+    const auto points = poincare_section(release, {.crossings = 8}, never);
+    Model model(release);
+    Taylor::Stepper<Model> stepper(model, Model::start(release), 1e-15);
+    double time = 0;
+    for (const auto& point : points) {
+        stepper.advance(point.time_s - time);
+        time = point.time_s;
+        const auto& y = stepper.state();
+        EXPECT_NEAR(std::remainder(y[0], 2 * pi), 0, 1e-10);                              // measured 6e-13
+        EXPECT_NEAR(std::remainder(y[1] - point.theta2, 2 * pi), 0, 1e-10);               // measured 1.6e-12
+        EXPECT_NEAR((y.tail<2>() - state_at(release, point).tail<2>()).norm(), 0, 1e-9);  // measured 1e-11
+    }
+}
+
+TEST(Section, NoCrossingIsMissed) {
+    // rk4 in steps of a millisecond, the crossing between two of them by a straight line
+    const auto release = releases_of_energy(odd_one(), 12, 5)[3];
+    Model model(release);
+    Rk4::Stepper<Model> stepper(model, Model::start(release), 1e-3);
+    std::vector<double> theta2;
+    for (auto before = stepper.state(); theta2.size() < 30; before = stepper.state()) {
+        stepper.advance(1);
+        const auto& after = stepper.state();
+        if (before[0] < 0 && after[0] >= 0)
+            theta2.push_back(before[1] - (after[1] - before[1]) * before[0] / (after[0] - before[0]));
+    }
+    const auto points = poincare_section(release, {.crossings = 30}, never);
+    for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(points[i].theta2, theta2[i], 1e-5) << i;  // measured 4e-6
+}
+
+TEST(Section, OfSmallSwingsIsAnEllipse) {
+    // unit masses and lengths: q± = θ1 ± θ2/√2 swing on their own, with ω² = (2 ∓ √2) g and energies
+    // (2 ± √2)/4 (q±′² + ω² q±²), each an ellipse in the section's plane
+    const double energy_J = 1e-6, root = std::sqrt(0.5);
+    for (const auto& release : releases_of_energy({}, energy_J, 6)) {
+        double plus = 0;
+        for (const auto& point : poincare_section(release, {.crossings = 40}, never)) {
+            const auto y = state_at(release, point);
+            const double half = 9.8 * y[1] * y[1] / 2;
+            const double now_plus = (1 + root) / 2 * (std::pow(y[2] + root * y[3], 2) + (2 - 2 * root) * half);
+            const double now_minus = (1 - root) / 2 * (std::pow(y[2] - root * y[3], 2) + (2 + 2 * root) * half);
+            EXPECT_NEAR((now_plus + now_minus) / energy_J, 1, 1e-5);  // measured 5e-8
+            if (plus > 0) {
+                EXPECT_NEAR((now_plus - plus) / energy_J, 0, 1e-5);  // measured 2e-8
+            }
+            plus = now_plus;
+        }
+    }
+}
+
+TEST(Section, IsItsOwnMirrorImageBackwardsInTime) {
+    // (−θ1, −θ2, p1, p2) is the motion run backwards
+    const auto release = releases_of_energy(odd_one(), 12, 7)[4];
+    const auto points = poincare_section(release, {.crossings = 21}, never);
+    const auto end = state_at(release, points.back());
+    auto mirrored = release;
+    mirrored.angle = {0, -end[1]};
+    mirrored.rate = {end[2], end[3]};
+    const auto back = poincare_section(mirrored, {.crossings = 20}, never);
+    for (std::size_t i = 0; i < 20; ++i) {
+        EXPECT_NEAR(back[i].theta2, -points[19 - i].theta2, 1e-9) << i;  // measured 9e-12
+        EXPECT_NEAR(back[i].p2, points[19 - i].p2, 1e-9) << i;           // measured 2.4e-11
+    }
+}
+
+TEST(Section, CountsWholeTurns) {
+    // without gravity, outstretched and turning as one, it crosses once a turn; turning the other way, never upwards
+    auto p = odd_one();
+    p.gravity = 0;
+    p.angle = {0, 0};
+    p.rate = {3, 3};
+    const auto points = poincare_section(p, {.crossings = 10}, never);
+    ASSERT_EQ(points.size(), 10u);
+    for (std::size_t i = 0; i < 10; ++i) {
+        EXPECT_NEAR(points[i].time_s, static_cast<double>(i + 1) * 2 * pi / 3, 1e-11);  // measured 1.3e-13
+        EXPECT_NEAR(points[i].theta2, 0, 1e-11);                                        // measured 3e-14
+    }
+    p.rate = {-3, -3};
+    EXPECT_TRUE(poincare_section(p, {.crossings = 10, .longest_s = 50}, never).empty());
+}
+
+TEST(Section, ReleasesLieOnItAndFillIt) {
+    const auto p = odd_one();
+    for (const double energy_J : {2.0, 100.0}) {  // below and above where the lower link can turn over
+        const auto releases = releases_of_energy(p, energy_J, 64);
+        ASSERT_EQ(releases.size(), 64u);
+        int quarters[2][2] = {};
+        double widest = 0;
+        for (const auto& release : releases) {
+            const auto y = Model::start(release);
+            State<double, 4> z;
+            Canonical<Model>(Model(release)).momenta(y, z);
+            EXPECT_EQ(y[0], 0);
+            EXPECT_GT(y[2], 0);
+            EXPECT_NEAR(energy_above(p, y) / energy_J, 1, 1e-13);  // measured 4e-15
+            ++quarters[y[1] > 0][z[3] > 0];
+            widest = std::max(widest, std::abs(y[1]));
+        }
+        for (const auto& row : quarters)
+            for (const int count : row) EXPECT_NEAR(count, 16, 4);
+        const double weight = 1.6 * 9.8 * 0.6;
+        EXPECT_GT(widest, 0.9 * std::acos(std::max(-1.0, 1 - energy_J / weight)));
+    }
+}
+
+TEST(Section, RefusesWhatMakesNoSenseAndStopsWhenTold) {
+    const auto code = [](const auto& what) {
+        try {
+            what();
+        } catch (const Error& error) {
+            return error.code();
+        }
+        return ExitCode::done;
+    };
+    const std::atomic<bool> stop = true;
+    EXPECT_EQ(code([&] { poincare_section(uneven(3), {}, never); }), ExitCode::bad_input);
+    EXPECT_EQ(code([&] { poincare_section(uneven(2), {.crossings = 0}, never); }), ExitCode::bad_input);
+    EXPECT_EQ(code([&] { poincare_section(uneven(2), {}, stop); }), ExitCode::interrupted);
+    EXPECT_EQ(code([&] { releases_of_energy(uneven(2), 0, 3); }), ExitCode::bad_input);
+    EXPECT_EQ(code([&] { releases_of_energy(uneven(1), 1, 3); }), ExitCode::bad_input);
+}
+
+}  // namespace
+}  // namespace doppel

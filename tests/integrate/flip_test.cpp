@@ -1,0 +1,261 @@
+#include "integrate/ensemble.hpp"
+#include "integrate/flip_reference.hpp"
+#include "integrate/flips.hpp"
+#include "integrate/flips_kernel.hpp"
+#include "numeric/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <vector>
+
+namespace doppel {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// Evenly over the square of −180…180°.
+std::vector<Release> some_releases(std::size_t count) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> some(-pi, pi);
+    std::vector<Release> all(count);
+    for (auto& release : all) release = {some(random), some(random)};
+    return all;
+}
+
+std::vector<double> flips(const std::vector<Release>& releases, const Pendulum<double>& p = {},
+                          const FlipSpec& spec = {}, int width = 0) {
+    std::vector<double> times(releases.size(), -7);
+    first_flips(p, releases, spec, times, false, width);
+    return times;
+}
+
+Pendulum<double> released(Pendulum<double> p, const Release& release) {
+    p.angle = {release.theta1, release.theta2};
+    return p;
+}
+
+/// Masses, lengths and gravity of which no two are alike.
+Pendulum<double> uneven() {
+    Pendulum<double> p;
+    p.mass = {1, 3};
+    p.length = {2, 0.5};
+    p.gravity = 3.7;
+    return p;
+}
+
+/// From θ to the upright, s, of a single rod that is at θ with the rate it has from passing the bottom with `omega`:
+///     θ′² = ω² − 4 (g/l) sin² θ/2,   t = (2/ω) (K(k) − F(θ/2, k)),   k = 2 √(g/l) / ω
+double time_to_upright(double theta, double omega, double length, double gravity) {
+    const double k = 2 * std::sqrt(gravity / length) / omega;
+    return 2 / omega * (std::comp_ellint_1(k) - std::ellint_1(k, theta / 2));
+}
+double rate_there(double theta, double omega, double length, double gravity) {
+    return std::sqrt(omega * omega - 4 * gravity / length * std::pow(std::sin(theta / 2), 2));
+}
+
+TEST(Flips, AreForbiddenJustBelowTheLeastEnergyOfARodUpright) {
+    // −2 cosθ1 − cosθ2 < −2 + 1, where both hang the same: θ1 = 90° and θ2 = 180°, θ2 = 0 and θ1 = 90°
+    constexpr double little = 1e-9;
+    EXPECT_TRUE(flip_is_forbidden(released({}, {pi / 2 - little, 0})));
+    EXPECT_FALSE(flip_is_forbidden(released({}, {pi / 2 + little, 0})));
+    // W = 8 g, 1.5 g:  −8 cosθ1 − 1.5 = −9.5 + 3
+    const double heavy = std::acos(5.0 / 8);
+    EXPECT_TRUE(flip_is_forbidden(released(uneven(), {-heavy + little, 0})));
+    EXPECT_FALSE(flip_is_forbidden(released(uneven(), {-heavy - little, 0})));
+    // the upper rod the lighter: W = 0.2 g, 1 g:  −0.2 − cosθ2 = −1.2 + 0.4
+    Pendulum<double> upper;
+    upper.length = {0.1, 1};
+    const double far = std::acos(0.6);
+    EXPECT_TRUE(flip_is_forbidden(released(upper, {0, far - little})));
+    EXPECT_FALSE(flip_is_forbidden(released(upper, {0, far + little})));
+    // three links, W = 3 g, 2 g, 1 g:  −3 − 2 cosθ2 − 1 = −6 + 2
+    Pendulum<double> triple;
+    triple.mass = triple.length = {1, 1, 1};
+    triple.rate = {0, 0, 0};
+    triple.angle = {0, pi / 2 - little, 0};
+    EXPECT_TRUE(flip_is_forbidden(triple));
+    triple.angle[1] = pi / 2 + little;
+    EXPECT_FALSE(flip_is_forbidden(triple));
+    // hanging, the lower rod at a rate:  ½ m l² ω² = 2 m g l
+    Pendulum<double> struck;
+    struck.rate = {0, 2 * std::sqrt(struck.gravity) - little};
+    EXPECT_TRUE(flip_is_forbidden(struck));
+    struck.rate[1] += 2 * little;
+    EXPECT_FALSE(flip_is_forbidden(struck));
+}
+
+/// The kernel itself, which knows of no bound.
+std::vector<double> kernel_flips(const std::vector<Release>& releases, const FlipSpec& spec = {}) {
+    std::vector<double> times(releases.size(), -1);
+    const std::atomic<bool> stop{false};
+    find_flips<2>({.chain = {9.8, 2, 1},
+                   .omega = {0, 0},
+                   .duration = spec.duration,
+                   .allowed = std::log2(spec.tolerance),
+                   .longest = 0.3,
+                   .count = releases.size(),
+                   .releases = releases.data(),
+                   .times = times.data(),
+                   .stop = &stop});
+    return times;
+}
+
+TEST(Flips, NeverHappenWhereTheyAreForbidden) {
+    auto releases = some_releases(1000);
+    std::erase_if(releases, [](const Release& r) { return !flip_is_forbidden(released({}, r)); });
+    ASSERT_GT(releases.size(), 200u);
+    for (double theta2 = -3; theta2 < 3; theta2 += 0.05)  // just below the bound, 2 cosθ1 + cosθ2 = 1
+        releases.push_back({std::acos((1 + 1e-6 - std::cos(theta2)) / 2), theta2});
+    for (const double time : kernel_flips(releases)) EXPECT_EQ(time, never);
+    for (const double time : flips(releases)) EXPECT_EQ(time, never);
+}
+
+TEST(Flips, OfASingleRodComeAtTheEllipticIntegral) {
+    // the pivot of the lower rod, a hundred thousand billion times as heavy, hangs still
+    for (const double omega : {9.0, 6.3, 6.2611})  // 2 √g = 6.26099
+        for (const double theta : {0.0, 0.7, -1.1, 2.5}) {
+            Pendulum<double> p;
+            p.mass = {1e14, 1};
+            p.rate = {0, rate_there(theta, omega, 1, p.gravity)};
+            const double exact = time_to_upright(theta, omega, 1, p.gravity);
+            EXPECT_NEAR(flips({{0, theta}}, p)[0], exact, 1e-6) << omega << ' ' << theta;  // measured 7e-8
+            EXPECT_NEAR(flips({{0, theta}}, p, {.tolerance = 1e-12})[0], exact, 1e-9) << omega << ' ' << theta;
+            EXPECT_NEAR(reference_flip(released(p, {0, theta}), 20, 1e-13), exact, 1e-9) << omega << ' ' << theta;
+        }
+    // the lower mass weighs nothing, and its rod is long
+    Pendulum<double> p;
+    p.mass = {1, 1e-13};
+    p.length = {1, 10};
+    p.rate = {20, 0};
+    EXPECT_NEAR(flips({{0, 0}}, p)[0], time_to_upright(0, 20, 1, p.gravity), 1e-9);
+}
+
+struct Agreement {
+    std::size_t wrong;  // flips not within 0.01 s of the reference
+    double early;       // s, the error that 99 % of the flips in the first five seconds keep below
+};
+Agreement agreement(const Pendulum<double>& pendulum, std::size_t count) {
+    const auto releases = some_releases(count);
+    const auto times = flips(releases, pendulum);
+    std::vector<double> early;
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < releases.size(); ++i) {
+        const auto p = released(pendulum, releases[i]);
+        const double exact = flip_is_forbidden(p) ? never : reference_flip(p, 20, 1e-13);
+        const double error = times[i] == exact ? 0 : std::abs(times[i] - exact);
+        wrong += !(error < 0.01);
+        if (exact < 5) early.push_back(error);
+    }
+    EXPECT_GT(early.size(), count / 10);
+    std::sort(early.begin(), early.end());
+    return {wrong, early[early.size() * 99 / 100]};
+}
+
+TEST(Flips, ComeWhenTheReferenceSays) {
+    const auto even = agreement({}, 1500), odd = agreement(uneven(), 500);
+    EXPECT_LE(even.wrong, 2u);    // measured 0; of 10 000, 2
+    EXPECT_LT(even.early, 1e-7);  // measured 1.3e-8
+    EXPECT_LE(odd.wrong, 2u);     // measured 0
+    EXPECT_LT(odd.early, 1e-7);   // measured 1.2e-8
+}
+
+/// Between two releases whose flips are far apart in time lies one whose rod comes up to the upright, and no further.
+TEST(Flips, AreFoundWhereTheRodTurnsBackWithinTheStep) {
+    constexpr double tolerance = 1e-11;
+    const FlipSpec spec{.duration = 5, .tolerance = tolerance};
+    int edges = 0;
+    for (double theta2 = -3; theta2 < 3; theta2 += 0.25)
+        for (double theta1 = 1.8; theta1 < 3; theta1 += 0.1) {
+            double one = theta1, other = theta1 + 0.1;
+            auto times = flips({{one, theta2}, {other, theta2}}, {}, spec);
+            if (std::min(times[0], times[1]) > 2 || std::abs(times[0] - times[1]) < 0.5) continue;
+            while (std::abs(other - one) > 1e-7) {
+                const double middle = 0.5 * (one + other);
+                const double time = flips({{middle, theta2}}, {}, spec)[0];
+                const bool like_one = std::abs(time - times[0]) < std::abs(time - times[1]) || time == times[0];
+                (like_one ? one : other) = middle;
+                times[like_one ? 0 : 1] = time;
+            }
+            if (!(std::abs(times[0] - times[1]) > 0.2)) continue;  // a steep slope
+            ++edges;
+            for (const double theta : {one, other}) {
+                const double time = flips({{theta, theta2}}, {}, spec)[0];
+                const double exact = reference_flip(released({}, {theta, theta2}), 5, 1e-13);
+                EXPECT_LT(time == exact ? 0 : std::abs(time - exact), 1e-6) << theta << ' ' << theta2;  // measured 2e-9
+            }
+        }
+    EXPECT_GT(edges, 30);
+}
+
+TEST(Flips, OfMirrorImagesComeAtTheSameTimeToTheLastBit) {
+    const auto releases = some_releases(1000);
+    auto mirrored = releases;
+    for (auto& [theta1, theta2] : mirrored) theta1 = -theta1, theta2 = -theta2;
+    EXPECT_EQ(flips(mirrored), flips(releases));
+    EXPECT_EQ(flips(mirrored, uneven()), flips(releases, uneven()));
+}
+
+TEST(Flips, AreTheSameToTheLastBitAtEveryWidthAndInEveryGrouping) {
+    const auto releases = some_releases(301);
+    const auto times = flips(releases, uneven());
+    EXPECT_GT(std::count_if(times.begin(), times.end(), [](double t) { return t < never; }), 50);
+    for (const int width : Ensemble::widths()) EXPECT_EQ(flips(releases, uneven(), {}, width), times) << width;
+
+    std::vector<std::size_t> order(releases.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), std::mt19937(5));
+    for (std::size_t group : {1u, 7u, 301u})
+        for (std::size_t first = 0; first < order.size(); first += group) {
+            std::vector<Release> some;
+            for (std::size_t i = first; i < std::min(first + group, order.size()); ++i)
+                some.push_back(releases[order[i]]);
+            const auto found = flips(some, uneven());
+            for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], times[order[first + i]]) << group;
+        }
+}
+
+TEST(Flips, HaveATimeWithinTheDurationOrNone) {
+    std::vector<Release> grid;
+    for (int i = -12; i <= 12; ++i)
+        for (int j = -12; j <= 12; ++j) grid.push_back({radians(15 * i), radians(15 * j)});
+    for (const double time : flips(grid, {}, {.duration = 3}))
+        EXPECT_TRUE((time >= 0 && time <= 3) || time == never) << time;
+    // the time asked for does not move a flip, and one that comes later is none
+    const double time = flips({{2.5, 1}})[0];
+    EXPECT_EQ(flips({{2.5, 1}}, {}, {.duration = std::nextafter(time, 0)})[0], never);
+    EXPECT_EQ(flips({{2.5, 1}}, {}, {.duration = std::nextafter(time, 9)})[0], time);
+    EXPECT_EQ(flips({{3.2, 0}, {0, -3.2}}), (std::vector<double>{0, 0}));
+    EXPECT_EQ(flips({}), std::vector<double>());
+}
+
+ExitCode refusal(const Pendulum<double>& p, const FlipSpec& spec, std::size_t times, bool stop = false, int width = 0) {
+    std::vector<Release> releases{{2, 2}, {2.5, 1}};
+    std::vector<double> found(times);
+    try {
+        first_flips(p, releases, spec, found, stop, width);
+    } catch (const Error& error) {
+        return error.code();
+    }
+    return ExitCode::done;
+}
+
+TEST(Flips, AreNotLookedForInVain) {
+    Pendulum<double> triple;
+    triple.mass = triple.length = triple.angle = triple.rate = {1, 1, 1};
+    EXPECT_EQ(refusal({}, {}, 2), ExitCode::done);
+    EXPECT_EQ(refusal(triple, {}, 2), ExitCode::bad_input);
+    EXPECT_EQ(refusal({}, {}, 1), ExitCode::bad_input);
+    EXPECT_EQ(refusal({}, {.duration = never}, 2), ExitCode::bad_input);
+    EXPECT_EQ(refusal({}, {.duration = 0}, 2), ExitCode::bad_input);
+    EXPECT_EQ(refusal({}, {.tolerance = 0}, 2), ExitCode::bad_input);
+    EXPECT_EQ(refusal({}, {}, 2, false, 3), ExitCode::bad_input);
+    EXPECT_EQ(refusal({}, {}, 2, true), ExitCode::interrupted);
+}
+
+}  // namespace
+}  // namespace doppel

@@ -1,0 +1,201 @@
+#include "physics/mechanism_series.hpp"
+
+#include "allocations.hpp"
+#include "numeric/dual.hpp"
+#include "numeric/quad.hpp"
+#include "physics/chain_parts.hpp"
+#include "physics/mechanisms.hpp"
+#include "physics/rod_series.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+using namespace counted;
+
+static_assert(HasSeries<Mechanism<double>> && HasSeries<Projected<Mechanism<Quad>>>);
+static_assert(!HasSeries<Baumgarte<Mechanism<double>>>);
+
+/// A bob on a rod, sprung to a second one that slides in a circle, and both to others.
+Assembly<double> sprung() {
+    return {.particles = {{1.3, P(0.6, -0.8), P(0.8, 0.6)}, {0.7, P(2, 0.5), P(0, 1.1)}, {0.4, P(0.4, 1.2), P(-1, 0)}},
+            .constraints = {Rod<double>{one, P(0, 0), 1}, SlotCircle<double>{two, P(1, 0.5), 1}},
+            .forces = {Gravity<double>{}, Spring<double>{one, two, 5, 1.1, 0.3}, Spring<double>{three, P(0, 2), 7, 0},
+                       Spring<double>{three, one, 3, 0.4, 0.2}}};
+}
+
+/// Two beads in straight slots, and a bob on a rod from an anchored particle: all attract each other.
+Assembly<double> attracted() {
+    return {
+        .particles = {{2, P(0, 0), P(1, 0.5)}, {3, P(1.5, -1), P(1, 0)}, {1, P(1.5, 0.2)}, {1, P(0, 2.2), P(1, 0.75)}},
+        .constraints = {SlotLine<double>{one, P(0, 0), P(2, 1)}, SlotLine<double>{two, P(0, -1), P(3, 0)},
+                        Anchor<double>{three, P(1.5, 0.2)}, Rod<double>{three, four, 2.5}},
+        .forces = {Attraction<double>{one, four, 4}, Attraction<double>{two, one, 1.5},
+                   Droplet<double>{P(3, 3), 5, 0.8}, Gravity<double>{3}}};
+}
+
+/// The loop of four bars, a rod swinging from it, and a brace that is a damped spring.
+Assembly<double> looped() {
+    auto parts = four_bars();
+    parts.particles.push_back({0.5, P(2.9, 0.6), P(0.5, 0)});
+    parts.constraints.push_back(Rod<double>{5 - 1, three, 0.6});
+    parts.forces.push_back(Spring<double>{two, P(2, 0), 20, 1, 0.5});
+    return parts;
+}
+
+/// The four bars turn: their velocities must be consistent.
+template <class S>
+State<S, Eigen::Dynamic> moving(Mechanism<S>& model, const Assembly<S>& assembly, const S& seconds) {
+    return after(model, assembly, 10, S(seconds / S(10)));
+}
+
+/// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks like h^order only if every
+/// coefficient is right. In quad; y′ by central differences.
+double residual(const Assembly<double>& parts, int order, double h) {
+    const auto assembly = parts.cast<Quad>();
+    Mechanism<Quad> model(assembly);
+    const auto start = moving(model, assembly, Quad(0.05));
+    MechanismSeries<Quad> series(model, order);
+    series.expand(start);
+    const auto moved = [&](const Quad& by) {
+        auto change = start;
+        series.move(by, change);
+        return State<Quad, Eigen::Dynamic>(start + change);
+    };
+    const Quad at(h), d(1e-9);
+    auto rate = start;
+    model.rate(moved(at), rate);
+    rate -= (Quad(8) * (moved(at + d) - moved(at - d)) - (moved(at + d + d) - moved(at - d - d))) / (Quad(12) * d);
+    double worst = 0;
+    for (const Quad& difference : rate) worst = greater(worst, std::abs(static_cast<double>(difference)));
+    return worst;
+}
+
+TEST(MechanismSeries, SolvesTheEquationsOfMotionOrderByOrder) {
+    for (const auto& parts : {sprung(), attracted(), looped()}) {
+        check(parts);
+        for (int order : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+            const double h = 2e-3, ratio = residual(parts, order, 2 * h) / residual(parts, order, h);
+            EXPECT_NEAR(std::log2(ratio), order, 0.2) << order;  // measured within 0.1
+        }
+    }
+}
+
+TEST(MechanismSeries, OfAChainIsThatOfItsRods) {
+    Pendulum<Quad> p{{Quad(1), Quad(0.4), Quad(2)},
+                     {Quad(1), Quad(0.7), Quad(1.2)},
+                     {Quad(0.3), Quad(2), Quad(-1)},
+                     {Quad(1), Quad(-2), Quad(0.5)},
+                     Quad(9.8)};
+    RodChain<Quad, 3> chain(p);
+    const auto y = chain.start(p);
+    const auto parts = parts_of(p);
+    Mechanism<Quad> mechanism(parts);
+    for (int order : {5, 20, 42}) {
+        RodSeries<Quad, 3> rods(chain, order);
+        MechanismSeries<Quad> series(mechanism, order);
+        rods.expand(y);
+        series.expand(mechanism.start(parts));
+        EXPECT_DOUBLE_EQ(series.longest_step(), rods.longest_step());
+        for (int k = 0; k <= order; ++k) EXPECT_NEAR(series.size(k) / rods.size(k), 1, 1e-14) << k;  // measured 0
+        auto expected = y;
+        State<Quad, Eigen::Dynamic> change(12);
+        rods.move(Quad(0.05), expected);
+        series.move(Quad(0.05), change);
+        EXPECT_LT(static_cast<double>(Quad((change - expected).cwiseAbs().maxCoeff())), 1e-32);  // measured 1e-35
+    }
+}
+
+TEST(MechanismSeries, AllocatesNothingOnceItIsBuilt) {
+    for (const auto& parts : {sprung(), attracted(), looped()}) {
+        const auto allocated = [](const auto& assembly) {
+            using S = std::decay_t<decltype(assembly.particles[0].mass)>;
+            Mechanism<S> model(assembly);
+            MechanismSeries<S> series(model, 20);
+            auto y = model.start(assembly), change = y;
+            const long before = allocations();
+            series.expand(y);
+            series.move(S(0.02), change);
+            y += change;
+            series.expand(y);
+            return allocations() - before;
+        };
+        EXPECT_EQ(allocated(parts), 0);
+        EXPECT_EQ(allocated(parts.cast<Quad>()), 0);
+    }
+}
+
+TEST(MechanismSeries, CarriesDualNumbers) {
+    // how far a series leads, by the stiffness of a spring
+    const auto moved = [](auto stiffness) {
+        using S = decltype(stiffness);
+        auto parts = sprung().cast<S>();
+        std::get<Spring<S>>(parts.forces[1]).stiffness = stiffness;
+        Mechanism<S> model(parts);
+        MechanismSeries<S> series(model, 20);
+        auto y = model.start(parts), change = y;
+        series.expand(y);
+        series.move(S(0.1), change);
+        return S(change[4]);
+    };
+    const double h = 1e-4, slope = (moved(5 + h) - moved(5 - h)) / (2 * h);
+    using D = Dual<double, 1>;
+    EXPECT_NEAR(moved(D::variable(5, 0)).tangent[0], slope, 1e-10);
+}
+
+/// What a series says of the way from the start of a mechanism.
+std::string said_of(const Assembly<double>& parts, double h) {
+    Mechanism<double> model(parts);
+    MechanismSeries<double> series(model, 30);
+    auto y = model.start(parts), change = y;
+    try {
+        series.expand(y);
+        series.move(h, change);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        return error.what();
+    }
+    return "nothing";
+}
+
+TEST(MechanismSeries, NamesASingularConfigurationOnTheWay) {
+    // cranks of 1 m, a coupler of 2 m: in line after about 0.09 s, where they could go on as a parallelogram
+    Assembly<double> parts{
+        .particles = {{1, P(0.6, -0.8), P(6.4, 4.8)}, {1.5, P(2.6, -0.8), P(6.4, 4.8)}},
+        .constraints = {Rod<double>{one, P(0, 0), 1}, Rod<double>{two, P(2, 0), 1}, Rod<double>{one, two, 2}},
+        .forces = {Gravity<double>{}}};
+    check(parts);
+    EXPECT_EQ(said_of(parts, 0.08), "nothing");
+    for (const double h : {0.15, 0.2, 0.25}) {
+        const auto said = said_of(parts, h);
+        EXPECT_EQ(said.substr(0, said.find("; the particles are at (1, ")),
+                  "singular configuration: constraint 3 (rod 1–2) has come to follow from constraints 1 and 2, and the "
+                  "forces are not determined");
+    }
+}
+
+TEST(MechanismSeries, PassesNearASingularConfiguration) {
+    // a light bob above a heavy one, through the place where both rods are in a line
+    for (const double light : {1e-2, 1e-4, 1e-6}) {
+        Assembly<double> parts{
+            .particles = {{light, P(-0.05, -1), P(1, -0.05)}, {1, P(0, -2), P(2, 0)}},
+            .constraints = {Rod<double>{one, P(0, 0), std::hypot(0.05, 1)}, Rod<double>{two, one, std::hypot(0.05, 1)}},
+            .forces = {}};
+        EXPECT_EQ(said_of(parts, 0.12), "nothing") << light;
+    }
+}
+
+TEST(MechanismSeries, NamesASpringWhoseEndsMeet) {
+    Assembly<double> parts{.particles = {{1, P(1, 1)}}, .constraints = {}, .forces = {Gravity<double>{}}};
+    parts.forces.push_back(Spring<double>{one, P(1, 1), 5, 0});
+    EXPECT_EQ(said_of(parts, 0.1), "nothing");  // it is 5 N/m in any direction
+    parts.forces.push_back(Spring<double>{one, P(1, 1), 5, 1});
+    EXPECT_EQ(said_of(parts, 0.1),
+              "force 3 (spring 1–fixed): its ends have met, where it has no direction; start so that they do not");
+}
+
+}  // namespace
+}  // namespace doppel
