@@ -16,10 +16,19 @@ std::string power_of_ten(int exponent) {
     return text;
 }
 
+double Axis::share(double value) const {
+    if (low == high) return 0.5;
+    // halves, so that no difference of finite values overflows
+    if (!logarithmic) return (value / 2 - low / 2) / (high / 2 - low / 2);
+    // a ratio beyond what a double holds is still a difference of logarithms
+    const double part = value / low, whole = high / low;
+    if (std::isnormal(part) && std::isnormal(whole)) return std::log(part) / std::log(whole);
+    return (std::log(value) - std::log(low)) / (std::log(high) - std::log(low));
+}
+
 float Axis::at(double value) const {
-    const double share =
-        logarithmic ? std::log(std::max(value, low) / low) / std::log(high / low) : (value - low) / (high - low);
-    return static_cast<float>(from + (to - from) * std::clamp(share, 0.0, 1.0));
+    const double reached = share(logarithmic ? std::max(value, std::min(low, high)) : value);
+    return static_cast<float>(from + (to - from) * std::clamp(reached, 0.0, 1.0));
 }
 
 std::vector<Tick> decade_ticks(const Axis& axis, float label_px) {
@@ -45,6 +54,9 @@ std::vector<Tick> round_ticks(const Axis& axis, float label_px) {
             break;
         }
     std::vector<Tick> ticks;
+    // none where no step is a number or the axis has no two values that it tells apart
+    if (!(span > 0 && std::isfinite(span) && std::isnormal(step) && axis.high + step > axis.high)) return ticks;
+    if (std::abs(axis.low) / step > 1e15 || std::abs(axis.high) / step > 1e15) return ticks;
     const auto first = static_cast<long>(std::ceil(axis.low / step - 1e-9));
     const auto last = static_cast<long>(std::floor(axis.high / step + 1e-9));
     for (long k = first; k <= last; ++k) {

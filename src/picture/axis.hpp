@@ -11,11 +11,15 @@ struct Tick {
     std::string text;
 };
 
-/// Maps the values low…high (both > 0 if logarithmic) to the pixels from…to, in a straight line or by powers of ten.
+/// Maps the values low…high (both > 0 if logarithmic; low > high: inverted) to the pixels from…to, in a straight line
+/// or by powers of ten. Without width it maps all to the middle.
 struct Axis {
     double low = 0, high = 1;
     float from = 0, to = 1;  // px
     bool logarithmic = false;
+
+    /// How far along the axis, 0 at low and 1 at high; beyond, outside. Not a number where a logarithm is none.
+    double share(double value) const;
 
     /// px; values outside are moved to the nearest end, so that a trace stays in its frame.
     float at(double value) const;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "picture/color.hpp"
+#include "picture/picture.hpp"
 
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -59,8 +61,15 @@ struct Label {
     Color color;
 };
 
+/// A picture stretched over a rectangle, whose edges are rounded to whole pixels. Each pixel takes the colour below its
+/// centre, so that what is enlarged stays crisp. Lists share the pixels, which must not change.
+struct Image {
+    float left = 0, top = 0, right = 0, bottom = 0;  // px
+    std::shared_ptr<const Picture> pixels;           // with opacity
+};
+
 /// What to draw, back to front.
-using Item = std::variant<Box, Capsule, Ring, Stroke, Label>;
+using Item = std::variant<Box, Capsule, Ring, Stroke, Label, Image>;
 using DisplayList = std::vector<Item>;
 
 }  // namespace doppel

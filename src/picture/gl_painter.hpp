@@ -15,7 +15,8 @@ class Painter {
 public:
     explicit Painter(Size size);
 
-    /// Takes what of the sketch touches each of the `places`, and glyphs that are new.
+    /// Takes what of the sketch touches each of the `places`, and glyphs and images that are new. Throws Error where an
+    /// image is larger than OpenGL takes.
     void load(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas);
     /// Draws what was loaded for places[place], cut off at its edges.
     void paint(std::size_t place, const Rect& within) const;
@@ -31,17 +32,25 @@ private:
         std::size_t place;
         Kind kind;
         std::size_t begin, end;
+        const Picture* image;
+    };
+    /// An image among OpenGL's textures.
+    struct Loaded {
+        std::shared_ptr<const Picture> pixels;
+        std::unique_ptr<Texture> texture;
     };
 
     void add(const Quad& quad);
     void upload(const GlyphAtlas& atlas);
-    void use(Kind kind) const;
+    void upload(const std::vector<std::shared_ptr<const Picture>>& images);
+    void use(const Run& run) const;
 
-    std::array<Program, 4> programs_;  // by kind
+    std::array<Program, 5> programs_;  // by kind
     VertexArray vertex_array_;
     Buffer vertex_buffer_, index_buffer_;
     Texture atlas_;
     std::size_t atlas_glyphs_ = 0;
+    std::vector<Loaded> images_;
     std::vector<Vertex> vertices_;
     std::vector<Run> runs_;
 };

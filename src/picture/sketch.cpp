@@ -96,6 +96,20 @@ public:
         }
     }
 
+    void operator()(const Image& image) {
+        const float left = std::round(image.left), top = std::round(image.top);
+        const Point half{(std::round(image.right) - left) / 2, (std::round(image.bottom) - top) / 2};
+        if (!(half.x > 0 && half.y > 0) || !image.pixels || image.pixels->rgba.empty()) return;
+        const Size texels = image.pixels->size;
+        begin(Kind::image);
+        add({.center = {left + half.x, top + half.y},
+             .half = half,
+             .shape = {half.x, half.y, static_cast<float>(texels.width) / (2 * half.x),
+                       static_cast<float>(texels.height) / (2 * half.y)},
+             .image = image.pixels.get()});
+        made.images.push_back(image.pixels);
+    }
+
     Sketch made;
 
 private:
@@ -146,7 +160,7 @@ private:
 
 bool operator==(const Quad& a, const Quad& b) {
     return a.center.x == b.center.x && a.center.y == b.center.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
-           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.tint == b.tint;
+           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.tint == b.tint && a.image == b.image;
 }
 
 Sketch sketch(const DisplayList& list, Size size, GlyphAtlas& atlas) {

@@ -17,6 +17,10 @@ struct Theme {
     Color rod, bob, pivot;       // what all pendulums share
     std::array<Color, 2> sides;  // a, b
     Color trace;                 // what belongs to both
+    Color good, bad, open;       // verdicts
+    Color none;                  // where a map has no value
+    std::array<Color, 8>
+        palette;  // of curves, the sides' hues first; apart for the colour-blind, 3:1 on the background
 };
 
 inline constexpr std::array<Theme, 2> themes{{
@@ -32,7 +36,13 @@ inline constexpr std::array<Theme, 2> themes{{
      .bob = rgb(0xeef1f6),
      .pivot = rgb(0x6f7a8a),
      .sides = {rgb(0xffa640), rgb(0x4fb0ff)},
-     .trace = rgb(0xb9f0c0)},
+     .trace = rgb(0xb9f0c0),
+     .good = rgb(0x5fd38a),
+     .bad = rgb(0xff7b6b),
+     .open = rgb(0xe8c34a),
+     .none = rgb(0x3a3f49),
+     .palette = {rgb(0xffa640), rgb(0x4fb0ff), rgb(0x69f2d8), rgb(0xe882a8), rgb(0x6f6bea), rgb(0xf4f062),
+                 rgb(0x8f9030), rgb(0xa85a92)}},
     {.name = "light",
      .background = rgb(0xffffff),
      .panel = rgb(0xf4f6f9),
@@ -45,7 +55,13 @@ inline constexpr std::array<Theme, 2> themes{{
      .bob = rgb(0x27303d),
      .pivot = rgb(0x9aa4b3),
      .sides = {rgb(0xc95a00), rgb(0x0068b8)},
-     .trace = rgb(0x1b7a3d)},
+     .trace = rgb(0x1b7a3d),
+     .good = rgb(0x14743a),
+     .bad = rgb(0xb3261e),
+     .open = rgb(0x8a6100),
+     .none = rgb(0xdde1e7),
+     .palette = {rgb(0xc95a00), rgb(0x0068b8), rgb(0x2e9398), rgb(0x8e3f7e), rgb(0x1c5406), rgb(0x7f7ff5),
+                 rgb(0x560a14), rgb(0x1a2458)}},
 }};
 
 }  // namespace doppel

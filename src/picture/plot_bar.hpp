@@ -1,0 +1,14 @@
+#pragma once
+
+#include "picture/plot_fit.hpp"
+#include "picture/plot_style.hpp"
+
+namespace doppel {
+
+/// px that the bar of a map and its words take on the right of a panel `height` px high.
+float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
+
+/// The bar beside `area`, from `left` on: colours with ticks, and below them what stands for no value.
+void draw_bar(const HeatMap& map, const PlotArea& area, float left, const PlotStyle& style, DisplayList& list);
+
+}  // namespace doppel

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "picture/plot_curves.hpp"
+#include "picture/plot_room.hpp"
+
+namespace doppel {
+
+/// Writes the rules' words beside them, where least is in the way.
+void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
+                 PlotRoom& room, DisplayList& list);
+
+/// Names the curves: each at its line where words touch nothing, the others in a legend in the emptiest place. Curve i
+/// has drawn in `room` as number i.
+void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
+                  bool over_map, PlotRoom& room, DisplayList& list);
+
+}  // namespace doppel

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "picture/plot_curves.hpp"
+#include "picture/plot_room.hpp"
+
+#include <optional>
+
+namespace doppel {
+
+/// Names of curves beside a piece of each, in a box.
+struct Legend {
+    std::vector<std::size_t> which;  // of the curves
+    PlotArea box;
+    float size;  // of text, px an em
+};
+
+/// In the emptiest place of the panel, preferably a corner, away from all words. It shrinks before it gives up.
+std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which,
+                                    const PlotStyle& style, const PlotRoom& room);
+
+void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
+                 DisplayList& list);
+
+}  // namespace doppel
