@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
         int exit_code = 0;
         doppel::add_render(app);
         doppel::add_simulate(app);
+        doppel::add_figure(app);
         doppel::add_compare(app, exit_code);
         doppel::add_list(app);
         doppel::add_show(app);

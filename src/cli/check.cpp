@@ -1,5 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
+#include "figure/computation.hpp"
+#include "numeric/share_out.hpp"
 #include "scene/wording.hpp"
 
 #include <fmt/format.h>
@@ -77,6 +79,18 @@ void print_scene(const Scene& scene) {
                std::max(estimate.seconds, pictures));
 }
 
+void print_figure(const FigurePreset& figure) {
+    double units = 0;
+    for (std::size_t trial = 0; trial < figure.work->trials(); ++trial) units += figure.work->units(trial);
+    const auto size = figure.picture_size();
+    fmt::print("{}: {}\n  kind   {}: {} {} in {} trials\n", figure.name, figure.title, figure.kind,
+               grouped(std::lround(units)), figure.work->unit(), grouped(static_cast<long>(figure.work->trials())));
+    fmt::print("  chart  {}×{} px, {}\n", size.width, size.height, figure.chart.theme);
+    const auto estimate = estimated_computation(figure, cores());
+    fmt::print("  takes  {} {:.2g} s on {} threads, {:.3g} {}/s\n", estimate.at_least ? "more than" : "about",
+               estimate.seconds, cores(), units / estimate.seconds, figure.work->unit());
+}
+
 }  // namespace
 
 void add_check(CLI::App& app) {
@@ -84,7 +98,13 @@ void add_check(CLI::App& app) {
     auto& command = *app.add_subcommand("check", "What a preset would run: models and why, steps, frames, time");
     add_preset_options(command, *options);
     command.callback([options] {
-        for (const auto& scene : read_scenes(*options)) print_scene(scene);
+        for (const auto& name : options->presets) {
+            const auto preset = find_preset(name);
+            if (is_figure(preset))
+                print_figure(read_figure(preset, overrides_of(*options)));
+            else
+                print_scene(make_scene(read_preset(preset, overrides_of(*options))));
+        }
     });
 }
 

@@ -7,6 +7,7 @@ namespace doppel {
 // Each adds its command to the program: its options, its help, and what it does. One file a command.
 void add_render(CLI::App& app);
 void add_simulate(CLI::App& app);
+void add_figure(CLI::App& app);
 void add_compare(CLI::App& app, int& exit_code);  // the code is 1 where the pictures differ
 void add_list(CLI::App& app);
 void add_show(CLI::App& app);

@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "figure/preset.hpp"
 #include "integrate/methods.hpp"
 #include "scene/preset.hpp"
 
@@ -10,11 +11,16 @@
 namespace doppel {
 namespace {
 
-void list_presets() {
-    const auto presets = builtin_presets();
+/// The films or the figures among the presets, and their titles.
+void list_presets(bool figures) {
+    std::vector<std::pair<std::string, std::string>> lines;
     std::size_t width = 0;
-    for (const auto& preset : presets) width = std::max(width, preset.name.size());
-    for (const auto& preset : presets) fmt::print("{:<{}}  {}\n", preset.name, width, read_preset(preset).title);
+    for (const auto& preset : builtin_presets()) {
+        if (is_figure(preset) != figures) continue;
+        lines.emplace_back(preset.name, figures ? read_figure(preset).title : read_preset(preset).title);
+        width = std::max(width, preset.name.size());
+    }
+    for (const auto& [name, title] : lines) fmt::print("{:<{}}  {}\n", name, width, title);
 }
 
 /// A table: value of `integrator`, order, step or tolerance, models, properties.
@@ -37,10 +43,15 @@ void list_methods() {
 void add_list(CLI::App& app) {
     auto what = std::make_shared<std::string>("presets");
     auto& command = *app.add_subcommand("list", "The presets and their titles; list methods: what steps them");
-    command.add_option("WHAT", *what, "presets or methods")
+    command.add_option("WHAT", *what, "presets (films, then figures) or methods")
         ->check(CLI::IsMember({"presets", "methods"}))
         ->capture_default_str();
-    command.callback([what] { *what == "methods" ? list_methods() : list_presets(); });
+    command.callback([what] {
+        if (*what == "methods") return list_methods();
+        list_presets(false);
+        fmt::print("\nfigures, for doppel figure:\n");
+        list_presets(true);
+    });
 }
 
 }  // namespace doppel

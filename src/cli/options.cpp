@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
+
 namespace doppel {
 
 void add_preset_options(CLI::App& command, PresetOptions& options) {
@@ -19,23 +21,42 @@ void add_preset_options(CLI::App& command, PresetOptions& options) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_run_options(CLI::App& command, RunCommandOptions& options) {
+void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs) {
     add_preset_options(command, options);
     command.add_option("-o,--out", options.out, "Folder for the results; they go to DIR/NAME/")
         ->type_name("DIR")
         ->capture_default_str();
-    command.add_option("-j,--jobs", options.jobs, "Threads that encode; two a core where not given")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1024));
+    command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
     command.add_option("--progress", options.progress, "How to show progress: auto, bar, plain, json or none")
         ->type_name("STYLE")
         ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
         ->capture_default_str();
 }
 
-std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
+std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
+    long first = 0, second = 0;
+    const char* const end = text.data() + text.size();
+    const auto [middle, fault] = std::from_chars(text.data(), end, first);
+    if (fault != std::errc() || middle == end || *middle != separator) return std::nullopt;
+    const auto [stop, second_fault] = std::from_chars(middle + 1, end, second);
+    if (second_fault != std::errc() || stop != end) return std::nullopt;
+    return std::pair{first, second};
+}
+
+Override size_override(const std::string& key, const std::string& size) {
+    const auto sides = two_numbers(size, 'x');
+    if (!sides) throw bad_input("--size wants WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", size);
+    return {key, fmt::format("[{}, {}]", sides->first, sides->second), "--size " + size};
+}
+
+std::vector<Override> overrides_of(const PresetOptions& options) {
     std::vector<Override> overrides;
     for (const auto& set : options.sets) overrides.push_back(parse_set(set));
+    return overrides;
+}
+
+std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
+    auto overrides = overrides_of(options);
     overrides.insert(overrides.end(), more.begin(), more.end());
     std::vector<Scene> scenes;
     for (const auto& name : options.presets) {

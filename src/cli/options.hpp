@@ -5,7 +5,9 @@
 
 #include <CLI/App.hpp>
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -22,7 +24,17 @@ struct RunCommandOptions : PresetOptions {
 };
 
 void add_preset_options(CLI::App& command, PresetOptions& options);
-void add_run_options(CLI::App& command, RunCommandOptions& options);
+/// `jobs` = what --jobs counts, for the help.
+void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
+
+/// "A<separator>B" as two whole numbers; nothing where it is not.
+std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator);
+
+/// --size WIDTHxHEIGHT as the key of a preset that it sets. Throws Error (exit 2).
+Override size_override(const std::string& key, const std::string& size);
+
+/// The values of --set.
+std::vector<Override> overrides_of(const PresetOptions& options);
 
 /// The scene of each preset, all of them read before the first one runs. `more` = overrides from other options.
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});

@@ -70,6 +70,17 @@ void ProgressReport::operator()(const Progress& progress) {
     }
 }
 
+void ProgressReport::note(const std::string& sentence) {
+    if (style_ == ProgressStyle::none) return;
+    clear();
+    if (style_ == ProgressStyle::json) {
+        fmt::print("{}\n", nlohmann::ordered_json{{"event", "note"}, {"preset", name_}, {"text", sentence}}.dump());
+        std::fflush(stdout);
+    } else {
+        fmt::print(stderr, "{}: {}\n", name_, sentence);
+    }
+}
+
 void ProgressReport::clear() {
     if (on_screen_) fmt::print(stderr, "\r\033[K");
     on_screen_ = false;

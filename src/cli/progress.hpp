@@ -19,6 +19,8 @@ public:
     ProgressReport(ProgressStyle style, std::string name, std::string unit);
 
     void operator()(const Progress& progress);
+    /// A sentence of its own.
+    void note(const std::string& sentence);
     void done(const RunResult& result);
     /// Takes the bar off the screen, before an error is printed.
     void clear();

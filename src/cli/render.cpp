@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <charconv>
 #include <memory>
 
 namespace doppel {
@@ -14,24 +13,9 @@ struct RenderOptions : RunCommandOptions {
     std::string frames, size, format, quality, gl = "osmesa";
 };
 
-/// "A<separator>B" as two whole numbers.
-std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
-    long first = 0, second = 0;
-    const char* const end = text.data() + text.size();
-    const auto [middle, fault] = std::from_chars(text.data(), end, first);
-    if (fault != std::errc() || middle == end || *middle != separator) return std::nullopt;
-    const auto [stop, second_fault] = std::from_chars(middle + 1, end, second);
-    if (second_fault != std::errc() || stop != end) return std::nullopt;
-    return std::pair{first, second};
-}
-
 std::vector<Override> overrides(const RenderOptions& options) {
     std::vector<Override> all;
-    if (!options.size.empty()) {
-        const auto size = two_numbers(options.size, 'x');
-        if (!size) throw bad_input("--size wants WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", options.size);
-        all.push_back({"video.size", fmt::format("[{}, {}]", size->first, size->second), "--size " + options.size});
-    }
+    if (!options.size.empty()) all.push_back(size_override("video.size", options.size));
     if (!options.format.empty())
         all.push_back({"video.format", fmt::format("\"{}\"", options.format), "--format " + options.format});
     if (!options.quality.empty() && options.quality != "standard") {
@@ -52,7 +36,7 @@ void add_render(CLI::App& app) {
         "  doppel render butterfly\n"
         "  doppel render calm --size 1280x720 --format png --frames 0:240\n"
         "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films");
-    add_run_options(command, *options);
+    add_run_options(command, *options, "Threads that encode; two a core where not given");
     command.add_option("--frames", options->frames, "Only the samples A to B-1; the same pixels as in the whole")
         ->type_name("A:B");
     command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")

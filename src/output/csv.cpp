@@ -45,6 +45,10 @@ void Csv::add_empty() {
     separate();
 }
 
+void Csv::add_or_empty(double value) {
+    std::isnan(value) ? add_empty() : add(value);
+}
+
 void Csv::end_row() {
     if (cell_ != columns_.size())
         throw std::logic_error(

@@ -22,6 +22,8 @@ public:
     /// In quotes where it holds a comma, a quote or the end of a line.
     void add(std::string_view text);
     void add_empty();
+    /// Empty where the value is not a number.
+    void add_or_empty(double value);
     /// Ends the row. The number of cells must be that of the columns; std::logic_error where it is not.
     void end_row();
     /// Writes what is buffered and closes the file.

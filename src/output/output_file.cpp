@@ -22,6 +22,10 @@ void OutputFile::write(std::string_view bytes) {
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) throw cannot_write(path_);
 }
 
+void OutputFile::flush() {
+    if (std::fflush(file_.get()) != 0) throw cannot_write(path_);
+}
+
 void OutputFile::close() {
     // the last bytes leave the buffer only here
     if (std::fclose(file_.release()) != 0) throw cannot_write(path_);

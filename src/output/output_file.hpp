@@ -15,6 +15,8 @@ public:
     explicit OutputFile(std::filesystem::path path);
 
     void write(std::string_view bytes);
+    /// What was written so far can be read by others.
+    void flush();
     /// Only what was closed is known to be written.
     void close();
 

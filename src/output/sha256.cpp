@@ -14,30 +14,55 @@ extern "C" {
 #include <system_error>
 
 namespace doppel {
+namespace {
 
 // Besides mp4.cpp this is the only file that knows libav: the hash comes with it.
-std::string sha256_of_file(const std::filesystem::path& path) {
+class Hash {
+public:
+    Hash() : sha_(av_sha_alloc()) {
+        if (!sha_) throw std::bad_alloc();
+        av_sha_init(sha_.get(), 256);
+    }
+
+    void add(const void* bytes, std::size_t count) {
+        av_sha_update(sha_.get(), static_cast<const std::uint8_t*>(bytes), count);
+    }
+
+    std::string digits() {
+        std::array<std::uint8_t, 32> digest;
+        av_sha_final(sha_.get(), digest.data());
+        return fmt::format("{:02x}", fmt::join(digest, ""));
+    }
+
+private:
     struct Free {
-        void operator()(std::FILE* file) const { std::fclose(file); }
         void operator()(AVSHA* sha) const { av_free(sha); }
+    };
+    std::unique_ptr<AVSHA, Free> sha_;
+};
+
+}  // namespace
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
     };
     const auto cannot_read = [&] {
         return io_failed("{}: cannot be read: {}", path.string(), std::generic_category().message(errno));
     };
-    const std::unique_ptr<std::FILE, Free> file(std::fopen(path.c_str(), "rb"));
+    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
     if (!file) throw cannot_read();
-    const std::unique_ptr<AVSHA, Free> sha(av_sha_alloc());
-    if (!sha) throw std::bad_alloc();
-
-    av_sha_init(sha.get(), 256);
+    Hash hash;
     std::array<std::uint8_t, std::size_t{1} << 16> block;
-    while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get()))
-        av_sha_update(sha.get(), block.data(), n);
+    while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) hash.add(block.data(), n);
     if (std::ferror(file.get())) throw cannot_read();
+    return hash.digits();
+}
 
-    std::array<std::uint8_t, 32> digest;
-    av_sha_final(sha.get(), digest.data());
-    return fmt::format("{:02x}", fmt::join(digest, ""));
+std::string sha256_of_text(std::string_view text) {
+    Hash hash;
+    hash.add(text.data(), text.size());
+    return hash.digits();
 }
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #include "picture/font.hpp"
 #include "scene/composer.hpp"
+#include "scene/wording.hpp"
 
 #include <fmt/format.h>
 
@@ -21,15 +22,6 @@ Box horizontal_line(float y, float left, float right, float width, Color color) 
 }
 
 constexpr float words_px = 21;  // size of the words above a strip, in a 1920×1080 picture
-
-/// 0.0123 → "1.2 × 10⁻²"
-std::string scientific(double value) {
-    if (!(value > 0)) return "0";
-    if (value >= 0.1 && value < 1000) return fmt::format("{:.2g}", value);
-    const auto digits = fmt::format("{:.1e}", value);
-    const auto e = digits.find('e');
-    return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));
-}
 
 }  // namespace
 

@@ -1,12 +1,10 @@
 #include "scene/manifest.hpp"
 
-#include "output/output_file.hpp"
-#include "output/sha256.hpp"
-#include "scene/version.hpp"
+#include "scene/manifest_json.hpp"
+#include "scene/resolved.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,98 +12,6 @@
 
 namespace doppel {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// A basic TOML string.
-std::string quoted(const std::string& text) {
-    return Json(text).dump();
-}
-
-std::string hex(const Color& color) {
-    const auto channel = [](float x) { return static_cast<int>(std::lround(x * 255)); };
-    return fmt::format("\"#{:02x}{:02x}{:02x}\"", channel(color.r), channel(color.g), channel(color.b));
-}
-
-/// A number where it is whole, "a/b" where it is not.
-std::string ratio(const Rational& value) {
-    return value.is_whole() ? value.text() : fmt::format("\"{}\"", value.text());
-}
-
-Json json_of(const std::string& toml) {
-    std::ostringstream text;
-    text << toml::json_formatter{toml::parse(toml)};
-    return Json::parse(text.str());
-}
-
-std::string numbers(const std::vector<Quad>& values) {
-    std::vector<std::string> texts;
-    for (const auto& value : values) texts.push_back(text_of(value));
-    return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
-std::string pair_text(const std::array<Quad, 2>& xy) {
-    return fmt::format("[{}, {}]", text_of(xy[0]), text_of(xy[1]));
-}
-
-std::string end_text(const EndSpec& end) {
-    const auto* name = std::get_if<std::string>(&end);
-    return name ? quoted(*name) : pair_text(std::get<std::array<Quad, 2>>(end));
-}
-
-std::string particle_toml(const char* side, const ParticleSpec& particle) {
-    return fmt::format("\n[[{}.particle]]\nname = {}\nmass_kg = {}\nposition_m = {}\nvelocity_m_per_s = {}\n", side,
-                       quoted(particle.name), text_of(particle.mass_kg), pair_text(particle.position_m),
-                       pair_text(particle.velocity_m_per_s));
-}
-
-std::string part_toml(const char* side, const char* what, const PartSpec& part) {
-    auto text = fmt::format("\n[[{}.{}]]\nkind = {}\n", side, what, quoted(part.kind));
-    const auto add = [&](std::string_view key, const std::string& value) {
-        text += fmt::format("{} = {}\n", key, value);
-    };
-    if (!part.name.empty()) add("name", quoted(part.name));
-    if (!part.particle.empty()) add("particle", quoted(part.particle));
-    if (part.from) add("from", end_text(*part.from));
-    if (part.to) add("to", end_text(*part.to));
-    if (part.position_m) add("position_m", pair_text(*part.position_m));
-    if (part.kind == "slot-line") add("direction", pair_text(part.direction));
-    if (part.length_m) add(part.kind == "slot-circle" ? "radius_m" : "length_m", text_of(*part.length_m));
-    if (part.kind == "spring") {
-        add("stiffness_N_per_m", text_of(part.stiffness_N_per_m));
-        add("damping_N_s_per_m", text_of(part.damping_N_s_per_m));
-    }
-    if (part.kind == "droplet") add("mass_kg", text_of(part.mass_kg));
-    if (part.constant) add("constant_m3_per_kg_s2", text_of(*part.constant));
-    return text;
-}
-
-std::string chain_toml(const SideSpec& side) {
-    return fmt::format("links = {}\nmass_kg = {}\nlength_m = {}\nangle_deg = {}\nomega_deg_per_s = {}\n", side.links(),
-                       numbers(side.mass_kg), numbers(side.length_m), numbers(side.angle_deg),
-                       numbers(side.omega_deg_per_s));
-}
-
-/// [a] or [b] with everything in it.
-std::string side_toml(const char* name, const SideSpec& side) {
-    constexpr const char* models[] = {"auto", "angles", "constraints", "mechanism"};
-    constexpr const char* precisions[] = {"double", "quad"};
-    constexpr const char* stabilise[] = {"none", "baumgarte", "projection"};
-    auto text = fmt::format("\n[{}]\n{}", name, side.particles.empty() ? chain_toml(side) : "");
-    text += fmt::format(
-        "gravity_m_per_s2 = {}\n"
-        "model = \"{}\"\nintegrator = \"{}\"\nprecision = \"{}\"\nstabilise = \"{}\"\n",
-        text_of(side.gravity_m_per_s2), models[static_cast<int>(side.model)], side.integrator,
-        precisions[static_cast<int>(side.precision)], stabilise[static_cast<int>(side.stabilise)]);
-    text += find_method(side.integrator)->adaptive ? fmt::format("tolerance = {}\n", text_of(side.allowed_error()))
-                                                   : fmt::format("step_s = {}\n", ratio(side.step()));
-    if (side.stabilise == Stabilise::baumgarte)
-        text += fmt::format("stabilise_rate_per_s = {}\n", text_of(side.stabilise_rate_per_s));
-    for (const auto& particle : side.particles) text += particle_toml(name, particle);
-    for (const auto& part : side.constraints) text += part_toml(name, "constraint", part);
-    for (const auto& part : side.forces) text += part_toml(name, "force", part);
-    return text;
-}
 
 Json side_json(const Side& side, const Effort& effort, double energy_error, double length_error) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
@@ -123,52 +29,13 @@ Json side_json(const Side& side, const Effort& effort, double energy_error, doub
     return json;
 }
 
-/// A file of the run, or every file of a folder.
-void add_files(Json& files, const std::string& name, const std::filesystem::path& path) {
-    if (!std::filesystem::is_directory(path)) {
-        files[name] = {{"bytes", std::filesystem::file_size(path)}, {"sha256", sha256_of_file(path)}};
-        return;
-    }
-    std::vector<std::filesystem::path> entries(std::filesystem::directory_iterator{path}, {});
-    std::sort(entries.begin(), entries.end());
-    for (const auto& entry : entries) add_files(files, name + "/" + entry.filename().string(), entry);
-}
-
 }  // namespace
 
-std::string resolved_toml(const Preset& preset) {
-    const auto& video = preset.video;
-    std::vector<std::string> panels;
-    if (video.pendulums) panels.emplace_back("\"pendulums\"");
-    if (video.distance) panels.emplace_back("\"distance\"");
-    if (video.energy) panels.emplace_back("\"energy\"");
-
-    auto text = fmt::format("title = {}\n\n[scene]\nkind = \"pair\"\nduration_s = {}\nsample_hz = {}\n",
-                            quoted(preset.title), ratio(preset.duration_s), ratio(preset.sample_hz));
-    text += side_toml("a", preset.a) + side_toml("b", preset.b);
-    text += fmt::format(
-        "\n[video]\nsize = [{}, {}]\nspeed = {}\nformat = \"{}\"\npreset = \"{}\"\ncrf = {}\ntheme = \"{}\"\n",
-        video.size.width, video.size.height, ratio(video.speed), video.format, video.preset, video.crf, video.theme);
-    text += fmt::format("trail_s = {}\npanels = [{}]\n", video.trail_s, fmt::join(panels, ", "));
-    if (video.fps) text += fmt::format("fps = {}\n", ratio(*video.fps));
-    if (video.side_colors)
-        text += fmt::format("side_colors = [{}, {}]\n", hex((*video.side_colors)[0]), hex((*video.side_colors)[1]));
-    const auto add_range = [&](const char* key, const std::optional<Range>& range) {
-        if (range) text += fmt::format("{} = [{}, {}]\n", key, range->low, range->high);
-    };
-    add_range("distance_range", video.distance_range);
-    add_range("energy_range", video.energy_range);
-    return text;
-}
-
 void write_manifest(const std::filesystem::path& path, const Scene& scene, const RunRecord& record) {
-    Json files = Json::object();
-    for (const auto& [name, where] : record.files) add_files(files, name, where);
-
     Json manifest = {
-        {"doppel", {{"version", version()}, {"revision", revision()}}},
+        {"doppel", program_json()},
         {"preset", scene.preset.name},
-        {"resolved_preset", json_of(resolved_toml(scene.preset))},
+        {"resolved_preset", json_of_toml(resolved_toml(scene.preset))},
         {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
         {"frames",
          {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", scene.samples_per_frame}}},
@@ -185,12 +52,10 @@ void write_manifest(const std::filesystem::path& path, const Scene& scene, const
             {"draw", record.draw_cpu_s},
             {"convert", record.write_cpu_s},
             {"encode_and_rest", record.encode_cpu_s}}}}},
-        {"files", files},
+        {"files", files_json(record.files)},
     };
     if (!record.failure.empty()) manifest["failed"] = record.failure;
-    OutputFile file(path);
-    file.write(manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    file.close();
+    write_json(path, manifest);
 }
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/manifest_json.hpp"
 #include "scene/scene.hpp"
 
 #include <filesystem>
@@ -7,9 +8,6 @@
 #include <vector>
 
 namespace doppel {
-
-/// The preset as it was understood, every key with its value: TOML that read_preset() reads back to the same scene.
-std::string resolved_toml(const Preset& preset);
 
 struct WorstErrors {
     double energy_a = 0, energy_b = 0;  // relative
@@ -27,8 +25,8 @@ struct RunRecord {
     WorstErrors worst;
     double largest_distance = 0;
     Effort effort_a, effort_b;
-    std::string failure;                                               // what ended the run, where something did
-    std::vector<std::pair<std::string, std::filesystem::path>> files;  // name, and where its bytes are now
+    std::string failure;  // what ended the run, where something did
+    RunFiles files;
 };
 
 /// Writes the manifest to `path`; hashes the files. Throws Error (exit 4).

@@ -117,12 +117,16 @@ struct PresetText {
     std::string text;
 };
 
-/// Finds a preset: a path (anything with a slash or ending in .toml), or a name in presets/ here or built into the
-/// program. Throws Error (exit 2) that names the nearest preset, or says what is in place of the file.
+/// Finds a preset: a path (anything with a slash or ending in .toml), or a name in presets/ or presets/figures/ here,
+/// or built into the program. Throws Error (exit 2) that names the nearest preset, or says what is in place of the
+/// file.
 PresetText find_preset(const std::string& name_or_path);
 
 /// All presets that are built in, by name.
 std::vector<PresetText> builtin_presets();
+
+/// Whether a preset is a figure (figure/preset.hpp) and not a film. Errors as read_preset()'s.
+bool is_figure(const PresetText& source);
 
 /// Reads and checks; unknown keys, wrong types and lengths, and values out of range are Errors (exit 2) with place,
 /// value found and what would be right.

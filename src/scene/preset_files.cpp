@@ -4,6 +4,7 @@
 #include "scene/preset.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,9 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view ending = ".toml";
 
-std::string path_of(std::string_view name) {
-    return fmt::format("presets/{}{}", name, ending);
-}
+/// Where presets lie: films, then figures.
+constexpr std::array<std::string_view, 2> folders{"presets/", "presets/figures/"};
 
 PresetText read_file(const fs::path& path) {
     std::error_code ignored;
@@ -39,8 +39,8 @@ PresetText read_file(const fs::path& path) {
 std::vector<PresetText> builtin_presets() {
     std::vector<PresetText> presets;
     for (const auto& file : scene_files()) {
-        const auto name = file.name.substr(0, file.name.size() - ending.size());
-        presets.push_back({std::string(name), path_of(name), std::string(file.contents)});
+        const fs::path path = fs::path("presets") / file.name;
+        presets.push_back({path.stem().string(), path.string(), std::string(file.contents)});
     }
     std::sort(presets.begin(), presets.end(), [](const auto& x, const auto& y) { return x.name < y.name; });
     return presets;
@@ -50,7 +50,9 @@ PresetText find_preset(const std::string& name_or_path) {
     if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(ending)) return read_file(name_or_path);
 
     std::error_code ignored;
-    if (fs::exists(path_of(name_or_path), ignored)) return read_file(path_of(name_or_path));
+    for (const auto folder : folders)
+        if (const auto path = fmt::format("{}{}{}", folder, name_or_path, ending); fs::exists(path, ignored))
+            return read_file(path);
     const auto presets = builtin_presets();
     std::vector<std::string_view> names;
     for (const auto& preset : presets) {

@@ -1,5 +1,6 @@
 #include "scene/run.hpp"
 
+#include "numeric/clock.hpp"
 #include "numeric/error.hpp"
 #include "output/mp4.hpp"
 #include "output/part_files.hpp"
@@ -14,19 +15,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 namespace doppel {
 namespace {
-
-double seconds_of(clockid_t clock) {
-    timespec now{};
-    clock_gettime(clock, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Adds the CPU time that this thread spends while it lives, s.
 class Stopwatch {

@@ -130,7 +130,11 @@ void read_part(TomlReader& entry, PartSpec& part, std::span<const std::string_vi
         demand("position_m", part.position_m || is("anchor", "slot-line"));
     }
     if (is("slot-line")) entry.read_pair("direction", part.direction);
-    if (is("rod", "spring")) read_positive("length_m", part.length_m);
+    if (is("rod")) read_positive("length_m", part.length_m);
+    if (is("spring") && entry.has("length_m")) {
+        entry.read_number("length_m", part.length_m.emplace());
+        if (*part.length_m < 0) throw entry.fault("length_m", "must be ≥ 0; it is {}", text_of(*part.length_m));
+    }
     if (is("slot-circle")) read_positive("radius_m", part.length_m);
     if (is("spring")) {
         entry.read_positive("stiffness_N_per_m", part.stiffness_N_per_m);
@@ -154,6 +158,12 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
     for (const auto* key : {"links", "mass_kg", "length_m", "angle_deg", "omega_deg_per_s"})
         if (table.has(key))
             throw table.fault(key, "describes a chain, and [[system.particle]] another system; give one");
+}
+
+void read_gravity(TomlReader& table, SideSpec& side) {
+    table.read_number("gravity_m_per_s2", side.gravity_m_per_s2);
+    if (side.gravity_m_per_s2 < 0 || (side.gravity_m_per_s2 == 0 && !side.is_mechanism()))
+        throw table.fault("gravity_m_per_s2", "must be > 0; it is {}", text_of(side.gravity_m_per_s2));
 }
 
 /// What the keys say together must be possible.
@@ -181,12 +191,16 @@ void check_choices(TomlReader& table, const SideSpec& side) {
 
 }  // namespace
 
+void read_release(TomlReader& table, SideSpec& side) {
+    read_chain(table, side);
+    read_gravity(table, side);
+    table.finish();
+}
+
 void read_side(TomlReader& table, SideSpec& side) {
     read_chain(table, side);
     read_mechanism(table, side);
-    table.read_number("gravity_m_per_s2", side.gravity_m_per_s2);
-    if (side.gravity_m_per_s2 < 0 || (side.gravity_m_per_s2 == 0 && !side.is_mechanism()))
-        throw table.fault("gravity_m_per_s2", "must be > 0; it is {}", text_of(side.gravity_m_per_s2));
+    read_gravity(table, side);
     read_enumerated(table, "model", side.model, model_names);
     read_method(table, side);
     read_enumerated(table, "precision", side.precision, precision_names);

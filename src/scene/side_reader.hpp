@@ -9,4 +9,7 @@ namespace doppel {
 /// (exit 2), as TomlReader does.
 void read_side(TomlReader& table, SideSpec& side);
 
+/// The same where only a chain and its release matter, and how it is stepped is not for the preset to say.
+void read_release(TomlReader& table, SideSpec& side);
+
 }  // namespace doppel

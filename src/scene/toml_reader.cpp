@@ -193,6 +193,16 @@ void TomlReader::read_positives(std::string_view key, std::span<double> into, st
         if (!(into[i] > 0)) throw bad_input("{}: {}[{}] must be > 0; it is {}", place(key), subject(key), i, into[i]);
 }
 
+void TomlReader::read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most) {
+    const auto* node = find(key);
+    if (!node) return;
+    const auto* array = node->as_array();
+    if (!array || array->empty() || array->size() > most)
+        throw fault(key, "must be an array of 1 to {} numbers; {}", most, found(*node));
+    into.resize(array->size());
+    read_positives(key, into, "each on its own");
+}
+
 void TomlReader::read_whole(std::string_view key, int& into, int least, int most) {
     const auto* node = find(key);
     if (!node) return;
@@ -200,6 +210,13 @@ void TomlReader::read_whole(std::string_view key, int& into, int least, int most
     const auto value = node->as_integer()->get();
     if (value < least || value > most) throw fault(key, "must be from {} to {}; it is {}", least, most, value);
     into = static_cast<int>(value);
+}
+
+void TomlReader::read_truth(std::string_view key, bool& into) {
+    const auto* node = find(key);
+    if (!node) return;
+    if (!node->is_boolean()) throw fault(key, "must be true or false; {}", found(*node));
+    into = node->as_boolean()->get();
 }
 
 void TomlReader::read_positive_ratio(std::string_view key, Rational& into) {

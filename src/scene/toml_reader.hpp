@@ -34,6 +34,7 @@ public:
     void read_text(std::string_view key, std::string& into);
     void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices);
     void read_whole(std::string_view key, int& into, int least, int most);
+    void read_truth(std::string_view key, bool& into);
     /// A number, or "a/b" in quotes; > 0.
     void read_positive_ratio(std::string_view key, Rational& into);
     void read_number(std::string_view key, double& into);  // finite
@@ -46,6 +47,8 @@ public:
     /// One number for all, or an array with one each.
     void read_numbers(std::string_view key, std::span<Quad> into, std::string_view one_each);
     void read_positives(std::string_view key, std::span<Quad> into, std::string_view one_each);
+    /// An array of 1 to `most` numbers > 0.
+    void read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most);
     std::optional<std::vector<std::string>> read_texts(std::string_view key);
     const toml::table* read_table(std::string_view key);
     /// The tables of [[key]]; none where it is absent.

@@ -1,5 +1,7 @@
 #include "scene/wording.hpp"
 
+#include "picture/axis.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -156,6 +158,14 @@ std::string scene_words(const Scene& scene) {
     return fmt::format("two {}{}{}{}", system_words(scene.preset.a),
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));
+}
+
+std::string scientific(double value) {
+    if (!(value > 0)) return "0";
+    if (value >= 0.1 && value < 1000) return fmt::format("{:.2g}", value);
+    const auto digits = fmt::format("{:.1e}", value);
+    const auto e = digits.find('e');
+    return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));
 }
 
 }  // namespace doppel

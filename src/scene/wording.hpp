@@ -23,4 +23,7 @@ std::string pace_words(const Side& side);
 /// 30000 → "30 000" with thin spaces.
 std::string grouped(long number);
 
+/// 0.0123 → "1.2 × 10⁻²"
+std::string scientific(double value);
+
 }  // namespace doppel

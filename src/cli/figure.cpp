@@ -1,0 +1,129 @@
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/options.hpp"
+#include "cli/progress.hpp"
+#include "figure/run.hpp"
+#include "numeric/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+namespace doppel {
+namespace {
+
+struct FigureCommandOptions : RunCommandOptions {
+    std::string size, shard;
+    double scale = 0;
+    bool merge = false;
+};
+
+std::vector<Override> overrides(const FigureCommandOptions& options) {
+    auto all = overrides_of(options);
+    if (!options.size.empty()) all.push_back(size_override("chart.size", options.size));
+    if (options.scale != 0)
+        all.push_back({"chart.scale", fmt::format("{}", options.scale), fmt::format("--scale {}", options.scale)});
+    return all;
+}
+
+/// "all" is every figure that is built in.
+std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
+    std::vector<PresetText> chosen;
+    for (const auto& name : options.presets) {
+        if (name != "all") {
+            chosen.push_back(find_preset(name));
+            continue;
+        }
+        for (const auto& preset : builtin_presets())
+            if (is_figure(preset)) chosen.push_back(preset);
+    }
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (chosen[i].name == chosen[j].name)
+                throw bad_input("{} and {} would both be written to {}/", chosen[j].path, chosen[i].path,
+                                chosen[i].name);
+    return chosen;
+}
+
+std::optional<Shard> shard_of(const FigureCommandOptions& options) {
+    if (options.shard.empty()) return std::nullopt;
+    const auto parts = two_numbers(options.shard, '/');
+    constexpr long most = 100'000;
+    if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > most)
+        throw bad_input("--shard wants I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", most, options.shard);
+    if (options.merge) throw bad_input("--shard makes a part and --merge joins them; give one");
+    return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
+}
+
+/// Progress of several figures, of which the first to be computed and the last to be drawn may overlap.
+class Reports {
+public:
+    Reports(const std::vector<FigurePreset>& figures, ProgressStyle style)
+        : figures_(figures), style_(style), reports_(figures.size()) {}
+
+    template <class Tell>
+    void operator()(std::size_t figure, Tell&& tell) {
+        const std::lock_guard hold(mutex_);
+        auto& report = reports_[figure];
+        if (!report) report.emplace(style_, figures_[figure].name, figures_[figure].work->unit());
+        tell(*report);
+    }
+
+    void clear() {
+        for (auto& report : reports_)
+            if (report) report->clear();
+    }
+
+private:
+    const std::vector<FigurePreset>& figures_;
+    ProgressStyle style_;
+    std::mutex mutex_;
+    std::vector<std::optional<ProgressReport>> reports_;
+};
+
+void make_figures(const FigureCommandOptions& options) {
+    std::vector<FigurePreset> figures;
+    for (const auto& preset : chosen_presets(options)) figures.push_back(read_figure(preset, overrides(options)));
+    Reports reports(figures, progress_style(options.progress));
+    const FigureReport report{
+        [&](std::size_t k, const FigureProgress& progress) {
+            reports(k, [&](auto& r) { r({std::lround(progress.done), std::lround(progress.total)}); });
+        },
+        [&](std::size_t k, const std::string& sentence) { reports(k, [&](auto& r) { r.note(sentence); }); },
+        [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
+    try {
+        run_figures(figures, {options.out, options.jobs, shard_of(options), options.merge}, watch_interrupts(), report);
+    } catch (...) {
+        reports.clear();
+        throw;
+    }
+}
+
+}  // namespace
+
+void add_figure(CLI::App& app) {
+    auto options = std::make_shared<FigureCommandOptions>();
+    auto& command =
+        *app.add_subcommand("figure", "Draws figure presets: PNG, CSV and manifest; \"all\" draws every one");
+    command.footer(
+        "Examples:\n"
+        "  doppel figure fig2-right --set sweep.exponent=true\n"
+        "  doppel figure all --out figures --scale 2\n"
+        "  doppel figure flip-map --shard 3/8        # a part, on one of eight machines\n"
+        "  doppel figure flip-map --merge            # all parts in DIR/flip-map/ together\n"
+        "A long figure that was interrupted goes on where it was when the same command is given again.");
+    add_run_options(command, *options, "Threads that compute; one a core where not given. The numbers stay the same");
+    command.add_option("--size", options->size, "Size of the layout, px; the preset's where not given")
+        ->type_name("WxH");
+    command.add_option("--scale", options->scale, "Pixels of the picture to one of the layout: 2 for print")
+        ->type_name("N")
+        ->check(CLI::Range(0.25, 8.0));
+    command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
+    command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
+    command.callback([options] { make_figures(*options); });
+}
+
+}  // namespace doppel

@@ -1,0 +1,322 @@
+#include "figure/claims.hpp"
+
+#include "analysis/exponent.hpp"
+#include "analysis/twins.hpp"
+#include "numeric/clock.hpp"
+#include "numeric/dual.hpp"
+#include "scene/assemble.hpp"
+#include "scene/scene.hpp"
+#include "scene/wording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+// The study's releases, in its units.
+
+SideSpec side(std::vector<Quad> angle_deg, ModelChoice model = ModelChoice::angles) {
+    SideSpec spec;
+    spec.mass_kg.assign(angle_deg.size(), 1);
+    spec.length_m.assign(angle_deg.size(), 1);
+    spec.omega_deg_per_s.assign(angle_deg.size(), 0);
+    spec.angle_deg = std::move(angle_deg);
+    spec.model = model;
+    return spec;
+}
+
+/// The same by Taylor series in quad.
+SideSpec exactly(SideSpec spec) {
+    spec.integrator = "taylor";
+    spec.precision = Precision::in_quad;
+    spec.tolerance = parse_quad("1e-26");
+    return spec;
+}
+
+/// The distances of a pair at samples 0 … count.
+std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, const std::atomic<bool>& stop) {
+    const auto scene = make_scene({.name = "audit", .duration_s = *reduced(count, 120), .a = a, .b = b});
+    PairRun run(scene);
+    std::vector<double> all;
+    for (long n = 0; n <= count; ++n) all.push_back(run.next(stop).distance);
+    return all;
+}
+
+/// The study's averages over 25 s, of as many twins at once as share registers.
+std::vector<double> averages(const std::vector<std::pair<SideSpec, SideSpec>>& sides, const TwinSide& method,
+                             const std::atomic<bool>& stop) {
+    std::vector<Twins> twins;
+    for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});
+    std::vector<double> found(twins.size());
+    average_log_ratios(twins, {.a = method, .b = method}, found, stop);
+    return found;
+}
+
+/// Twins 0.003° apart in the upper link.
+std::pair<SideSpec, SideSpec> angle_twins(int theta1_deg, int theta2_deg = 0) {
+    return {side({theta1_deg, theta2_deg}), side({theta1_deg + parse_quad("0.003"), theta2_deg})};
+}
+
+/// Twins of mass ratio `ratio` and 0.01 more.
+std::pair<SideSpec, SideSpec> mass_twins(int theta1_deg, int theta2_deg, double ratio) {
+    auto twins = std::pair{side({theta1_deg, theta2_deg}), side({theta1_deg, theta2_deg})};
+    twins.first.mass_kg[0] = ratio;
+    twins.second.mass_kg[0] = ratio + 0.01;
+    return twins;
+}
+
+double greatest(const std::vector<double>& values) {
+    return *std::max_element(values.begin(), values.end());
+}
+
+constexpr auto always_misprinted = [](const TrialNumbers&) { return Verdict::misprinted; };
+constexpr auto judge(bool holds) {
+    return holds ? Verdict::holds : Verdict::fails;
+}
+
+const Claim equations{
+    "equations", "The accelerations in angles are as printed (eqs. 5, 6)",
+    [](const std::atomic<bool>& stop) {
+        const auto start = side({120, 30}), rods = side({120, 30}, ModelChoice::constraints);
+        return TrialNumbers{greatest(distances(exactly(start), exactly(rods), 240, stop))};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format(
+            "cross terms ω₁ω₂ cancel and a denominator has the wrong unit in print; the program's equations "
+            "agree with particles on rods within {} after 2 s in quad",
+            scientific(n[0]));
+    },
+    always_misprinted};
+
+const Claim order_of_update{
+    "order_of_update", "Each step updates velocities first, then positions (eq. 7)",
+    [](const std::atomic<bool>& stop) {
+        return TrialNumbers{averages({angle_twins(20)}, {.method = "euler"}, stop)[0],
+                            averages({angle_twins(20)}, {.method = "semi-implicit-euler"}, stop)[0]};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format(
+            "the published curve has 2.205 at 20°: explicit Euler, positions by the old velocities, gives "
+            "{:.4f}; velocities first gives {:.4f}",
+            n[0], n[1]);
+    },
+    [](const TrialNumbers& n) { return judge(std::abs(n[1] - 2.205) < std::abs(n[0] - 2.205)); }};
+
+const Claim constraint_row{
+    "constraint_row", "The constraint and the first row of its Jacobian are as printed (eqs. 9, 10)",
+    [](const std::atomic<bool>&) {
+        // ½ (x² + y² − r²) by dual numbers at (3, 4)
+        using Variable = Dual<double, 4>;
+        const Variable x = Variable::variable(3, 0), y = Variable::variable(4, 1);
+        const Variable c = Variable(0.5) * (x * x + y * y - Variable(25.0));
+        return TrialNumbers{c.value, c.tangent[0], c.tangent[1], c.tangent[2], c.tangent[3]};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format(
+            "it takes brackets, ½(x² + y² − r²); its row at (3, 4) is ({:g}, {:g}, {:g}, {:g}): (x₁, y₁, 0, 0)", n[1],
+            n[2], n[3], n[4]);
+    },
+    always_misprinted};
+
+const Claim positive_means_chaos{
+    "positive_means_chaos", "λ > 0, hence chaos",
+    [](const std::atomic<bool>& stop) {
+        const auto average = averages({angle_twins(0), angle_twins(20)}, {}, stop);
+        const auto exponent = [&](int theta1_deg) {
+            return largest_exponent(chain_of(side({theta1_deg, 0})).cast<double>(), {}, stop);
+        };
+        const auto regular = exponent(20), chaotic = exponent(120);
+        return TrialNumbers{average[0],          average[1],    regular.value,
+                            regular.uncertainty, chaotic.value, chaotic.uncertainty};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format(
+            "the average of ln(d/d₀) is {:.2f} at 0° and {:.2f} at 20°, where the exponent is {:.3f} ± {:.3f} 1/s, "
+            "none; at 120° it is {:.2f} ± {:.2f} 1/s",
+            n[0], n[1], n[2], n[3], n[4], n[5]);
+    },
+    [](const TrialNumbers& n) {
+        return judge(!(n[1] > 0 && is_regular({n[2], n[3]})));
+    }};
+
+const Claim course_over_time{
+    "course_over_time", "The twins of figure 2 left part until ln(d/d₀) saturates near 11.5",
+    [](const std::atomic<bool>& stop) {
+        const auto d = distances(side({90, 90}), side({parse_quad("90.003"), 90}), 3200, stop);
+        double sum = 0;
+        for (std::size_t n = 2001; n < d.size(); ++n) sum += std::log(d[n] / d[0]);
+        return TrialNumbers{std::log(d[501] / d[0]), sum / static_cast<double>(d.size() - 2001)};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format("{:.3f} at sample 501, and {:.1f} on average from sample 2001 on", n[0], n[1]);
+    },
+    [](const TrialNumbers& n) { return judge(std::abs(n[1] - 11.5) < 0.6); }};
+
+const Claim course_over_angle{
+    "course_over_angle", "Figure 2 right rises to 2.8 by 40° and 4 by 80°, falls to 3–4 near 108°, then stays at 8–10",
+    [](const std::atomic<bool>& stop) {
+        std::vector<std::pair<SideSpec, SideSpec>> twins{angle_twins(40), angle_twins(80), angle_twins(108)};
+        for (int angle = 115; angle < 180; angle += 5) twins.push_back(angle_twins(angle));
+        auto found = averages(twins, {}, stop);
+        double sum = 0;
+        for (std::size_t i = 3; i < found.size(); ++i) sum += found[i];
+        return TrialNumbers{found[0], found[1], found[2], sum / static_cast<double>(found.size() - 3)};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format("{:.2f} at 40°, {:.1f} at 80°, {:.1f} at 108°, {:.1f} on average from 115° on", n[0], n[1],
+                           n[2], n[3]);
+    },
+    [](const TrialNumbers& n) {
+        return judge(std::abs(n[0] - 2.9) < 0.2 && std::abs(n[1] - 4.3) < 1 && n[2] < n[3] - 3 && n[3] > 8 &&
+                     n[3] < 10);
+    }};
+
+const Claim figure3_axis{
+    "figure3_axis", "Figures 3 left and 5 left share their scale",
+    [](const std::atomic<bool>& stop) {
+        const auto found = averages({mass_twins(130, 0, 1), mass_twins(150, 0, 1), mass_twins(170, 0, 1)}, {}, stop);
+        return TrialNumbers{(found[0] + found[1] + found[2]) / 3};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format("{:.1f} in ln, {:.1f} in log₁₀, beyond 130°: figure 3 left was printed in log₁₀", n[0],
+                           n[0] / std::log(10.0));
+    },
+    always_misprinted};
+
+const Claim figure3_release{
+    "figure3_release", "Figures 3 and 5 right are released at θ₂ = 0",
+    [](const std::atomic<bool>& stop) {
+        const auto found = averages({mass_twins(90, 0, 0.5), mass_twins(90, 90, 0.5)}, {}, stop);
+        return TrialNumbers{found[0], found[1]};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format(
+            "they come out with θ₂ = 90°; at mass ratio 0.5 the average is {:.1f} there and {:.1f} with θ₂ = 0", n[1],
+            n[0]);
+    },
+    always_misprinted};
+
+const Claim figure6_release{
+    "figure6_release", "The lower curve of figure 6 is released at 30°",
+    [](const std::atomic<bool>& stop) {
+        const auto parted = [&](int angle) {
+            return greatest(distances(side({angle, 0}), side({angle, 0}, ModelChoice::constraints), 4500, stop));
+        };
+        return TrialNumbers{parted(30), parted(45)};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format("its greatest distance, 0.633, is that of 45° ({:.3f}); 30° gives {:.3f}", n[1], n[0]);
+    },
+    [](const TrialNumbers& n) { return std::abs(n[0] - 0.633) < 0.01 ? Verdict::holds : Verdict::misprinted; }};
+
+const Claim floating_point{
+    "floating_point", "The two formulations part because of floating point and π",
+    [](const std::atomic<bool>& stop) {
+        const auto parted = [&](const Rational& step) {
+            auto a = side({50, 0}), b = side({50, 0}, ModelChoice::constraints);
+            a.step_s = b.step_s = step;
+            return greatest(distances(a, b, 4500, stop));
+        };
+        const auto a = side({50, 0}), b = side({50, 0}, ModelChoice::constraints);
+        return TrialNumbers{parted({1, 30000}), parted({1, 120000}),
+                            greatest(distances(exactly(a), exactly(b), 600, stop))};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format(
+            "a quarter of the step leaves a quarter of the distance, {:.3f} → {:.3f}: Euler's truncation; by Taylor "
+            "series in quad they stay within {} for 5 s",
+            n[0], n[1], scientific(n[2]));
+    },
+    [](const TrialNumbers& n) { return judge(n[1] > n[0] / 2); }};
+
+const Claim energy_gain{
+    "energy", "The energy rises until the simulation breaks down",
+    [](const std::atomic<bool>& stop) {
+        const auto gain = [&](const SideSpec& spec) {
+            const auto scene = make_scene({.name = "audit", .duration_s = {75, 1}, .a = spec, .b = spec});
+            SideRun run(scene, scene.a, 'a');
+            Observation seen;
+            for (long n = 0; n <= scene.samples; ++n) seen = run.next(stop);
+            return seen.energy_change;
+        };
+        auto taylor = side({90, 90});
+        taylor.integrator = "taylor";
+        return TrialNumbers{gain(side({90, 90})), gain(taylor)};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format("in 75 s at 90°/90° Euler gains {} J of 58.8; Taylor series, {} J: the method's doing",
+                           scientific(n[0]), scientific(std::abs(n[1])));
+    },
+    [](const TrialNumbers& n) { return judge(n[0] > 0); }};
+
+/// A side on the general mechanism, with a droplet or without.
+SideSpec with_droplet(SideSpec spec, bool droplet) {
+    spec.model = ModelChoice::mechanism;
+    if (droplet)
+        spec.forces.push_back({.name = {},
+                               .kind = "droplet",
+                               .particle = {},
+                               .position_m = std::array<Quad, 2>{1609, 0},
+                               .mass_kg = parse_quad("0.000034"),
+                               .constant = parse_quad("6.674e-11")});
+    return spec;
+}
+
+const Claim raindrop{
+    "droplet", "A raindrop a mile away changes the course of the pendulum within a minute or so",
+    [](const std::atomic<bool>& stop) {
+        constexpr long samples = 9000;
+        const auto parted = [&](int angle) {
+            const auto start = exactly(side({angle, angle}));
+            return distances(with_droplet(start, true), with_droplet(start, false), samples, stop);
+        };
+        const auto calm = parted(79), wild = parted(90);
+        const auto seen = std::find_if(wild.begin(), wild.end(), [](double d) { return d > 1; });
+        return TrialNumbers{greatest(calm), greatest(wild),
+                            seen == wild.end() ? 0 : static_cast<double>(seen - wild.begin()) / 120};
+    },
+    [](const TrialNumbers& n) {
+        const auto when =
+            n[2] > 0 ? fmt::format("has parted them by {:.0f} s", n[2]) : std::string("has not parted them");
+        return fmt::format(
+            "in quad, after 75 s: 90°/90° {}; 79°/79° within {}. The study's run felt a force 4·10⁷ times too great; "
+            "double feels none at all",
+            when, scientific(n[0]));
+    },
+    [](const TrialNumbers& n) { return judge(n[2] > 0); }};
+
+const Claim three_links{
+    "three_links", "Figure 8 takes over an hour and a half, and more than three links are out of reach",
+    [](const std::atomic<bool>& stop) {
+        std::vector<std::pair<SideSpec, SideSpec>> twins;
+        for (std::size_t i = 0; i < twins_block() / 2; ++i) {
+            const int angle = static_cast<int>(20 * i);
+            twins.emplace_back(side({angle, 0, 0}), side({angle + parse_quad("0.003"), 0, 0}));
+        }
+        const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+        averages(twins, {.model = EnsembleModel::constraints}, stop);
+        const double spent = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+        constexpr double all = 181;
+        const auto chain = chain_of(side(std::vector<Quad>(16, 90))).cast<double>();
+        return TrialNumbers{spent * all / static_cast<double>(twins.size()),
+                            largest_exponent(chain, {.duration_s = 50, .transient_s = 5}, stop).value};
+    },
+    [](const TrialNumbers& n) {
+        return fmt::format(
+            "{:.2f} s on one core of this machine; the exponent of 16 links released level is {:.1f} 1/s", n[0], n[1]);
+    },
+    [](const TrialNumbers& n) { return judge(n[0] > 5400); }};
+
+}  // namespace
+
+std::span<const Claim> claims() {
+    static const std::array all{equations,        order_of_update,   constraint_row, positive_means_chaos,
+                                course_over_time, course_over_angle, figure3_axis,   figure3_release,
+                                figure6_release,  floating_point,    energy_gain,    raindrop,
+                                three_links};
+    return all;
+}
+
+}  // namespace doppel

@@ -1,0 +1,169 @@
+#include "figure/computation.hpp"
+
+#include "numeric/clock.hpp"
+#include "scene/wording.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+constexpr double record_after_s = 2, flush_every_s = 0.5;
+constexpr std::size_t many_groups = 200, groups_ahead = 16;
+
+double now() {
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+std::string duration_words(double seconds) {
+    return seconds < 100 ? fmt::format("{:.2g} s", seconds) : fmt::format("{:.0f} min", std::ceil(seconds / 60));
+}
+
+/// With two digits: what is told by measuring knows no more.
+long rounded(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))) - 1);
+    return std::lround(unit < 1 ? value : std::round(value / unit) * unit);
+}
+
+}  // namespace
+
+Computation::Computation(const FigurePreset& figure, const PartHeader& header, std::filesystem::path record,
+                         int threads, ComputationReport report)
+    : figure_(figure),
+      header_(header),
+      record_(std::move(record)),
+      threads_(threads),
+      report_(std::move(report)),
+      known_(header.trials) {
+    for (std::size_t trial = header_.first(); trial < header_.last(); ++trial)
+        total_units_ += figure_.work->units(trial);
+    take_record();
+    find_groups();
+}
+
+void Computation::take_record() {
+    if (!std::filesystem::exists(record_)) return;
+    auto part = read_part_file(record_);
+    if (part.header != header_) {
+        report_.note(fmt::format("{} belongs to another preset or version; starting anew", record_.string()));
+        return;
+    }
+    known_ = std::move(part.trials);
+    for (std::size_t trial = 0; trial < known_.size(); ++trial)
+        if (!known_[trial].empty()) done_units_ += figure_.work->units(trial);
+    report_.note(fmt::format("goes on from {}: {:.0f} % is done", record_.string(), 100 * done_units_ / total_units_));
+}
+
+/// Runs of trials that are not known, cut to what is best computed at once. Where they are many, some from all over the
+/// work come first: they tell what the rest will take.
+void Computation::find_groups() {
+    const std::size_t most = figure_.work->together();
+    for (std::size_t trial = header_.first(); trial < header_.last(); ++trial) {
+        if (!known_[trial].empty()) continue;
+        if (!groups_.empty() && groups_.back().second == trial && trial - groups_.back().first < most)
+            ++groups_.back().second;
+        else
+            groups_.emplace_back(trial, trial + 1);
+    }
+    if (groups_.size() < many_groups) return;
+    for (std::size_t i = 0; i < groups_ahead; ++i) {
+        const auto from =
+            groups_.begin() + static_cast<std::ptrdiff_t>((2 * i + 1) * groups_.size() / (2 * groups_ahead + 1));
+        std::rotate(groups_.begin() + static_cast<std::ptrdiff_t>(i), from, from + 1);
+    }
+}
+
+bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
+    try {
+        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        {
+            const std::lock_guard hold(mutex_);
+            if (start_s_ == 0) start_s_ = flushed_s_ = now();
+        }
+        const auto [first, last] = groups_[group];
+        const double cpu_start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+        std::vector<TrialNumbers> numbers(last - first);
+        figure_.work->compute(first, numbers, stop);
+        return keep(groups_[group], std::move(numbers), seconds_of(CLOCK_THREAD_CPUTIME_ID) - cpu_start);
+    } catch (const Error& fault) {
+        throw with_record(fault);
+    }
+}
+
+Error Computation::with_record(const Error& fault) {
+    const std::lock_guard hold(mutex_);
+    if (!writer_) return fault;
+    writer_->flush();
+    return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command goes on from there",
+                                      fault.what(), 100 * done_units_ / total_units_, record_.string())};
+}
+
+bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
+    const std::lock_guard hold(mutex_);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        known_[group.first + i] = std::move(numbers[i]);
+        const double units = figure_.work->units(group.first + i);
+        computed_units_ += units;
+        done_units_ += units;
+    }
+    cpu_s_ += cpu_s;
+    ++groups_done_;
+    const double time = now();
+    const bool pays = time - start_s_ > record_after_s && groups_done_ < groups_.size();
+    if (!writer_ && pays && !record_.empty()) {
+        writer_.emplace(record_, header_, known_);
+    } else if (writer_) {
+        for (std::size_t trial = group.first; trial < group.second; ++trial) writer_->add(trial, known_[trial]);
+        if (time - flushed_s_ > flush_every_s) {
+            writer_->flush();
+            flushed_s_ = time;
+        }
+    }
+    if (groups_done_ == groups_ahead && groups_.size() >= many_groups) tell_estimate(time);
+    report_.progress({done_units_, total_units_});
+    return groups_done_ == groups_.size();
+}
+
+void Computation::tell_estimate(double time) {
+    const double rate = computed_units_ / (time - start_s_), left = total_units_ - done_units_;
+    report_.note(fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
+                             figure_.work->unit(), grouped(rounded(rate)), threads_, duration_words(left / rate)));
+}
+
+ComputationEstimate estimated_computation(const FigurePreset& figure, int threads) {
+    constexpr double allowed_s = 1;
+    const auto& work = *figure.work;
+    const std::size_t trials = work.trials(), together = work.together();
+    double total = 0, done = 0;
+    for (std::size_t trial = 0; trial < trials; ++trial) total += work.units(trial);
+    const double start = now();
+    std::atomic<bool> stop = false;
+    const std::jthread watch([&](const std::stop_token& quit) {
+        while (!quit.stop_requested() && now() - start < allowed_s)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        stop = true;
+    });
+    // from all over the work, for trials differ: steps of the golden section meet no pattern
+    constexpr double golden = 0.6180339887498949;
+    const std::size_t groups = (trials + together - 1) / together;
+    try {
+        double place = 0.5;
+        for (std::size_t i = 0; i < groups && !stop; ++i, place += golden - std::floor(place + golden)) {
+            const auto first =
+                static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(groups)) * together;
+            std::vector<TrialNumbers> numbers(std::min(together, trials - first));
+            work.compute(first, numbers, stop);
+            for (std::size_t k = 0; k < numbers.size(); ++k) done += work.units(first + k);
+        }
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::interrupted) throw;
+    }
+    const double cpu_s = (now() - start) * (done > 0 ? total / done : static_cast<double>(groups));
+    const double shared = std::min(static_cast<double>(threads), static_cast<double>(groups));
+    return {cpu_s / shared, done == 0};
+}
+
+}  // namespace doppel

@@ -1,0 +1,213 @@
+#include "figure/kinds.hpp"
+#include "integrate/methods.hpp"
+#include "scene/resolved.hpp"
+#include "scene/scene.hpp"
+#include "scene/wording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace doppel {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// One of the ladders: the methods of both sides, and the precision.
+struct Ladder {
+    std::string method_a, method_b;
+    Precision precision;
+    std::size_t rungs;
+
+    std::string name() const { return method_a == method_b ? method_a : method_a + "/" + method_b; }
+    bool adaptive() const { return find_method(method_a)->adaptive; }
+};
+
+/// How far the two sides of a pair part, over finer and finer steps: what is left of truncation, and what of rounding.
+class Convergence final : public FigureWork {
+public:
+    explicit Convergence(FigureReader& reader) : pair_(reader.pair()) {
+        auto table = reader.table("convergence");
+        table.read_whole("halvings", halvings_, 1, 20);
+        table.read_whole("quad_halvings", quad_halvings_, 1, 20);
+        table.read_whole("decades", decades_, 1, 14);
+        table.read_whole("quad_decades", quad_decades_, 1, 29);
+        if (table.has("mark_step_s")) table.read_positive_ratio("mark_step_s", mark_step_.emplace());
+        if (const auto names = table.read_texts("methods")) methods_ = *names;
+        for (const auto precision : {Precision::in_double, Precision::in_quad})
+            for (const auto& name : methods_) add_ladder(table, name, precision);
+        table.finish();
+        make_scene(pair_of(0));  // faults are told at once
+    }
+
+    std::size_t trials() const override { return ladders_.back().first + ladders_.back().second.rungs; }
+
+    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
+        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = part(first + i, stop);
+    }
+
+    std::vector<std::string> columns() const override { return {"method", "precision", "step_s", "distance", "steps"}; }
+
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        for (const auto& [begin, ladder] : ladders_)
+            for (std::size_t rung = 0; rung < ladder.rungs; ++rung) {
+                const auto& trial = numbers[begin + rung];
+                table.add(ladder.name());
+                table.add(ladder.precision == Precision::in_double ? "double" : "quad");
+                table.add_or_empty(trial[0]);
+                table.add_or_empty(trial[1]);
+                table.add(static_cast<long>(trial[2]));
+                table.end_row();
+            }
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        Plot plot;
+        plot.x = {.label = "step, s (the mean, where a tolerance chooses it)", .logarithmic = true};
+        plot.y = {.label = fmt::format("greatest distance within {} s", pair_.duration_s.value()), .logarithmic = true};
+        for (const auto& [begin, ladder] : ladders_) {
+            const bool in_double = ladder.precision == Precision::in_double;
+            Curve curve{
+                .label = in_double ? "" : ladder.name(),
+                .mark = Mark::both,
+                .hue = static_cast<int>(std::find(methods_.begin(), methods_.end(), ladder.name()) - methods_.begin()),
+                .dashed = in_double};
+            for (std::size_t rung = 0; rung < ladder.rungs; ++rung) {
+                curve.x.push_back(numbers[begin + rung][0]);
+                curve.y.push_back(numbers[begin + rung][1]);
+            }
+            plot.curves.push_back(std::move(curve));
+        }
+        if (mark_step_)
+            plot.rules.push_back({Rule::Way::vertical, mark_step_->value(), fmt::format("{} s", mark_step_->text())});
+        figure.panels.push_back(std::move(plot));
+        figure.captions.push_back(words(numbers));
+    }
+
+    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
+        std::vector<Finding> all;
+        std::array<double, 2> floors{none, none};
+        for (const auto& [begin, ladder] : ladders_) {
+            const bool in_double = ladder.precision == Precision::in_double;
+            for (std::size_t rung = 0; rung < ladder.rungs; ++rung)
+                floors[in_double ? 0 : 1] = std::fmin(floors[in_double ? 0 : 1], numbers[begin + rung][1]);
+            if (!in_double) all.push_back({"slope_" + ladder.name(), slope(numbers, begin, ladder)});
+        }
+        all.push_back({"least_distance_in_double", floors[0]});
+        all.push_back({"least_distance_in_quad", floors[1]});
+        return all;
+    }
+
+    std::string resolved() const override {
+        std::vector<std::string> quoted;
+        for (const auto& method : methods_) quoted.push_back(toml_text(method));
+        const auto mark = mark_step_ ? fmt::format("mark_step_s = \"{}\"\n", mark_step_->text()) : "";
+        return resolved_pair(pair_) +
+               fmt::format(
+                   "\n[convergence]\nmethods = [{}]\nhalvings = {}\nquad_halvings = {}\n"
+                   "decades = {}\nquad_decades = {}\n",
+                   fmt::join(quoted, ", "), halvings_, quad_halvings_, decades_, quad_decades_) +
+               mark;
+    }
+
+private:
+    /// The order that the distances tell: with steps between the two finest, with tolerances over the middle third.
+    static double slope(std::span<const TrialNumbers> numbers, std::size_t begin, const Ladder& ladder) {
+        const std::size_t fine_rung = ladder.adaptive() ? 2 * ladder.rungs / 3 : ladder.rungs - 1;
+        const auto& fine = numbers[begin + fine_rung];
+        const auto& coarse = numbers[begin + (ladder.adaptive() ? ladder.rungs / 3 : ladder.rungs - 2)];
+        return std::log(coarse[1] / fine[1]) / std::log(coarse[0] / fine[0]);
+    }
+
+    /// What the ladders come to, in words.
+    std::string words(std::span<const TrialNumbers> numbers) const {
+        std::string slopes;
+        double least_double = none, least_quad = none;
+        for (const auto& finding : findings(numbers)) {
+            const double value = std::get<double>(finding.value);
+            if (finding.key == "least_distance_in_double") least_double = value;
+            if (finding.key == "least_distance_in_quad") least_quad = value;
+            if (const std::string_view start = "slope_"; finding.key.starts_with(start) && value < steepest)
+                slopes +=
+                    fmt::format("{}{} {:.2f}", slopes.empty() ? "" : ", ", finding.key.substr(start.size()), value);
+        }
+        return fmt::format(
+            "The distance falls by the power of each method's order (slopes in quad: {}) until rounding stops it, at "
+            "{} in double and {} in quad.",
+            slopes, scientific(least_double), scientific(least_quad));
+    }
+
+    void add_ladder(TomlReader& table, const std::string& name, Precision precision) {
+        const auto slash = name.find('/');
+        Ladder ladder{name.substr(0, slash), slash == std::string::npos ? name : name.substr(slash + 1), precision, 0};
+        const auto *a = find_method(ladder.method_a), *b = find_method(ladder.method_b);
+        if (!a || !b || a->adaptive != b->adaptive)
+            throw table.fault("methods",
+                              "must be names of methods (doppel list methods), or \"one/other\" for the two "
+                              "sides, both with steps or both with a tolerance; \"{}\" is not",
+                              name);
+        const bool in_double = precision == Precision::in_double;
+        ladder.rungs = static_cast<std::size_t>(a->adaptive ? in_double ? decades_ : quad_decades_
+                                                            : (in_double ? halvings_ : quad_halvings_) + 1);
+        ladders_.emplace_back(ladders_.empty() ? 0 : trials(), ladder);
+    }
+
+    /// The pair at one rung: the sample's interval halved again and again, or the tolerance a tenth each time.
+    Preset pair_of(std::size_t trial) const {
+        const auto [ladder, rung] = place_of(trial);
+        auto pair = pair_;
+        pair.a.integrator = ladder.method_a;
+        pair.b.integrator = ladder.method_b;
+        for (auto* side : {&pair.a, &pair.b}) {
+            side->precision = ladder.precision;
+            side->step_s.reset();
+            side->tolerance.reset();
+            if (ladder.adaptive()) {
+                side->tolerance = Quad(1);
+                for (std::size_t i = 0; i < rung + first_decade; ++i) *side->tolerance /= 10;
+            } else {
+                side->step_s = *quotient({1, std::int64_t{1} << rung}, pair.sample_hz);
+            }
+        }
+        return pair;
+    }
+
+    std::pair<Ladder, std::size_t> place_of(std::size_t trial) const {
+        const auto next =
+            std::find_if(ladders_.begin(), ladders_.end(), [&](const auto& l) { return l.first > trial; });
+        const auto& [begin, ladder] = *std::prev(next);
+        return {ladder, trial - begin};
+    }
+
+    /// Mean step, greatest distance, and steps of both sides.
+    TrialNumbers part(std::size_t trial, const std::atomic<bool>& stop) const {
+        const auto scene = make_scene(pair_of(trial));
+        PairRun run(scene);
+        double most = 0;
+        try {
+            for (long n = 0; n <= scene.samples; ++n) most = std::fmax(most, run.next(stop).distance);
+        } catch (const BreakDown&) {
+            return {none, none, 0};
+        }
+        const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
+        return {2 * pair_.duration_s.value() / steps, most, steps};
+    }
+
+    static constexpr std::size_t first_decade = 3;
+    static constexpr double steepest = 15;  // a slope beyond is that of a method without an order of its own
+
+    Preset pair_;
+    std::vector<std::string> methods_{"euler", "midpoint", "rk4", "gauss6/rattle6", "dop853"};
+    int halvings_ = 10, quad_halvings_ = 6, decades_ = 11, quad_decades_ = 24;
+    std::optional<Rational> mark_step_;                    // a line at it
+    std::vector<std::pair<std::size_t, Ladder>> ladders_;  // each with its first trial
+};
+
+}  // namespace
+
+std::shared_ptr<const FigureWork> read_convergence(FigureReader& reader) {
+    return std::make_shared<Convergence>(reader);
+}
+
+}  // namespace doppel

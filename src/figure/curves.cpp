@@ -1,0 +1,168 @@
+#include "analysis/distance.hpp"
+#include "figure/kinds.hpp"
+#include "scene/resolved.hpp"
+#include "scene/scene.hpp"
+#include "scene/wording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace doppel {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array quantities{"distance"sv, "log_ratio"sv};
+
+/// One pair, and how its distance is shown.
+struct PairCurve {
+    std::string column, label;
+    Preset pair;
+};
+
+/// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see until when
+/// the answer stands.
+class Curves final : public FigureWork {
+public:
+    explicit Curves(FigureReader& reader) {
+        auto table = reader.table("curves");
+        table.read_choice("quantity", quantity_, quantities);
+        table.read_truth("logarithmic", logarithmic_);
+        if (table.has("check_tolerance")) table.read_positive("check_tolerance", check_tolerance_.emplace());
+        table.finish();
+        const auto tables = reader.top.read_tables("curve");
+        if (tables.empty()) curves_.push_back({quantity_, "", reader.pair()});
+        for (std::size_t i = 0; i < tables.size(); ++i) {
+            auto entry = reader.top.inner(tables[i], fmt::format("[[curve]] {}", i + 1));
+            auto& curve = curves_.emplace_back();
+            entry.read_text("column", curve.column);
+            if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
+            curve.label = curve.column;
+            entry.read_text("label", curve.label);
+            curve.pair = reader.pair({&entry});
+            entry.finish();
+        }
+        for (const auto& curve : curves_) {
+            samples_ = make_scene(curve.pair).samples;  // faults are told at once
+            if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
+                throw table.fault("check_tolerance", "takes methods that go by a tolerance on both sides");
+        }
+    }
+
+    std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
+    std::string unit() const override { return "pairs"; }
+
+    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const auto scene = make_scene(pair_of(first + i));
+            PairRun run(scene);
+            numbers[i].assign(static_cast<std::size_t>(samples_) + 1, none);
+            double start = 0;
+            for (std::size_t n = 0; n < numbers[i].size(); ++n) {
+                const double distance = run.next(stop).distance;
+                if (n == 0) start = distance;
+                numbers[i][n] = quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(none);
+            }
+        }
+    }
+
+    std::vector<std::string> columns() const override {
+        std::vector<std::string> names{"sample", "time_s"};
+        for (const auto& curve : curves_) names.push_back(curve.column);
+        return names;
+    }
+
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        for (long n = 0; n <= samples_; ++n) {
+            table.add(n);
+            table.add(time(n));
+            for (std::size_t i = 0; i < curves_.size(); ++i)
+                table.add_or_empty(numbers[i][static_cast<std::size_t>(n)]);
+            table.end_row();
+        }
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        Plot plot;
+        plot.x = {.label = "time, s", .low = 0, .high = time(samples_)};
+        plot.y = {.label = quantity_ == "distance" ? "distance in state space, d" : "ln(d/d₀)",
+                  .logarithmic = logarithmic_};
+        for (std::size_t i = 0; i < curves_.size(); ++i) {
+            Curve curve{.label = curves_[i].label, .y = numbers[i], .hue = static_cast<int>(i)};
+            for (long n = 0; n <= samples_; ++n) curve.x.push_back(time(n));
+            plot.curves.push_back(std::move(curve));
+        }
+        figure.panels.push_back(std::move(plot));
+        if (!check_tolerance_) return;
+        std::string words;
+        for (std::size_t i = 0; i < curves_.size(); ++i)
+            words += fmt::format("{}{} until {:.1f} s", i == 0 ? "" : ", ", curves_[i].label, agree_until(numbers, i));
+        figure.captions.push_back(fmt::format("Converged: at tolerance {} the distances are the same within 1 %: {}.",
+                                              scientific(static_cast<double>(*check_tolerance_)), words));
+    }
+
+    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
+        std::vector<Finding> all;
+        for (std::size_t i = 0; i < curves_.size(); ++i) {
+            const auto most = std::max_element(numbers[i].begin(), numbers[i].end(),
+                                               [](double a, double b) { return std::isnan(a) || a < b; });
+            all.push_back({"greatest_" + curves_[i].column, *most});
+            all.push_back({"greatest_at_sample_" + curves_[i].column, static_cast<double>(most - numbers[i].begin())});
+            if (check_tolerance_) all.push_back({"agrees_until_s_" + curves_[i].column, agree_until(numbers, i)});
+        }
+        return all;
+    }
+
+    std::string resolved() const override {
+        const auto& base = curves_.front().pair;
+        auto text =
+            fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n\n[curves]\nquantity = \"{}\"\nlogarithmic = {}\n",
+                        base.duration_s.text(), base.sample_hz.text(), quantity_, logarithmic_);
+        if (check_tolerance_) text += fmt::format("check_tolerance = {}\n", text_of(*check_tolerance_));
+        for (const auto& curve : curves_)
+            text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\n{}", toml_text(curve.column),
+                                toml_text(curve.label), resolved_sides(curve.pair, "curve."));
+        return text;
+    }
+
+private:
+    double time(long sample) const {
+        const auto& rate = curves_.front().pair.sample_hz;
+        return static_cast<double>(sample) * static_cast<double>(rate.denominator) /
+               static_cast<double>(rate.numerator);
+    }
+
+    /// The curves, then the same with the tolerance to check them by.
+    Preset pair_of(std::size_t trial) const {
+        auto pair = curves_[trial % curves_.size()].pair;
+        if (trial >= curves_.size()) pair.a.tolerance = pair.b.tolerance = check_tolerance_;
+        return pair;
+    }
+
+    /// The time until which both tolerances give the same curve within 1 %, s.
+    double agree_until(std::span<const TrialNumbers> numbers, std::size_t curve) const {
+        constexpr double allowed = 0.01;
+        const auto &one = numbers[curve], &other = numbers[curve + curves_.size()];
+        for (std::size_t n = 0; n < one.size(); ++n)
+            if (std::abs(one[n] - other[n]) > allowed * std::abs(other[n]))
+                return n == 0 ? 0 : time(static_cast<long>(n) - 1);
+        return time(samples_);
+    }
+
+    std::string quantity_ = "distance";
+    bool logarithmic_ = false;
+    std::optional<Quad> check_tolerance_;
+    std::vector<PairCurve> curves_;
+    long samples_ = 0;
+};
+
+}  // namespace
+
+std::shared_ptr<const FigureWork> read_curves(FigureReader& reader) {
+    return std::make_shared<Curves>(reader);
+}
+
+}  // namespace doppel

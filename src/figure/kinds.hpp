@@ -1,0 +1,43 @@
+#pragma once
+
+#include "figure/work.hpp"
+#include "scene/preset_tables.hpp"
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace doppel {
+
+/// A preset being read: each kind of figure takes the tables that are its own.
+struct FigureReader {
+    std::string name;  // of the preset
+    const TomlDocument& document;
+    TomlReader &top, &scene;
+
+    TomlReader table(std::string_view key) { return document.table(top, key); }
+    /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_tables.hpp).
+    Preset pair(const std::vector<TomlReader*>& more = {});
+    /// The chain that [system] describes, where the figure itself knows how to step it.
+    SideSpec release();
+};
+
+struct FigureKind {
+    std::string_view name;  // of [scene] kind
+    std::shared_ptr<const FigureWork> (*read)(FigureReader&);
+};
+
+/// All of them; this list stands in figure/kinds.cpp and its names in scene/preset_tables.hpp.
+std::span<const FigureKind> figure_kinds();
+
+// One file each.
+std::shared_ptr<const FigureWork> read_sweep(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_curves(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_convergence(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_spectrum(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_section(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_flip_map(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_links(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_audit(FigureReader& reader);
+
+}  // namespace doppel

@@ -1,0 +1,99 @@
+#include "figure/part_file.hpp"
+
+#include "numeric/error.hpp"
+#include "output/sha256.hpp"
+#include "scene/manifest_json.hpp"
+#include "scene/version.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+
+namespace doppel {
+namespace {
+
+constexpr std::string_view mark = "doppel trials";  // what such a file calls itself
+
+Error unreadable(const std::filesystem::path& path, std::string_view why) {
+    return io_failed("{}: {}; remove it, or give another folder with --out", path.string(), why);
+}
+
+/// "trial,a,b,c" → its numbers; false where the line is none.
+bool read_line(std::string_view line, KnownTrials& trials) {
+    const char *at = line.data(), *const end = at + line.size();
+    std::size_t trial = 0;
+    auto result = std::from_chars(at, end, trial);
+    if (result.ec != std::errc() || trial >= trials.size()) return false;
+    TrialNumbers numbers;
+    while (result.ptr != end) {
+        if (*result.ptr != ',') return false;
+        double value = 0;
+        result = std::from_chars(result.ptr + 1, end, value);
+        if (result.ec != std::errc()) return false;
+        numbers.push_back(value);
+    }
+    trials[trial] = std::move(numbers);
+    return true;
+}
+
+}  // namespace
+
+PartHeader header_of(const FigurePreset& figure, int shard, int of) {
+    return {figure.name,
+            std::string(version()),
+            std::string(revision()),
+            sha256_of_text(figure.resolved_work()),
+            figure.work->trials(),
+            shard,
+            of};
+}
+
+PartFile read_part_file(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw unreadable(path, std::strerror(errno));
+    PartFile part;
+    std::string line;
+    std::getline(file, line);
+    try {
+        const auto json = Json::parse(line);
+        if (json.at("file") != mark) throw unreadable(path, "is no file of trials");
+        part.header = {json.at("figure"), json.at("version"), json.at("revision"), json.at("preset_sha256"),
+                       json.at("trials"), json.at("shard"),   json.at("of")};
+    } catch (const nlohmann::json::exception&) {
+        throw unreadable(path, "is no file of trials");
+    }
+    part.trials.resize(part.header.trials);
+    // a last line without an end was being written
+    while (std::getline(file, line) && !file.eof())
+        if (!read_line(line, part.trials)) break;
+    if (file.bad()) throw unreadable(path, "cannot be read");
+    return part;
+}
+
+PartWriter::PartWriter(const std::filesystem::path& path, const PartHeader& header, const KnownTrials& known)
+    : file_(path.string() + ".part") {
+    const Json json{{"file", mark},
+                    {"figure", header.figure},
+                    {"version", header.version},
+                    {"revision", header.revision},
+                    {"preset_sha256", header.preset},
+                    {"trials", header.trials},
+                    {"shard", header.shard},
+                    {"of", header.of}};
+    file_.write(json.dump() + "\n");
+    for (std::size_t trial = 0; trial < known.size(); ++trial)
+        if (!known[trial].empty()) add(trial, known[trial]);
+    flush();
+    std::error_code error;
+    std::filesystem::rename(file_.path(), path, error);
+    if (error) throw io_failed("{}: {}", path.string(), error.message());
+}
+
+void PartWriter::add(std::size_t trial, const TrialNumbers& numbers) {
+    auto line = fmt::format("{}", trial);
+    for (const double x : numbers) fmt::format_to(std::back_inserter(line), ",{}", x);
+    file_.write(line + "\n");
+}
+
+}  // namespace doppel

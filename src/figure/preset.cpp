@@ -1,0 +1,66 @@
+#include "figure/preset.hpp"
+
+#include "figure/kinds.hpp"
+#include "scene/resolved.hpp"
+#include "scene/video_reader.hpp"
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+void read_chart(TomlReader& table, ChartSpec& chart) {
+    read_picture_size(table, chart.size);
+    read_theme(table, chart.theme);
+    table.read_positive("scale", chart.scale);
+    constexpr double most = 8;
+    if (chart.scale > most) throw table.fault("scale", "must be at most {}; it is {}", most, chart.scale);
+    table.finish();
+}
+
+}  // namespace
+
+Size FigurePreset::picture_size() const {
+    const auto scaled = [&](int pixels) { return static_cast<int>(std::lround(pixels * chart.scale)); };
+    return {scaled(chart.size.width), scaled(chart.size.height)};
+}
+
+std::string FigurePreset::resolved_work() const {
+    return fmt::format("[scene]\nkind = {}\n{}", toml_text(kind), work->resolved());
+}
+
+std::string FigurePreset::resolved() const {
+    std::vector<std::string> quoted;
+    for (const auto& caption : captions) quoted.push_back(toml_text(caption));
+    return fmt::format(
+        "title = {}\nsubtitle = {}\ncaptions = [{}]\nerratum = {}\n\n{}\n[chart]\nsize = [{}, {}]\ntheme = {}\nscale = "
+        "{}\n",
+        toml_text(title), toml_text(subtitle), fmt::join(quoted, ", "), toml_text(erratum), resolved_work(),
+        chart.size.width, chart.size.height, toml_text(chart.theme), chart.scale);
+}
+
+FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides) {
+    const auto document = parse_document(source, overrides);
+    FigurePreset figure;
+    figure.name = figure.title = source.name;
+    TomlReader top(&document.root, "", document.path, document.texts);
+    top.read_text("title", figure.title);
+    top.read_text("subtitle", figure.subtitle);
+    top.read_text("erratum", figure.erratum);
+    if (const auto captions = top.read_texts("captions")) figure.captions = *captions;
+
+    auto scene = document.table(top, "scene");
+    figure.kind = read_kind(scene);
+    if (figure.kind == pair_kind)
+        throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.name);
+    FigureReader reader{source.name, document, top, scene};
+    for (const auto& kind : figure_kinds())
+        if (kind.name == figure.kind) figure.work = kind.read(reader);
+    scene.finish();
+    auto chart = document.table(top, "chart");
+    read_chart(chart, figure.chart);
+    top.finish();
+    return figure;
+}
+
+}  // namespace doppel

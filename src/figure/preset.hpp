@@ -1,0 +1,38 @@
+#pragma once
+
+#include "figure/work.hpp"
+#include "scene/preset.hpp"
+
+#include <memory>
+
+namespace doppel {
+
+/// How a figure is drawn.
+struct ChartSpec {
+    Size size{1600, 900};
+    std::string theme = "light";
+    double scale = 1;  // picture pixels to a layout pixel: 2 for print
+};
+
+/// A figure as a preset file describes it: read, complete and checked, nothing computed yet.
+struct FigurePreset {
+    std::string name;             // of the file, without folder and ending
+    std::string title, subtitle;  // the name where it is not given
+    std::vector<std::string> captions;
+    std::string erratum;  // where the study's printed caption and the truth differ
+    std::string kind;     // of [scene]
+    ChartSpec chart;
+    std::shared_ptr<const FigureWork> work;
+
+    /// The picture's size, px.
+    Size picture_size() const;
+    /// What its numbers depend on: TOML.
+    std::string resolved_work() const;
+    /// That and everything else: TOML that read_figure() reads back to the same figure.
+    std::string resolved() const;
+};
+
+/// Errors as read_preset()'s.
+FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {});
+
+}  // namespace doppel

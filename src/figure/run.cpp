@@ -1,0 +1,262 @@
+#include "figure/run.hpp"
+
+#include "figure/manifest.hpp"
+#include "numeric/clock.hpp"
+#include "numeric/error.hpp"
+#include "numeric/share_out.hpp"
+#include "output/part_files.hpp"
+#include "output/png.hpp"
+#include "output/queue.hpp"
+#include "picture/renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "3-of-8.shard"
+std::string shard_name(const PartHeader& header, std::string_view ending) {
+    return header.of == 1 ? fmt::format("{}.{}", header.figure, ending)
+                          : fmt::format("{}.{}-of-{}.{}", header.figure, header.shard, header.of, ending);
+}
+
+/// The files NAME.I-of-N.shard of a folder.
+std::vector<fs::path> shards_in(const fs::path& folder, const std::string& name) {
+    std::vector<fs::path> found;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const auto file = entry.path().filename().string();
+        if (file.starts_with(name + ".") && file.ends_with(".shard")) found.push_back(entry.path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+void refuse_strangers(const fs::path& path, const PartHeader& found, const PartHeader& wanted) {
+    const auto refuse = [&](std::string_view what, const std::string& is, const std::string& ours) {
+        throw bad_input("{} was made with another {}: {}, not {}; compute it again with --shard {}/{}", path.string(),
+                        what, is, ours, found.shard, found.of);
+    };
+    const auto short_hash = [](const std::string& hash) { return hash.substr(0, 12); };
+    if (found.figure != wanted.figure) refuse("figure", found.figure, wanted.figure);
+    if (found.version != wanted.version) refuse("version", found.version, wanted.version);
+    if (found.revision != wanted.revision) refuse("revision", found.revision, wanted.revision);
+    if (found.preset != wanted.preset || found.trials != wanted.trials)
+        refuse("preset, or other --set", short_hash(found.preset), short_hash(wanted.preset));
+}
+
+/// The numbers of all shards, each of which must be there once and belong to this figure.
+KnownTrials merged(const FigurePreset& figure, const fs::path& folder) {
+    const auto files = shards_in(folder, figure.name);
+    if (files.empty())
+        throw bad_input("{} holds no part of {}; make them with: doppel figure {} --shard I/N", folder.string(),
+                        figure.name, figure.name);
+    KnownTrials all(figure.work->trials());
+    const auto wanted = header_of(figure);
+    int of = 0;
+    std::vector<bool> seen;
+    for (const auto& path : files) {
+        auto part = read_part_file(path);
+        refuse_strangers(path, part.header, wanted);
+        if (of == 0) {
+            of = part.header.of;
+            seen.resize(static_cast<std::size_t>(of));
+        }
+        if (part.header.of != of)
+            throw bad_input("{} is one of {} parts and {} one of {}; remove those that do not belong", path.string(),
+                            part.header.of, files.front().string(), of);
+        for (std::size_t trial = part.header.first(); trial < part.header.last(); ++trial) {
+            if (part.trials[trial].empty())
+                throw io_failed("{} is not whole: trial {} is missing; compute it again with --shard {}/{}",
+                                path.string(), trial, part.header.shard, of);
+            all[trial] = std::move(part.trials[trial]);
+        }
+        seen[static_cast<std::size_t>(part.header.shard) - 1] = true;
+    }
+    std::string missing;
+    for (int i = 1; i <= of; ++i)
+        if (!seen[static_cast<std::size_t>(i) - 1])
+            missing += fmt::format("{}{}/{}", missing.empty() ? "" : ", ", i, of);
+    if (!missing.empty()) throw bad_input("{}: missing parts: {}", folder.string(), missing);
+    return all;
+}
+
+Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
+    Figure page{.title = figure.title, .subtitle = figure.subtitle};
+    figure.work->draw(trials, page);
+    page.captions.insert(page.captions.begin(), figure.captions.begin(), figure.captions.end());
+    if (!figure.erratum.empty()) page.captions.push_back("Erratum: " + figure.erratum);
+    return page;
+}
+
+const Theme& theme_named(const std::string& name) {
+    return *std::find_if(themes.begin(), themes.end(), [&](const auto& theme) { return theme.name == name; });
+}
+
+}  // namespace
+
+DisplayList compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
+    return compose(page_of(figure, trials), figure.picture_size(), theme_named(figure.chart.theme),
+                   static_cast<float>(figure.chart.scale));
+}
+
+KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atomic<bool>& stop) {
+    Computation computation(figure, header_of(figure), "", jobs,
+                            {[](const FigureProgress&) {}, [](const std::string&) {}});
+    share_out(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, stop); });
+    return computation.take();
+}
+
+namespace {
+
+/// Draws and writes figures whose numbers are there; the renderer serves all pictures of one size.
+class Press {
+public:
+    Press(const FigureOptions& options, int jobs) : options_(options), jobs_(jobs) {}
+
+    /// Makes the renderer for the first picture while others compute.
+    void warm_up(const FigurePreset& figure) {
+        if (!options_.shard)
+            renderer_for(figure.picture_size()).draw(compose({.title = "0"}, figure.picture_size(), themes[0]));
+    }
+
+    RunResult print(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials, FigureRecord facts,
+                    PartFiles& files) {
+        const auto& folder = files.folder();
+        RunResult result;
+        facts.jobs = jobs_;
+        const auto add = [&](const std::string& name) {
+            facts.files.emplace_back(name, files.file(name));
+            result.files.push_back(folder / name);
+            return facts.files.back().second;
+        };
+        if (options_.shard) {
+            PartWriter(add(shard_name(header, "shard")), header, trials).close();
+            files.publish();
+            return result;
+        }
+        const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+        auto& renderer = renderer_for(figure.picture_size());
+        write_png(add(figure.name + ".png"), renderer.draw(compose_figure(figure, trials)));
+        facts.gl = renderer.description();
+        Csv table(add(figure.name + ".csv"), figure.work->columns());
+        figure.work->write_rows(trials, table);
+        table.finish();
+        facts.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+        write_figure_manifest(files.file(figure.name + ".json"), figure, trials, facts);
+        result.files.push_back(folder / (figure.name + ".json"));
+        files.publish();
+        return result;
+    }
+
+private:
+    Renderer& renderer_for(Size size) {
+        if (!renderer_ || size_ != size) renderer_.emplace(size);
+        size_ = size;
+        return *renderer_;
+    }
+
+    const FigureOptions& options_;
+    int jobs_;
+    std::optional<Renderer> renderer_;
+    Size size_;
+};
+
+/// The computation of every figure, and the threads at work on them.
+class Workshop {
+public:
+    Workshop(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
+             const std::atomic<bool>& stop, const FigureReport& report)
+        : stop_(stop) {
+        for (std::size_t k = 0; k < figures.size(); ++k) {
+            const auto& figure = figures[k];
+            const auto header =
+                options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
+            computations_.push_back(std::make_unique<Computation>(
+                figure, header, options.out / figure.name / shard_name(header, "resume"), jobs,
+                ComputationReport{[&report, k](const FigureProgress& p) { report.progress(k, p); },
+                                  [&report, k](const std::string& s) { report.note(k, s); }}));
+            for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups_.emplace_back(k, group);
+            if (computations_[k]->groups() == 0) finished_.push(k);
+        }
+        thread_ = std::jthread([this, jobs] { work(jobs); });
+    }
+    ~Workshop() {
+        closing_ = true;
+        finished_.abandon();
+    }
+
+    /// The number of a figure whose numbers are complete, in the order in which they are; nothing after the last.
+    /// Rethrows what stopped the threads.
+    std::optional<std::size_t> next() {
+        auto figure = finished_.pop();
+        if (!figure && fault_) std::rethrow_exception(fault_);
+        return figure;
+    }
+
+    Computation& computation(std::size_t figure) { return *computations_[figure]; }
+
+private:
+    void work(int jobs) {
+        try {
+            share_out(groups_.size(), jobs, [&](std::size_t i) {
+                if (closing_) return;
+                const auto [figure, group] = groups_[i];
+                if (computations_[figure]->compute(group, stop_)) finished_.push(figure);
+            });
+        } catch (...) {
+            fault_ = std::current_exception();
+        }
+        finished_.close();
+    }
+
+    const std::atomic<bool>& stop_;
+    std::vector<std::unique_ptr<Computation>> computations_;
+    std::vector<std::pair<std::size_t, std::size_t>> groups_;  // figure, group of it
+    Queue<std::size_t> finished_{100'000};
+    std::exception_ptr fault_;
+    std::atomic<bool> closing_ = false;
+    std::jthread thread_;  // last: joined before the rest goes
+};
+
+}  // namespace
+
+void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
+                 const FigureReport& report) {
+    const int jobs = options.jobs > 0 ? options.jobs : cores();
+    Press press(options, jobs);
+    if (options.merge) {
+        for (std::size_t k = 0; k < figures.size(); ++k) {
+            const double start = seconds_of(CLOCK_MONOTONIC);
+            const auto trials = merged(figures[k], options.out / figures[k].name);
+            PartFiles files(options.out / figures[k].name);
+            auto result = press.print(figures[k], header_of(figures[k]), trials, {}, files);
+            result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+            report.done(k, result);
+        }
+        return;
+    }
+    std::vector<std::unique_ptr<PartFiles>> files;  // now: a folder that cannot be made is told at once
+    for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name));
+    Workshop workshop(figures, options, jobs, stop, report);
+    if (!figures.empty()) press.warm_up(figures.front());
+    while (const auto k = workshop.next()) {
+        auto& computation = workshop.computation(*k);
+        FigureRecord facts{.compute_cpu_s = computation.cpu_s()};
+        const double start = computation.start_s() > 0 ? computation.start_s() : seconds_of(CLOCK_MONOTONIC);
+        facts.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+        auto result = press.print(figures[*k], computation.header(), computation.take(), facts, *files[*k]);
+        std::error_code ignored;
+        fs::remove(computation.record(), ignored);
+        result.samples = std::lround(computation.computed_units());
+        result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+        report.done(*k, result);
+    }
+}
+
+}  // namespace doppel

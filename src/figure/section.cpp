@@ -1,0 +1,100 @@
+#include "analysis/section.hpp"
+
+#include "figure/kinds.hpp"
+#include "scene/assemble.hpp"
+#include "scene/resolved.hpp"
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy.
+class Section final : public FigureWork {
+public:
+    explicit Section(FigureReader& reader) : release_(reader.release()) {
+        auto table = reader.table("section");
+        if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
+        table.read_positive_list("energy_J", energies_, 6);
+        table.read_whole("orbits", orbits_, 1, 10'000);
+        table.read_whole("crossings", spec_.crossings, 1, 1'000'000);
+        table.read_positive("tolerance", spec_.tolerance);
+        table.finish();
+        const auto pendulum = chain_of(release_).cast<double>();
+        for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
+    }
+
+    std::size_t trials() const override { return energies_.size() * orbits(); }
+    std::string unit() const override { return "orbits"; }
+
+    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const auto& release = releases_[(first + i) / orbits()][(first + i) % orbits()];
+            for (const auto& point : poincare_section(release, spec_, stop))
+                numbers[i].insert(numbers[i].end(), {point.theta2, point.p2, point.time_s});
+        }
+    }
+
+    std::vector<std::string> columns() const override {
+        return {"energy_J", "orbit", "time_s", "theta2_rad", "p2_N_m_s"};
+    }
+
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+            for (std::size_t k = 0; k < numbers[i].size(); k += 3) {
+                table.add(energies_[i / orbits()]);
+                table.add(static_cast<long>(i % orbits()));
+                for (const std::size_t entry : {2, 0, 1}) table.add(numbers[i][k + entry]);
+                table.end_row();
+            }
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        for (std::size_t panel = 0; panel < energies_.size(); ++panel) {
+            Plot plot;
+            plot.title = fmt::format("E = {:.4g} J", energies_[panel]);
+            plot.x = {.label = "θ₂, rad"};
+            plot.y = {.label = "p₂, N m s"};
+            plot.square = true;
+            for (std::size_t orbit = 0; orbit < orbits(); ++orbit) {
+                const auto& points = numbers[panel * orbits() + orbit];
+                Curve curve{.mark = Mark::points, .hue = static_cast<int>(orbit)};
+                for (std::size_t k = 0; k < points.size(); k += 3) {
+                    curve.x.push_back(points[k]);
+                    curve.y.push_back(points[k + 1]);
+                }
+                plot.curves.push_back(std::move(curve));
+            }
+            figure.panels.push_back(std::move(plot));
+        }
+    }
+
+    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
+        std::size_t points = 0;
+        for (const auto& orbit : numbers) points += orbit.size() / 3;
+        return {{"points", static_cast<double>(points)}};
+    }
+
+    std::string resolved() const override {
+        return resolved_release(release_) +
+               fmt::format("\n[section]\nenergy_J = [{}]\norbits = {}\ncrossings = {}\ntolerance = {}\n",
+                           fmt::join(energies_, ", "), orbits_, spec_.crossings, spec_.tolerance);
+    }
+
+private:
+    std::size_t orbits() const { return static_cast<std::size_t>(orbits_); }
+
+    SideSpec release_;
+    SectionSpec spec_;
+    std::vector<double> energies_{9.8, 49, 98};  // above hanging at rest, J
+    int orbits_ = 24;
+    std::vector<std::vector<Pendulum<double>>> releases_;  // by energy
+};
+
+}  // namespace
+
+std::shared_ptr<const FigureWork> read_section(FigureReader& reader) {
+    return std::make_shared<Section>(reader);
+}
+
+}  // namespace doppel

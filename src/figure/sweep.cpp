@@ -1,0 +1,239 @@
+#include "analysis/distance.hpp"
+#include "analysis/exponent.hpp"
+#include "analysis/twins.hpp"
+#include "figure/kinds.hpp"
+#include "scene/resolved.hpp"
+#include "scene/scene.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace doppel {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// What a sweep goes over: the columns' name, how people call it, and what it changes in a side.
+struct Parameter {
+    std::string_view name, label;
+    std::size_t links;  // that it takes
+    void (*set)(SideSpec&, const Quad&);
+    double every;  // between ticks; 0 = as fits
+};
+
+constexpr std::array parameters{
+    Parameter{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& side, const Quad& x) { side.angle_deg[0] = x; }, 30},
+    Parameter{"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& side, const Quad& x) { side.angle_deg[1] = x; }, 30},
+    Parameter{"mass_ratio", "mass ratio m₁/m₂", 2,
+              [](SideSpec& side, const Quad& x) { side.mass_kg[0] = x * side.mass_kg[1]; }, 0},
+    Parameter{"length_ratio", "length ratio l₁/l₂", 2,
+              [](SideSpec& side, const Quad& x) { side.length_m[0] = x * side.length_m[1]; }, 0}};
+
+/// The study's sweeps: twins released over a range of one parameter, and how far apart they come on average.
+class Sweep final : public FigureWork {
+public:
+    explicit Sweep(FigureReader& reader) : pair_(reader.pair()) {
+        auto table = reader.table("sweep");
+        std::vector<std::string_view> names;
+        for (const auto& parameter : parameters) names.push_back(parameter.name);
+        std::string name(names.front());
+        table.read_choice("parameter", name, names);
+        for (const auto& parameter : parameters)
+            if (parameter.name == name) parameter_ = &parameter;
+        if (pair_.a.links() < parameter_->links || !pair_.a.particles.empty())
+            throw table.fault("parameter", "\"{}\" takes a chain of {} links", name, parameter_->links);
+        table.read_number("from", from_);
+        table.read_number("to", to_);
+        table.read_positive("step", step_);
+        table.read_number("difference", difference_);
+        constexpr long most = 10'000'000;
+        const Quad count = (to_ - from_) / step_;
+        if (!(count >= 0 && count < most))
+            throw table.fault("to", "must be \"from\" and at most {} steps more; it is {}", most, text_of(to_));
+        trials_ = static_cast<std::size_t>(std::lround(static_cast<double>(count))) + 1;
+        table.read_truth("exponent", exponent_);
+        if (exponent_) {
+            table.read_positive("exponent_duration_s", exponent_spec_.duration_s);
+            exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
+        }
+        table.finish();
+        for (const std::size_t end : {std::size_t{0}, trials_ - 1}) make_scene(twins(end));  // faults are told at once
+        run_ = fast_run();
+    }
+
+    std::size_t trials() const override { return trials_; }
+    std::size_t together() const override {
+        // a twin that is the next trial's sibling is stepped once for both
+        return run_ ? twins_block() / (shares_twins() ? 1 : 2) - (shares_twins() ? 1 : 0) : 1;
+    }
+    std::string unit() const override { return "pairs"; }
+
+    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
+        std::vector<double> averages(numbers.size());
+        if (run_) {
+            std::vector<Twins> all;
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+                const auto scene = make_scene(twins(first + i));
+                all.push_back({scene.a.motion.chain->cast<double>(), scene.b.motion.chain->cast<double>()});
+            }
+            average_log_ratios(all, *run_, averages, stop);
+        } else {
+            for (std::size_t i = 0; i < numbers.size(); ++i) averages[i] = watched_average(first + i, stop);
+        }
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            numbers[i] = {averages[i]};
+            if (!exponent_) continue;
+            const auto scene = make_scene(twins(first + i));
+            const auto exponent = largest_exponent(scene.a.motion.chain->cast<double>(), exponent_spec_, stop);
+            numbers[i].insert(numbers[i].end(), {exponent.value, exponent.uncertainty});
+        }
+    }
+
+    std::vector<std::string> columns() const override {
+        std::vector<std::string> names{std::string(parameter_->name), "average_log_ratio"};
+        if (exponent_) names.insert(names.end(), {"exponent_per_s", "exponent_uncertainty_per_s"});
+        return names;
+    }
+
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        for (std::size_t i = 0; i < trials_; ++i) {
+            table.add(static_cast<double>(value(i)));
+            for (const double x : numbers[i]) table.add_or_empty(x);
+            table.end_row();
+        }
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        Plot plot;
+        plot.x = {.label = std::string(parameter_->label),
+                  .low = static_cast<double>(from_),
+                  .high = static_cast<double>(to_)};
+        if (parameter_->every > 0) plot.x.every = parameter_->every;
+        plot.y = {.label = fmt::format("average of ln(d/d₀) over {} s", pair_.duration_s.value()), .low = 0};
+        plot.curves.push_back(curve(numbers, 0, exponent_ ? "average of ln(d/d₀)" : ""));
+        if (exponent_) {
+            plot.right = PlotAxis{.label = "largest Lyapunov exponent, 1/s", .low = 0};
+            auto exponents = curve(numbers, 1, "Lyapunov exponent");
+            exponents.uncertainty = curve(numbers, 2, "").y;
+            exponents.hue = 1;
+            exponents.right = true;
+            figure.captions.push_back(exponent_words(numbers, exponents));
+            plot.curves.push_back(std::move(exponents));
+        }
+        figure.panels.push_back(std::move(plot));
+    }
+
+    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
+        std::vector<Finding> all;
+        double least = none, most = none, broken = 0, regular = 0;
+        for (const auto& trial : numbers) {
+            if (std::isnan(trial[0])) ++broken;
+            least = std::fmin(least, trial[0]);
+            most = std::fmax(most, trial[0]);
+            if (exponent_ && is_regular({trial[1], trial[2]})) ++regular;
+        }
+        all.push_back({"least_average_log_ratio", least});
+        all.push_back({"greatest_average_log_ratio", most});
+        if (broken > 0) all.push_back({"trials_broken_down", broken});
+        if (exponent_) all.push_back({"regular_trials", regular});
+        return all;
+    }
+
+    std::string resolved() const override {
+        auto text = resolved_pair(pair_);
+        text += fmt::format(
+            "\n[sweep]\nparameter = \"{}\"\nfrom = {}\nto = {}\nstep = {}\ndifference = {}\nexponent = {}\n",
+            parameter_->name, text_of(from_), text_of(to_), text_of(step_), text_of(difference_), exponent_);
+        if (exponent_) text += fmt::format("exponent_duration_s = {}\n", exponent_spec_.duration_s);
+        return text;
+    }
+
+private:
+    Quad value(std::size_t trial) const { return from_ + step_ * Quad(static_cast<double>(trial)); }
+    bool shares_twins() const { return difference_ == step_; }
+
+    Preset twins(std::size_t trial) const {
+        auto pair = pair_;
+        parameter_->set(pair.a, value(trial));
+        parameter_->set(pair.b, value(trial) + difference_);
+        return pair;
+    }
+
+    /// How all twins are stepped in lanes, where they can be: explicit methods of fixed step on plain chains in double.
+    std::optional<TwinRun> fast_run() const {
+        const auto scene = make_scene(twins(0));
+        TwinRun run{.sample_interval = 1 / pair_.sample_hz.value(), .samples = scene.samples};
+        const auto take = [](const Side& side, TwinSide& into) {
+            const auto& motion = side.motion;
+            into = {motion.model == Model::angles ? EnsembleModel::angles : EnsembleModel::constraints, motion.method,
+                    motion.steps_per_sample};
+            return motion.model != Model::mechanism && motion.precision == Precision::in_double &&
+                   motion.stabilise == Stabilise::none && Ensemble::serves(motion.method);
+        };
+        if (!take(scene.a, run.a) || !take(scene.b, run.b)) return std::nullopt;
+        return run;
+    }
+
+    /// One of the twins' averages by the sample loop of the films: any model, method and precision.
+    double watched_average(std::size_t trial, const std::atomic<bool>& stop) const {
+        const auto scene = make_scene(twins(trial));
+        PairRun run(scene);
+        const double start = run.next(stop).distance;
+        double sum = 0;
+        long counted = 0;
+        try {
+            for (long n = 1; n <= scene.samples; ++n)
+                if (const auto ratio = log_ratio(run.next(stop).distance, start)) {
+                    sum += *ratio;
+                    ++counted;
+                }
+        } catch (const BreakDown&) {
+            return none;
+        }
+        return sum / static_cast<double>(counted);
+    }
+
+    /// How many releases are regular; and takes equilibria, whose exponent is another thing, out of the curve.
+    std::string exponent_words(std::span<const TrialNumbers> numbers, Curve& exponents) const {
+        long regular = 0;
+        std::string equilibria;
+        for (std::size_t i = 0; i < trials_; ++i) {
+            regular += is_regular({numbers[i][1], numbers[i][2]});
+            if (numbers[i][1] == 0 || numbers[i][2] != 0) continue;
+            equilibria +=
+                fmt::format(" At {:g}, an unstable equilibrium, it is {:.2f} 1/s.", exponents.x[i], numbers[i][1]);
+            exponents.y[i] = none;
+        }
+        return fmt::format(
+            "{} of {} releases are regular: their exponent cannot be told from 0. Its band is one standard "
+            "deviation.{}",
+            regular, trials_, equilibria);
+    }
+
+    Curve curve(std::span<const TrialNumbers> numbers, std::size_t column, std::string label) const {
+        Curve made{.label = std::move(label)};
+        for (std::size_t i = 0; i < trials_; ++i) {
+            made.x.push_back(static_cast<double>(value(i)));
+            made.y.push_back(numbers[i][column]);
+        }
+        return made;
+    }
+
+    Preset pair_;
+    const Parameter* parameter_ = nullptr;
+    Quad from_ = 0, to_ = 180, step_ = 1, difference_ = 0;
+    std::size_t trials_ = 0;
+    bool exponent_ = false;
+    ExponentSpec exponent_spec_;
+    std::optional<TwinRun> run_;
+};
+
+}  // namespace
+
+std::shared_ptr<const FigureWork> read_sweep(FigureReader& reader) {
+    return std::make_shared<Sweep>(reader);
+}
+
+}  // namespace doppel
