@@ -44,14 +44,18 @@ ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::strin
 void ProgressReport::operator()(const Progress& progress) {
     if (style_ == ProgressStyle::none) return;
     const auto now = Clock::now();
+    if (!before_) {
+        before_ = progress.done;
+        start_ = now;
+    }
     const auto pause = style_ == ProgressStyle::bar    ? std::chrono::milliseconds(100)
                        : style_ == ProgressStyle::json ? std::chrono::milliseconds(500)
                                                        : std::chrono::milliseconds(5000);
-    if (now - shown_ < pause) return;
+    if (now - shown_ < pause || progress.done == *before_) return;
     shown_ = now;
 
     const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const double rate = static_cast<double>(progress.done) / elapsed;
+    const double rate = static_cast<double>(progress.done - *before_) / elapsed;
     const double left = static_cast<double>(progress.total - progress.done) / rate;
     const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
     if (style_ == ProgressStyle::json) {
@@ -96,7 +100,10 @@ void ProgressReport::done(const RunResult& result) {
         fmt::print("{}\n", line.dump());
         return;
     }
-    if (style_ != ProgressStyle::none)
+    constexpr long few = 10;  // whose rate says nothing
+    if (style_ != ProgressStyle::none && count < few)
+        fmt::print(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
+    else if (style_ != ProgressStyle::none)
         fmt::print(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
                    static_cast<double>(count) / result.wall_s, unit_);
     for (const auto& file : result.files)

@@ -3,6 +3,7 @@
 #include "scene/run.hpp"
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace doppel {
@@ -31,6 +32,7 @@ private:
     ProgressStyle style_;
     std::string name_, unit_;  // of what; "frames"
     Clock::time_point start_, shown_;
+    std::optional<long> before_;  // done when first heard of, by an earlier run
     bool on_screen_ = false;
 };
 

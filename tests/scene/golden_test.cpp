@@ -1,20 +1,11 @@
-#include "picture/golden.hpp"
+#include "output/golden.hpp"
 
-#include "output/fixtures.hpp"
-#include "output/png.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <cstring>
-
 namespace doppel {
 namespace {
-
-namespace fs = std::filesystem;
-
-const fs::path goldens = fs::path(DOPPEL_SOURCE_DIR) / "tests/golden";
 
 struct Golden {
     const char* name;  // of the file
@@ -32,22 +23,7 @@ class GoldenFrame : public testing::TestWithParam<Golden> {};
 TEST_P(GoldenFrame, IsAsItWas) {
     auto arguments = GetParam().sets;
     arguments.emplace_back("video.size=[480, 270]");
-    const auto actual = frame_of(scene_of(GetParam().preset, arguments), GetParam().sample);
-    const auto golden = goldens / (std::string(GetParam().name) + ".png");
-
-    if (const char* update = std::getenv("DOPPEL_UPDATE_GOLDENS"); update && std::strcmp(update, "1") == 0) {
-        ASSERT_EQ(std::getenv("CI"), nullptr) << "goldens are made by a person who looks at them, not by CI";
-        write_png(golden, actual);
-        return;
-    }
-    const auto expected = read_png(golden);
-    const auto verdict = compare_golden(expected, actual);
-    if (verdict.passes) return;
-    const auto folder = test::fresh_folder();
-    write_png(folder / "expected.png", expected);
-    write_png(folder / "actual.png", actual);
-    write_png(folder / "difference.png", difference_picture(expected, actual));
-    FAIL() << GetParam().name << ": " << verdict.why << "\nexpected, actual and the difference ×16 are in " << folder;
+    test::expect_golden(GetParam().name, frame_of(scene_of(GetParam().preset, arguments), GetParam().sample));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -109,7 +109,9 @@ INSTANTIATE_TEST_SUITE_P(
              "presets/x.toml:2:1: [scene] duration_s must be a whole number of samples at 120 Hz; 1/100 s are 6/5"},
         Case{"[scene]\nduration_s = 1e12",
              "presets/x.toml:2:1: [scene] duration_s must be at most 100000000 samples; it is 120000000000000"},
-        Case{"[scene]\nkind = \"trio\"", R"(presets/x.toml:2:1: [scene] kind must be "pair"; it is "trio")"},
+        Case{
+            "[scene]\nkind = \"trio\"",
+            R"(presets/x.toml:2:1: [scene] kind must be "pair", "sweep", "curves", "convergence", "spectrum", "section", "flip-map", "links" or "audit"; it is "trio")"},
         Case{"[video]\nfps = 50",
              "presets/x.toml:2:1: [video] fps must divide sample_hz · speed = 120, so that each frame is a sample; it "
              "is 50"},
@@ -181,7 +183,7 @@ TEST(FindPreset, NamesTheNearestOrWhatIsInItsPlace) {
               R"(there is no preset "buterfly"; did you mean "butterfly"?)");
     EXPECT_EQ(error_of([] { find_preset("x/y.toml"); }).second, "x/y.toml: there is no such preset");
     EXPECT_EQ(error_of([] { find_preset("/"); }).second, "/ is a folder; a preset is a TOML file");
-    EXPECT_NE(error_of([] { find_preset("qqqqqqqqqq"); }).second.find("there are butterfly, calm"), std::string::npos);
+    EXPECT_NE(error_of([] { find_preset("qqqqqqqqqq"); }).second.find("there are audit, butterfly"), std::string::npos);
 }
 
 }  // namespace

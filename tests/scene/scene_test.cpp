@@ -1,4 +1,4 @@
-#include "scene/manifest.hpp"
+#include "scene/resolved.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@ namespace {
 
 TEST(Presets, AreAllReadable) {
     for (const auto& source : builtin_presets()) {
+        if (is_figure(source)) continue;
         const auto scene = make_scene(read_preset(source));
         EXPECT_NE(scene.preset.title, source.name) << "a preset says what it shows";
     }
@@ -31,6 +32,7 @@ TEST(Presets, HaveTheStartsTheyPromise) {
 
 TEST(Presets, ComeBackFromTheirResolvedForm) {
     for (const auto& source : builtin_presets()) {
+        if (is_figure(source)) continue;
         const auto preset = read_preset(source, sets({"video.fps=60", "video.side_colors=[\"#102030\", \"#a0b0c0\"]"}));
         const auto text = resolved_toml(preset);
         EXPECT_EQ(resolved_toml(read_preset({source.name, "resolved", text})), text);
