@@ -42,7 +42,7 @@ ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::strin
     : style_(style), name_(std::move(name)), unit_(std::move(unit)), start_(Clock::now()), shown_(start_) {}
 
 void ProgressReport::operator()(const Progress& progress) {
-    if (style_ == ProgressStyle::none) return;
+    if (style_ == ProgressStyle::none || progress.total == 0) return;
     const auto now = Clock::now();
     if (!before_) {
         before_ = progress.done;

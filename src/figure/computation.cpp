@@ -54,7 +54,7 @@ void Computation::take_record() {
     known_ = std::move(part.trials);
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.work->units(trial);
-    report_.note(fmt::format("goes on from {}: {:.0f} % is done", record_.string(), 100 * done_units_ / total_units_));
+    report_.note(fmt::format("goes on from {}: {:.0f} % is done", record_.string(), percent_done()));
 }
 
 /// Runs of trials that are not known, cut to what is best computed at once. Where they are many, some from all over the
@@ -98,7 +98,7 @@ Error Computation::with_record(const Error& fault) {
     if (!writer_) return fault;
     writer_->flush();
     return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command goes on from there",
-                                      fault.what(), 100 * done_units_ / total_units_, record_.string())};
+                                      fault.what(), percent_done(), record_.string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {

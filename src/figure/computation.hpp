@@ -50,6 +50,7 @@ private:
     bool keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s);
     void tell_estimate(double time);
     Error with_record(const Error& fault);
+    double percent_done() const { return total_units_ > 0 ? 100 * done_units_ / total_units_ : 100; }
 
     const FigurePreset& figure_;
     PartHeader header_;

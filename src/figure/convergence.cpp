@@ -35,10 +35,11 @@ public:
         table.read_whole("quad_decades", quad_decades_, 1, 29);
         if (table.has("mark_step_s")) table.read_positive_ratio("mark_step_s", mark_step_.emplace());
         if (const auto names = table.read_texts("methods")) methods_ = *names;
+        if (methods_.empty()) throw table.fault("methods", "must name at least one");
         for (const auto precision : {Precision::in_double, Precision::in_quad})
             for (const auto& name : methods_) add_ladder(table, name, precision);
+        for (const auto& [begin, ladder] : ladders_) check_methods(table, make_scene(pair_of(begin)));
         table.finish();
-        make_scene(pair_of(0));  // faults are told at once
     }
 
     std::size_t trials() const override { return ladders_.back().first + ladders_.back().second.rungs; }
@@ -133,8 +134,9 @@ private:
                     fmt::format("{}{} {:.2f}", slopes.empty() ? "" : ", ", finding.key.substr(start.size()), value);
         }
         return fmt::format(
-            "The distance falls by the power of each method's order (slopes in quad: {}) until rounding stops it, at "
-            "{} in double and {} in quad.",
+            "The distance falls by the power of each method's order; slopes in quad: {}. The least is {} in double and "
+            "{} in "
+            "quad.",
             slopes, scientific(least_double), scientific(least_quad));
     }
 
@@ -151,6 +153,20 @@ private:
         ladder.rungs = static_cast<std::size_t>(a->adaptive ? in_double ? decades_ : quad_decades_
                                                             : (in_double ? halvings_ : quad_halvings_) + 1);
         ladders_.emplace_back(ladders_.empty() ? 0 : trials(), ladder);
+    }
+
+    /// Faults are told at once.
+    static void check_methods(const TomlReader& table, const Scene& scene) {
+        for (const auto* side : {&scene.a, &scene.b}) {
+            const auto model = side->motion.model;
+            const auto& method = side->method;
+            if (model == Model::angles        ? method.angles
+                : model == Model::constraints ? method.constraints
+                                              : method.mechanism)
+                continue;
+            throw table.fault("methods", "must serve the sides' models; \"{}\" does not serve {}", method.name,
+                              name_of(model));
+        }
     }
 
     /// The pair at one rung: the sample's interval halved again and again, or the tolerance a tenth each time.

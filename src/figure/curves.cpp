@@ -40,6 +40,8 @@ public:
             auto& curve = curves_.emplace_back();
             entry.read_text("column", curve.column);
             if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
+            if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
+                throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
             curve.label = curve.column;
             entry.read_text("label", curve.label);
             curve.pair = reader.pair({&entry});

@@ -27,6 +27,9 @@ public:
         table.read_whole("rows", rows_, 2, 20'000);
         table.read_positive("duration_s", spec_.duration);
         table.read_positive("tolerance", spec_.tolerance);
+        constexpr double finest = 1e-15;
+        if (spec_.tolerance < finest)
+            throw table.fault("tolerance", "must be at least {}; it is {}", finest, spec_.tolerance);
         table.read_whole("checked", checked_, 0, 100'000);
         table.finish();
         pendulum_ = chain_of(release_).cast<double>();
@@ -110,14 +113,13 @@ public:
     }
 
     std::string resolved() const override {
-        const auto list = [](const std::vector<Quad>& values) {
-            return fmt::format("[{}, {}]", text_of(values[0]), text_of(values[1]));
-        };
-        return fmt::format(
-            "\n[system]\nlinks = 2\nmass_kg = {}\nlength_m = {}\nomega_deg_per_s = {}\ngravity_m_per_s2 = {}\n"
-            "\n[flip_map]\ncolumns = {}\nrows = {}\nduration_s = {}\ntolerance = {}\nchecked = {}\n",
-            list(release_.mass_kg), list(release_.length_m), list(release_.omega_deg_per_s),
-            text_of(release_.gravity_m_per_s2), columns_, rows_, spec_.duration, spec_.tolerance, checked_);
+        std::vector<std::string> rates;
+        for (const auto& rate : release_.omega_deg_per_s) rates.push_back(text_of(rate));
+        return resolved_chain(release_) +
+               fmt::format(
+                   "omega_deg_per_s = [{}]\n\n[flip_map]\ncolumns = {}\nrows = {}\nduration_s = {}\ntolerance = {}\n"
+                   "checked = {}\n",
+                   fmt::join(rates, ", "), columns_, rows_, spec_.duration, spec_.tolerance, checked_);
     }
 
 private:

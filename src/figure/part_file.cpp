@@ -37,6 +37,18 @@ bool read_line(std::string_view line, KnownTrials& trials) {
     return true;
 }
 
+/// Throws what the library does where the keys are not there.
+PartHeader header_from(const Json& json) {
+    if (json.at("file") != mark) throw Json::other_error::create(0, "another file", nullptr);
+    return {json.at("figure"), json.at("version"), json.at("revision"), json.at("preset_sha256"),
+            json.at("trials"), json.at("shard"),   json.at("of")};
+}
+
+bool possible(const PartHeader& header) {
+    constexpr std::size_t most_trials = 100'000'000;
+    return header.trials > 0 && header.trials <= most_trials && header.shard >= 1 && header.shard <= header.of;
+}
+
 }  // namespace
 
 PartHeader header_of(const FigurePreset& figure, int shard, int of) {
@@ -56,13 +68,11 @@ PartFile read_part_file(const std::filesystem::path& path) {
     std::string line;
     std::getline(file, line);
     try {
-        const auto json = Json::parse(line);
-        if (json.at("file") != mark) throw unreadable(path, "is no file of trials");
-        part.header = {json.at("figure"), json.at("version"), json.at("revision"), json.at("preset_sha256"),
-                       json.at("trials"), json.at("shard"),   json.at("of")};
+        part.header = header_from(Json::parse(line));
     } catch (const nlohmann::json::exception&) {
         throw unreadable(path, "is no file of trials");
     }
+    if (!possible(part.header)) throw unreadable(path, "speaks of parts that cannot be");
     part.trials.resize(part.header.trials);
     // a last line without an end was being written
     while (std::getline(file, line) && !file.eof())

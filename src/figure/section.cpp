@@ -13,6 +13,10 @@ namespace {
 class Section final : public FigureWork {
 public:
     explicit Section(FigureReader& reader) : release_(reader.release()) {
+        auto system = reader.table("system");
+        for (const char* key : {"angle_deg", "omega_deg_per_s"})
+            if (system.has(key))
+                throw system.fault(key, "is not for a section, whose orbits start all over their energy");
         auto table = reader.table("section");
         if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
         table.read_positive_list("energy_J", energies_, 6);
@@ -30,7 +34,9 @@ public:
     void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             const auto& release = releases_[(first + i) / orbits()][(first + i) % orbits()];
-            for (const auto& point : poincare_section(release, spec_, stop))
+            const auto points = poincare_section(release, spec_, stop);
+            numbers[i].push_back(static_cast<double>(points.size()));
+            for (const auto& point : points)
                 numbers[i].insert(numbers[i].end(), {point.theta2, point.p2, point.time_s});
         }
     }
@@ -41,7 +47,7 @@ public:
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (std::size_t i = 0; i < numbers.size(); ++i)
-            for (std::size_t k = 0; k < numbers[i].size(); k += 3) {
+            for (std::size_t k = 1; k < numbers[i].size(); k += 3) {
                 table.add(energies_[i / orbits()]);
                 table.add(static_cast<long>(i % orbits()));
                 for (const std::size_t entry : {2, 0, 1}) table.add(numbers[i][k + entry]);
@@ -59,7 +65,7 @@ public:
             for (std::size_t orbit = 0; orbit < orbits(); ++orbit) {
                 const auto& points = numbers[panel * orbits() + orbit];
                 Curve curve{.mark = Mark::points, .hue = static_cast<int>(orbit)};
-                for (std::size_t k = 0; k < points.size(); k += 3) {
+                for (std::size_t k = 1; k < points.size(); k += 3) {
                     curve.x.push_back(points[k]);
                     curve.y.push_back(points[k + 1]);
                 }
@@ -70,13 +76,13 @@ public:
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
-        std::size_t points = 0;
-        for (const auto& orbit : numbers) points += orbit.size() / 3;
-        return {{"points", static_cast<double>(points)}};
+        double points = 0;
+        for (const auto& orbit : numbers) points += orbit.front();
+        return {{"points", points}};
     }
 
     std::string resolved() const override {
-        return resolved_release(release_) +
+        return resolved_chain(release_) +
                fmt::format("\n[section]\nenergy_J = [{}]\norbits = {}\ncrossings = {}\ntolerance = {}\n",
                            fmt::join(energies_, ", "), orbits_, spec_.crossings, spec_.tolerance);
     }

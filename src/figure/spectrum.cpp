@@ -22,6 +22,9 @@ public:
         table.read_positive("duration_s", spec_.duration_s);
         table.read_whole("samples", spec_.samples, 2, 100'000);
         table.read_positive("tolerance", spec_.tolerance);
+        constexpr double finest = 1e-14, coarsest = 1e-2;
+        if (spec_.tolerance < finest || spec_.tolerance > coarsest)
+            throw table.fault("tolerance", "must be from {} to {}; it is {}", finest, coarsest, spec_.tolerance);
         table.finish();
     }
 

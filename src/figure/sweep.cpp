@@ -21,15 +21,16 @@ struct Parameter {
     std::size_t links;  // that it takes
     void (*set)(SideSpec&, const Quad&);
     double every;  // between ticks; 0 = as fits
+    bool positive = false;
 };
 
 constexpr std::array parameters{
     Parameter{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& side, const Quad& x) { side.angle_deg[0] = x; }, 30},
     Parameter{"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& side, const Quad& x) { side.angle_deg[1] = x; }, 30},
     Parameter{"mass_ratio", "mass ratio m₁/m₂", 2,
-              [](SideSpec& side, const Quad& x) { side.mass_kg[0] = x * side.mass_kg[1]; }, 0},
+              [](SideSpec& side, const Quad& x) { side.mass_kg[0] = x * side.mass_kg[1]; }, 0, true},
     Parameter{"length_ratio", "length ratio l₁/l₂", 2,
-              [](SideSpec& side, const Quad& x) { side.length_m[0] = x * side.length_m[1]; }, 0}};
+              [](SideSpec& side, const Quad& x) { side.length_m[0] = x * side.length_m[1]; }, 0, true}};
 
 /// The study's sweeps: twins released over a range of one parameter, and how far apart they come on average.
 class Sweep final : public FigureWork {
@@ -48,13 +49,11 @@ public:
         table.read_number("to", to_);
         table.read_positive("step", step_);
         table.read_number("difference", difference_);
-        constexpr long most = 10'000'000;
-        const Quad count = (to_ - from_) / step_;
-        if (!(count >= 0 && count < most))
-            throw table.fault("to", "must be \"from\" and at most {} steps more; it is {}", most, text_of(to_));
-        trials_ = static_cast<std::size_t>(std::lround(static_cast<double>(count))) + 1;
+        check_range(table);
         table.read_truth("exponent", exponent_);
         if (exponent_) {
+            if (pair_.a.is_mechanism())
+                throw table.fault("exponent", "is that of a plain chain, without forces and constraints of its own");
             table.read_positive("exponent_duration_s", exponent_spec_.duration_s);
             exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
         }
@@ -151,6 +150,24 @@ public:
     }
 
 private:
+    /// Finds the number of trials.
+    void check_range(const TomlReader& table) {
+        constexpr long most = 10'000'000;
+        const Quad steps = (to_ - from_) / step_;
+        if (!(steps >= 0 && steps < most))
+            throw table.fault("to", "must be \"from\" and at most {} steps more; it is {}", most, text_of(to_));
+        const long whole = std::lround(static_cast<double>(steps));
+        constexpr double slack = 1e-12;  // of decimals that are no whole number of steps by rounding alone
+        if (std::abs(static_cast<double>(steps - Quad(static_cast<double>(whole)))) > slack)
+            throw table.fault("step", "must divide the way from {} to {}; it is {}", text_of(from_), text_of(to_),
+                              text_of(step_));
+        trials_ = static_cast<std::size_t>(whole) + 1;
+        if (!parameter_->positive) return;
+        if (from_ <= 0) throw table.fault("from", "must be > 0, as ratios are; it is {}", text_of(from_));
+        if (from_ + difference_ <= 0)
+            throw table.fault("difference", "must leave the twin's ratio > 0; it is {}", text_of(difference_));
+    }
+
     Quad value(std::size_t trial) const { return from_ + step_ * Quad(static_cast<double>(trial)); }
     bool shares_twins() const { return difference_ == step_; }
 

@@ -12,7 +12,7 @@
 
 namespace doppel {
 
-/// The numbers that one trial of a figure comes to; NaN where one could not be had.
+/// The numbers that one trial of a figure comes to, at least one; NaN where one could not be had.
 using TrialNumbers = std::vector<double>;
 
 /// What a figure has to say about itself beside its table: a key of the manifest.

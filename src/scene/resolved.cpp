@@ -67,10 +67,14 @@ std::string part_toml(const std::string& side, const char* what, const PartSpec&
     return text;
 }
 
+std::string links_toml(const SideSpec& side) {
+    return fmt::format("links = {}\nmass_kg = {}\nlength_m = {}\n", side.links(), numbers(side.mass_kg),
+                       numbers(side.length_m));
+}
+
 std::string chain_toml(const SideSpec& side) {
-    return fmt::format("links = {}\nmass_kg = {}\nlength_m = {}\nangle_deg = {}\nomega_deg_per_s = {}\n", side.links(),
-                       numbers(side.mass_kg), numbers(side.length_m), numbers(side.angle_deg),
-                       numbers(side.omega_deg_per_s));
+    return links_toml(side) + fmt::format("angle_deg = {}\nomega_deg_per_s = {}\n", numbers(side.angle_deg),
+                                          numbers(side.omega_deg_per_s));
 }
 
 /// [a] or [b] with everything in it.
@@ -107,6 +111,10 @@ std::string resolved_sides(const Preset& preset, const std::string& above) {
 
 std::string resolved_release(const SideSpec& side) {
     return fmt::format("\n[system]\n{}gravity_m_per_s2 = {}\n", chain_toml(side), text_of(side.gravity_m_per_s2));
+}
+
+std::string resolved_chain(const SideSpec& side) {
+    return fmt::format("\n[system]\n{}gravity_m_per_s2 = {}\n", links_toml(side), text_of(side.gravity_m_per_s2));
 }
 
 std::string resolved_toml(const Preset& preset) {

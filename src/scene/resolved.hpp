@@ -17,6 +17,9 @@ std::string resolved_sides(const Preset& preset, const std::string& above = "");
 /// [system] where only a chain and its release matter.
 std::string resolved_release(const SideSpec& side);
 
+/// The same without the release.
+std::string resolved_chain(const SideSpec& side);
+
 /// A basic TOML string, with its quotes.
 std::string toml_text(const std::string& text);
 

@@ -262,7 +262,8 @@ std::vector<const toml::table*> TomlReader::read_tables(std::string_view key) {
     if (!node) return tables;
     const auto* array = node->as_array();
     if (!array || !array->is_array_of_tables())
-        throw fault(key, "must be written as [[{}.{}]] tables; {}", bare_name(), key, found(*node));
+        throw fault(key, "must be written as [[{}{}{}]] tables; {}", bare_name(), name_.empty() ? "" : ".", key,
+                    found(*node));
     for (const auto& element : *array) tables.push_back(element.as_table());
     return tables;
 }

@@ -57,7 +57,9 @@ public:
     void read_pair(std::string_view key, std::array<Quad, 2>& into);
     bool is_text(std::string_view key);
     /// The name without brackets, "system".
-    std::string_view bare_name() const { return std::string_view(name_).substr(1, name_.size() - 2); }
+    std::string_view bare_name() const {
+        return name_.empty() ? name_ : std::string_view(name_).substr(1, name_.size() - 2);
+    }
     /// A reader of a table inside this one, for errors called `name`.
     TomlReader inner(const toml::table* table, std::string name) const {
         return {table, std::move(name), path_, *texts_};

@@ -1,13 +1,8 @@
-#include "output/fixtures.hpp"
+#include "cli/process.hpp"
 #include "output/png.hpp"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -20,53 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
+using test::doppel;
 using test::fresh_folder;
-
-/// Starts the program in `folder`; standard output and error go to files there.
-pid_t start(const fs::path& folder, const std::vector<std::string>& arguments,
-            const std::function<void()>& prepare = {}) {
-    const pid_t child = fork();
-    if (child != 0) return child;
-    if (chdir(folder.c_str()) != 0) _exit(99);
-    const int out = open("stdout", O_CREAT | O_TRUNC | O_WRONLY, 0644),
-              err = open("stderr", O_CREAT | O_TRUNC | O_WRONLY, 0644);
-    dup2(out, STDOUT_FILENO);
-    dup2(err, STDERR_FILENO);
-    if (prepare) prepare();
-    std::vector<char*> argv{const_cast<char*>(DOPPEL_PROGRAM)};
-    for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-    argv.push_back(nullptr);
-    execv(DOPPEL_PROGRAM, argv.data());
-    _exit(98);
-}
-
-int wait_for(pid_t child) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
-
-struct Outcome {
-    int code;
-    std::string out, err;
-};
-
-Outcome doppel(const fs::path& folder, const std::vector<std::string>& arguments,
-               const std::function<void()>& prepare = {}) {
-    const int code = wait_for(start(folder, arguments, prepare));
-    return {code, bytes_of(folder / "stdout"), bytes_of(folder / "stderr")};
-}
-
-bool left_nothing(const fs::path& folder) {
-    return !fs::exists(folder / "out") || fs::is_empty(folder / "out");
-}
+using test::left_nothing;
+using test::start;
+using test::wait_for;
+using test::with;
 
 const std::vector<std::string> tiny{"--set", "scene.duration_s=0.1", "--size", "160x90", "--progress", "none"};
-
-std::vector<std::string> with(std::vector<std::string> command, const std::vector<std::string>& more) {
-    command.insert(command.end(), more.begin(), more.end());
-    return command;
-}
 
 TEST(Program, RendersAPresetByNameAndByPath) {
     const auto folder = fresh_folder();

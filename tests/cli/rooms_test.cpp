@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 // Who may include whom: dependencies run one way.
 //     numeric ← physics ← integrate ← analysis ┐
-//     numeric ← picture ← output ──────────────┴← scene ← cli ← main
+//     numeric ← picture ← output ──────────────┴← scene ← figure ← cli ← main
 const std::map<std::string, std::set<std::string>> needs{
     {"numeric", {}},
     {"physics", {"numeric"}},
@@ -22,7 +22,8 @@ const std::map<std::string, std::set<std::string>> needs{
     {"picture", {"numeric"}},
     {"output", {"picture", "numeric"}},
     {"scene", {"analysis", "integrate", "physics", "output", "picture", "numeric"}},
-    {"cli", {"scene", "analysis", "integrate", "physics", "output", "picture", "numeric"}},
+    {"figure", {"scene", "analysis", "integrate", "physics", "output", "picture", "numeric"}},
+    {"cli", {"figure", "scene", "analysis", "integrate", "physics", "output", "picture", "numeric"}},
 };
 
 /// Calls visit(file, room or system header) for every include in src.

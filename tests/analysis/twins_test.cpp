@@ -1,0 +1,192 @@
+#include "analysis/twins.hpp"
+
+#include "analysis/distance.hpp"
+#include "integrate/support.hpp"
+#include "numeric/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+constexpr long samples = 40;
+
+TwinRun both(EnsembleModel model, const std::string& method = "euler") {
+    const TwinSide side{model, method, 250};
+    return {.a = side, .b = side, .samples = samples};
+}
+
+std::vector<double> averages_of(const std::vector<Twins>& twins, const TwinRun& run, int width = 0) {
+    std::vector<double> averages(twins.size(), -1);
+    const std::atomic<bool> never = false;
+    average_log_ratios(twins, run, averages, never, width);
+    return averages;
+}
+
+Course course_of(const Pendulum<double>& p, const TwinSide& side) {
+    auto spec = stepping(side.model == EnsembleModel::angles ? Model::angles : Model::constraints, side.method, p, 120);
+    spec.steps_per_sample = side.steps_per_sample;
+    return Course(spec);
+}
+
+/// The same mean from two motions of the films, each stepped alone.
+double average_of_films(const Twins& twins, const TwinRun& run) {
+    auto a = course_of(twins.a, run.a), b = course_of(twins.b, run.b);
+    const double start = state_space_distance(a.observe().bobs, b.observe().bobs);
+    double sum = 0;
+    long counted = 0;
+    for (long n = 1; n <= run.samples; ++n)
+        if (const auto ratio = log_ratio(state_space_distance(a.advance(1).bobs, b.advance(1).bobs), start)) {
+            sum += *ratio;
+            ++counted;
+        }
+    return sum / static_cast<double>(counted);
+}
+
+/// Twins apart in an angle, in a mass, in everything; as many as fill no register evenly.
+std::vector<Twins> some_twins(std::size_t count = 13) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> some(0.5, 2), angle(-3, 3);
+    std::vector<Twins> all;
+    for (std::size_t i = 0; i < count; ++i) {
+        Pendulum<double> p;
+        p.mass = {some(random), some(random)};
+        p.length = {some(random), some(random)};
+        p.angle = {angle(random), angle(random)};
+        p.rate = {angle(random), angle(random)};
+        p.gravity = 5 * some(random);
+        Twins twins{p, p};
+        if (i % 3 != 1) twins.b.angle[0] += 1e-4;
+        if (i % 3 != 0) twins.b.mass[0] *= 1.01;
+        all.push_back(twins);
+    }
+    return all;
+}
+
+void expect_as_films(const TwinRun& run) {
+    const auto twins = some_twins();
+    const auto averages = averages_of(twins, run);
+    for (std::size_t i = 0; i < twins.size(); ++i)
+        EXPECT_EQ(averages[i], average_of_films(twins[i], run)) << run.a.method << ", twins " << i;
+}
+
+TEST(Twins, AverageAsTheFilmsToTheLastBit) {
+    for (const auto model : {EnsembleModel::angles, EnsembleModel::constraints})
+        for (const char* method : {"euler", "rk4"}) expect_as_films(both(model, method));
+}
+
+TEST(Twins, MayDifferInTheirEquationsMethodsAndSteps) {
+    auto run = both(EnsembleModel::angles);
+    run.b = {EnsembleModel::constraints, "euler", 250};
+    expect_as_films(run);
+    run.b = {EnsembleModel::angles, "midpoint", 20};
+    expect_as_films(run);
+
+    // one pendulum in two formulations starts as one: there is no ratio
+    const Twins one{released(50, 0), released(50, 0)};
+    run.b = {EnsembleModel::constraints, "euler", 250};
+    const auto start =
+        state_space_distance(course_of(one.a, run.a).observe().bobs, course_of(one.b, run.b).observe().bobs);
+    const double average = averages_of({one}, run).front();
+    if (start == 0)
+        EXPECT_TRUE(std::isnan(average)) << average;
+    else
+        EXPECT_EQ(average, average_of_films(one, run));
+}
+
+TEST(Twins, HaveTheSameBitsAtEveryWidthInAnyCompanyAndOrder) {
+    for (const auto model : {EnsembleModel::angles, EnsembleModel::constraints}) {
+        const auto run = both(model);
+        auto twins = some_twins();
+        const auto expected = averages_of(twins, run);
+        for (const int width : Ensemble::widths()) EXPECT_EQ(averages_of(twins, run, width), expected) << width;
+
+        std::reverse(twins.begin(), twins.end());
+        auto backwards = averages_of(twins, run);
+        std::reverse(backwards.begin(), backwards.end());
+        EXPECT_EQ(backwards, expected);
+        std::reverse(twins.begin(), twins.end());
+
+        for (const std::size_t together : {1u, 2u, 5u}) {
+            std::vector<double> pieces;
+            for (std::size_t first = 0; first < twins.size(); first += together) {
+                const auto last = std::min(first + together, twins.size());
+                for (const double average : averages_of(
+                         {twins.begin() + static_cast<long>(first), twins.begin() + static_cast<long>(last)}, run))
+                    pieces.push_back(average);
+            }
+            EXPECT_EQ(pieces, expected) << together << " at once";
+        }
+    }
+}
+
+TEST(Twins, ShareThePendulumsTheyHaveInCommon) {
+    const auto run = both(EnsembleModel::angles);
+    std::vector<Twins> chain;  // each one's twin is the next one's sibling
+    for (int i = 0; i < 9; ++i) chain.push_back({released(10 * i, 0), released(10 * (i + 1), 0)});
+    chain.push_back(chain[4]);
+    chain.push_back({chain[2].b, chain[2].a});
+    const auto averages = averages_of(chain, run);
+    for (std::size_t i = 0; i < chain.size(); ++i) EXPECT_EQ(averages[i], average_of_films(chain[i], run)) << i;
+    EXPECT_EQ(averages[9], averages[4]);
+    EXPECT_EQ(averages[10], averages[2]);
+}
+
+TEST(Twins, OfMoreLinksThanLanesTake) {
+    Pendulum<double> p{{1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}, {0.5, 0.4, 0.3, 0.2, 0.1}, {0, 0, 0, 0, 0}, 9.8};
+    Twins twins{p, p};
+    twins.b.angle[0] += 1e-4;
+    for (const auto model : {EnsembleModel::angles, EnsembleModel::constraints}) {
+        auto run = both(model);
+        run.samples = 5;
+        EXPECT_EQ(averages_of({twins}, run).front(), average_of_films(twins, run)) << static_cast<int>(model);
+    }
+}
+
+TEST(Twins, ThatAreOneHaveNoAverage) {
+    const auto run = both(EnsembleModel::constraints);
+    const Twins one{released(90, 90), released(90, 90)}, two{released(90, 90), released(91, 90)};
+    const auto averages = averages_of({one, two, one}, run);
+    EXPECT_TRUE(std::isnan(averages[0]));
+    EXPECT_EQ(averages[1], average_of_films(two, run));
+    EXPECT_TRUE(std::isnan(averages[2]));
+}
+
+TEST(Twins, ThatBreakDownHaveNoAverageAndSpoilNoOther) {
+    auto run = both(EnsembleModel::constraints);
+    run.a.steps_per_sample = run.b.steps_per_sample = 1;
+    run.sample_interval = 0.5;  // as the step: it flies apart
+    run.samples = 3000;
+    const Twins wild{released(170, 10), released(171, 10)}, still{released(0, 0), released(1e-9, 0)};
+    const auto averages = averages_of({wild, still}, run);
+    EXPECT_TRUE(std::isnan(averages[0])) << averages[0];
+    EXPECT_EQ(std::isnan(averages[1]), std::isnan(averages_of({still}, run)[0]));
+}
+
+TEST(Twins, StopSoon) {
+    auto run = both(EnsembleModel::angles);
+    run.samples = 10'000'000;
+    std::vector<double> averages(1);
+    std::atomic<bool> stop = false;
+    const std::jthread later([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        stop = true;
+    });
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        average_log_ratios(std::vector<Twins>{{released(90, 0), released(91, 0)}}, run, averages, stop);
+        FAIL() << "it went on";
+    } catch (const Error& fault) {
+        EXPECT_EQ(fault.code(), ExitCode::interrupted);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));  // measured 0.05 s
+}
+
+}  // namespace
+}  // namespace doppel

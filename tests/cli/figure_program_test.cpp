@@ -1,0 +1,267 @@
+#include "cli/process.hpp"
+#include "output/png.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <sstream>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::doppel;
+using test::fresh_folder;
+using test::left_nothing;
+using test::shell;
+using test::start;
+using test::wait_for;
+using test::with;
+
+const std::vector<std::string> small{"--set",  "sweep.to=9", "--set",      "scene.duration_s=0.5",
+                                     "--size", "320x180",    "--progress", "none"};
+
+/// A map of some 2 s of one core.
+const std::vector<std::string> long_map{
+    "figure", "flip-map", "--set", "flip_map.columns=400", "--set", "flip_map.rows=400", "--set", "flip_map.checked=0",
+    "--size", "320x320"};
+
+/// Waits for a file.
+bool appears(const fs::path& file) {
+    for (int i = 0; i < 20'000 && !fs::exists(file); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return fs::exists(file);
+}
+
+bool contains(const std::string& text, const std::string& words) {
+    return text.find(words) != std::string::npos;
+}
+
+TEST(FigureProgram, DrawsByNameAndByPath) {
+    const auto folder = fresh_folder();
+    test::write_bytes(folder / "mine.toml", bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/figures/fig4-right.toml"));
+    const auto result =
+        doppel(folder, with({"figure", "fig2-right", "./mine.toml", "-o", "figures", "--scale", "2"}, small));
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    for (const char* file :
+         {"fig2-right/fig2-right.png", "fig2-right/fig2-right.csv", "fig2-right/fig2-right.json", "mine/mine.png"}) {
+        EXPECT_TRUE(fs::exists(folder / "figures" / file)) << file;
+        EXPECT_TRUE(contains(result.out, std::string("figures/") + file)) << result.out;
+    }
+    EXPECT_EQ(read_png(folder / "figures/mine/mine.png").size, (Size{640, 360}));
+}
+
+TEST(FigureProgram, IsListedCheckedAndExplained) {
+    const auto folder = fresh_folder();
+    EXPECT_TRUE(contains(doppel(folder, {"list"}).out, "fig2-right"));
+    EXPECT_EQ(doppel(folder, {"show", "fig6"}).out,
+              bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/figures/fig6.toml"));
+    const auto check = doppel(folder, with({"check", "fig2-right"}, {"--set", "sweep.to=9"}));
+    EXPECT_EQ(check.code, 0) << check.err;
+    EXPECT_TRUE(contains(check.out, "10 pairs")) << check.out;
+    const auto help = doppel(folder, {"figure", "--help"}).out;
+    for (const char* words : {"--shard", "--merge", "--scale", "--jobs"}) EXPECT_TRUE(contains(help, words)) << words;
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(FigureProgram, ExitsWith2OnBadUsageAndWritesNothing) {
+    const auto folder = fresh_folder();
+    test::write_bytes(folder / "bad.toml", "[scene]\nkind = \"sweep\"\n[sweep]\nstep = 0\n");
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+        {{"figure"}, "PRESET is required"},
+        {{"figure", "fig2-rihgt"}, "there is no preset \"fig2-rihgt\"; did you mean \"fig2-right\"?"},
+        {{"figure", "butterfly"}, "doppel render butterfly"},
+        {{"render", "fig2-right"}, "doppel figure fig2-right"},
+        {{"simulate", "fig2-right"}, "doppel figure fig2-right"},
+        {{"figure", "bad.toml"}, "bad.toml:4:1: [sweep] step must be > 0; it is 0"},
+        {{"figure", "fig6", "fig6"}, "would both be written to fig6/"},
+        {{"figure", "all", "fig6"}, "would both be written to fig6/"},
+        {{"figure", "fig6", "--shard", "0/3"}, "--shard wants I/N"},
+        {{"figure", "fig6", "--shard", "4/3"}, "\"4/3\""},
+        {{"figure", "fig6", "--shard", "x"}, "\"x\""},
+        {{"figure", "fig6", "--shard", "1/0"}, "\"1/0\""},
+        {{"figure", "fig6", "--shard", "-1/2"}, "--shard"},
+        {{"figure", "fig6", "--shard", "1/2/3"}, "\"1/2/3\""},
+        {{"figure", "fig6", "--shard", "1.0/2"}, "\"1.0/2\""},
+        {{"figure", "fig6", "--shard", "1/9999999999999999999"}, "--shard"},
+        {{"figure", "fig6", "--shard", "1/2", "--merge"}, "--shard makes a part and --merge joins them"},
+        {{"figure", "fig6", "--merge"}, "--shard I/N"},
+        {{"figure", "fig6", "--size", "wide"}, "--size wants WIDTHxHEIGHT"},
+        {{"figure", "fig6", "--scale", "0"}, "--scale"},
+        {{"figure", "fig6", "--scale", "2", "--set", "chart.scale=3"}, "chart.scale is given twice"},
+        {{"figure", "fig6", "--jobs", "0"}, "--jobs"},
+        {{"figure", "poincare", "--set", "system.integrator=\"rk4\""}, "[system] has no \"integrator\""},
+    };
+    for (const auto& [arguments, words] : cases) {
+        const auto result = doppel(folder, arguments);
+        EXPECT_EQ(result.code, 2) << words << "\n" << result.err;
+        EXPECT_EQ(result.err.rfind("doppel: ", 0), 0u) << result.err;
+        EXPECT_TRUE(contains(result.err, words)) << result.err;
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+        EXPECT_EQ(result.out, "");
+    }
+    EXPECT_TRUE(left_nothing(folder));
+}
+
+TEST(FigureProgram, ReportsProgressAsJson) {
+    const auto folder = fresh_folder();
+    const auto result = doppel(folder, {"figure", "fig2-right", "--set", "sweep.to=9", "--set", "scene.duration_s=0.5",
+                                        "--size", "320x180", "--progress", "json"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(result.err, "");
+    nlohmann::json event;
+    std::istringstream lines(result.out);
+    for (std::string line; std::getline(lines, line);) event = nlohmann::json::parse(line);
+    EXPECT_EQ(event["event"], "done");
+    EXPECT_EQ(event["unit"], "pairs");
+    EXPECT_EQ(event["done"], 10);
+    EXPECT_EQ(event["files"].size(), 3u);
+}
+
+TEST(FigureProgram, ExitsWith4WhereNothingCanBeWritten) {
+    const auto folder = fresh_folder();
+    test::write_bytes(folder / "taken", "a file");
+    const auto taken = doppel(folder, with({"figure", "fig2-right", "-o", "taken"}, small));
+    EXPECT_EQ(taken.code, 4);
+    EXPECT_TRUE(contains(taken.err, "taken")) << taken.err;
+    EXPECT_EQ(bytes_of(folder / "taken"), "a file");
+
+    fs::create_directories(folder / "out/fig2-right/fig2-right.csv");
+    const auto in_place = doppel(folder, with({"figure", "fig2-right"}, small));
+    EXPECT_EQ(in_place.code, 4);
+    EXPECT_TRUE(contains(in_place.err, "fig2-right.csv is a folder")) << in_place.err;
+    EXPECT_FALSE(fs::exists(folder / "out/fig2-right/fig2-right.png"));
+}
+
+TEST(FigureProgram, ExitsWith130WithinASecondOfCtrlC) {
+    const auto folder = fresh_folder();
+    const auto child = start(folder, {"figure", "fig6", "droplet", "--progress", "none"});
+    EXPECT_TRUE(appears(folder / "out/fig6/fig6.json"));
+    const auto asked = std::chrono::steady_clock::now();
+    kill(child, SIGINT);
+    EXPECT_EQ(wait_for(child), 130);
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1));  // measured 0.05 s
+    EXPECT_EQ(bytes_of(folder / "stderr").rfind("doppel: interrupted", 0), 0u);
+    EXPECT_FALSE(fs::exists(folder / "out/droplet")) << "nothing of what was not complete";
+    EXPECT_TRUE(fs::exists(folder / "out/fig6/fig6.png")) << "all of what was";
+}
+
+/// A long run: what it has done stays, whatever ends it.
+class LongFigure : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fresh_folder();
+        child_ = start(folder_, with(long_map, {"--jobs", "1", "--progress", "none"}));
+        // held up in the middle until it counts as long: 2 s
+        while (cpu_s() < 0.5) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        kill(child_, SIGSTOP);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2050));
+        kill(child_, SIGCONT);
+        ASSERT_TRUE(appears(record_of(folder_)));
+    }
+
+    double cpu_s() const {
+        clockid_t clock{};
+        timespec time{};
+        if (clock_getcpuclockid(child_, &clock) != 0 || clock_gettime(clock, &time) != 0) return 1e9;
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+    static fs::path record_of(const fs::path& folder) { return folder / "out/flip-map/flip-map.resume"; }
+
+    void expect_record_alone() const {
+        EXPECT_TRUE(fs::exists(record_of(folder_)));
+        for (const char* file : {"flip-map.png", "flip-map.csv", "flip-map.json"})
+            EXPECT_FALSE(fs::exists(folder_ / "out/flip-map" / file)) << file;
+    }
+
+    fs::path folder_;
+    pid_t child_ = -1;
+};
+
+TEST_F(LongFigure, GoesOnAfterItWasKilled) {
+    kill(child_, SIGKILL);
+    EXPECT_EQ(wait_for(child_), -SIGKILL);
+    expect_record_alone();
+    const auto again = doppel(folder_, with(long_map, {"--jobs", "2", "--progress", "plain"}));
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_TRUE(contains(again.err, "goes on from out/flip-map/flip-map.resume: ")) << again.err;
+    EXPECT_FALSE(contains(again.err, ": 0 % is done")) << again.err;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out/flip-map"), {}), 3) << "the record has gone";
+
+    ASSERT_EQ(doppel(folder_, with(long_map, {"-o", "whole", "--progress", "none"})).code, 0);
+    for (const char* file : {"flip-map.csv", "flip-map.png"})
+        EXPECT_TRUE(bytes_of(folder_ / "out/flip-map" / file) == bytes_of(folder_ / "whole/flip-map" / file)) << file;
+}
+
+TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
+    kill(child_, SIGINT);
+    EXPECT_EQ(wait_for(child_), 130);
+    const auto said = bytes_of(folder_ / "stderr");
+    EXPECT_TRUE(contains(said, "doppel: interrupted; ")) << said;
+    EXPECT_TRUE(contains(said, "kept in out/flip-map/flip-map.resume: the same command goes on")) << said;
+    expect_record_alone();
+    // another preset does not
+    const auto other = doppel(folder_, with(long_map, {"--set", "flip_map.duration_s=0.1", "--progress", "plain"}));
+    EXPECT_EQ(other.code, 0) << other.err;
+    EXPECT_TRUE(contains(other.err, "belongs to another preset or version; starting anew")) << other.err;
+}
+
+// Recipes of the README, as shells run them.
+
+const std::string settings = " --set sweep.to=20 --set scene.duration_s=0.5 --size 320x180 --progress none";
+
+void expect_merged(const fs::path& folder) {
+    const auto merge = shell(folder, "\"$DOPPEL\" figure fig2-right --merge" + settings);
+    EXPECT_EQ(merge.code, 0) << merge.err;
+    EXPECT_EQ(shell(folder, "\"$DOPPEL\" figure fig2-right -o whole" + settings).code, 0);
+    for (const char* file : {"fig2-right.csv", "fig2-right.png"})
+        EXPECT_TRUE(bytes_of(folder / "out/fig2-right" / file) == bytes_of(folder / "whole/fig2-right" / file)) << file;
+}
+
+TEST(Recipe, SlurmArray) {
+    const auto folder = fresh_folder();
+    test::write_bytes(folder / "job.sh",
+                      "#!/bin/sh\n#SBATCH --array=1-3\n\"$DOPPEL\" figure fig2-right --shard "
+                      "\"$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT\"" +
+                          settings + "\n");
+    const auto jobs = shell(folder,
+                            "export SLURM_ARRAY_TASK_COUNT=3\n"
+                            "for i in 1 2 3; do SLURM_ARRAY_TASK_ID=$i sh job.sh & tasks=\"$tasks $!\"; done\n"
+                            "for task in $tasks; do wait $task || exit; done");
+    EXPECT_EQ(jobs.code, 0) << jobs.err;
+    for (int i = 1; i <= 3; ++i)
+        EXPECT_TRUE(contains(jobs.out, "out/fig2-right/fig2-right." + std::to_string(i) + "-of-3.shard")) << jobs.out;
+    expect_merged(folder);
+}
+
+TEST(Recipe, GnuParallel) {
+    const auto folder = fresh_folder();
+    // xargs where there is no parallel: it starts the same commands, {} replaced
+    const auto jobs = shell(folder,
+                            "if command -v parallel >/dev/null; then\n"
+                            "    parallel --will-cite -j 4 \"$DOPPEL\" figure fig2-right --shard {}/8" +
+                                settings +
+                                " ::: $(seq 8)\n"
+                                "else\n"
+                                "    seq 8 | xargs -P 4 -I '{}' \"$DOPPEL\" figure fig2-right --shard '{}/8'" +
+                                settings +
+                                "\n"
+                                "fi");
+    EXPECT_EQ(jobs.code, 0) << jobs.err;
+    expect_merged(folder);
+}
+
+TEST(Recipe, FigureImagesInCi) {
+    const auto folder = fresh_folder();
+    const auto result =
+        shell(folder, "set -e\nfor name in fig2-right fig4-right; do \"$DOPPEL\" figure $name -o figures" + settings +
+                          "; done\ntest -s figures/fig4-right/fig4-right.png");
+    EXPECT_EQ(result.code, 0) << result.err;
+}
+
+}  // namespace
+}  // namespace doppel

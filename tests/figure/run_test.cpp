@@ -1,0 +1,252 @@
+#include "figure/run.hpp"
+
+#include "figure/support.hpp"
+#include "output/png.hpp"
+#include "output/sha256.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::expect_error;
+using test::fresh_folder;
+using test::write_bytes;
+
+const std::vector<std::string> small{"sweep.to=9", "scene.duration_s=0.5", "chart.size=[320, 180]"};
+
+FigurePreset small_sweep(std::vector<std::string> more = {}) {
+    more.insert(more.end(), small.begin(), small.end());
+    return figure_of("fig2-right", more);
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+nlohmann::json manifest_of(const fs::path& out, const std::string& name) {
+    return nlohmann::json::parse(bytes_of(out / name / (name + ".json")));
+}
+
+TEST(FigureRun, WritesPictureTableAndManifest) {
+    const auto out = fresh_folder();
+    const auto result = run_figure(small_sweep({"chart.scale=2"}), {.out = out});
+    EXPECT_EQ(names_in(out / "fig2-right"),
+              (std::vector<std::string>{"fig2-right.csv", "fig2-right.json", "fig2-right.png"}));
+    EXPECT_EQ(result.files.size(), 3u);
+    for (const auto& file : result.files) EXPECT_TRUE(fs::exists(file)) << file;
+    EXPECT_EQ(read_png(out / "fig2-right/fig2-right.png").size, (Size{640, 360}));
+    EXPECT_EQ(bytes_of(out / "fig2-right/fig2-right.csv"), table_text(small_sweep(), computed(small_sweep())));
+}
+
+TEST(FigureRun, ManifestTellsWhatTheFigureIs) {
+    const auto out = fresh_folder();
+    const auto figure = small_sweep({"sweep.exponent=true", "sweep.exponent_duration_s=10"});
+    run_figure(figure, {.out = out, .jobs = 2});
+    const auto manifest = manifest_of(out, "fig2-right");
+    EXPECT_EQ(manifest["figure"], "fig2-right");
+    EXPECT_EQ(manifest["kind"], "sweep");
+    EXPECT_EQ(manifest["title"], figure.title);
+    EXPECT_EQ(manifest["erratum"], figure.erratum);
+    EXPECT_FALSE(figure.erratum.empty());
+    EXPECT_EQ(manifest["trials"], 10);
+    EXPECT_EQ(manifest["threads"], 2);
+    EXPECT_EQ(manifest["resolved_preset"]["sweep"]["to"], 9);
+    EXPECT_EQ(manifest["resolved_preset"]["a"]["integrator"], "euler");
+    EXPECT_FALSE(manifest["doppel"]["version"].get<std::string>().empty());
+    EXPECT_FALSE(manifest["libraries"]["gl"].get<std::string>().empty());
+
+    const Table table(table_text(figure, computed(figure)));
+    double least = table.rows[0][1], most = least;
+    for (const auto& row : table.rows) {
+        least = std::min(least, row[1]);
+        most = std::max(most, row[1]);
+    }
+    EXPECT_EQ(manifest["findings"]["least_average_log_ratio"], least);
+    EXPECT_EQ(manifest["findings"]["greatest_average_log_ratio"], most);
+}
+
+TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
+    const auto out = fresh_folder();
+    run_figure(small_sweep(), {.out = out});
+    const auto files = manifest_of(out, "fig2-right")["files"];
+    EXPECT_EQ(files.size(), 2u);
+    for (const auto& [name, facts] : files.items()) {
+        const auto bytes = bytes_of(out / "fig2-right" / name);
+        EXPECT_EQ(facts["bytes"], bytes.size()) << name;
+        EXPECT_EQ(facts["sha256"], sha256_of_text(bytes)) << name;
+    }
+}
+
+TEST(FigureRun, ManifestHasNullForWhatIsNoNumber) {
+    const auto out = fresh_folder();
+    run_figure(small_sweep({"sweep.difference=0"}), {.out = out});
+    EXPECT_TRUE(manifest_of(out, "fig2-right")["findings"]["greatest_average_log_ratio"].is_null());
+}
+
+TEST(FigureRun, MakesSeveralOfSeveralSizes) {
+    const auto out = fresh_folder();
+    const auto one = small_sweep(), other = figure_of("fig6", {"scene.duration_s=1", "chart.size=[480, 270]"}),
+               third = figure_of("fig4-right", small);
+    Said said;
+    const std::atomic<bool> never = false;
+    run_figures({one, other, third}, {.out = out, .jobs = 3}, never, said.run_report());
+    EXPECT_EQ(said.results.size(), 3u);
+    for (const auto* figure : {&one, &other, &third}) {
+        const auto base = (out / figure->name / figure->name).string();
+        EXPECT_EQ(bytes_of(base + ".csv"), table_text(*figure, computed(*figure)));
+        EXPECT_EQ(read_png(base + ".png").size, figure->chart.size);
+        const auto alone = out / "alone";
+        run_figure(*figure, {.out = alone});
+        EXPECT_TRUE(bytes_of(base + ".png") == bytes_of(alone / figure->name / (figure->name + ".png"))) << base;
+    }
+}
+
+TEST(FigureRun, LeavesNothingWhereItIsStopped) {
+    const auto out = fresh_folder() / "out";
+    Said said;
+    const std::atomic<bool> stop = true;
+    expect_error(ExitCode::interrupted, {"interrupted"}, [&] {
+        run_figures({small_sweep(), figure_of("fig6")}, {.out = out}, stop, said.run_report());
+    });
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+}
+
+TEST(FigureRun, LeavesNothingOnAFullDisk) {
+    const auto out = fresh_folder() / "out";
+    {
+        const test::FullDisk disk(3000);
+        expect_error(ExitCode::io_failed, {"out/fig2-right"}, [&] { run_figure(small_sweep(), {.out = out}); });
+    }
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+}
+
+TEST(FigureRun, LeavesTheFilesOfARunBeforeWhereItFails) {
+    const auto out = fresh_folder();
+    run_figure(small_sweep(), {.out = out});
+    const auto table = bytes_of(out / "fig2-right/fig2-right.csv");
+    Said said;
+    const std::atomic<bool> stop = true;
+    EXPECT_THROW(run_figures({small_sweep({"sweep.step=3"})}, {.out = out}, stop, said.run_report()), Error);
+    EXPECT_EQ(bytes_of(out / "fig2-right/fig2-right.csv"), table);
+    EXPECT_EQ(names_in(out / "fig2-right").size(), 3u);
+}
+
+TEST(FigureRun, FailsWhereAMethodBreaksDown) {
+    const auto out = fresh_folder() / "out";
+    const auto figure = figure_of("fig4-left", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000"});
+    expect_error(ExitCode::method_failed, {}, [&] { run_figure(figure, {.out = out}); });
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+}
+
+// Parts.
+
+class Merge : public testing::Test {
+protected:
+    void SetUp() override {
+        out_ = fresh_folder();
+        folder_ = out_ / "fig2-right";
+        for (int i = 1; i <= 3; ++i) run_figure(small_sweep(), {.out = out_, .shard = Shard{i, 3}});
+    }
+    fs::path part(int i) const { return folder_ / fmt::format("fig2-right.{}-of-3.shard", i); }
+
+    void expect_refused(ExitCode code, const std::vector<std::string>& words, const FigurePreset& figure) const {
+        const auto before = names_in(folder_);
+        expect_error(code, words, [&] { run_figure(figure, {.out = out_, .merge = true}); });
+        EXPECT_EQ(names_in(folder_), before);
+    }
+    /// Words of a part's header replaced.
+    void edit(int i, const std::string& from, const std::string& to) const {
+        auto bytes = bytes_of(part(i));
+        const auto at = bytes.find(from);
+        ASSERT_LT(at, bytes.find('\n')) << bytes;
+        write_bytes(part(i), bytes.replace(at, from.size(), to));
+    }
+
+    fs::path out_, folder_;
+};
+
+TEST_F(Merge, JoinsWhatIsThereAndComputesNothing) {
+    EXPECT_EQ(names_in(folder_), (std::vector<std::string>{"fig2-right.1-of-3.shard", "fig2-right.2-of-3.shard",
+                                                           "fig2-right.3-of-3.shard"}));
+    const auto result = run_figure(small_sweep(), {.out = out_, .merge = true});
+    EXPECT_EQ(result.samples, 0);
+    EXPECT_EQ(bytes_of(folder_ / "fig2-right.csv"), table_text(small_sweep(), computed(small_sweep())));
+    EXPECT_TRUE(fs::exists(folder_ / "fig2-right.png"));
+    // another picture of the same numbers
+    run_figure(small_sweep({"chart.theme=\"dark\""}), {.out = out_, .merge = true});
+}
+
+TEST_F(Merge, NamesThePartsThatAreMissing) {
+    fs::remove(part(2));
+    expect_refused(ExitCode::bad_input, {"missing", "2/3"}, small_sweep());
+    fs::remove(part(3));
+    expect_refused(ExitCode::bad_input, {"missing", "2/3, 3/3"}, small_sweep());
+    fs::remove(part(1));
+    expect_refused(ExitCode::bad_input, {"holds no part of fig2-right", "--shard"}, small_sweep());
+}
+
+TEST_F(Merge, RefusesPartsOfAnotherPreset) {
+    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"sweep.difference=0.004"}));
+    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"sweep.step=0.5"}));
+}
+
+TEST_F(Merge, RefusesPartsOfAnotherVersionOrRevision) {
+    edit(2, "\"version\":\"", "\"version\":\"9");
+    expect_refused(ExitCode::bad_input, {part(2).string(), "another version: 9", "--shard 2/3"}, small_sweep());
+    edit(2, "\"version\":\"9", "\"version\":\"");
+    edit(3, "\"revision\":\"", "\"revision\":\"x");
+    expect_refused(ExitCode::bad_input, {part(3).string(), "another revision: x", "--shard 3/3"}, small_sweep());
+    edit(3, "\"revision\":\"x", "\"revision\":\"");
+    edit(3, "\"figure\":\"fig2", "\"figure\":\"fig4");
+    expect_refused(ExitCode::bad_input, {part(3).string(), "another figure: fig4-right"}, small_sweep());
+}
+
+TEST_F(Merge, RefusesPartsOfDifferentNumbers) {
+    run_figure(small_sweep(), {.out = out_, .shard = Shard{2, 4}});
+    expect_refused(ExitCode::bad_input, {"fig2-right.2-of-4.shard", "remove those that do not belong"}, small_sweep());
+}
+
+TEST_F(Merge, RefusesAPartThatIsCut) {
+    const auto bytes = bytes_of(part(2));
+    write_bytes(part(2), bytes.substr(0, bytes.size() - 1));
+    expect_refused(ExitCode::io_failed, {part(2).string(), "not whole", "--shard 2/3"}, small_sweep());
+    write_bytes(part(2), "my diary");
+    expect_refused(ExitCode::io_failed, {part(2).string()}, small_sweep());
+}
+
+TEST_F(Merge, IgnoresPartsOfOtherNames) {
+    write_bytes(folder_ / "fig2-right-mine.1-of-2.shard", "my diary");
+    write_bytes(folder_ / "fig2-right.1-of-3.shard.part", "cut");
+    run_figure(small_sweep(), {.out = out_, .merge = true});
+    EXPECT_TRUE(fs::exists(folder_ / "fig2-right.csv"));
+}
+
+TEST(MergeOfNothing, SaysHowToMakeParts) {
+    const auto out = fresh_folder() / "out";
+    expect_error(ExitCode::bad_input, {"fig2-right", "--shard I/N"},
+                 [&] { run_figure(small_sweep(), {.out = out, .merge = true}); });
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+}
+
+/// An orbit may never come back to the section; it has no points, and is computed nonetheless.
+TEST(MergeOfNothing, KnowsTrialsWithoutNumbers) {
+    const auto out = fresh_folder();
+    const auto figure = figure_from(
+        "[scene]\nkind = \"section\"\n[system]\ngravity_m_per_s2 = 1e-9\n[section]\nenergy_J = [1e-6]\n"
+        "orbits = 2\ncrossings = 1\n[chart]\nsize = [320, 180]");
+    const auto trials = computed(figure);
+    const bool any_empty = std::any_of(trials.begin(), trials.end(), [](const auto& t) { return t.empty(); });
+    for (int i = 1; i <= 2; ++i) run_figure(figure, {.out = out, .shard = Shard{i, 2}});
+    run_figure(figure, {.out = out, .merge = true});
+    EXPECT_EQ(bytes_of(out / "x/x.csv"), table_text(figure, trials)) << any_empty;
+}
+
+}  // namespace
+}  // namespace doppel

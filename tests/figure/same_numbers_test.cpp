@@ -1,0 +1,116 @@
+#include "figure/support.hpp"
+#include "output/png.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::fresh_folder;
+
+// A figure's numbers are the same to the bit whoever computes them, in whatever pieces.
+
+struct Case {
+    const char* name;
+    std::vector<std::string> sets;
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+    *out << c.name;
+}
+
+class SameNumbers : public testing::TestWithParam<Case> {
+protected:
+    FigurePreset figure() const {
+        auto arguments = GetParam().sets;
+        arguments.emplace_back("chart.size=[480, 270]");
+        return figure_of(GetParam().name, arguments);
+    }
+};
+
+/// What a run leaves: table and picture.
+std::pair<std::string, std::string> table_and_picture(const fs::path& out, const FigurePreset& figure) {
+    const auto base = out / figure.name / figure.name;
+    return {bytes_of(base.string() + ".csv"), bytes_of(base.string() + ".png")};
+}
+
+TEST_P(SameNumbers, WithAnyNumberOfThreads) {
+    const auto figure = this->figure();
+    const auto one = computed(figure, 1);
+    const auto table = table_text(figure, one);
+    EXPECT_GT(table.size(), 100u);
+    for (const int jobs : {2, 5}) EXPECT_EQ(table_text(figure, computed(figure, jobs)), table) << jobs;
+}
+
+TEST_P(SameNumbers, InAnyGroups) {
+    const auto figure = this->figure();
+    const auto expected = table_text(figure, computed(figure));
+    const std::atomic<bool> never = false;
+    for (const std::size_t together : {1u, 3u, 1000u}) {
+        KnownTrials trials(figure.work->trials());
+        const auto groups = (trials.size() + together - 1) / together;
+        for (std::size_t g = groups; g-- > 0;) {  // the last ones first
+            const auto first = g * together, last = std::min(first + together, trials.size());
+            figure.work->compute(first, std::span(trials).subspan(first, last - first), never);
+        }
+        EXPECT_EQ(table_text(figure, trials), expected) << together << " at once";
+    }
+}
+
+TEST_P(SameNumbers, AfterAMergeOfAnyParts) {
+    const auto figure = this->figure();
+    const auto folder = fresh_folder();
+    run_figure(figure, {.out = folder / "whole", .jobs = 1});
+    const auto expected = table_and_picture(folder / "whole", figure);
+    for (const int of : {1, 3, static_cast<int>(figure.work->trials()) + 2}) {  // the last with parts of nothing
+        const auto out = folder / std::to_string(of);
+        for (int i = of; i >= 1; --i) run_figure(figure, {.out = out, .jobs = 1 + i % 2, .shard = Shard{i, of}});
+        run_figure(figure, {.out = out, .merge = true});
+        const auto merged = table_and_picture(out, figure);
+        EXPECT_EQ(merged.first, expected.first) << of;
+        EXPECT_TRUE(merged.second == expected.second) << "the picture after a merge of " << of;
+    }
+}
+
+TEST_P(SameNumbers, FromTheResolvedPreset) {
+    const auto figure = this->figure();
+    const auto again = read_figure({figure.name, "resolved.toml", figure.resolved()});
+    EXPECT_EQ(again.resolved(), figure.resolved());
+    EXPECT_EQ(header_of(again), header_of(figure));
+    EXPECT_EQ(table_text(again, computed(again)), table_text(figure, computed(figure)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Figures, SameNumbers,
+    testing::Values(
+        Case{"fig2-right", {"sweep.step=15", "scene.duration_s=2"}},
+        Case{"fig3-right", {"sweep.to=0.19", "scene.duration_s=2"}}, Case{"fig6", {"scene.duration_s=2"}},
+        Case{"flip-map", {"flip_map.columns=40", "flip_map.rows=41", "flip_map.duration_s=3", "flip_map.checked=15"}},
+        Case{"poincare", {"section.energy_J=[9.8, 20]", "section.orbits=3", "section.crossings=10"}},
+        Case{"lyapunov-spectrum", {"spectrum.duration_s=5", "spectrum.samples=10"}},
+        Case{"why-they-part",
+             {"scene.duration_s=0.5", "convergence.methods=[\"euler\", \"dop853\"]", "convergence.halvings=4",
+              "convergence.quad_halvings=2", "convergence.decades=4", "convergence.quad_decades=3"}}),
+    [](const auto& parameter) {
+        std::string name = parameter.param.name;
+        std::replace(name.begin(), name.end(), '-', '_');
+        return name;
+    });
+
+/// The mirror image of a row is not computed: with a push that is none, every row is, and says the same.
+TEST(FlipMap, MirroredRowsAreThoseComputed) {
+    const std::vector<std::string> small{"flip_map.columns=16", "flip_map.rows=15", "flip_map.duration_s=4",
+                                         "flip_map.checked=0"};
+    const auto figure = figure_of("flip-map", small);
+    auto pushed = small;
+    pushed.emplace_back("system.omega_deg_per_s=[1e-300, 0]");
+    const auto whole = figure_of("flip-map", pushed);
+    EXPECT_EQ(figure.work->trials(), 8u);
+    EXPECT_EQ(whole.work->trials(), 15u);
+    EXPECT_EQ(table_text(figure, computed(figure)), table_text(whole, computed(whole)));
+}
+
+}  // namespace
+}  // namespace doppel

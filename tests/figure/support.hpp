@@ -1,0 +1,133 @@
+#pragma once
+
+#include "figure/run.hpp"
+#include "output/fixtures.hpp"
+#include "scene/support.hpp"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <sstream>
+
+namespace doppel {
+
+inline FigurePreset figure_of(const std::string& preset, const std::vector<std::string>& arguments = {}) {
+    return read_figure(find_preset(preset), sets(arguments));
+}
+
+inline FigurePreset figure_from(const std::string& text, const std::vector<std::string>& arguments = {}) {
+    return read_figure({"x", "presets/x.toml", text}, sets(arguments));
+}
+
+inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
+    const std::atomic<bool> never = false;
+    return compute_figure(figure, jobs, never);
+}
+
+/// The table as its file holds it.
+inline std::string table_text(const FigurePreset& figure, const KnownTrials& trials) {
+    const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("table-{}.csv", getpid());
+    std::filesystem::create_directories(path.parent_path());
+    Csv table(path, figure.work->columns());
+    figure.work->write_rows(trials, table);
+    table.finish();
+    auto text = test::bytes_of(path);
+    std::filesystem::remove(path);
+    return text;
+}
+
+/// A table read back; empty cells and words are not a number.
+struct Table {
+    std::vector<std::string> columns;
+    std::vector<std::vector<double>> rows;
+
+    explicit Table(const std::string& text) {
+        std::istringstream lines(text);
+        std::string line;
+        std::getline(lines, line);
+        columns = cells(line);
+        while (std::getline(lines, line)) {
+            auto& row = rows.emplace_back();
+            for (const auto& cell : cells(line)) {
+                row.push_back(std::numeric_limits<double>::quiet_NaN());
+                std::from_chars(cell.data(), cell.data() + cell.size(), row.back());
+            }
+        }
+    }
+
+    /// The column `value` where the first column is `key`.
+    double at(double key, std::size_t value) const {
+        for (const auto& row : rows)
+            if (row[0] == key) return row[value];
+        ADD_FAILURE() << "the table has no row " << key;
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+
+private:
+    static std::vector<std::string> cells(std::string line) {
+        if (line.ends_with('\r')) line.pop_back();
+        std::vector<std::string> all(1);
+        for (const char c : line)
+            if (c == ',')
+                all.emplace_back();
+            else
+                all.back() += c;
+        return all;
+    }
+};
+
+inline Table table_of(const FigurePreset& figure) {
+    return Table(table_text(figure, computed(figure)));
+}
+
+inline std::string header_line(const FigurePreset& figure) {
+    std::string line;
+    for (const auto& column : figure.work->columns()) line += (line.empty() ? "" : ",") + column;
+    return line;
+}
+
+/// What figures said on their way.
+struct Said {
+    std::vector<std::string> notes;
+    std::vector<FigureProgress> progress;
+    std::vector<RunResult> results;
+    std::mutex mutex;
+
+    /// Of one computation.
+    ComputationReport report() {
+        return {[this](const FigureProgress& p) { progress.push_back(p); },
+                [this](const std::string& sentence) { notes.push_back(sentence); }};
+    }
+    /// Of a run of figures, which may all speak at once.
+    FigureReport run_report() {
+        const auto add = [this](auto& list, const auto& what) {
+            const std::lock_guard hold(mutex);
+            list.push_back(what);
+        };
+        return {[this, add](std::size_t, const FigureProgress& p) { add(progress, p); },
+                [this, add](std::size_t, const std::string& sentence) { add(notes, sentence); },
+                [this, add](std::size_t, const RunResult& result) { add(results, result); }};
+    }
+    bool has(std::string_view words) const {
+        for (const auto& note : notes)
+            if (note.find(words) != std::string::npos) return true;
+        return false;
+    }
+};
+
+/// Makes one figure's files.
+inline RunResult run_figure(const FigurePreset& figure, const FigureOptions& options, Said& said) {
+    const std::atomic<bool> never = false;
+    run_figures({figure}, options, never, said.run_report());
+    return said.results.back();
+}
+
+inline RunResult run_figure(const FigurePreset& figure, const FigureOptions& options) {
+    Said said;
+    return run_figure(figure, options, said);
+}
+
+}  // namespace doppel
