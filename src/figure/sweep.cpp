@@ -219,8 +219,8 @@ private:
         for (std::size_t i = 0; i < trials_; ++i) {
             regular += is_regular({numbers[i][1], numbers[i][2]});
             if (numbers[i][1] == 0 || numbers[i][2] != 0) continue;
-            equilibria +=
-                fmt::format(" At {:g}, an unstable equilibrium, it is {:.2f} 1/s.", exponents.x[i], numbers[i][1]);
+            equilibria += fmt::format(" At {:g}{}, an unstable equilibrium, it is {:.2f} 1/s.", exponents.x[i],
+                                      parameter_->positive ? "" : "°", numbers[i][1]);
             exponents.y[i] = none;
         }
         return fmt::format(
