@@ -87,8 +87,8 @@ void print_figure(const FigurePreset& figure) {
                grouped(std::lround(units)), figure.work->unit(), grouped(static_cast<long>(figure.work->trials())));
     fmt::print("  chart  {}×{} px, {}\n", size.width, size.height, figure.chart.theme);
     const auto estimate = estimated_computation(figure, cores());
-    fmt::print("  takes  {} {:.2g} s on {} threads, {:.3g} {}/s\n", estimate.at_least ? "more than" : "about",
-               estimate.seconds, cores(), units / estimate.seconds, figure.work->unit());
+    fmt::print("  takes  {} {:.2g} s on {} threads, {} {}/s\n", estimate.at_least ? "more than" : "about",
+               estimate.seconds, cores(), roughly(units / estimate.seconds), figure.work->unit());
 }
 
 }  // namespace

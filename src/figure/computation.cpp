@@ -22,12 +22,6 @@ std::string duration_words(double seconds) {
     return seconds < 100 ? fmt::format("{:.2g} s", seconds) : fmt::format("{:.0f} min", std::ceil(seconds / 60));
 }
 
-/// With two digits: what is told by measuring knows no more.
-long rounded(double value) {
-    const double unit = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))) - 1);
-    return std::lround(unit < 1 ? value : std::round(value / unit) * unit);
-}
-
 }  // namespace
 
 Computation::Computation(const FigurePreset& figure, const PartHeader& header, std::filesystem::path record,
@@ -130,7 +124,7 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
 void Computation::tell_estimate(double time) {
     const double rate = computed_units_ / (time - start_s_), left = total_units_ - done_units_;
     report_.note(fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
-                             figure_.work->unit(), grouped(rounded(rate)), threads_, duration_words(left / rate)));
+                             figure_.work->unit(), roughly(rate), threads_, duration_words(left / rate)));
 }
 
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace doppel {
@@ -76,6 +77,13 @@ std::vector<Statement> statements(const SideSpec& spec, const SideSpec& other, c
         all.push_back({fmt::format("{} {} m/s", particle.name, place(particle.velocity_m_per_s))});
         all.push_back({fmt::format("{} {} kg", particle.name, text_of(particle.mass_kg))});
     }
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == "droplet"; };
+    const auto droplet = std::find_if(spec.forces.begin(), spec.forces.end(), is_droplet);
+    if (droplet != spec.forces.end())
+        all.push_back(
+            {fmt::format("a droplet of {} kg at {} m", text_of(droplet->mass_kg), place(*droplet->position_m))});
+    else if (std::any_of(other.forces.begin(), other.forces.end(), is_droplet))
+        all.push_back({"no droplet"});
     all.push_back({fmt::format("g = {} m/s²", text_of(spec.gravity_m_per_s2))});
     all.push_back({model_words(side)});
     all.push_back({std::string(side.method.title)});
@@ -112,6 +120,11 @@ std::string grouped(long number) {
     for (auto at = static_cast<long>(digits.size()) - 3; at > 0; at -= 3)
         digits.insert(static_cast<std::size_t>(at), " ");
     return digits;
+}
+
+std::string roughly(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))) - 1);
+    return unit < 1 ? fmt::format("{:.2g}", value) : grouped(std::lround(std::round(value / unit) * unit));
 }
 
 std::array<SideWords, 2> side_words(const Scene& scene) {

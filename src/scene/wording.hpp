@@ -23,6 +23,9 @@ std::string pace_words(const Side& side);
 /// 30000 → "30 000" with thin spaces.
 std::string grouped(long number);
 
+/// 223456 → "220 000": what was measured once knows no more digits.
+std::string roughly(double value);
+
 /// 0.0123 → "1.2 × 10⁻²"
 std::string scientific(double value);
 
