@@ -66,14 +66,6 @@ auto maker_of(int width) {
     }
 }
 
-int chosen_width(int asked) {
-    const auto widths = Ensemble::widths();
-    if (asked == 0) return widths.back();
-    if (std::find(widths.begin(), widths.end(), asked) == widths.end())
-        throw bad_input("this processor has no registers of {} doubles; the widest have {}", asked, widths.back());
-    return asked;
-}
-
 }  // namespace
 
 bool Ensemble::serves(std::string_view method) {
@@ -87,6 +79,14 @@ std::vector<int> Ensemble::widths() {
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) widths.push_back(8);
 #endif
     return widths;
+}
+
+int Ensemble::chosen_width(int asked) {
+    const auto all = widths();
+    if (asked == 0) return all.back();
+    if (std::find(all.begin(), all.end(), asked) == all.end())
+        throw bad_input("this processor has no registers of {} doubles; the widest have {}", asked, all.back());
+    return asked;
 }
 
 Ensemble::Ensemble(std::span<const Pendulum<double>> trials, EnsembleModel model, std::string_view method, double step,

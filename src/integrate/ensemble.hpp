@@ -43,6 +43,8 @@ public:
 
     /// The widths that this processor and this build have, narrowest first.
     static std::vector<int> widths();
+    /// `asked`, or the widest where it is 0. Throws Error (exit 2) where it is none of widths().
+    static int chosen_width(int asked);
 
 private:
     std::size_t trials_, block_;  // trials, and how many to a block

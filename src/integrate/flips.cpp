@@ -42,10 +42,7 @@ double least_energy_to_flip(const Pendulum<double>& p) {
 }
 
 auto finder_of(int asked) {
-    const auto widths = Ensemble::widths();
-    if (asked != 0 && std::find(widths.begin(), widths.end(), asked) == widths.end())
-        throw bad_input("this processor has no registers of {} doubles; the widest have {}", asked, widths.back());
-    switch (asked == 0 ? widths.back() : asked) {
+    switch (Ensemble::chosen_width(asked)) {
 #ifdef DOPPEL_WIDE_ENSEMBLES
         case 4:
             return find_flips<4>;

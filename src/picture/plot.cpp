@@ -12,7 +12,7 @@ namespace doppel {
 namespace {
 
 /// How many columns give the panels the most room.
-int best_columns(const Figure& figure, const PlotArea& body) {
+int best_columns(const Figure& figure, const Area& body) {
     const int panels = static_cast<int>(figure.panels.size());
     if (figure.columns > 0) return std::min(figure.columns, panels);
     const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // width to height that suits
@@ -28,7 +28,7 @@ int best_columns(const Figure& figure, const PlotArea& body) {
     return best;
 }
 
-void draw_panels(const Figure& figure, const PlotArea& body, const PlotStyle& style, DisplayList& list) {
+void draw_panels(const Figure& figure, const Area& body, const PlotStyle& style, DisplayList& list) {
     const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
     const int rows = (panels + columns - 1) / columns;
     // whole pixels, so that all panels come out alike
@@ -54,11 +54,11 @@ void draw_panels(const Figure& figure, const PlotArea& body, const PlotStyle& st
 struct Page {
     TextBlock title, subtitle;
     std::vector<TextBlock> captions;
-    PlotArea body;
+    Area body;
     float captions_top = 0;
 };
 
-Page laid_out(const Figure& figure, const PlotArea& sheet, const PlotStyle& style, bool subtitle, bool captions) {
+Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style, bool subtitle, bool captions) {
     Page page;
     const Theme& theme = style.theme;
     const float width = sheet.width();
@@ -81,7 +81,7 @@ Page laid_out(const Figure& figure, const PlotArea& sheet, const PlotStyle& styl
 }
 
 /// Whether what stands in the body can be read there.
-bool legible(const Figure& figure, const PlotArea& body, const PlotArea& sheet, const PlotStyle& style) {
+bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
     if (figure.table) return fitting_table_size(*figure.table, body, style) >= 0.8f * style.words;
     if (figure.panels.empty()) return body.height() >= 0;
     const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
@@ -90,7 +90,7 @@ bool legible(const Figure& figure, const PlotArea& body, const PlotArea& sheet, 
 }
 
 /// All of the words where they leave the panels enough room, else without captions, else without subtitle.
-Page laid_out(const Figure& figure, const PlotArea& sheet, const PlotStyle& style) {
+Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style) {
     for (const auto& [subtitle, captions] : {std::pair{true, true}, {true, false}}) {
         Page page = laid_out(figure, sheet, style, subtitle, captions);
         if (legible(figure, page.body, sheet, style)) return page;
@@ -133,7 +133,7 @@ DisplayList compose(const Figure& figure, Size size, const Theme& theme, float s
     // smaller text than that of 800 × 450 cannot be read
     const PlotStyle style{.theme = theme, .unit = std::max(std::min(width / 1600, height / 900), 0.5f), .scale = scale};
     const float across = std::round(34 * style.unit), down = std::round(28 * style.unit);
-    const PlotArea sheet{across, down, width - across, height - down};
+    const Area sheet{across, down, width - across, height - down};
     const Page page = laid_out(figure, sheet, style);
 
     DisplayList list{Box{0, 0, width, height, 0, theme.background}};

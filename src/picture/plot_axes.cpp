@@ -59,7 +59,7 @@ bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle&
     return all.size() == 1 || (need <= width && from_right <= 1);
 }
 
-void draw_x_axis(const Plot& plot, const Axis& x, const PlotArea& area, const PlotArea& held, const PlotStyle& style,
+void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& held, const PlotStyle& style,
                  DisplayList& list) {
     const float em = style.tick, baseline = area.bottom + 1.45f * em;
     for (const Tick& tick : x_ticks(x, plot.x, style)) {
@@ -70,7 +70,7 @@ void draw_x_axis(const Plot& plot, const Axis& x, const PlotArea& area, const Pl
             upright(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.hairline, style.theme.frame));
         if (!named) continue;
         const Label label{tick.text, {at, baseline}, em, Align::center, Weight::regular, style.theme.quiet_text};
-        const PlotArea box = text_area(label);
+        const Area box = text_area(label);
         if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(label);
     }
     const Weight weight = Weight::regular;
@@ -84,8 +84,8 @@ void draw_x_axis(const Plot& plot, const Axis& x, const PlotArea& area, const Pl
 }
 
 /// A vertical axis: its ticks point to `side`, −1 or 1, from `at`.
-void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, const PlotArea& area, bool grid,
-                 Color color, const PlotStyle& style, DisplayList& list) {
+void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, const Area& area, bool grid, Color color,
+                 const PlotStyle& style, DisplayList& list) {
     const float em = style.tick;
     for (const Tick& tick : y_ticks(y, asked, style)) {
         const float place = y.at(tick.value), out = at + side * (tick.text.empty() ? 0.18f : 0.34f) * em;
@@ -124,8 +124,8 @@ std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotSty
                        asked.every);
 }
 
-void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const PlotArea& area,
-               const PlotArea& held, const PlotStyle& style, DisplayList& list) {
+void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
+               const PlotStyle& style, DisplayList& list) {
     const Theme& theme = style.theme;
     draw_x_axis(plot, x, area, held, style, list);
     draw_y_axis(y, plot.y, area.left, -1, area, !plot.map, theme.quiet_text, style, list);
@@ -145,7 +145,7 @@ float axis_labels_height(const Plot& plot, float width, const PlotStyle& style) 
     return side_by_side(all, width, style) ? line : line * static_cast<float>(all.size());
 }
 
-void draw_headings(const Plot& plot, const PlotArea& held, float title, float labels, const PlotStyle& style,
+void draw_headings(const Plot& plot, const Area& held, float title, float labels, const PlotStyle& style,
                    DisplayList& list) {
     const float width = held.width();
     const auto write = [&](const Heading& heading, float baseline, float em, Weight weight) {

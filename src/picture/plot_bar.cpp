@@ -60,7 +60,7 @@ float bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
     return 1.2f * style.tick + make_bar(map, height, style).width;
 }
 
-void draw_bar(const HeatMap& map, const PlotArea& area, float left, const PlotStyle& style, DisplayList& list) {
+void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
     const Bar bar = make_bar(map, area.height(), style);
     const float em = style.tick, start = std::round(left + 1.2f * em),
                 line = std::max(std::round(style.hairline), 1.0f);

@@ -9,6 +9,6 @@ namespace doppel {
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
 
 /// The bar beside `area`, from `left` on: colours with ticks, and below them what stands for no value.
-void draw_bar(const HeatMap& map, const PlotArea& area, float left, const PlotStyle& style, DisplayList& list);
+void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
 
 }  // namespace doppel

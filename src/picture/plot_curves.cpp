@@ -15,7 +15,7 @@ struct Place {
 /// Gathers a line piece by piece, cut to an area.
 class Cutter {
 public:
-    Cutter(const PlotArea& area, std::vector<std::vector<Point>>& lines) : area_(area), lines_(lines) {}
+    Cutter(const Area& area, std::vector<std::vector<Point>>& lines) : area_(area), lines_(lines) {}
 
     void lift() { down_ = false; }
 
@@ -56,7 +56,7 @@ private:
         joined_ = end == 1;
     }
 
-    PlotArea area_;
+    Area area_;
     std::vector<std::vector<Point>>& lines_;
     Place last_{};
     bool down_ = false, joined_ = false;  // the pen; the last piece ends at last_
@@ -155,7 +155,7 @@ constexpr std::size_t many = 400;  // marks in a panel: from here on they are dr
 
 }  // namespace
 
-DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const PlotArea& area) {
+DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area) {
     DrawnCurve made;
     Cutter cutter(area, made.lines);
     Thinner thinner(cutter);
@@ -186,7 +186,7 @@ Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
     return theme.palette[static_cast<std::size_t>(curve.hue) % theme.palette.size()];
 }
 
-void draw_band(const Curve& curve, const Axis& x, const Axis& y, const PlotArea& area, const PlotStyle& style,
+void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
                DisplayList& list) {
     if (curve.uncertainty.empty()) return;
     Band band;
@@ -219,8 +219,8 @@ void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool d
     if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
 }
 
-void draw_curve(const Curve& curve, const DrawnCurve& drawn, const PlotArea& area, const PlotStyle& style,
-                bool over_map, DisplayList& list) {
+void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
+                DisplayList& list) {
     const Color color = curve_color(curve, style, over_map), edge = rgb(0x0b0e13).with_alpha(0.75f);
     const float width = curve.quiet && !over_map ? style.thin : style.curve;
     const float casing = std::max(1.6f * style.unit, 1.0f);

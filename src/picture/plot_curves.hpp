@@ -15,18 +15,18 @@ struct DrawnCurve {
 
 /// Of many points in half a column of pixels the first, the last, the lowest and the highest stay: no pixel tells the
 /// difference.
-DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const PlotArea& area);
+DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area);
 
 /// In what colour a curve is drawn; over a map (dark to bright) bright, with a dark edge.
 Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map);
 
 /// The band of its uncertainty, if it has one.
-void draw_band(const Curve& curve, const Axis& x, const Axis& y, const PlotArea& area, const PlotStyle& style,
+void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
                DisplayList& list);
 
 /// Lines and marks.
-void draw_curve(const Curve& curve, const DrawnCurve& drawn, const PlotArea& area, const PlotStyle& style,
-                bool over_map, DisplayList& list);
+void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
+                DisplayList& list);
 
 /// From one place to another, with gaps if it is dashed, as all curves are.
 void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,

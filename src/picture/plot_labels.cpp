@@ -34,7 +34,7 @@ struct Found {
 /// Words on a map need a ground of their own.
 void write(const Label& label, bool over_map, DisplayList& list) {
     if (over_map) {
-        const PlotArea box = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
+        const Area box = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
         list.push_back(
             Box{box.left, box.top, box.right, box.bottom, 0.25f * label.size, rgb(0x0b0e13).with_alpha(0.62f)});
     }
@@ -87,7 +87,7 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t who, const Word
                 // right of the place, in its middle, left of it; likewise above and below
                 const float left = across == 1 ? p.x + gap : across == 0 ? p.x - gap - w : p.x - w / 2;
                 const float top = down == 1 ? p.y + gap : down == 0 ? p.y - gap - h : p.y - h / 2;
-                const PlotArea box{left, top, left + w, top + h};
+                const Area box{left, top, left + w, top + h};
                 const float air = 0.28f * words.size;
                 float cost = 1.2f * far_left + (down == 0.5f     ? (end && across == 1 ? -0.3f : 0.4f)
                                                 : across == 0.5f ? 0.15f
@@ -113,7 +113,7 @@ Words words_for(const Curve& curve, const PlotStyle& style, bool over_map) {
 
 void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
                  PlotRoom& room, DisplayList& list) {
-    const PlotArea& area = room.area();
+    const Area& area = room.area();
     for (const Rule& rule : rules) {
         if (rule.label.empty()) continue;
         const bool level = rule.way == Rule::Way::horizontal;
@@ -133,7 +133,7 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
                                                : at - gap - w;
                 const float top = level ? (side == 0 ? at - gap - h : at + gap)
                                         : area.top + gap + along * (area.height() - h - 2 * gap);
-                const PlotArea box{left, top, left + w, top + h};
+                const Area box{left, top, left + w, top + h};
                 if (!room.is_free(box.grown(0.2f * size, 0))) continue;
                 const float cost =
                     0.5f * along + 0.2f * static_cast<float>(side) + 0.3f * static_cast<float>(room.ink(box));

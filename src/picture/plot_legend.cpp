@@ -12,7 +12,7 @@ namespace {
 /// The emptiest place for a box of this size.
 std::optional<Point> emptiest(float width, float height, float margin, const PlotRoom& room) {
     constexpr int steps = 20;
-    const PlotArea& area = room.area();
+    const Area& area = room.area();
     const float across = area.width() - width - 2 * margin, down = area.height() - height - 2 * margin;
     if (across < 0 || down < 0) return {};
     std::optional<Point> best;
@@ -21,7 +21,7 @@ std::optional<Point> emptiest(float width, float height, float margin, const Plo
         for (int column = steps; column >= 0; --column) {
             const float left = area.left + margin + across * static_cast<float>(column) / steps;
             const float top = area.top + margin + down * static_cast<float>(row) / steps;
-            const PlotArea box{left, top, left + width, top + height};
+            const Area box{left, top, left + width, top + height};
             if (!room.is_free(box)) continue;
             const bool side = column == 0 || column == steps, end = row == 0 || row == steps;
             const float cost = static_cast<float>(room.ink(box)) + (side && end ? 0 : side || end ? 6.0f : 15.0f);

@@ -10,7 +10,7 @@ namespace doppel {
 /// Names of curves beside a piece of each, in a box.
 struct Legend {
     std::vector<std::size_t> which;  // of the curves
-    PlotArea box;
+    Area box;
     float size;  // of text, px an em
 };
 

@@ -29,12 +29,12 @@ Axis placed(Axis axis, float from, float to) {
 struct Panel {
     const Plot& plot;
     Axis x, y, right;
-    PlotArea area;
+    Area area;
 
     const Axis& y_of(const Curve& curve) const { return curve.right ? right : y; }
 };
 
-Panel make_panel(const Plot& plot, const PlotRanges& ranges, const PlotArea& area) {
+Panel make_panel(const Plot& plot, const PlotRanges& ranges, const Area& area) {
     return {plot, placed(ranges.x, area.left, area.right), placed(ranges.y, area.bottom, area.top),
             placed(ranges.right.value_or(Axis{}), area.bottom, area.top), area};
 }
@@ -106,11 +106,11 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     return made;
 }
 
-void draw_panel(const Plot& plot, const PlotRanges& ranges, const PlotArea& cell, const Gutters& around,
+void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
                 const PlotStyle& style, DisplayList& list) {
-    PlotArea area{std::round(cell.left + around.left), std::round(cell.top + around.top(style)),
-                  std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
-    PlotArea held = cell;
+    Area area{std::round(cell.left + around.left), std::round(cell.top + around.top(style)),
+              std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
+    Area held = cell;
     if (plot.square) {
         // in the middle of its cell, words and all
         const float side = std::min(area.width(), area.height());

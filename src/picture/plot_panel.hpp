@@ -19,7 +19,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
 Gutters united(const Gutters& a, const Gutters& b);
 
 /// The panel in its cell. Nothing where the words leave it no room.
-void draw_panel(const Plot& plot, const PlotRanges& ranges, const PlotArea& cell, const Gutters& around,
+void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
                 const PlotStyle& style, DisplayList& list);
 
 }  // namespace doppel

@@ -15,7 +15,7 @@ std::uint8_t byte(float channel) {
 /// How much of each pixel of an area is covered, 0…1.
 class Coverage {
 public:
-    Coverage(const PlotArea& area, float scale)
+    Coverage(const Area& area, float scale)
         : left(static_cast<int>(std::floor(area.left * scale))),
           top(static_cast<int>(std::floor(area.top * scale))),
           size{std::max(1, static_cast<int>(std::ceil(area.right * scale)) - left),
@@ -78,7 +78,7 @@ std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, 
 
 }  // namespace
 
-Image cloud_image(const std::vector<Point>& points, float radius, Color color, const PlotArea& area, float scale) {
+Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale) {
     Coverage coverage(area, scale);
     const float reach = std::max(radius * scale, 0.5f);
     for (const Point& point : points) {
@@ -97,7 +97,7 @@ Image cloud_image(const std::vector<Point>& points, float radius, Color color, c
     return coverage.image(color, scale);
 }
 
-Image band_image(const Band& band, Color color, const PlotArea& area, float scale) {
+Image band_image(const Band& band, Color color, const Area& area, float scale) {
     Coverage coverage(area, scale);
     for (std::size_t i = 0; i + 1 < band.x.size(); ++i) {
         const std::size_t a = band.x[i] <= band.x[i + 1] ? i : i + 1, b = 2 * i + 1 - a;
@@ -124,7 +124,7 @@ Image band_image(const Band& band, Color color, const PlotArea& area, float scal
     return coverage.image(color, scale);
 }
 
-Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const PlotArea& area,
+Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
                 Color none, float scale) {
     const Size size{std::max(1, static_cast<int>(std::lround(area.width() * scale))),
                     std::max(1, static_cast<int>(std::lround(area.height() * scale)))};

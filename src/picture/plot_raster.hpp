@@ -10,17 +10,17 @@ namespace doppel {
 /// each px.
 
 /// Discs around many points, which do not add up where they overlap; cut off at the edges of `area`.
-Image cloud_image(const std::vector<Point>& points, float radius, Color color, const PlotArea& area, float scale);
+Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale);
 
 /// The area between low[i] and high[i] over x[i], px; where one is not a number there is a gap.
 struct Band {
     std::vector<double> x, low, high;
 };
-Image band_image(const Band& band, Color color, const PlotArea& area, float scale);
+Image band_image(const Band& band, Color color, const Area& area, float scale);
 
 /// The map's cells in `area` as seen through the axes: crisp where they are larger than pixels, else averaged, the
 /// logarithm where the scale is logarithmic. Below zero on such a scale is as good as no value.
-Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const PlotArea& area,
+Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
                 Color none, float scale);
 
 }  // namespace doppel

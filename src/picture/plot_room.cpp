@@ -14,7 +14,7 @@ std::uint64_t bit(std::size_t who) {
 
 }  // namespace
 
-PlotRoom::PlotRoom(const PlotArea& area)
+PlotRoom::PlotRoom(const Area& area)
     : area_(area),
       columns_(std::max(1, static_cast<int>(std::ceil(area.width() / square)))),
       rows_(std::max(1, static_cast<int>(std::ceil(area.height() / square)))),
@@ -32,7 +32,7 @@ void PlotRoom::add_line(Point from, Point to, std::size_t who) {
     }
 }
 
-PlotRoom::Squares PlotRoom::squares(const PlotArea& box) const {
+PlotRoom::Squares PlotRoom::squares(const Area& box) const {
     const auto within = [](float v, int most) {
         return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(most)));
     };
@@ -42,7 +42,7 @@ PlotRoom::Squares PlotRoom::squares(const PlotArea& box) const {
             within(std::ceil((box.bottom - area_.top) / square), rows_)};
 }
 
-int PlotRoom::ink(const PlotArea& box, std::size_t except) const {
+int PlotRoom::ink(const Area& box, std::size_t except) const {
     const std::uint64_t others = except == nobody ? ~std::uint64_t{0} : ~bit(except);
     const Squares part = squares(box);
     int count = 0;
@@ -52,9 +52,9 @@ int PlotRoom::ink(const PlotArea& box, std::size_t except) const {
     return count;
 }
 
-bool PlotRoom::is_free(const PlotArea& box) const {
+bool PlotRoom::is_free(const Area& box) const {
     return area_.holds(box) &&
-           std::none_of(words_.begin(), words_.end(), [&](const PlotArea& words) { return words.overlaps(box); });
+           std::none_of(words_.begin(), words_.end(), [&](const Area& words) { return words.overlaps(box); });
 }
 
 }  // namespace doppel

@@ -1,24 +1,9 @@
 #pragma once
 
-#include "picture/display_list.hpp"
+#include "picture/area.hpp"
 #include "picture/theme.hpp"
 
 namespace doppel {
-
-/// Part of a picture, px.
-struct PlotArea {
-    float left = 0, top = 0, right = 0, bottom = 0;
-
-    float width() const { return right - left; }
-    float height() const { return bottom - top; }
-    bool overlaps(const PlotArea& other) const {
-        return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
-    }
-    bool holds(const PlotArea& other) const {
-        return left <= other.left && other.right <= right && top <= other.top && other.bottom <= bottom;
-    }
-    PlotArea grown(float x, float y) const { return {left - x, top - y, right + x, bottom + y}; }
-};
 
 /// What all parts of a figure share: colours, sizes of text (px an em) and of lines (px).
 struct PlotStyle {

@@ -38,7 +38,7 @@ bool is_verdict(PlotTable::Tone tone) {
 }
 
 /// All rows, the headings first, at this size of text.
-std::vector<Row> laid_out(const PlotTable& table, const PlotArea& area, float size, const Theme& theme) {
+std::vector<Row> laid_out(const PlotTable& table, const Area& area, float size, const Theme& theme) {
     float shares = 0;
     for (const PlotTable::Column& column : table.columns) shares += column.share;
     std::vector<Row> rows(1 + table.rows.size());
@@ -71,7 +71,7 @@ float total(const std::vector<Row>& rows, float pad) {
 
 }  // namespace
 
-float fitting_table_size(const PlotTable& table, const PlotArea& area, const PlotStyle& style) {
+float fitting_table_size(const PlotTable& table, const Area& area, const PlotStyle& style) {
     const float largest = 1.1f * style.words;
     float size = largest;
     while (total(laid_out(table, area, size, style.theme), 0.42f * size) > area.height() && size > 0.1f * largest)
@@ -79,7 +79,7 @@ float fitting_table_size(const PlotTable& table, const PlotArea& area, const Plo
     return size;
 }
 
-void draw_table(const PlotTable& table, const PlotArea& area, const PlotStyle& style, DisplayList& list) {
+void draw_table(const PlotTable& table, const Area& area, const PlotStyle& style, DisplayList& list) {
     if (table.columns.empty()) return;
     const float size = fitting_table_size(table, area, style);
     const std::vector<Row> rows = laid_out(table, area, size, style.theme);

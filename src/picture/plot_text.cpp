@@ -47,7 +47,7 @@ void wrap_paragraph(std::string_view text, float size, Weight weight, float widt
 
 }  // namespace
 
-PlotArea text_area(const Label& label) {
+Area text_area(const Label& label) {
     const float width = text_width(label.text, label.size, label.weight);
     const float before = label.align == Align::left ? 0 : label.align == Align::center ? width / 2 : width;
     const float left = label.anchor.x - before;

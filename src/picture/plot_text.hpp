@@ -7,7 +7,7 @@
 namespace doppel {
 
 /// Where the ink of a line of text may be, with the tallest accents and the deepest tails of the font.
-PlotArea text_area(const Label& label);
+Area text_area(const Label& label);
 
 /// `text` in lines no wider than `width` px, broken at spaces and at '\n'; a word that is wider itself is broken
 /// anywhere.

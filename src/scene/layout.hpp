@@ -1,5 +1,6 @@
 #pragma once
 
+#include "picture/area.hpp"
 #include "picture/axis.hpp"
 #include "picture/display_list.hpp"
 #include "scene/scene.hpp"
@@ -8,15 +9,6 @@
 #include <optional>
 
 namespace doppel {
-
-/// A rectangle in px.
-struct Area {
-    float left = 0, top = 0, right = 0, bottom = 0;
-
-    float width() const { return right - left; }
-    float height() const { return bottom - top; }
-    bool holds(Point p) const { return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom; }
-};
 
 /// A pendulum's panel and how metres become pixels in it.
 struct PanelLayout {
