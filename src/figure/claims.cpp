@@ -1,7 +1,7 @@
 #include "figure/claims.hpp"
 
 #include "analysis/exponent.hpp"
-#include "analysis/twins.hpp"
+#include "figure/claim_runs.hpp"
 #include "numeric/clock.hpp"
 #include "numeric/dual.hpp"
 #include "scene/assemble.hpp"
@@ -15,57 +15,7 @@
 namespace doppel {
 namespace {
 
-// The study's releases, in its units.
-
-SideSpec side(std::vector<Quad> angle_deg, ModelChoice model = ModelChoice::angles) {
-    SideSpec spec;
-    spec.mass_kg.assign(angle_deg.size(), 1);
-    spec.length_m.assign(angle_deg.size(), 1);
-    spec.omega_deg_per_s.assign(angle_deg.size(), 0);
-    spec.angle_deg = std::move(angle_deg);
-    spec.model = model;
-    return spec;
-}
-
-/// The same by Taylor series in quad.
-SideSpec exactly(SideSpec spec) {
-    spec.integrator = "taylor";
-    spec.precision = Precision::in_quad;
-    spec.tolerance = parse_quad("1e-26");
-    return spec;
-}
-
-/// The distances of a pair at samples 0 … count.
-std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, const std::atomic<bool>& stop) {
-    const auto scene = make_scene({.name = "audit", .duration_s = *reduced(count, 120), .a = a, .b = b});
-    PairRun run(scene);
-    std::vector<double> all;
-    for (long n = 0; n <= count; ++n) all.push_back(run.next(stop).distance);
-    return all;
-}
-
-/// The study's averages over 25 s, of as many twins at once as share registers.
-std::vector<double> averages(const std::vector<std::pair<SideSpec, SideSpec>>& sides, const TwinSide& method,
-                             const std::atomic<bool>& stop) {
-    std::vector<Twins> twins;
-    for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});
-    std::vector<double> found(twins.size());
-    average_log_ratios(twins, {.a = method, .b = method}, found, stop);
-    return found;
-}
-
-/// Twins 0.003° apart in the upper link.
-std::pair<SideSpec, SideSpec> angle_twins(int theta1_deg, int theta2_deg = 0) {
-    return {side({theta1_deg, theta2_deg}), side({theta1_deg + parse_quad("0.003"), theta2_deg})};
-}
-
-/// Twins of mass ratio `ratio` and 0.01 more.
-std::pair<SideSpec, SideSpec> mass_twins(int theta1_deg, int theta2_deg, double ratio) {
-    auto twins = std::pair{side({theta1_deg, theta2_deg}), side({theta1_deg, theta2_deg})};
-    twins.first.mass_kg[0] = ratio;
-    twins.second.mass_kg[0] = ratio + 0.01;
-    return twins;
-}
+using namespace study;
 
 double greatest(const std::vector<double>& values) {
     return *std::max_element(values.begin(), values.end());
@@ -157,7 +107,7 @@ const Claim course_over_time{
 const Claim course_over_angle{
     "course_over_angle", "Figure 2 right rises to 2.8 by 40° and 4 by 80°, falls to 3–4 near 108°, then stays at 8–10",
     [](const std::atomic<bool>& stop) {
-        std::vector<std::pair<SideSpec, SideSpec>> twins{angle_twins(40), angle_twins(80), angle_twins(108)};
+        std::vector<SideTwins> twins{angle_twins(40), angle_twins(80), angle_twins(108)};
         for (int angle = 115; angle < 180; angle += 5) twins.push_back(angle_twins(angle));
         auto found = averages(twins, {}, stop);
         double sum = 0;
@@ -251,19 +201,6 @@ const Claim energy_gain{
     },
     [](const TrialNumbers& n) { return judge(n[0] > 0); }};
 
-/// A side on the general mechanism, with a droplet or without.
-SideSpec with_droplet(SideSpec spec, bool droplet) {
-    spec.model = ModelChoice::mechanism;
-    if (droplet)
-        spec.forces.push_back({.name = {},
-                               .kind = "droplet",
-                               .particle = {},
-                               .position_m = std::array<Quad, 2>{1609, 0},
-                               .mass_kg = parse_quad("0.000034"),
-                               .constant = parse_quad("6.674e-11")});
-    return spec;
-}
-
 const Claim raindrop{
     "droplet", "A raindrop a mile away changes the course of the pendulum within a minute or so",
     [](const std::atomic<bool>& stop) {
@@ -290,7 +227,7 @@ const Claim raindrop{
 const Claim three_links{
     "three_links", "Figure 8 takes over an hour and a half, and more than three links are out of reach",
     [](const std::atomic<bool>& stop) {
-        std::vector<std::pair<SideSpec, SideSpec>> twins;
+        std::vector<SideTwins> twins;
         for (std::size_t i = 0; i < twins_block() / 2; ++i) {
             const int angle = static_cast<int>(20 * i);
             twins.emplace_back(side({angle, 0, 0}), side({angle + parse_quad("0.003"), 0, 0}));
