@@ -27,7 +27,8 @@ struct MotionSpec {
     long steps_per_sample = 250;       // of methods with a fixed step
     Quad tolerance = 0;                // of adaptive methods
     Stabilise stabilise = Stabilise::none;
-    Quad stabilise_rate = 0;  // Baumgarte's α = β, 1/s
+    Quad stabilise_rate = 0;    // Baumgarte's α = β, 1/s
+    bool follows_turns = true;  // false: angles of particles only up to whole turns, and no look between samples
 };
 
 /// The state at one sample, the same for every model.

@@ -76,7 +76,7 @@ public:
         : model_(std::move(model)), view_(std::move(view)), stepper_(model_, start, pace(spec)) {
         if constexpr (Which::method.adaptive) {
             const double interval = spec.sample_interval.value();
-            portions_ = View::follows_turns ? static_cast<long>(std::ceil(interval / longest_unwatched)) : 1;
+            portions_ = follows_turns(spec) ? static_cast<long>(std::ceil(interval / longest_unwatched)) : 1;
             portion_ = scalar_of<Scalar>(spec.sample_interval) / Scalar(portions_);
         } else {
             // short enough that an interruption is noticed, and the turns are not lost
@@ -84,12 +84,13 @@ public:
             const double step = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
             constexpr long most = 200'000;
             portion_steps_ = std::max(1L, most / static_cast<long>(start.size()));
-            if (View::follows_turns)
+            if (follows_turns(spec))
                 portion_steps_ = std::min(portion_steps_, std::max(1L, static_cast<long>(longest_unwatched / step)));
             smallest_step_ = step;
         }
         if constexpr (View::follows_turns)
-            for (const auto& angle : view_.pendulum.angle) turns_.push_back(static_cast<double>(angle));
+            if (spec.follows_turns)
+                for (const auto& angle : view_.pendulum.angle) turns_.push_back(static_cast<double>(angle));
         start_energy_ = view_.energy(start, view_.bobs(start));
     }
 
@@ -127,7 +128,7 @@ public:
             const auto in_double = [](const Scalar& x) { return static_cast<double>(x); };
             seen.bobs.push_back({in_double(bob.mass), in_double(bob.x), in_double(bob.y), in_double(bob.vx),
                                  in_double(bob.vy), in_double(bob.theta), in_double(bob.omega)});
-            if constexpr (View::follows_turns) seen.bobs[i].theta = unwrapped(seen.bobs[i].theta, turns_[i]);
+            if (!turns_.empty()) seen.bobs[i].theta = unwrapped(seen.bobs[i].theta, turns_[i]);
         }
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
         return seen;
@@ -150,8 +151,11 @@ private:
             return scalar_of<Scalar>(spec.sample_interval) / Scalar(spec.steps_per_sample);
     }
 
+    static bool follows_turns(const MotionSpec& spec) { return View::follows_turns && spec.follows_turns; }
+
     void follow_turns() {
         if constexpr (View::follows_turns) {
+            if (turns_.empty()) return;
             const auto bobs = view_.bobs(stepper_.state());
             for (std::size_t i = 0; i < bobs.size(); ++i)
                 turns_[i] = unwrapped(static_cast<double>(bobs[i].theta), turns_[i]);
@@ -188,8 +192,8 @@ std::unique_ptr<Motion> stabilised(const MotionSpec& spec, const System& system,
     const auto start = Model::start(system);
     switch (spec.stabilise) {
         case Stabilise::baumgarte:
-            return stepped(spec,
-                           Baumgarte<Model>(system, static_cast<typename Model::Scalar>(spec.stabilise_rate)), start, view);
+            return stepped(spec, Baumgarte<Model>(system, static_cast<typename Model::Scalar>(spec.stabilise_rate)),
+                           start, view);
         case Stabilise::projection:
             return stepped(spec, Projected<Model>(system), start, view);
         case Stabilise::none:

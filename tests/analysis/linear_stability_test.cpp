@@ -1,0 +1,141 @@
+#include "analysis/linear_stability.hpp"
+
+#include "integrate/motion.hpp"
+#include "numeric/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+Pendulum<double> chain(std::vector<double> mass, std::vector<double> angle) {
+    Pendulum<double> p{.mass = mass, .length = std::vector(mass.size(), 1.0), .angle = angle};
+    p.rate.assign(mass.size(), 0);
+    return p;
+}
+
+/// The energy above hanging after `steps` steps, of that at the start, by the method itself: a single link of ω = 1
+/// rad/s at a small angle.
+double energy_left(const char* method, double z, long steps) {
+    const bool rods = std::string_view(method).starts_with("rattle");
+    constexpr double amplitude = 1e-10;  // even a millionfold of it is small
+    const Pendulum<Quad> link{.mass = {1}, .length = {1}, .angle = {Quad(amplitude)}, .rate = {0}, .gravity = 1};
+    const auto motion = make_motion({.chain = link,
+                                     .parts = {},
+                                     .model = rods ? Model::constraints : Model::angles,
+                                     .method = method,
+                                     .precision = Precision::in_quad,
+                                     .sample_interval = *rational_from_decimal(z * static_cast<double>(steps)),
+                                     .steps_per_sample = steps});
+    const std::atomic<bool> never = false;
+    motion->advance(never);
+    return 1 + motion->observe().energy_change / (amplitude * amplitude / 2);
+}
+
+TEST(Growth, IsThatOfOneStepInClosedForm) {
+    for (const double z : {0.01, 0.3, 1.0, 1.7}) {
+        EXPECT_DOUBLE_EQ(growth("euler", z), std::sqrt(1 + z * z));
+        EXPECT_DOUBLE_EQ(growth("midpoint", z), std::sqrt(1 + std::pow(z, 4) / 4));
+        EXPECT_NEAR(growth("rk4", z), std::sqrt(1 - std::pow(z, 6) / 72 + std::pow(z, 8) / 576), 1e-15);
+        for (const auto* method : {"semi-implicit-euler", "rattle", "rattle6", "gauss4", "gauss6"})
+            EXPECT_EQ(growth(method, z), 1) << method;
+    }
+    // the trace of a leapfrog is 2 − z²
+    for (const auto* method : {"semi-implicit-euler", "rattle"}) {
+        const double now = growth(method, 2.5);
+        EXPECT_NEAR(now + 1 / now, 2.5 * 2.5 - 2, 1e-14) << method;
+    }
+    EXPECT_EQ(growth("gauss6", 100), 1);
+}
+
+TEST(Growth, IsThatOfTheSteppers) {
+    // each step multiplies the energy by growth², z where nothing but the growing root is left
+    for (const auto& [method, z, steps] : {std::tuple{"euler", 0.3, 20L}, {"midpoint", 0.5, 20L}, {"rk4", 1.5, 20L}})
+        EXPECT_NEAR(energy_left(method, z, steps) / std::pow(growth(method, z), 2 * steps), 1, 1e-11)
+            << method;  // measured 9e-14 at most
+    for (const auto& [method, z, steps] : {std::tuple{"semi-implicit-euler", 2.5, 8L},
+                                           {"rattle", 2.5, 6L},
+                                           {"rattle6", 2.7, 10L},
+                                           {"rattle6", 3.6, 5L},
+                                           {"adams", 0.6, 60L}}) {
+        const double ratio = energy_left(method, z, steps + 1) / energy_left(method, z, steps);
+        EXPECT_NEAR(ratio / std::pow(growth(method, z), 2), 1, 1e-3) << method << " " << z;  // measured 7e-5 at most
+    }
+    for (const auto& [method, z] : {std::pair{"rattle6", 2.5}, {"rattle6", 3.1}, {"gauss4", 1.5}, {"rattle", 1.9}})
+        EXPECT_LT(energy_left(method, z, 200), 30) << method << " " << z;  // measured 11 at most
+}
+
+TEST(Growth, IsForMethodsOfFixedStep) {
+    for (const auto* name : {"dop853", "taylor", "eular"}) EXPECT_THROW(growth(name, 1), Error) << name;
+}
+
+TEST(SmallOscillations, AreTheRootsOfLaguerre) {
+    // L2: 2 ∓ √2; L3: x³ − 9x² + 18x − 6
+    const auto two = small_oscillations(chain({1, 1}, {0.1, 0}));
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_NEAR(two[0].frequency, std::sqrt(9.8 * (2 - std::sqrt(2.0))), 1e-14);
+    EXPECT_NEAR(two[1].frequency, 5.7844, 5e-5);
+    EXPECT_NEAR(two[0].share, 0.5, 1e-14);
+    EXPECT_NEAR(two[1].share, 0.5, 1e-14);
+    for (const auto& mode : small_oscillations(chain({1, 1, 1}, {0, 0, 0}))) {
+        const double x = mode.frequency * mode.frequency / 9.8;
+        EXPECT_NEAR(x * (x * (x - 9) + 18) - 6, 0, 1e-12);  // measured 7e-15
+    }
+}
+
+TEST(SmallOscillations, OfTwoMassesAreInClosedForm) {
+    // with μ = m2/m1: ω² = g/l (1 + μ) (1 ± √(μ / (1 + μ)))
+    for (const double ratio : {0.01, 0.3, 1.0, 10.0}) {
+        const double mu = 1 / ratio;
+        EXPECT_NEAR(
+            largest_frequency(chain({ratio, 1}, {0, 0})) / std::sqrt(9.8 * (1 + mu) * (1 + std::sqrt(mu / (1 + mu)))),
+            1, 1e-13)
+            << ratio;
+    }
+}
+
+TEST(SmallOscillations, ShareTheEnergyOfTheRelease) {
+    // released in one of them: θ2 = ∓√2 θ1
+    EXPECT_NEAR(small_oscillations(chain({1, 1}, {0.1, -0.1 * std::sqrt(2.0)}))[1].share, 1, 1e-14);
+    EXPECT_NEAR(small_oscillations(chain({1, 1}, {0.1, 0.1 * std::sqrt(2.0)}))[1].share, 0, 1e-14);
+    auto pushed = chain({1, 1}, {0, 0});
+    EXPECT_EQ(small_oscillations(pushed)[1].share, 1);  // no energy: all of it in the fastest
+    pushed.rate = {1, std::sqrt(2.0)};
+    EXPECT_NEAR(small_oscillations(pushed)[0].share, 1, 1e-14);
+}
+
+TEST(StepLimit, OfAVeryLongTimeIsThatOfStability) {
+    const std::vector<Mode> fast{{.frequency = 5.0}};
+    constexpr double long_time = 1e5;
+    for (const auto& [method, z] :
+         {std::pair{"semi-implicit-euler", 2.0}, {"rattle", 2.0}, {"rk4", 2 * std::sqrt(2.0)}, {"rattle6", 2.53263}})
+        EXPECT_NEAR(5 * step_limit(method, fast, long_time, 10).value(), z, 1e-4) << method;  // measured 3e-6
+    EXPECT_FALSE(step_limit("gauss6", fast, long_time, 10));
+    EXPECT_FALSE(step_limit("rk4", fast, 0.4, 10));  // too short a time for any step
+}
+
+TEST(StepLimit, OfEulerAndMidpointIsWhereTheyHaveGrown) {
+    // (1 + z²)^(t/h) = 10 with z → 0: h = ln 10 / (ω² t); midpoint: h³ = 4 ln 10 / (ω⁴ t)
+    const std::vector<Mode> mode{{.frequency = 2.0}};
+    EXPECT_NEAR(step_limit("euler", mode, 1e4, 10).value() / (std::log(10.0) / 4e4), 1, 1e-5);  // measured 5e-7
+    EXPECT_NEAR(step_limit("midpoint", mode, 1e4, 10).value() / std::cbrt(4 * std::log(10.0) / 16e4), 1,
+                1e-5);  // measured 1e-6
+}
+
+TEST(StepLimit, GoesByTheEnergyInEachMode) {
+    const std::vector<Mode> half{{2.0, 0.5}, {5.0, 0.5}};
+    const double limit = step_limit("euler", half, 100, 10).value();
+    const double grown = 0.5 * std::pow(1 + 4 * limit * limit, std::lround(100 / limit)) +
+                         0.5 * std::pow(1 + 25 * limit * limit, std::lround(100 / limit));
+    EXPECT_NEAR(grown, 10, 1e-3);  // measured 1e-5
+    // roots that grow begin at the error of a step: adams goes further than growth alone would allow
+    const std::vector<Mode> alone{{.frequency = 1.0}};
+    const double adams = step_limit("adams", alone, 50, 10).value();
+    EXPECT_LT(energy_left("adams", 0.97 * adams, std::lround(50 / (0.97 * adams))), 10);
+    EXPECT_GT(energy_left("adams", 1.03 * adams, std::lround(50 / (1.03 * adams))), 10);
+}
+
+}  // namespace
+}  // namespace doppel
