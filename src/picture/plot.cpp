@@ -1,6 +1,7 @@
 #include "picture/plot.hpp"
 
 #include "numeric/error.hpp"
+#include "picture/plot_bar.hpp"
 #include "picture/plot_panel.hpp"
 #include "picture/plot_table.hpp"
 #include "picture/plot_text.hpp"
@@ -28,9 +29,21 @@ int best_columns(const Figure& figure, const Area& body) {
     return best;
 }
 
-void draw_panels(const Figure& figure, const Area& body, const PlotStyle& style, DisplayList& list) {
+/// The map whose bar stands for those of all panels; null where each has its own.
+const HeatMap* sharing_map(const Figure& figure) {
+    const auto found = std::find_if(figure.panels.begin(), figure.panels.end(),
+                                    [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
+    return found == figure.panels.end() ? nullptr : &*found->map;
+}
+
+void draw_panels(const Figure& figure, Area body, const PlotStyle& style, DisplayList& list) {
     const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
     const int rows = (panels + columns - 1) / columns;
+    if (const HeatMap* map = sharing_map(figure)) {
+        const float gutter = shared_bar_gutter(*map, body.height(), style);
+        draw_shared_bar(*map, body, body.right - gutter, style, list);
+        body.right -= gutter;
+    }
     // whole pixels, so that all panels come out alike
     const float across = std::round(1.9f * style.tick), down = std::round(1.3f * style.tick);
     const float width =

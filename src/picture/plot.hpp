@@ -21,6 +21,9 @@ struct PlotAxis {
 /// What a line of data looks like.
 enum class Mark { line, points, both };
 
+/// A line that others lie on: pale and thin, or a wide pale band along it.
+enum class Ground { none, line, band };
+
 /// One series. Points that are not finite, or not positive on a logarithmic axis, interrupt the line.
 struct Curve {
     std::string label;  // at the line where there is room, else in the legend; empty: neither
@@ -30,6 +33,7 @@ struct Curve {
     int hue = 0;                         // of the theme's palette; curves that belong together share one
     bool right = false;                  // on the second y axis
     bool dashed = false, quiet = false;  // quiet: grey and thin, to compare with
+    Ground ground = Ground::none;        // then it has no words, and words may stand on it
 };
 
 /// A line across the chart with words at it: a limit, a moment.
@@ -43,11 +47,13 @@ struct Rule {
 struct HeatMap {
     std::size_t columns = 0, rows = 0;
     std::vector<float> values;  // row by row, from y_low up; NaN = none, shown as `none_label`
-    double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  // outer edges of the cells
+    double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  // outer edges of the cells, which are even on their axes
     std::string label;                                    // of the bar, with the unit
     std::string none_label;                               // "no flip within 20 s"
+    bool none_is_bad = false;                             // shown in the colour of what is bad
     std::optional<double> low, high;                      // of the scale; fitted to the values where not given
     bool logarithmic = false;
+    bool shares_bar = false;  // with all maps of the figure: one bar, on the right of them
 };
 
 /// One pair of axes and what is drawn between them.

@@ -45,7 +45,7 @@ struct Heading {
 std::vector<Heading> headings(const Plot& plot, const PlotStyle& style) {
     std::vector<Heading> all{{plot.y.label, Align::left, axis_color(plot, false, style)}};
     if (plot.right) all.push_back({plot.right->label, Align::right, axis_color(plot, true, style)});
-    if (plot.map) all.push_back({plot.map->label, Align::right, style.theme.text});
+    if (plot.map && !plot.map->shares_bar) all.push_back({plot.map->label, Align::right, style.theme.text});
     std::erase_if(all, [](const Heading& heading) { return heading.text.empty(); });
     return all;
 }

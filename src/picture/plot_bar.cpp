@@ -11,6 +11,8 @@
 namespace doppel {
 namespace {
 
+constexpr float heading_width = 7.5f;  // em
+
 /// A bar before it has a place: top 0, left 0.
 struct Bar {
     Axis axis;  // from its bottom up, px below the top of the panel
@@ -54,7 +56,35 @@ Image colors(const Bar& bar, float left, float top, float scale) {
     return {left, top, left + bar.thickness, top + bar.axis.from, std::move(pixels)};
 }
 
+/// The label of a bar by itself, in lines above it.
+TextBlock bar_heading(const HeatMap& map, const PlotStyle& style) {
+    return {wrapped(map.label, style.tick, Weight::regular, heading_width * style.tick), style.tick, Weight::regular,
+            style.theme.text};
+}
+
+float below_heading(const HeatMap& map, float height, const PlotStyle& style) {
+    return std::max(height - bar_heading(map, style).height() - style.tick, 1.0f);
+}
+
 }  // namespace
+
+Color none_color(const HeatMap& map, const Theme& theme) {
+    return map.none_is_bad ? theme.bad : theme.none;
+}
+
+float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
+    float widest = 0;
+    for (const std::string& line : bar_heading(map, style).lines)
+        widest = std::max(widest, text_width(line, style.tick));
+    return 1.2f * style.tick + std::max(widest, make_bar(map, below_heading(map, height, style), style).width);
+}
+
+void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
+    bar_heading(map, style).draw({std::round(left + 1.2f * style.tick), area.top}, list);
+    Area below = area;
+    below.top = std::round(area.bottom - below_heading(map, area.height(), style));
+    draw_bar(map, below, left, style, list);
+}
 
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
     return 1.2f * style.tick + make_bar(map, height, style).width;
@@ -83,7 +113,8 @@ void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle&
     // centred on the tick as all words are, so none is above the panel by more than half a line
     if (bar.none.empty()) return;
     const float top = std::round(area.top + bar.none_top + 0.1f * em);
-    list.push_back(Box{start, top, start + bar.thickness, top + std::round(0.95f * em), 0, style.theme.none});
+    list.push_back(
+        Box{start, top, start + bar.thickness, top + std::round(0.95f * em), 0, none_color(map, style.theme)});
     for (std::size_t i = 0; i < bar.none.size(); ++i)
         words(bar.none[i], bar.none_top + (0.6f + 1.2f * static_cast<float>(i)) * em);
 }

@@ -151,12 +151,29 @@ void draw_dashes(const std::vector<Point>& line, float dash, float gap, Pen& pen
     if (ink) pen.up();
 }
 
+/// A line for the others to lie on.
+void draw_ground(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
+                 DisplayList& list) {
+    std::vector<std::vector<Point>> lines;
+    Cutter cutter(area, lines);
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
+        std::isfinite(at.x) && std::isfinite(at.y) ? cutter.move(at) : cutter.lift();
+    }
+    if (curve.ground == Ground::band)
+        draw_line(lines, 6 * style.curve, false, mixed(style.theme.background, style.theme.open, 0.22f), style, list);
+    else
+        draw_line(lines, style.thin, curve.dashed,
+                  mixed(style.theme.background, curve_color(curve, style, false), 0.3f), style, list);
+}
+
 constexpr std::size_t many = 400;  // marks in a panel: from here on they are drawn as images, and smaller
 
 }  // namespace
 
 DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area) {
     DrawnCurve made;
+    if (curve.ground != Ground::none) return made;
     Cutter cutter(area, made.lines);
     Thinner thinner(cutter);
     const bool dense = static_cast<float>(curve.x.size()) > 2 * area.width();
@@ -188,6 +205,7 @@ Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
 
 void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
                DisplayList& list) {
+    if (curve.ground != Ground::none) draw_ground(curve, x, y, area, style, list);
     if (curve.uncertainty.empty()) return;
     Band band;
     for (std::size_t i = 0; i < curve.x.size(); ++i) {

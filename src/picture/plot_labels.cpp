@@ -103,9 +103,38 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t who, const Word
     return best;
 }
 
-Words words_for(const Curve& curve, const PlotStyle& style, bool over_map) {
+/// A place upon the curve, where the words hide least of the others.
+std::optional<Found> upon(const DrawnCurve& curve, std::size_t who, const Words& words, const PlotRoom& room) {
+    std::optional<Found> best;
+    const float w = words.width(), h = words.height(), air = 0.15f * words.size;
+    for (const Point& p : places(curve)) {
+        const Area box{p.x - w / 2, p.y - h / 2, p.x + w / 2, p.y + h / 2};
+        if (!room.is_free(box.grown(2 * air, air))) continue;
+        const auto cost = static_cast<float>(room.ink(box.grown(air, air), who));
+        if (!best || cost < best->cost) best = Found{words.at(box.left, box.top), cost};
+    }
+    return best;
+}
+
+/// A place above or below a single mark, off all lines, with a line that leads to it.
+std::optional<Found> led_to(Point mark, const Words& words, const PlotRoom& room, Capsule& leader) {
+    constexpr int farthest = 12;  // half lines
+    const float w = words.width(), h = words.height(), air = 0.15f * words.size;
+    for (int away = 2; away <= farthest; ++away)
+        for (const float across : {0.5f, 0.8f, 0.2f, 1.0f, 0.0f})
+            for (const float way : {-1.0f, 1.0f}) {
+                const float middle = mark.y + 0.5f * way * static_cast<float>(away) * h;
+                const Area box{mark.x - across * w, middle - h / 2, mark.x + (1 - across) * w, middle + h / 2};
+                if (!room.is_free(box.grown(2 * air, 0)) || room.ink(box.grown(air, 0)) > 0) continue;
+                leader = {mark, {mark.x, way < 0 ? box.bottom : box.top}, 0, words.color};
+                return Found{words.at(box.left, box.top), 0};
+            }
+    return {};
+}
+
+Words words_for(const Curve& curve, float size, const PlotStyle& style, bool over_map) {
     const bool plain = curve.quiet && !over_map;
-    return {curve.label, plain ? 0.9f * style.words : style.words, plain ? Weight::regular : Weight::bold,
+    return {curve.label, plain ? 0.9f * size : size, plain ? Weight::regular : Weight::bold,
             plain ? style.theme.quiet_text : curve_color(curve, style, over_map)};
 }
 
@@ -149,6 +178,10 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
 void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
                   bool over_map, PlotRoom& room, DisplayList& list) {
     constexpr std::size_t cloud = 60;  // marks that no word can stand beside
+    constexpr int many = 10;           // curves that leave little room beside each
+    const bool dense =
+        std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
+    const float size = dense ? 0.8f * style.words : style.words;
     std::vector<std::size_t> others;
     while (true) {
         // the legend first, for it is the larger; who finds no place beside it joins it
@@ -156,16 +189,28 @@ void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve
         PlotRoom left = room;
         if (legend) left.add_words(legend->box);
         std::vector<Label> labels;
+        std::vector<Area> grounds;
+        std::vector<Capsule> leaders;
         const std::size_t before = others.size();
         for (std::size_t i = 0; i < curves.size(); ++i) {
             const Curve& curve = curves[i];
             const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
             if (curve.label.empty() || empty || std::find(others.begin(), others.end(), i) != others.end()) continue;
-            const Words words = words_for(curve, style, over_map);
+            const Words words = words_for(curve, size, style, over_map);
             const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
             std::optional<Found> found;
             if (curve.mark != Mark::points || drawn[i].points.size() <= cloud)
                 found = beside(drawn[i], i, words, clear, left);
+            if (!found && dense && drawn[i].lines.empty() && drawn[i].points.size() == 1) {
+                Capsule leader{};
+                found = led_to(drawn[i].points.front(), words, left, leader);
+                leader.radius = style.hairline / 2;
+                if (found) leaders.push_back(leader);
+            }
+            if (!found && dense && !drawn[i].lines.empty()) {
+                found = upon(drawn[i], i, words, left);
+                if (found) grounds.push_back(text_area(found->label).grown(0.15f * words.size, 0.05f * words.size));
+            }
             if (!found) {
                 others.push_back(i);
                 continue;
@@ -175,6 +220,9 @@ void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve
         }
         if (others.size() > before) continue;
         if (legend) draw_legend(*legend, curves, style, over_map, list);
+        const Color ground = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
+        for (const Area& g : grounds) list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, ground});
+        for (const Capsule& leader : leaders) list.push_back(leader);
         for (const Label& label : labels) write(label, over_map, list);
         return;
     }

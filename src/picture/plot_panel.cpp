@@ -96,7 +96,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     const float tall = std::max(height - made.top(style) - made.bottom, 1.0f);
     made.left = 0.55f * em + widest(y_ticks(placed(ranges.y, tall, 0), plot.y, style), em);
     if (ranges.right) made.right = 0.55f * em + widest(y_ticks(placed(*ranges.right, tall, 0), *plot.right, style), em);
-    if (plot.map) made.right += bar_gutter(*plot.map, tall, style);
+    if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
     // the first and the last words below the axis reach out by half
     const float wide = std::max(width - made.left - made.right, 1.0f);
     const auto below = x_ticks(placed(ranges.x, 0, wide), plot.x, style);
@@ -121,11 +121,11 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
     if (area.width() < 8 || area.height() < 8) return;
     const Panel panel = make_panel(plot, ranges, area);
     if (plot.map) {
-        list.push_back(
-            map_image(*plot.map, fitted_scale(*plot.map), panel.x, panel.y, area, style.theme.none, style.scale));
+        list.push_back(map_image(*plot.map, fitted_scale(*plot.map), panel.x, panel.y, area,
+                                 none_color(*plot.map, style.theme), style.scale));
         const float after =
             plot.right ? 0.55f * style.tick + widest(y_ticks(panel.right, *plot.right, style), style.tick) : 0;
-        draw_bar(*plot.map, area, area.right + after, style, list);
+        if (!plot.map->shares_bar) draw_bar(*plot.map, area, area.right + after, style, list);
     }
     draw_axes(plot, panel.x, panel.y, plot.right ? &panel.right : nullptr, area, held, style, list);
     draw_headings(plot, held, around.title, around.labels, style, list);

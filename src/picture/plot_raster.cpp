@@ -56,9 +56,10 @@ std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, 
     std::vector<Span> made;
     const auto cell_at = [&](float px) {
         const double share = (static_cast<double>(px) - axis.from) / (static_cast<double>(axis.to) - axis.from);
-        const double value = axis.logarithmic ? axis.low * std::pow(axis.high / axis.low, share)
-                                              : axis.low + share * (axis.high - axis.low);
-        return (value - low) / (high - low) * static_cast<double>(cells);
+        const double part =
+            axis.logarithmic ? std::log(axis.low / low * std::pow(axis.high / axis.low, share)) / std::log(high / low)
+                             : (axis.low + share * (axis.high - axis.low) - low) / (high - low);
+        return part * static_cast<double>(cells);
     };
     const auto count = static_cast<double>(cells);
     for (int i = 0; i < pixels; ++i) {
