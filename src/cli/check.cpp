@@ -1,7 +1,10 @@
 #include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/options.hpp"
 #include "figure/computation.hpp"
 #include "numeric/share_out.hpp"
+#include "scene/choice.hpp"
+#include "scene/outlook.hpp"
 #include "scene/wording.hpp"
 
 #include <fmt/format.h>
@@ -61,12 +64,63 @@ void print_side(const char* name, const Side& side) {
                pace_words(side), steps, name_of(side.motion.model), side.why);
 }
 
-void print_scene(const Scene& scene) {
+/// What to expect of a side: how far it errs, and how far any run of its precision could be right.
+void print_outlook(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
+    const auto seen = outlook(scene, side, stop);
+    const auto unit = side.has_angles ? "rad" : "of its size";
+    const auto say = [](const std::string& words) { fmt::print("         {}\n", words); };
+    if (side.choice && side.choice->horizon < scene.samples)
+        say(fmt::format("errs by less than {} {} up to {:.3g} s; beyond, rounding forbids it",
+                        scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon)));
+    else if (side.choice)
+        say(fmt::format("errs by {} {} at most, to the end; verified by {}", scientific(side.choice->estimated_error),
+                        unit, side.choice->verified_by));
+    else if (seen.error_s < scene.time(scene.samples))
+        say(fmt::format("off by half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", seen.error_s));
+    else
+        say(fmt::format("errs by about {} {} at the end", scientific(seen.error), unit));
+    if (seen.exponent && is_regular(*seen.exponent))
+        say(fmt::format("regular: no Lyapunov exponent to be seen ({:.2g} ± {:.1g} 1/s)", seen.exponent->value,
+                        seen.exponent->uncertainty));
+    else if (seen.exponent)
+        say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
+                        std::log(10) / seen.exponent->value, seen.exponent->value, seen.exponent->uncertainty));
+    if (seen.horizon_s)
+        say(fmt::format("beyond {:.2g} s no run in {} can be right", *seen.horizon_s,
+                        side.motion.precision == Precision::in_quad ? "quad" : "double"));
+}
+
+/// What half or ten times the accuracy would take, against what is asked.
+void print_rivals(const Scene& scene, const SideSpec& spec, const Side& side, const std::atomic<bool>& stop) {
+    for (const auto& [factor, title] : {std::pair(Quad(2), "half"), {Quad(1) / 10, "ten times"}}) {
+        auto other = spec;
+        *other.accuracy *= factor;
+        if (*other.accuracy > 1) continue;
+        std::string words = "is out of reach";
+        try {
+            const auto way = choose_side(other, scene.preset.duration_s, scene.preset.sample_hz, stop);
+            words = fmt::format("takes {:.2f} times the work ({}, {})",
+                                way.choice->evaluations / side.choice->evaluations, way.method.name, pace_words(way));
+            if (way.choice->horizon < scene.samples)
+                words += fmt::format(", up to {:.3g} s", scene.time(way.choice->horizon));
+        } catch (const Error& fault) {
+            if (fault.code() != ExitCode::bad_input) throw;
+        }
+        fmt::print("         {} the accuracy {}\n", title, words);
+    }
+}
+
+void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     const auto& video = scene.preset.video;
     fmt::print("{}: {}\n", scene.preset.name, scene.preset.title);
-    print_side("a", scene.a);
-    print_side("b", scene.b);
     const auto estimate = estimated_simulation(scene);
+    constexpr double patience = 2;  // s, for runs that only inform
+    for (const auto* side : {&scene.a, &scene.b}) {
+        const bool is_a = side == &scene.a;
+        print_side(is_a ? "a" : "b", *side);
+        if (estimate.seconds < patience) print_outlook(scene, *side, stop);
+        if (side->choice) print_rivals(scene, is_a ? scene.preset.a : scene.preset.b, *side, stop);
+    }
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
     fmt::print("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all\n", scene.preset.duration_s.value(),
                scene.samples, scene.preset.sample_hz.text(), adaptive ? "about " : "",
@@ -98,12 +152,13 @@ void add_check(CLI::App& app) {
     auto& command = *app.add_subcommand("check", "What a preset would run: models and why, steps, frames, time");
     add_preset_options(command, *options);
     command.callback([options] {
+        const auto& stop = watch_interrupts();
         for (const auto& name : options->presets) {
             const auto preset = find_preset(name);
             if (is_figure(preset))
                 print_figure(read_figure(preset, overrides_of(*options)));
             else
-                print_scene(make_scene(read_preset(preset, overrides_of(*options))));
+                print_scene(make_scene(read_preset(preset, overrides_of(*options)), stop), stop);
         }
     });
 }

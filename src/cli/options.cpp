@@ -58,9 +58,10 @@ std::vector<Override> overrides_of(const PresetOptions& options) {
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
     auto overrides = overrides_of(options);
     overrides.insert(overrides.end(), more.begin(), more.end());
+    const auto& stop = watch_interrupts();
     std::vector<Scene> scenes;
     for (const auto& name : options.presets) {
-        scenes.push_back(make_scene(read_preset(find_preset(name), overrides)));
+        scenes.push_back(make_scene(read_preset(find_preset(name), overrides), stop));
         for (std::size_t i = 0; i + 1 < scenes.size(); ++i)
             if (scenes[i].preset.name == scenes.back().preset.name)
                 throw bad_input("{} and {} would both be written to {}/", options.presets[i], name,

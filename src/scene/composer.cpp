@@ -70,6 +70,7 @@ DisplayList Composer::backdrop() const {
         fitted(panel.heading, {left, area.top + 50 * t}, 31 * t, Weight::bold, theme_.sides[side], width);
         fitted(panel.note, {left, area.top + 82 * t}, 21 * t, Weight::regular, theme_.quiet_text, width);
     }
+    compose_horizon(list);
     if (layout_.distance) compose_strip_backdrop(*layout_.distance, distance_heading, 34 * t, list);
     if (layout_.energy) compose_strip_backdrop(*layout_.energy, "energy error, of the potential range", 30 * t, list);
     if (layout_.distance || layout_.energy)

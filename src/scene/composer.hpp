@@ -44,6 +44,7 @@ private:
     void compose_distance(DisplayList& list) const;
     void compose_energy(DisplayList& list) const;
     void compose_strip_backdrop(const StripLayout& strip, const char* heading, float label_px, DisplayList& list) const;
+    void compose_horizon(DisplayList& list) const;
     void compose_time_labels(const StripLayout& strip, DisplayList& list) const;
 
     static constexpr const char* distance_heading = "state-space distance";

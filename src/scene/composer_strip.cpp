@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -22,6 +23,11 @@ Box horizontal_line(float y, float left, float right, float width, Color color) 
 }
 
 constexpr float words_px = 21;  // size of the words above a strip, in a 1920×1080 picture
+
+void add_dashed_line(float x, const Area& area, float dash, float width, Color color, DisplayList& list) {
+    for (float top = area.top; top < area.bottom; top += 2 * dash)
+        list.push_back(vertical_line(x, top, std::min(top + dash, area.bottom), width, color));
+}
 
 }  // namespace
 
@@ -66,6 +72,31 @@ void Composer::compose_time_labels(const StripLayout& strip, DisplayList& list) 
     }
 }
 
+void Composer::compose_horizon(DisplayList& list) const {
+    const auto horizon = scene_.horizon();
+    if (!horizon) return;
+    const float t = layout_.text, size = 19 * t;
+    bool said = false;
+    for (const auto* strip : {&layout_.distance, &layout_.energy}) {
+        if (!*strip) continue;
+        const auto& area = (*strip)->area;
+        const float x = (*strip)->time.at(*horizon);
+        // what lies beyond is dimmed, as nobody can vouch for it
+        list.push_back(Box{x, area.top, area.right, area.bottom, 0, theme_.panel});
+        add_dashed_line(x, area, 3 * t, std::max(1.6f * layout_.unit, 1.0f), theme_.quiet_text, list);
+        if (std::exchange(said, true)) continue;
+        // at the foot: traces are high up by then
+        const auto words = fmt::format("predictable to {:.1f} s", *horizon);
+        const bool left = x - area.left > text_width(words, size) + 20 * t;
+        list.push_back(Label{words,
+                             {x + (left ? -10 : 10) * t, area.bottom - 10 * t},
+                             size,
+                             left ? Align::right : Align::left,
+                             Weight::regular,
+                             theme_.quiet_text});
+    }
+}
+
 void Composer::compose_distance(DisplayList& list) const {
     const auto& strip = *layout_.distance;
     const float t = layout_.text, u = layout_.unit;
@@ -76,10 +107,8 @@ void Composer::compose_distance(DisplayList& list) const {
         Label{scientific(now_.distance), {words, baseline}, words_px * t, Align::left, Weight::regular, theme_.trace});
     if (parted_) {
         // the moment of parting: a dashed line, and when it was above it
-        const float at = strip.time.at(*parted_), dash = 6 * t;
-        for (float top = strip.area.top; top < strip.area.bottom; top += 2 * dash)
-            list.push_back(vertical_line(at, top, std::min(top + dash, strip.area.bottom), std::max(1.6f * u, 1.0f),
-                                         theme_.quiet_text));
+        const float at = strip.time.at(*parted_);
+        add_dashed_line(at, strip.area, 6 * t, std::max(1.6f * u, 1.0f), theme_.quiet_text, list);
         const auto text = fmt::format("parted at {:.1f} s", *parted_);
         const float half = text_width(text, words_px * t) / 2, room = 110 * t;
         const float center =

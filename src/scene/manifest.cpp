@@ -13,7 +13,7 @@
 namespace doppel {
 namespace {
 
-Json side_json(const Side& side, const Effort& effort, double energy_error, double length_error) {
+Json side_json(const Scene& scene, const Side& side, const Effort& effort, double energy_error, double length_error) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
     if (side.method.adaptive) {
         json["tolerance"] = static_cast<double>(side.motion.tolerance);
@@ -21,6 +21,12 @@ Json side_json(const Side& side, const Effort& effort, double energy_error, doub
         json["step_s"] = side.step.text();
         json["steps_per_sample"] = side.motion.steps_per_sample;
     }
+    if (side.choice)
+        json["accuracy"] = {{"asked_rad", side.choice->accuracy},
+                            {"estimated_error_rad", side.choice->estimated_error},
+                            {"horizon_s", scene.time(side.choice->horizon)},
+                            {"holds_to_the_end", side.choice->horizon == scene.samples},
+                            {"verified_by", side.choice->verified_by}};
     json["steps"] = effort.steps;
     json["evaluations"] = effort.evaluations;
     json["smallest_step_s"] = effort.smallest_step;
@@ -40,8 +46,8 @@ void write_manifest(const std::filesystem::path& path, const Scene& scene, const
         {"frames",
          {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", scene.samples_per_frame}}},
         {"steps", record.effort_a.steps + record.effort_b.steps},
-        {"a", side_json(scene.a, record.effort_a, record.worst.energy_a, record.worst.length_a)},
-        {"b", side_json(scene.b, record.effort_b, record.worst.energy_b, record.worst.length_b)},
+        {"a", side_json(scene, scene.a, record.effort_a, record.worst.energy_a, record.worst.length_a)},
+        {"b", side_json(scene, scene.b, record.effort_b, record.worst.energy_b, record.worst.length_b)},
         {"largest_distance", record.largest_distance},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",

@@ -57,6 +57,8 @@ struct SideSpec {
     bool integrator_from_command_line = false;
     std::optional<Rational> step_s;  // of methods with a fixed step
     std::optional<Quad> tolerance;   // of adaptive methods
+    std::optional<Quad> accuracy;    // rad; in place of integrator, step and tolerance (scene/choice.hpp)
+    bool accuracy_from_command_line = false;
     Precision precision = Precision::in_double;
     Stabilise stabilise = Stabilise::none;
     Quad stabilise_rate_per_s = 10;       // Baumgarte's α = β

@@ -39,6 +39,7 @@ PresetText read_file(const fs::path& path) {
 std::vector<PresetText> builtin_presets() {
     std::vector<PresetText> presets;
     for (const auto& file : scene_files()) {
+        if (!file.name.ends_with(ending)) continue;
         const fs::path path = fs::path("presets") / file.name;
         presets.push_back({path.stem().string(), path.string(), std::string(file.contents)});
     }

@@ -78,7 +78,7 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
 
 void check_clock(const Preset& preset, const TomlReader& scene) {
     for (const auto* side : {&preset.a, &preset.b}) {
-        if (find_method(side->integrator)->adaptive) continue;
+        if (side->accuracy || find_method(side->integrator)->adaptive) continue;
         const auto rate = quotient({1, 1}, side->step());
         const auto steps = rate ? quotient(*rate, preset.sample_hz) : std::nullopt;
         if (!steps || !steps->is_whole())

@@ -12,8 +12,9 @@ namespace doppel {
 
 /// `kind` of [scene]: of a film, and of the figures (figure/kinds.cpp).
 inline constexpr std::string_view pair_kind = "pair";
-inline constexpr std::array<std::string_view, 9> scene_kinds{pair_kind, "sweep",    "curves", "convergence", "spectrum",
-                                                             "section", "flip-map", "links",  "audit"};
+inline constexpr std::array<std::string_view, 12> scene_kinds{pair_kind,        "sweep",     "curves",   "convergence",
+                                                              "spectrum",       "section",   "flip-map", "links",
+                                                              "work-precision", "stability", "drift",    "audit"};
 
 /// One of scene_kinds.
 std::string read_kind(TomlReader& scene);

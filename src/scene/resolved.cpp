@@ -77,19 +77,22 @@ std::string chain_toml(const SideSpec& side) {
                                           numbers(side.omega_deg_per_s));
 }
 
+std::string pace_toml(const SideSpec& side) {
+    return find_method(side.integrator)->adaptive ? fmt::format("tolerance = {}\n", text_of(side.allowed_error()))
+                                                  : fmt::format("step_s = {}\n", ratio(side.step()));
+}
+
 /// [a] or [b] with everything in it.
 std::string side_toml(const std::string& name, const SideSpec& side) {
     constexpr const char* models[] = {"auto", "angles", "constraints", "mechanism"};
     constexpr const char* precisions[] = {"double", "quad"};
     constexpr const char* stabilise[] = {"none", "baumgarte", "projection"};
     auto text = fmt::format("\n[{}]\n{}", name, side.particles.empty() ? chain_toml(side) : "");
-    text += fmt::format(
-        "gravity_m_per_s2 = {}\n"
-        "model = \"{}\"\nintegrator = \"{}\"\nprecision = \"{}\"\nstabilise = \"{}\"\n",
-        text_of(side.gravity_m_per_s2), models[static_cast<int>(side.model)], side.integrator,
-        precisions[static_cast<int>(side.precision)], stabilise[static_cast<int>(side.stabilise)]);
-    text += find_method(side.integrator)->adaptive ? fmt::format("tolerance = {}\n", text_of(side.allowed_error()))
-                                                   : fmt::format("step_s = {}\n", ratio(side.step()));
+    text += fmt::format("gravity_m_per_s2 = {}\nmodel = \"{}\"\nprecision = \"{}\"\nstabilise = \"{}\"\n",
+                        text_of(side.gravity_m_per_s2), models[static_cast<int>(side.model)],
+                        precisions[static_cast<int>(side.precision)], stabilise[static_cast<int>(side.stabilise)]);
+    text += side.accuracy ? fmt::format("accuracy = {}\n", text_of(*side.accuracy))
+                          : fmt::format("integrator = \"{}\"\n{}", side.integrator, pace_toml(side));
     if (side.stabilise == Stabilise::baumgarte)
         text += fmt::format("stabilise_rate_per_s = {}\n", text_of(side.stabilise_rate_per_s));
     for (const auto& particle : side.particles) text += particle_toml(name, particle);

@@ -3,6 +3,7 @@
 #include "analysis/distance.hpp"
 #include "analysis/energy_error.hpp"
 #include "numeric/error.hpp"
+#include "scene/choice.hpp"
 #include "scene/choose.hpp"
 #include "scene/precision.hpp"
 
@@ -16,11 +17,20 @@ double Scene::time(long sample) const {
            static_cast<double>(preset.sample_hz.numerator);
 }
 
+std::optional<double> Scene::horizon() const {
+    long first = samples;
+    for (const auto* side : {&a, &b})
+        if (side->choice) first = std::min(first, side->choice->horizon);
+    if (first == samples) return std::nullopt;
+    return time(first);
+}
+
 namespace {
 
 /// Errors say whose they are.
-Side side_of(const Preset& preset, const SideSpec& spec, char name) {
+Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::atomic<bool>& stop) {
     try {
+        if (spec.accuracy) return choose_side(spec, preset.duration_s, preset.sample_hz, stop);
         return make_side(spec, preset.sample_hz);
     } catch (const Error& fault) {
         throw Error(fault.code(), fmt::format("{}: side {}: {}", preset.name, name, fault.what()));
@@ -29,10 +39,10 @@ Side side_of(const Preset& preset, const SideSpec& spec, char name) {
 
 }  // namespace
 
-Scene make_scene(const Preset& preset) {
+Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     Scene scene{.preset = preset,
-                .a = side_of(preset, preset.a, 'a'),
-                .b = side_of(preset, preset.b, 'b'),
+                .a = side_of(preset, preset.a, 'a', stop),
+                .b = side_of(preset, preset.b, 'b', stop),
                 .samples = product(preset.duration_s, preset.sample_hz)->numerator,
                 .fps = {},
                 .samples_per_frame = 1};

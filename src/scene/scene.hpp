@@ -13,10 +13,21 @@
 
 namespace doppel {
 
+/// What an accuracy that was asked for came to. Errors are in rad, the largest of all angles; of what hangs in no
+/// chain, those of places in units of its size.
+struct Choice {
+    double accuracy;          // asked for
+    double estimated_error;   // up to the horizon
+    long horizon;             // the sample up to which the run is that accurate; the last where it is to the end
+    std::string verified_by;  // the finer run: "tolerance 1e-12"
+    double evaluations;       // of the right-hand side, up to the end
+};
+
 /// One side with everything chosen.
 struct Side {
     MotionSpec motion;
-    std::string why;  // this model
+    std::string why;               // this model
+    std::optional<Choice> choice;  // where an accuracy was asked for
     MethodEntry method;
     Rational step{0, 1};       // s; of methods with a fixed step
     std::vector<double> mass;  // kg, a bob each
@@ -36,10 +47,13 @@ struct Scene {
     long samples_per_frame;  // frame k shows sample k · samples_per_frame
 
     double time(long sample) const;  // s
+    /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
+    std::optional<double> horizon() const;
 };
 
-/// Throws Error (exit 2) where a system is faulty, or the two sides differ by less than their precision can tell.
-Scene make_scene(const Preset& preset);
+/// Throws Error: exit 2 where a system is faulty, the two sides differ by less than their precision can tell, or an
+/// accuracy is out of reach; exit 130 soon after `stop` is set (choosing by accuracy takes runs of its own).
+Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 
 std::string_view name_of(Model model);  // as in presets: "angles", "constraints", "mechanism"
 

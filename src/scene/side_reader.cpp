@@ -39,11 +39,40 @@ void read_chain(TomlReader& table, SideSpec& side) {
     table.read_numbers("omega_deg_per_s", side.omega_deg_per_s, "one a link");
 }
 
+/// Whether an accuracy stands in place of integrator, step and tolerance: one from the command line for those of the
+/// preset, or they, from the command line, for its accuracy. Rivals given side by side are an error.
+bool read_accuracy(TomlReader& table, SideSpec& side) {
+    constexpr std::array rivals{"integrator"sv, "step_s"sv, "tolerance"sv};
+    const std::string_view* rival = nullptr;
+    for (const auto& key : rivals)
+        if (table.has(key) && !rival) rival = &key;
+    if (table.has("accuracy")) {
+        const bool ours = table.from_command_line("accuracy"), theirs = rival && table.from_command_line(*rival);
+        if (rival && ours == theirs)
+            throw table.fault("accuracy", "chooses integrator, step and tolerance itself; give it, or {}", *rival);
+        if (theirs) {
+            side.accuracy.reset();
+            return false;
+        }
+        table.read_positive("accuracy", side.accuracy.emplace());
+        if (*side.accuracy > 1)
+            throw table.fault("accuracy", "must be at most 1 rad; it is {}", text_of(*side.accuracy));
+        side.accuracy_from_command_line = ours;
+    } else if (rival && !(side.accuracy_from_command_line && !table.from_command_line(*rival))) {
+        side.accuracy.reset();
+    }
+    if (!side.accuracy) return false;
+    side.step_s.reset();
+    side.tolerance.reset();
+    return true;
+}
+
 /// Integrator, and the step or the tolerance that it goes by. An integrator from the command line drops what the preset
 /// says for another kind; rivals given side by side are an error.
 void read_method(TomlReader& table, SideSpec& side) {
     std::vector<std::string_view> names;
     for (const auto& method : methods()) names.push_back(method.name);
+    if (read_accuracy(table, side)) return;
     table.read_choice("integrator", side.integrator, names);
     if (table.has("integrator")) side.integrator_from_command_line = table.from_command_line("integrator");
     const bool adaptive = find_method(side.integrator)->adaptive;
@@ -168,11 +197,14 @@ void read_gravity(TomlReader& table, SideSpec& side) {
 
 /// What the keys say together must be possible.
 void check_choices(TomlReader& table, const SideSpec& side) {
-    const auto& method = *find_method(side.integrator);
     if (side.is_mechanism() && side.model != ModelChoice::automatic && side.model != ModelChoice::mechanism)
         throw table.fault("model",
                           "must be \"mechanism\" or \"auto\" with particles, constraints or forces; it is \"{}\"",
                           model_names[static_cast<std::size_t>(side.model)]);
+    if (side.stabilise != Stabilise::none && side.model == ModelChoice::angles)
+        throw table.fault("stabilise", "is for constraints; in angles the rods keep their length by themselves");
+    if (side.accuracy) return;
+    const auto& method = *find_method(side.integrator);
     if (side.is_mechanism() && !method.mechanism)
         throw table.fault("integrator", "\"{}\" serves {}, not a mechanism", side.integrator, served(method));
     const bool possible = side.model == ModelChoice::automatic ||
@@ -182,10 +214,7 @@ void check_choices(TomlReader& table, const SideSpec& side) {
     if (!possible)
         throw table.fault(table.has("integrator") ? "integrator" : "model", "\"{}\" serves {}, not model = \"{}\"",
                           side.integrator, served(method), model_names[static_cast<std::size_t>(side.model)]);
-    if (side.stabilise == Stabilise::none) return;
-    if (side.model == ModelChoice::angles)
-        throw table.fault("stabilise", "is for constraints; in angles the rods keep their length by themselves");
-    if (!method.angles)
+    if (side.stabilise != Stabilise::none && !method.angles)
         throw table.fault("stabilise", "is not for \"{}\", which keeps the constraints itself", side.integrator);
 }
 

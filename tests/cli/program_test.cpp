@@ -53,9 +53,40 @@ TEST(Program, ListsShowsAndChecks) {
     EXPECT_EQ(check.code, 0);
     for (const char* words :
          {"angles, explicit Euler, 1/30 000 s, 250 steps a sample", "the smallest model that serves",
-          "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3 601 frames of 1920×1080", "to render"})
+          "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3 601 frames of 1920×1080", "to render",
+          "off by half a rad from 1", "chaotic: errors grow tenfold every 2.", "s no run in double can be right"})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
     EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Program, AnAccuracyIsChosenByExplainedAndRecorded) {
+    const auto folder = fresh_folder();
+    const std::vector<std::string> asked{"calm", "--set", "system.accuracy=1e-6", "--set", "scene.duration_s=10"};
+    auto arguments = asked;
+    arguments.insert(arguments.begin(), "check");
+    const auto check = doppel(folder, arguments);
+    EXPECT_EQ(check.code, 0) << check.err;
+    for (const char* words :
+         {"Taylor series, tolerance ", "the cheapest way to 1.0 × 10⁻⁶ rad that was measured; ",
+          "rad at most, to the end; verified by tolerance ", "regular: no Lyapunov exponent to be seen",
+          "half the accuracy takes 0.", "ten times the accuracy takes 1."})
+        EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
+
+    arguments.front() = "simulate";
+    ASSERT_EQ(doppel(folder, arguments).code, 0);
+    const auto manifest = nlohmann::json::parse(bytes_of(folder / "out/calm/calm.json"));
+    const auto& choice = manifest["a"]["accuracy"];
+    EXPECT_EQ(manifest["a"]["integrator"], "taylor");
+    EXPECT_EQ(choice["asked_rad"], 1e-6);
+    EXPECT_EQ(choice["holds_to_the_end"], true);
+    EXPECT_EQ(choice["horizon_s"], 10);
+    EXPECT_LE(choice["estimated_error_rad"], 1e-6);
+    EXPECT_EQ(manifest["resolved_preset"]["a"]["accuracy"], 1e-6);
+
+    arguments[2 + 1] = "system.accuracy=1e-18";
+    const auto beyond = doppel(folder, arguments);
+    EXPECT_EQ(beyond.code, 2);
+    EXPECT_NE(beyond.err.find("accuracy = 1e-18 rad is beyond double here"), std::string::npos) << beyond.err;
 }
 
 TEST(Program, HelpTeaches) {

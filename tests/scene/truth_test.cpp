@@ -114,6 +114,22 @@ TEST(Truth, TraceIsAtTheDistanceItShows) {
     EXPECT_NEAR(dot.y, y, 0.5);  // measured 0.2
 }
 
+TEST(Truth, WhatLiesBeyondTheHorizonIsShaded) {
+    const auto scene = scene_of("horizon", {"scene.duration_s=35"});
+    ASSERT_TRUE(scene.horizon());
+    const auto picture = frame_of(scene, 0);
+    const auto& strip = *make_layout(scene).distance;
+    const auto pixel = [&](float dx, double seconds) {  // away from the lines of the axes
+        return picture.at(static_cast<int>(strip.time.at(seconds) + dx), static_cast<int>(strip.area.top) + 5);
+    };
+    const auto& theme = themes[0];
+    EXPECT_TRUE(is_color(pixel(-6, *scene.horizon()), theme.background));
+    EXPECT_TRUE(is_color(pixel(6, *scene.horizon()), theme.panel));
+    // one that can be predicted to its end has none
+    EXPECT_FALSE(scene_of("horizon", {"scene.duration_s=20"}).horizon());
+    EXPECT_FALSE(scene_of("butterfly").horizon());
+}
+
 TEST(Truth, ABlowUpStaysInItsPanel) {
     // Euler with giant steps tears the rods: bobs and trails leave the panel, and must not be drawn over the rest
     const auto scene =
