@@ -179,6 +179,7 @@ private:
             side->precision = ladder.precision;
             side->step_s.reset();
             side->tolerance.reset();
+            side->accuracy.reset();
             if (ladder.adaptive()) {
                 side->tolerance = Quad(1);
                 for (std::size_t i = 0; i < rung + first_decade; ++i) *side->tolerance /= 10;

@@ -32,6 +32,9 @@ std::span<const FigureKind> figure_kinds() {
                                                                            {"section", read_section},
                                                                            {"flip-map", read_flip_map},
                                                                            {"links", read_links},
+                                                                           {"work-precision", read_work_precision},
+                                                                           {"stability", read_stability},
+                                                                           {"drift", read_drift},
                                                                            {"audit", read_audit}}};
     return kinds;
 }

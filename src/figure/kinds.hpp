@@ -1,5 +1,6 @@
 #pragma once
 
+#include "figure/peer.hpp"
 #include "figure/work.hpp"
 #include "scene/preset_tables.hpp"
 
@@ -13,7 +14,8 @@ namespace doppel {
 struct FigureReader {
     std::string name;  // of the preset
     const TomlDocument& document;
-    TomlReader &top, &scene;
+    TomlReader &top, &scene, &chart;  // of [chart], a kind may take keys of its own
+    std::span<const Peer> peers = {};
 
     TomlReader table(std::string_view key) { return document.table(top, key); }
     /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_tables.hpp).
@@ -39,5 +41,8 @@ std::shared_ptr<const FigureWork> read_section(FigureReader& reader);
 std::shared_ptr<const FigureWork> read_flip_map(FigureReader& reader);
 std::shared_ptr<const FigureWork> read_links(FigureReader& reader);
 std::shared_ptr<const FigureWork> read_audit(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_work_precision(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_stability(FigureReader& reader);
+std::shared_ptr<const FigureWork> read_drift(FigureReader& reader);
 
 }  // namespace doppel

@@ -26,20 +26,22 @@ Size FigurePreset::picture_size() const {
 }
 
 std::string FigurePreset::resolved_work() const {
-    return fmt::format("[scene]\nkind = {}\n{}", toml_text(kind), work->resolved());
+    return fmt::format("[scene]\nkind = {}\n{}\n[chart]\n{}", toml_text(kind), work->resolved(),
+                       work->resolved_chart());
 }
 
 std::string FigurePreset::resolved() const {
     std::vector<std::string> quoted;
     for (const auto& caption : captions) quoted.push_back(toml_text(caption));
     return fmt::format(
-        "title = {}\nsubtitle = {}\ncaptions = [{}]\nerratum = {}\n\n{}\n[chart]\nsize = [{}, {}]\ntheme = {}\nscale = "
+        "title = {}\nsubtitle = {}\ncaptions = [{}]\nerratum = {}\n\n{}size = [{}, {}]\ntheme = {}\nscale = "
         "{}\n",
         toml_text(title), toml_text(subtitle), fmt::join(quoted, ", "), toml_text(erratum), resolved_work(),
         chart.size.width, chart.size.height, toml_text(chart.theme), chart.scale);
 }
 
-FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides) {
+FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
+                         std::span<const Peer> peers) {
     const auto document = parse_document(source, overrides);
     FigurePreset figure;
     figure.name = figure.title = source.name;
@@ -53,11 +55,11 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     figure.kind = read_kind(scene);
     if (figure.kind == pair_kind)
         throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.name);
-    FigureReader reader{source.name, document, top, scene};
+    auto chart = document.table(top, "chart");
+    FigureReader reader{source.name, document, top, scene, chart, peers};
     for (const auto& kind : figure_kinds())
         if (kind.name == figure.kind) figure.work = kind.read(reader);
     scene.finish();
-    auto chart = document.table(top, "chart");
     read_chart(chart, figure.chart);
     top.finish();
     return figure;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "figure/peer.hpp"
 #include "figure/work.hpp"
 #include "scene/preset.hpp"
 
@@ -32,7 +33,8 @@ struct FigurePreset {
     std::string resolved() const;
 };
 
-/// Errors as read_preset()'s.
-FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {});
+/// Errors as read_preset()'s. Charts of work against precision show `peers`, which outlive the figure, as well.
+FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {},
+                         std::span<const Peer> peers = {});
 
 }  // namespace doppel

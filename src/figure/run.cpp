@@ -181,7 +181,8 @@ public:
                 figure, header, options.out / figure.name / shard_name(header, "resume"), jobs,
                 ComputationReport{[&report, k](const FigureProgress& p) { report.progress(k, p); },
                                   [&report, k](const std::string& s) { report.note(k, s); }}));
-            for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups_.emplace_back(k, group);
+            auto& groups = figure.work->measures_time() ? timed_groups_ : groups_;
+            for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
         }
         thread_ = std::jthread([this, jobs] { work(jobs); });
@@ -202,22 +203,27 @@ public:
     Computation& computation(std::size_t figure) { return *computations_[figure]; }
 
 private:
+    using Group = std::pair<std::size_t, std::size_t>;  // figure, group of it
+
     void work(int jobs) {
         try {
-            share_out(groups_.size(), jobs, [&](std::size_t i) {
-                if (closing_) return;
-                const auto [figure, group] = groups_[i];
-                if (computations_[figure]->compute(group, stop_)) finished_.push(figure);
-            });
+            share_out(groups_.size(), jobs, [&](std::size_t i) { work_on(groups_[i]); });
+            for (const auto& group : timed_groups_) work_on(group);
         } catch (...) {
             fault_ = std::current_exception();
         }
         finished_.close();
     }
 
+    void work_on(const Group& place) {
+        if (closing_) return;
+        const auto [figure, group] = place;
+        if (computations_[figure]->compute(group, stop_)) finished_.push(figure);
+    }
+
     const std::atomic<bool>& stop_;
     std::vector<std::unique_ptr<Computation>> computations_;
-    std::vector<std::pair<std::size_t, std::size_t>> groups_;  // figure, group of it
+    std::vector<Group> groups_, timed_groups_;
     Queue<std::size_t> finished_{100'000};
     std::exception_ptr fault_;
     std::atomic<bool> closing_ = false;

@@ -186,7 +186,7 @@ private:
             const auto& motion = side.motion;
             into = {motion.model == Model::angles ? EnsembleModel::angles : EnsembleModel::constraints, motion.method,
                     motion.steps_per_sample};
-            return motion.model != Model::mechanism && motion.precision == Precision::in_double &&
+            return !side.choice && motion.model != Model::mechanism && motion.precision == Precision::in_double &&
                    motion.stabilise == Stabilise::none && Ensemble::serves(motion.method);
         };
         if (!take(scene.a, run.a) || !take(scene.b, run.b)) return std::nullopt;
@@ -195,7 +195,7 @@ private:
 
     /// One of the twins' averages by the sample loop of the films: any model, method and precision.
     double watched_average(std::size_t trial, const std::atomic<bool>& stop) const {
-        const auto scene = make_scene(twins(trial));
+        const auto scene = make_scene(twins(trial), stop);
         PairRun run(scene);
         const double start = run.next(stop).distance;
         double sum = 0;

@@ -30,6 +30,8 @@ public:
     virtual std::size_t trials() const = 0;
     /// How many trials in a row one call of compute() takes best. Changes no result.
     virtual std::size_t together() const { return 1; }
+    /// Whether its trials measure time, and so are computed one after the other, by themselves.
+    virtual bool measures_time() const { return false; }
     /// What a person would count, "pairs", and how many of them a trial is.
     virtual std::string unit() const { return "trials"; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
@@ -48,6 +50,8 @@ public:
 
     /// Everything that the numbers depend on, as the preset's tables would say it (TOML).
     virtual std::string resolved() const = 0;
+    /// The keys of [chart] among it.
+    virtual std::string resolved_chart() const { return {}; }
 };
 
 }  // namespace doppel

@@ -1,0 +1,143 @@
+#include "figure/work_chart.hpp"
+
+#include "scene/wording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace doppel {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double rounding = 0x1p-53;
+constexpr double most_shown = 1;  // rad: beyond, an end is not known
+
+/// Methods of a family share a hue of the palette; of two, the second is dashed.
+struct Look {
+    int hue = 0;
+    bool dashed = false;
+};
+Look look_of(std::string_view method) {
+    constexpr std::array<std::array<std::string_view, 2>, 8> families{{{"taylor"sv},
+                                                                       {"dop853"sv, "dopri5"sv},
+                                                                       {"gauss6"sv, "gauss4"sv},
+                                                                       {"rattle6"sv, "rattle"sv},
+                                                                       {"rk4"sv},
+                                                                       {"adams"sv},
+                                                                       {"euler"sv, "semi-implicit-euler"sv},
+                                                                       {"midpoint"sv}}};
+    for (std::size_t i = 0; i < families.size(); ++i)
+        for (std::size_t k = 0; k < 2; ++k)
+            if (families[i][k] == method) return {static_cast<int>(i), k == 1};
+    return {};
+}
+
+/// What of a ladder is shown.
+ErrorRange range_of(const WorkPanel& panel) {
+    constexpr double at_floor = 10;
+    return {std::isnan(panel.floor) ? 0 : at_floor * panel.floor, most_shown};
+}
+
+Curve curve_of(const Ladder& ladder, const WorkPanel& panel, bool best) {
+    const auto& [model, method, peer] = ladder.contender;
+    const auto look = look_of(method);
+    Curve curve{.label = !best  ? ""
+                         : peer ? peer->name
+                                : method,
+                .hue = look.hue,
+                .dashed = look.dashed && best,
+                .quiet = peer != nullptr,
+                .ground = best ? Ground::none : Ground::line};
+    const auto useful = useful_rungs(ladder, panel.cost, range_of(panel));
+    const auto add = [&](double x, double y) {
+        curve.x.push_back(x);
+        curve.y.push_back(y);
+    };
+    for (const std::size_t i : useful) add(cost_of(ladder.rungs[i], panel.cost), ladder.rungs[i].error);
+    if (panel.cost == Cost::evaluations || !best) return curve;
+    // how far times spread, as level bars where they show
+    constexpr double shows = 0.05;
+    for (const std::size_t i : useful) {
+        const auto& rung = ladder.rungs[i];
+        const double spread = std::min(ladder.spread[i], 0.9);
+        if (spread < shows) continue;
+        add(none, none);
+        add(rung.cpu_s * (1 - spread), rung.error);
+        add(rung.cpu_s * (1 + spread), rung.error);
+    }
+    return curve;
+}
+
+Curve front_curve(const WorkPanel& panel) {
+    Curve curve{.ground = Ground::band};
+    for (const auto& point : front_of(panel.index, panel.ladders, panel.cost, range_of(panel))) {
+        curve.x.push_back(point.cost);
+        curve.y.push_back(point.error);
+    }
+    return curve;
+}
+
+/// Where the published study stands.
+void add_study(const WorkPanel& panel, Plot& plot) {
+    for (const auto& ladder : panel.ladders) {
+        if (ladder.problem != panel.index || !ladder.contender.is_study()) continue;
+        for (const auto& rung : ladder.rungs)
+            if (rung.is_study())
+                plot.curves.push_back({.label = "the study: Euler, 30 kHz",
+                                       .x = {cost_of(rung, panel.cost)},
+                                       .y = {rung.error},
+                                       .mark = Mark::points,
+                                       .hue = look_of("euler").hue});
+    }
+}
+
+/// Axes around what matters: from where a first method is of use, down to the floors where they are near.
+void fit(const WorkPanel& panel, Plot& plot) {
+    constexpr double of_use = 0.03, near = 100;
+    double least = most_shown, cheapest = std::numeric_limits<double>::infinity();
+    for (const auto& curve : plot.curves)
+        for (std::size_t i = 0; i < curve.x.size(); ++i) {
+            least = std::fmin(least, curve.y[i]);
+            if (curve.y[i] < of_use) cheapest = std::fmin(cheapest, curve.x[i]);
+        }
+    if (std::isfinite(cheapest)) plot.x.low = 0.5 * cheapest;
+    plot.y.low = least / 4;
+    plot.y.high = 20 * most_shown;  // the study's words stand above
+    if (!(least < near * panel.floor)) return;
+    const double grown = panel.floor / rounding;
+    const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);
+    plot.rules.push_back({.at = panel.floor, .label = "rounding of a double × " + times});
+    plot.y.low = std::fmin(least, panel.floor) / 20;
+    constexpr double in_sight = 1e-12;
+    if (panel.floor > in_sight) return;
+    plot.rules.push_back({.at = rounding, .label = "rounding of a double"});
+    plot.y.low = rounding / 20;
+}
+
+}  // namespace
+
+Plot work_plot(const WorkPanel& panel) {
+    Plot plot;
+    plot.title = panel.problem.title;
+    plot.x = {.label = panel.cost == Cost::time ? "CPU time, s" : "evaluations of the right-hand side",
+              .logarithmic = true};
+    plot.y = {.label = panel.problem.side.has_angles ? "angle error at the end, rad"
+                                                     : "error of place at the end, of the size",
+              .logarithmic = true};
+    plot.curves.push_back(front_curve(panel));
+    add_study(panel, plot);
+    const auto best = best_models(panel.index, panel.ladders, panel.cost);
+    for (const auto& ladder : panel.ladders)
+        if (ladder.problem == panel.index && std::count(best.begin(), best.end(), &ladder) == 0)
+            plot.curves.push_back(curve_of(ladder, panel, false));
+    for (const auto* ladder : best) plot.curves.push_back(curve_of(*ladder, panel, true));
+    fit(panel, plot);
+    return plot;
+}
+
+}  // namespace doppel

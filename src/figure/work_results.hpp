@@ -1,0 +1,52 @@
+#pragma once
+
+#include "figure/work_ladder.hpp"
+
+#include <optional>
+
+namespace doppel {
+
+/// A ladder as measured: CPU times are medians over the repeats.
+struct Ladder {
+    std::size_t problem;
+    Contender contender;
+    std::vector<Rung> rungs;
+    std::vector<double> spread;  // of each rung's CPU time: half the range of its middle half, relative
+};
+
+/// What a run costs.
+enum class Cost { time, evaluations };
+inline double cost_of(const Rung& rung, Cost cost) {
+    return cost == Cost::time ? rung.cpu_s : rung.evaluations;
+}
+
+/// The ladder of several repeats, the first of which has everything.
+Ladder merged(std::size_t problem, const Contender& contender, const std::vector<std::vector<Rung>>& repeats);
+
+/// The errors that matter: larger ones tell nothing, and what is below `least` is at the floor.
+struct ErrorRange {
+    double least, most;
+};
+
+/// Its rungs that no cheaper one of its own beats, cheapest first, until one is at the floor. A rung whose next finer
+/// one errs more than twice as much was lucky and does not count.
+std::vector<std::size_t> useful_rungs(const Ladder& ladder, Cost cost, const ErrorRange& range);
+
+/// What it takes to err by no more than `error`: the cheapest rung that does so, and whose next finer one does, too,
+/// for now and then a coarse one is lucky. Nothing where none does.
+std::optional<double> cost_at(const Ladder& ladder, Cost cost, double error);
+
+/// Of each method on a problem the model that is the cheapest at most powers of ten of the error; of equals the first.
+std::vector<const Ladder*> best_models(std::size_t problem, const std::vector<Ladder>& all, Cost cost);
+
+/// A place on the front: no ladder of ours errs less at less cost.
+struct FrontPoint {
+    double cost, error;
+};
+std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>& all, Cost cost,
+                                 const ErrorRange& range);
+
+/// The one that gets to `error` at the least cost, of ours or of the peers; null where none does.
+const Ladder* cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error, bool peers);
+
+}  // namespace doppel

@@ -1,0 +1,157 @@
+#include "figure/drift_growth.hpp"
+#include "figure/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace doppel {
+namespace {
+
+const std::string kind = "[scene]\nkind = \"drift\"\n";
+
+/// Of the double pendulum of the preset, for a short time.
+FigurePreset short_drift(int seconds, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{fmt::format("drift.duration_s={}", seconds), "drift.points_per_decade=5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return figure_of("drift", arguments);
+}
+
+/// The findings of one figure by key.
+struct Found {
+    std::map<std::string, double> numbers;
+    std::map<std::string, std::string> words;
+
+    explicit Found(const FigurePreset& figure) {
+        for (const auto& finding : figure.work->findings(computed(figure)))
+            if (const auto* number = std::get_if<double>(&finding.value))
+                numbers[finding.key] = *number;
+            else
+                words[finding.key] = std::get<std::string>(finding.value);
+    }
+    double number(const std::string& key) const {
+        const auto found = numbers.find(key);
+        if (found != numbers.end()) return found->second;
+        ADD_FAILURE() << "no finding " << key;
+        return std::nan("");
+    }
+};
+
+TEST(Drift, EulerGainsEnergyByTheClosedForm) {
+    // a pendulum of small amplitude: E + m g l grows by 1 + z² a step, z² = h² g/l; E0 = −m g l cos A
+    const double amplitude = 0.1 * pi / 180, h = 1.0 / 200, z2 = h * h * 9.8;
+    const auto figure = figure_from(kind +
+                                    "[system]\nlinks = 1\nangle_deg = [0.1]\n"
+                                    "[drift]\nevaluations_per_s = 200\nduration_s = 40\nmethods = [\"euler\"]\n");
+    const auto table = table_of(figure);
+    ASSERT_EQ(table.rows.size(), 2u * 18);  // in angles, then in constraints
+    for (std::size_t i = 0; i < 18; ++i) {
+        const double time = table.rows[i][3];
+        // the last look of a window is the worst; there are four a second
+        const double steps = std::floor(time * 4 + 1e-9) / 4 / h;
+        const double gained = std::expm1(steps * std::log1p(z2)) * (1 - std::cos(amplitude)) / std::cos(amplitude);
+        EXPECT_EQ(table.rows[i][2], h);
+        EXPECT_NEAR(table.rows[i][4] / gained, 1, 1e-5) << time;  // measured 3.4e-6
+    }
+}
+
+TEST(Drift, EveryMethodTakesItsEvaluations) {
+    const Found found(short_drift(40));
+    int counted = 0;
+    for (const auto& [key, value] : found.numbers) {
+        if (!key.ends_with("_evaluations_per_s")) continue;
+        ++counted;
+        if (key.starts_with("taylor")) {
+            EXPECT_LT(value, 500) << key;  // 446: the finest tolerance there is takes no more
+            EXPECT_EQ(found.number(key.substr(0, key.find("_eval")) + "_setting"), 8.89e-16);
+        } else {
+            EXPECT_NEAR(value, 500, 5) << key;  // measured 499.6 … 501.8
+        }
+    }
+    EXPECT_EQ(counted, 10 + 10 + 1);
+    EXPECT_EQ(found.number("rk4_angles_setting"), 1 / 125.0);
+    EXPECT_EQ(found.number("adams_angles_setting"), 1 / 250.0);
+}
+
+TEST(Drift, TellsWhatGrowsHow) {
+    const Found found(
+        short_drift(200, {"drift.methods=[\"euler\", \"rk4\", \"dopri5\", \"gauss6\", \"rattle\", \"rattle6\"]"}));
+    for (const char* name : {"gauss6_angles", "rattle_constraints", "rattle6_constraints"})
+        EXPECT_NEAR(found.number(std::string(name) + "_energy_exponent"), 0, 0.2) << name;  // measured 0.16, 0.09, 0.03
+    for (const char* name : {"rk4_angles", "dopri5_angles", "rk4_projected_constraints"})
+        EXPECT_NEAR(found.number(std::string(name) + "_energy_exponent"), 1, 0.12)
+            << name;  // measured 0.91, 1.00, 0.96
+    for (const char* name : {"rk4_constraints", "dopri5_constraints"})
+        EXPECT_NEAR(found.number(std::string(name) + "_rods_exponent"), 2, 0.05) << name;  // measured 2.01
+    EXPECT_EQ(found.words.at("rk4_angles_energy_growth"), "grows linearly");
+    EXPECT_EQ(found.words.at("rk4_constraints_rods_growth"), "grows like t²");
+    EXPECT_EQ(found.words.at("gauss6_angles_energy_growth"), "stays bounded");
+    EXPECT_EQ(found.words.at("euler_angles_energy_growth"), "breaks down");
+    EXPECT_NEAR(found.number("euler_angles_broken_at_s"), 87, 1);  // measured 87.25
+}
+
+TEST(Drift, KeepsTheRodsThatAreKept) {
+    const auto table = table_of(short_drift(200, {"drift.methods=[\"semi-implicit-euler\", \"rattle\", \"rattle6\"]"}));
+    ASSERT_EQ(table.rows.size(), 5u * 13);
+    // those that keep them come last: rattle, rattle6 and rk4 projected
+    for (std::size_t i = 2 * 13; i < table.rows.size(); ++i) EXPECT_LT(table.rows[i][5], 1e-14);  // measured 2e-16
+    EXPECT_GT(table.rows[2 * 13 - 1][5], 0.05);  // measured 0.27: they do not keep themselves
+    for (const auto& row : table.rows) {
+        EXPECT_LT(row[4], 1);
+        EXPECT_LT(row[5], 1);
+        EXPECT_LE(row[3], 200);
+    }
+    EXPECT_EQ(table.columns,
+              (std::vector<std::string>{"method", "model", "setting", "time_s", "energy_error", "length_error_m"}));
+}
+
+TEST(Drift, IsTheSameForAnyNumberOfJobs) {
+    const auto figure = short_drift(20, {"drift.methods=[\"euler\", \"dop853\", \"gauss4\"]"});
+    EXPECT_EQ(table_text(figure, computed(figure, 1)), table_text(figure, computed(figure, 3)));
+}
+
+TEST(Drift, SaysWhatCannotBe) {
+    const auto expect_fault = [](const std::string& argument, const std::string& words) {
+        const auto [code, message] = error_of([&] { figure_of("drift", {argument}); });
+        EXPECT_EQ(code, ExitCode::bad_input) << argument;
+        EXPECT_NE(message.find(words), std::string::npos) << message;
+    };
+    expect_fault("drift.methods=[]", "must name at least one");
+    expect_fault("drift.methods=[\"rk5\"]", "\"rk5\" is none");
+    expect_fault("drift.projected=[\"gauss4\"]", "\"gauss4\" does not");
+    expect_fault("drift.points_per_decade=0", "points_per_decade");
+    expect_fault("drift.duration_s=5", "must be from 10 to");
+    expect_fault("drift.evaluations_per_s=1", "must be from 10 to");
+    expect_fault("drift.points=3", "points_per_decade");
+    expect_fault("system.step_s=0.1", "step_s");
+}
+
+TEST(Growth, IsWhatThePowerSays) {
+    std::vector<double> times, errors;
+    for (int i = 0; i <= 40; ++i) times.push_back(std::pow(10, 0.1 * i));
+    using Kind = Growth::Kind;
+    for (const auto& [power, expected] :
+         {std::pair{0.0, Kind::bounded}, {0.5, Kind::root}, {1.0, Kind::linear}, {2.0, Kind::steeper}}) {
+        errors.clear();
+        // another law before the last two decades leaves no trace
+        for (const double t : times) errors.push_back(t < 99 ? 7 : std::pow(t, power));
+        const auto growth = growth_of(times, errors, std::nan(""));
+        EXPECT_NEAR(growth.exponent, power, 1e-12);
+        EXPECT_EQ(growth.kind, expected);
+        EXPECT_TRUE(std::isnan(growth.doubling_s));
+    }
+    EXPECT_EQ(growth_of(times, std::vector(times.size(), 0.0), std::nan("")).kind, Kind::bounded);
+}
+
+TEST(Growth, DoublesUntilItBreaksDown) {
+    std::vector<double> times, errors;
+    for (int i = 0; i <= 20; ++i) times.push_back(std::pow(10, 0.1 * i));
+    for (const double t : times) errors.push_back(t < 64 ? std::exp2(t / 5) : std::nan(""));
+    const auto growth = growth_of(times, errors, 65);
+    EXPECT_EQ(growth.kind, Growth::Kind::breakdown);
+    EXPECT_NEAR(growth.doubling_s, 5, 1e-12);
+    EXPECT_EQ(growth.broken_at_s, 65);
+}
+
+}  // namespace
+}  // namespace doppel

@@ -1,0 +1,267 @@
+#include "figure/support.hpp"
+#include "output/golden.hpp"
+#include "picture/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+namespace doppel {
+namespace {
+
+const std::string by_evaluations = "chart.cost=\"evaluations\"";
+
+/// A film of one second, and the figure of it.
+std::string film_path() {
+    const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("film-{}.toml", getpid());
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << "[scene]\nduration_s = 1\n[system]\nangle_deg = [90, 90]\n";
+    return path;
+}
+
+FigurePreset second(const std::vector<std::string>& more = {}, const std::string& cost = "evaluations") {
+    static const auto path = film_path();
+    return figure_from(fmt::format("[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"{}\"\n"
+                                   "[chart]\ncost = \"{}\"\n",
+                                   path, cost),
+                       more);
+}
+
+/// The table's words and numbers, by column.
+struct Row {
+    std::map<std::string, std::string> cells;
+    double number(const std::string& column) const {
+        double value = std::numeric_limits<double>::quiet_NaN();
+        const auto& text = cells.at(column);
+        std::from_chars(text.data(), text.data() + text.size(), value);
+        return value;
+    }
+};
+
+std::vector<Row> rows_of(const std::string& text) {
+    std::istringstream lines(text);
+    std::string line;
+    std::vector<std::string> names;
+    std::vector<Row> rows;
+    while (std::getline(lines, line)) {
+        if (line.ends_with('\r')) line.pop_back();
+        std::vector<std::string> cells(1);
+        for (const char c : line)
+            if (c == ',')
+                cells.emplace_back();
+            else
+                cells.back() += c;
+        if (names.empty()) {
+            names = cells;
+            continue;
+        }
+        auto& row = rows.emplace_back();
+        for (std::size_t i = 0; i < names.size(); ++i) row.cells[names[i]] = cells.at(i);
+    }
+    return rows;
+}
+
+std::vector<Row> rows_of(const FigurePreset& figure) {
+    return rows_of(table_text(figure, computed(figure)));
+}
+
+TEST(WorkPrecision, HasTheColumnsAndEveryLadder) {
+    const auto figure =
+        second({"work_precision.methods=[\"rk4\", \"rattle\", \"taylor\"]", "work_precision.most_evaluations=20000"});
+    EXPECT_EQ(header_line(figure),
+              "problem,model,method,setting,angle_error_rad,energy_error,length_error_m,cpu_seconds,evaluations,steps");
+    std::map<std::string, int> rungs;
+    for (const auto& row : rows_of(figure)) {
+        ++rungs[row.cells.at("model") + " " + row.cells.at("method")];
+        EXPECT_EQ(row.cells.at("cpu_seconds"), "");
+        EXPECT_GT(row.number("evaluations"), 0);
+        if (row.cells.at("model") == "angles") {
+            EXPECT_EQ(row.number("length_error_m"), 0);
+        }
+    }
+    ASSERT_EQ(rungs.size(), 3u + 3 + 2);  // rattle does not serve angles
+    for (const auto& [name, count] : rungs) EXPECT_GT(count, 10) << name;
+}
+
+TEST(WorkPrecision, FallsByThePowerOfEachOrder) {
+    const auto rows = rows_of(second({"work_precision.models=[\"angles\", \"constraints\"]",
+                                      "work_precision.methods=[\"euler\", \"semi-implicit-euler\", \"midpoint\", "
+                                      "\"rk4\", \"gauss4\", \"gauss6\", \"rattle\", \"rattle6\"]",
+                                      "work_precision.most_evaluations=60000", "work_precision.least_error=1e-11"}));
+    const std::map<std::string, double> orders{{"euler", 1},    {"semi-implicit-euler", 1},
+                                               {"midpoint", 2}, {"rk4", 4},
+                                               {"gauss4", 4},   {"gauss6", 6},
+                                               {"rattle", 2},   {"rattle6", 6}};
+    std::map<std::string, std::vector<const Row*>> ladders;
+    for (const auto& row : rows) ladders[row.cells.at("model") + " " + row.cells.at("method")].push_back(&row);
+    for (const auto& [name, ladder] : ladders) {
+        // over the last octave or two: finer, rounding begins to tell
+        const auto &fine = *ladder.at(ladder.size() - 2), &coarse = *ladder.at(ladder.size() - 6);
+        const double slope = std::log(coarse.number("angle_error_rad") / fine.number("angle_error_rad")) /
+                             std::log(coarse.number("setting") / fine.number("setting"));
+        EXPECT_NEAR(slope, orders.at(ladder[0]->cells.at("method")), 0.3) << name;
+    }
+    EXPECT_EQ(ladders.size(), 6u + 6);
+}
+
+TEST(WorkPrecision, KnowsItsProblems) {
+    const auto figure = figure_of(
+        "speed-accuracy",
+        {by_evaluations, "work_precision.problems=[\"P1\", \"P3\", \"P4\"]", "work_precision.models=[\"angles\"]",
+         "work_precision.methods=[\"euler\", \"taylor\"]", "work_precision.most_evaluations=20000"});
+    const auto trials = computed(figure);
+    std::map<std::string, double> found;
+    for (const auto& finding : figure.work->findings(trials))
+        if (const auto* value = std::get_if<double>(&finding.value)) found[finding.key] = *value;
+    EXPECT_NEAR(found.at("P1_sensitivity"), 80, 1);
+    EXPECT_NEAR(found.at("P3_sensitivity"), 320, 1);
+    EXPECT_NEAR(found.at("P4_sensitivity"), 1040, 5);
+    for (const auto* name : {"P1", "P3", "P4"}) {
+        EXPECT_LT(found.at(std::string(name) + "_reference_disagreement"), 1e-27) << name;  // measured 9e-31
+        EXPECT_LT(found.at(std::string(name) + "_1e-12_cost"), 6000) << name;               // measured 4706
+    }
+    // what the study's own program errs by at its step
+    const std::map<std::string, double> study{{"P1", 0.13}, {"P3", 0.12}, {"P4", 0.66}};
+    std::size_t seen = 0;
+    for (const auto& row : rows_of(table_text(figure, trials))) {
+        if (row.cells.at("method") != "euler" || row.number("setting") != 1.0 / 30000) continue;
+        ++seen;
+        EXPECT_NEAR(row.number("angle_error_rad"), study.at(row.cells.at("problem")), 0.006);
+    }
+    EXPECT_EQ(seen, 3u);
+}
+
+TEST(WorkPrecision, EndsAtTheFloor) {
+    const auto rows =
+        rows_of(second({"work_precision.models=[\"angles\"]", "work_precision.methods=[\"taylor\", \"dop853\"]"}));
+    double least = 1;
+    for (const auto& row : rows) least = std::fmin(least, row.number("angle_error_rad"));
+    EXPECT_LT(least, 3e-15);                               // measured 2e-16
+    EXPECT_GT(rows.back().number("setting"), 0.99e-15);    // the finest that double can give
+    EXPECT_LT(rows.back().number("energy_error"), 1e-12);  // measured 2e-15
+}
+
+TEST(GoldenFigureWorkPrecision, IsAsItWas) {
+    // errors far above rounding, so that the last bit of a number moves no pixel
+    const auto figure =
+        figure_of("speed-accuracy",
+                  {by_evaluations, "work_precision.problems=[\"P1\", \"P3\"]", "work_precision.most_evaluations=20000",
+                   "work_precision.least_error=1e-6", "work_precision.models=[\"angles\", \"constraints\"]",
+                   "chart.size=[960, 540]", "chart.scale=0.5"});
+    Renderer renderer(figure.picture_size());
+    test::expect_golden("figure-work-precision", renderer.draw(compose_figure(figure, computed(figure))));
+}
+
+TEST(WorkPrecision, IsTheSameForAnyNumberOfThreads) {
+    const auto figure = second({"work_precision.methods=[\"rk4\", \"adams\", \"taylor\", \"rattle\"]",
+                                "work_precision.most_evaluations=20000"});
+    EXPECT_FALSE(figure.work->measures_time());
+    EXPECT_EQ(table_text(figure, computed(figure, 1)), table_text(figure, computed(figure, 3)));
+}
+
+TEST(WorkPrecision, TimesItsRuns) {
+    const auto figure = second({"work_precision.models=[\"angles\"]", "work_precision.methods=[\"rk4\", \"taylor\"]",
+                                "work_precision.repeats=3", "work_precision.most_evaluations=20000"},
+                               "time");
+    EXPECT_TRUE(figure.work->measures_time());
+    EXPECT_EQ(figure.work->trials(), 1u + 3 * 2);
+    double last = 0;
+    for (const auto& row : rows_of(figure)) {
+        const double seconds = row.number("cpu_seconds"), each = seconds / row.number("evaluations");
+        EXPECT_GT(each, 1e-10);
+        EXPECT_LT(each, 1e-4);
+        last = seconds;
+    }
+    EXPECT_GT(last, 0);
+}
+
+/// Does nothing right, at leisure.
+class Idle final : public PeerSolver {
+public:
+    explicit Idle(double setting) : setting_(setting) {}
+    void run() override {
+        if (setting_ < 1e-3) throw method_failed("idle: it gives up");
+    }
+    std::span<const double> state() const override { return state_; }
+    long evaluations() const override { return 7; }
+    long steps() const override { return 3; }
+
+private:
+    double setting_;
+    std::vector<double> state_{1, 2, 3, 4};
+};
+
+TEST(WorkPrecision, HasPeers) {
+    const std::vector<Peer> peers{{"idle", true, 1e-4, 1e-2, [](const Pendulum<double>&, double, double setting) {
+                                       return std::make_unique<Idle>(setting);
+                                   }}};
+    const auto figure = read_figure({"x", "presets/x.toml",
+                                     fmt::format("[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = "
+                                                 "\"{}\"\nmodels = [\"angles\"]\nmethods = [\"taylor\"]\n",
+                                                 film_path())},
+                                    sets({by_evaluations}), peers);
+    int given_up = 0, done = 0;
+    for (const auto& row : rows_of(figure)) {
+        if (row.cells.at("method") != "peer:idle") continue;
+        EXPECT_EQ(row.cells.at("model"), "angles");
+        const bool gave_up = row.cells.at("angle_error_rad").empty();
+        ++(gave_up ? given_up : done);
+        EXPECT_EQ(row.cells.at("steps"), gave_up ? "" : "3");
+    }
+    EXPECT_EQ(done, 3);      // 1e-2, 3.16e-3, 1e-3
+    EXPECT_EQ(given_up, 2);  // 3.16e-4, 1e-4
+}
+
+TEST(WorkPrecision, TakesAMechanism) {
+    const auto figure = figure_from(
+        "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"springs\"\nduration_s = 0.5\n"
+        "methods = [\"rk4\", \"taylor\"]\nmost_evaluations = 3000\n",
+        {by_evaluations});
+    EXPECT_NE(header_line(figure).find(",place_error,"), std::string::npos);
+    double least = 1;
+    for (const auto& row : rows_of(figure)) {
+        EXPECT_EQ(row.cells.at("model"), "mechanism");
+        EXPECT_EQ(row.cells.at("problem"), "springs");
+        least = std::fmin(least, row.number("place_error"));
+    }
+    EXPECT_LT(least, 1e-13);  // measured 2e-15
+}
+
+TEST(WorkPrecision, ReadsBackWhatItSaysOfItself) {
+    for (const auto& figure : {second({"work_precision.repeats=4", "work_precision.models=[\"constraints\"]"}),
+                               figure_of("speed-accuracy", {by_evaluations, "work_precision.least_error=1e-5"})}) {
+        const auto text = figure.resolved();
+        EXPECT_EQ(read_figure({"x", "x.toml", text}, {}).resolved(), text);
+    }
+    EXPECT_NE(second({"work_precision.duration_s=2"}).resolved_work(), second().resolved_work());
+    EXPECT_NE(second().resolved_work(), second({}, "time").resolved_work());
+}
+
+TEST(WorkPrecision, SaysWhatIsWrong) {
+    const auto expect_fault = [](const std::vector<std::string>& arguments, const std::string& words) {
+        try {
+            figure_of("speed-accuracy", arguments);
+            ADD_FAILURE() << words << ": no fault";
+        } catch (const Error& fault) {
+            EXPECT_EQ(fault.code(), ExitCode::bad_input) << fault.what();
+            EXPECT_NE(std::string(fault.what()).find(words), std::string::npos) << fault.what();
+        }
+    };
+    expect_fault({"chart.cost=\"money\""}, "cost");
+    expect_fault({"work_precision.problems=[\"P5\"]"}, "\"P5\" is not");
+    expect_fault({"work_precision.problems=[]"}, "at least one");
+    expect_fault({"work_precision.problems=[\"P1\", \"P1\"]"}, "twice");
+    expect_fault({"work_precision.scene=\"butterfly\"", "work_precision.problems=[\"P1\"]"}, "beside \"scene\"");
+    expect_fault({"work_precision.scene=\"fig7\""}, "is a figure");
+    expect_fault({"work_precision.duration_s=3"}, "duration_s");
+    expect_fault({"work_precision.models=[\"angels\"]"}, "\"angels\" is not");
+    expect_fault({"work_precision.methods=[\"magic\"]"}, "\"magic\" is not");
+    expect_fault({"work_precision.methods=[\"rattle\"]", "work_precision.models=[\"angles\"]"}, "that it serves");
+    expect_fault({"work_precision.scene=\"springs\"", "work_precision.models=[\"angles\"]"}, "takes \"mechanism\"");
+    expect_fault({"work_precision.repeats=0"}, "repeats");
+    expect_fault({"work_precision.tolerance=1"}, "tolerance");
+}
+
+}  // namespace
+}  // namespace doppel
