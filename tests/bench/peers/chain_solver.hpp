@@ -1,0 +1,69 @@
+#pragma once
+
+#include "chain_rate.hpp"
+#include "figure/peer.hpp"
+#include "numeric/error.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace doppel {
+
+/// What the solvers of all libraries have in common: a chain in angles, from its release over `seconds`.
+template <int N>
+class ChainSolver : public PeerSolver {
+public:
+    static constexpr long most_steps = 2'000'000;  // then a method has given up
+    static constexpr double first_step = 0.01;     // s, for libraries that want to be told
+
+    using State = std::conditional_t<N == Eigen::Dynamic, std::vector<double>,
+                                     std::array<double, static_cast<std::size_t>(N == Eigen::Dynamic ? 0 : 2 * N)>>;
+
+    ChainSolver(const Pendulum<double>& chain, double seconds) : seconds_(seconds), rate_(chain) {
+        if constexpr (N == Eigen::Dynamic) start_.resize(2 * chain.links());
+        std::copy(chain.angle.begin(), chain.angle.end(), start_.begin());
+        std::copy(chain.rate.begin(), chain.rate.end(), start_.begin() + static_cast<std::ptrdiff_t>(chain.links()));
+        y_ = start_;
+    }
+
+    void run() final {
+        y_ = start_;
+        rate_.evaluations = steps_ = 0;
+        integrate();
+        for (const double x : y_)
+            if (!std::isfinite(x)) throw method_failed("the motion has blown up");
+    }
+    std::span<const double> state() const final { return y_; }
+    long evaluations() const final { return rate_.evaluations; }
+    long steps() const final { return steps_; }
+
+protected:
+    /// y ← the state at the end; counts steps.
+    virtual void integrate() = 0;
+
+    /// The right-hand side as libraries in C take it.
+    static int slope(double /*t*/, const double* y, double* dydt, void* rate) {
+        (*static_cast<ChainRate<N>*>(rate))(y, dydt);
+        return 0;
+    }
+
+    double seconds_;
+    ChainRate<N> rate_;
+    State start_{}, y_{};
+    long steps_ = 0;
+};
+
+/// A peer whose solver is a class template over the number of links, made from (chain, seconds, setting, more …).
+template <template <int> class Solver, class... More>
+Peer peer_of(std::string name, bool adaptive, double least, double most, More... more) {
+    return {std::move(name), adaptive, least, most,
+            [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<PeerSolver> {
+                if (chain.links() == 2) return std::make_unique<Solver<2>>(chain, seconds, setting, more...);
+                if (chain.links() == 3) return std::make_unique<Solver<3>>(chain, seconds, setting, more...);
+                return std::make_unique<Solver<Eigen::Dynamic>>(chain, seconds, setting, more...);
+            }};
+}
+
+}  // namespace doppel

@@ -1,0 +1,64 @@
+#include "cli/interrupt.hpp"
+#include "cli/options.hpp"
+#include "cli/progress.hpp"
+#include "figure/run.hpp"
+#include "numeric/error.hpp"
+#include "peers.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+
+namespace doppel {
+namespace {
+
+/// A chart of work against precision as `doppel figure` makes it, with the methods of other libraries in it.
+void make_figure(const RunCommandOptions& options) {
+    const auto peers = all_peers();
+    const std::vector<FigurePreset> figures{
+        read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};
+    ProgressReport show(progress_style(options.progress), figures[0].name, figures[0].work->unit());
+    const FigureReport report{[&](std::size_t, const FigureProgress& progress) {
+                                  show({std::lround(progress.done), std::lround(progress.total)});
+                              },
+                              [&](std::size_t, const std::string& sentence) { show.note(sentence); },
+                              [&](std::size_t, const RunResult& result) { show.done(result); }};
+    try {
+        run_figures(figures, {.out = options.out, .jobs = options.jobs}, watch_interrupts(), report);
+    } catch (...) {
+        show.clear();
+        throw;
+    }
+}
+
+int failed(ExitCode code, const char* message) {
+    fmt::print(stderr, "doppel-peers: {}\n", message);
+    return static_cast<int>(code);
+}
+
+}  // namespace
+}  // namespace doppel
+
+int main(int argc, char** argv) {
+    using namespace doppel;
+    try {
+        CLI::App app("Speed against accuracy, with Boost.odeint, GSL and SUNDIALS in the chart.", "doppel-peers");
+        RunCommandOptions options;
+        add_run_options(app, options, "Threads that compute what is not timed");
+        app.get_option("PRESET")->required(false)->expected(1);
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::ParseError& fault) {
+            if (fault.get_exit_code() == 0) return app.exit(fault);
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel-peers --help", fault.what()).c_str());
+        }
+        if (options.presets.empty()) options.presets = {"speed-accuracy"};
+        make_figure(options);
+        return static_cast<int>(ExitCode::done);
+    } catch (const Error& fault) {
+        return failed(fault.code(), fault.what());
+    } catch (const std::exception& fault) {
+        return failed(ExitCode::io_failed, fault.what());
+    }
+}

@@ -1,0 +1,156 @@
+#include "peers.hpp"
+
+#include "allocations.hpp"
+#include "chain_rate.hpp"
+#include "integrate/pendulums.hpp"
+#include "integrate/taylor.hpp"
+#include "numeric/error.hpp"
+#include "numeric/quad.hpp"
+
+#include <gtest/gtest.h>
+
+// The methods of other libraries solve the same problem as ours, and do so as the comparison promises: every run the
+// same, nothing allocated, every evaluation counted.
+
+namespace doppel {
+namespace {
+
+struct Problem {
+    Pendulum<double> chain;
+    double seconds;
+};
+
+const std::vector<Problem>& problems() {
+    static const std::vector<Problem> all{
+        {from_rest({90, 90}), 10}, {from_rest({30, 0}), 60}, {from_rest({150, 90}), 5}, {from_rest({120, 0, 0}), 5}};
+    return all;
+}
+
+/// Every number of the state at the end, by the Taylor method.
+std::vector<double> truth(const Problem& problem) {
+    using Chain = AngleChain<double, Eigen::Dynamic>;
+    Chain chain(problem.chain);
+    TaylorStepper<Chain> stepper(chain, Chain::start(problem.chain), 1e-15);
+    stepper.advance(problem.seconds);
+    return {stepper.state().begin(), stepper.state().end()};
+}
+
+double angle_error(std::span<const double> state, const std::vector<double>& truth) {
+    double worst = 0;
+    for (std::size_t i = 0; i < truth.size() / 2; ++i) worst = greater(worst, std::abs(state[i] - truth[i]));
+    return worst;
+}
+
+double next_setting(const Peer& peer, double setting) {
+    return setting * (peer.adaptive ? std::sqrt(0.1) : std::sqrt(0.5));
+}
+
+Peer peer_named(std::string_view name) {
+    for (const auto& peer : all_peers())
+        if (peer.name == name) return peer;
+    throw bad_input("there is no peer {}", name);
+}
+
+/// The least error on the way down the ladder, as soon as it is within `wanted`.
+double converged(const Peer& peer, const Problem& problem, double wanted) {
+    const auto exact = truth(problem);
+    double least = pi;
+    for (double setting = peer.most; setting >= 0.99 * peer.least; setting = next_setting(peer, setting)) {
+        try {
+            const auto solver = peer.make(problem.chain, problem.seconds, setting);
+            solver->run();
+            least = std::min(least, angle_error(solver->state(), exact));
+        } catch (const Error& fault) {
+            EXPECT_EQ(fault.code(), ExitCode::method_failed) << peer.name;
+        }
+        if (least <= wanted) break;
+    }
+    return least;
+}
+
+TEST(Peers, ConvergeToOurs) {
+    for (const auto& peer : all_peers())
+        for (std::size_t i = 0; i < problems().size(); ++i)
+            EXPECT_LE(converged(peer, problems()[i], 1e-9), 1e-9) << peer.name << ", P" << i + 1;
+}
+
+TEST(Peers, StepChainsOfAnyLength) {
+    for (const auto& peer : all_peers())
+        for (const auto& degrees : {std::vector<double>{100}, {60, 50, 40, 30}})
+            EXPECT_LE(converged(peer, {from_rest(degrees), 2}, 1e-9), 1e-9) << peer.name << ", " << degrees.size();
+}
+
+TEST(Peers, RepeatARunToTheBitWithoutAllocating) {
+    for (const auto& peer : all_peers())
+        for (const auto& problem : problems()) {
+            const auto solver = peer.make(problem.chain, 5, peer.adaptive ? 1e-8 : 0.01);
+            solver->run();
+            const std::vector<double> first(solver->state().begin(), solver->state().end());
+            const long evaluations = solver->evaluations(), steps = solver->steps();
+            EXPECT_GT(steps, 0) << peer.name;
+            EXPECT_GT(evaluations, steps) << peer.name;
+            const long before = allocations();
+            solver->run();
+            const bool allocates = peer.name == "odeint bulirsch_stoer";  // try_step() makes two vectors each time
+            EXPECT_TRUE(allocates || allocations() == before) << peer.name;
+            EXPECT_EQ(std::vector<double>(solver->state().begin(), solver->state().end()), first) << peer.name;
+            EXPECT_EQ(solver->evaluations(), evaluations) << peer.name;
+            EXPECT_EQ(solver->steps(), steps) << peer.name;
+        }
+}
+
+TEST(Peers, CountWhatTheyAskFor) {
+    // stages of the pair times steps, and of some that were refused: at most 5, measured
+    const auto& problem = problems()[1];
+    for (const auto& [name, stages] : {std::pair("odeint rkf78", 13), {"odeint dopri5", 6}, {"GSL rkf45", 6}}) {
+        const auto solver = peer_named(name).make(problem.chain, 1, 1e-6);
+        solver->run();
+        EXPECT_GE(solver->evaluations(), stages * solver->steps()) << name;
+        EXPECT_LE(solver->evaluations(), stages * (solver->steps() + 8)) << name;
+    }
+}
+
+TEST(Peers, SayWhereTheyGiveUp) {
+    for (const auto& [name, setting] : {std::pair("odeint adams 8", 0.1), {"GSL rkf45", 0.1}}) {
+        const auto solver = peer_named(name).make(problems()[2].chain, 5, setting);
+        try {
+            solver->run();
+            ADD_FAILURE() << name;
+        } catch (const Error& fault) {
+            EXPECT_EQ(fault.code(), ExitCode::method_failed) << name;
+        }
+    }
+}
+
+/// The slopes of `p` by its own right-hand side against those in quad.
+template <int N>
+double rate_error(const Pendulum<double>& p) {
+    using Exact = AngleChain<Quad, Eigen::Dynamic>;
+    const auto exact_p = p.cast<Quad>();
+    Exact exact(exact_p);
+    const auto y = Exact::start(exact_p);
+    auto wanted = y;
+    exact.rate(y, wanted);
+
+    const auto start = released_in_angles<double, Eigen::Dynamic>(p);
+    std::vector<double> slope(start.size());
+    ChainRate<N> rate(p);
+    rate(start.data(), slope.data());
+    EXPECT_EQ(rate.evaluations, 1);
+    double worst = 0, scale = 0;
+    for (std::size_t i = 0; i < slope.size(); ++i) {
+        const auto want = static_cast<double>(wanted[static_cast<Eigen::Index>(i)]);
+        worst = greater(worst, std::abs(slope[i] - want));
+        scale = std::max(scale, std::abs(want));
+    }
+    return worst / scale;
+}
+
+TEST(ChainRate, IsTheMotionOfTheChain) {
+    EXPECT_LE(rate_error<2>(uneven(2)), 1e-15);  // measured 5e-17, 5e-17, 1.2e-16
+    EXPECT_LE(rate_error<3>(uneven(3)), 1e-15);
+    EXPECT_LE(rate_error<Eigen::Dynamic>(uneven(5)), 1e-15);
+}
+
+}  // namespace
+}  // namespace doppel
