@@ -2,8 +2,7 @@
 
 #include "analysis/error_course.hpp"
 #include "scene/assemble.hpp"
-#include "scene/choose.hpp"
-#include "scene/cost_table.hpp"
+#include "scene/way.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>
@@ -15,89 +14,8 @@ namespace {
 
 constexpr double margin = 2;        // by which an estimate stays below what is asked
 constexpr double enough = 0.5;      // rad, of an error: nothing is known beyond
-constexpr double finer_by = 1e-3;   // the finer run's tolerance
 constexpr int most_trials = 12;     // of settings
 constexpr double no_better = 0.25;  // of what is asked: where a looser setting would not do
-
-/// How finely to step: a tolerance, or steps to a sample.
-struct Setting {
-    double tolerance = 0;
-    long steps = 1;
-};
-
-/// The least of 1, 2, 3, 4, 6, 8, 12 … that is `least` or more.
-long round_steps(double least) {
-    for (long n = 1;; n *= 2) {
-        if (static_cast<double>(n) >= least) return n;
-        if (n > 1 && static_cast<double>(n / 2 * 3) >= least) return n / 2 * 3;
-    }
-}
-
-/// The largest of 1e-k and 3e-k that is `most` or less.
-double round_tolerance(double most) {
-    const int decade = static_cast<int>(std::floor(std::log10(most) + 1e-9));
-    const double one = std::pow(10, decade);
-    return 3 * one <= most * (1 + 1e-9) ? 3 * one : one;
-}
-
-/// One model and method for a side, at any setting.
-class Way {
-public:
-    Way(const SideSpec& spec, const Rational& sample_hz, const MeasuredWay& measured, double time_unit)
-        : spec_(spec), sample_hz_(sample_hz), method_(*find_method(measured.method)) {
-        spec_.accuracy.reset();
-        spec_.integrator = measured.method;
-        spec_.model = measured.model == Model::angles        ? ModelChoice::angles
-                      : measured.model == Model::constraints ? ModelChoice::constraints
-                                                             : ModelChoice::mechanism;
-        const bool quad = spec.precision == Precision::in_quad;
-        finest_ = quad ? 1e-30 : 1e-14;
-        finest_check_ = quad ? 1e-33 : 1e-15;
-        start_ = method_.adaptive
-                     ? Setting{.tolerance = round_tolerance(std::clamp(measured.setting, finest_, 1e-2))}
-                     : Setting{.steps = round_steps(1 / (sample_hz.value() * measured.setting * time_unit))};
-    }
-
-    const Setting& start() const { return start_; }
-    const MethodEntry& method() const { return method_; }
-
-    Side side(const Setting& setting) const {
-        auto spec = spec_;
-        if (method_.adaptive)
-            spec.tolerance = parse_quad(fmt::format("{:.0e}", setting.tolerance));
-        else
-            spec.step_s = quotient({1, setting.steps}, sample_hz_);
-        return make_side(spec, sample_hz_);
-    }
-
-    /// Errs a thousandth as much, or as little as the precision allows; with steps, a sixteenth.
-    Setting finer(const Setting& setting) const {
-        if (method_.adaptive) return {.tolerance = std::max(setting.tolerance * finer_by, finest_check_)};
-        return {.steps = setting.steps * std::max(2L, 16L >> (method_.order - 1))};
-    }
-
-    /// A setting that errs `factor` times as much, > or < 1; nothing where it is too fine, or the same.
-    std::optional<Setting> scaled(const Setting& setting, double factor) const {
-        Setting next = setting;
-        if (method_.adaptive) {
-            next.tolerance = round_tolerance(std::clamp(setting.tolerance * factor, finest_, 1e-2));
-            if (next.tolerance == setting.tolerance) return std::nullopt;
-            return next;
-        }
-        const double steps = static_cast<double>(setting.steps) * std::pow(factor, -1.0 / method_.order);
-        next.steps = round_steps(std::max(1.0, steps));
-        constexpr long most_steps = 100'000;
-        if (next.steps == setting.steps || next.steps > most_steps) return std::nullopt;
-        return next;
-    }
-
-private:
-    SideSpec spec_;
-    Rational sample_hz_;
-    MethodEntry method_;
-    double finest_, finest_check_;  // tolerances
-    Setting start_;
-};
 
 /// A setting, tried.
 struct Trial {
@@ -166,29 +84,6 @@ private:
     const std::atomic<bool>& stop_;
 };
 
-/// Those of the table that the side may take.
-std::vector<MeasuredWay> allowed_ways(const SideSpec& spec, double accuracy) {
-    const std::size_t links = spec.particles.empty() ? spec.links() : spec.particles.size();
-    // what only quad can do is not in the table: there, the order is that of its last digits
-    constexpr double finest_in_table = 1e-11;
-    auto ways = measured_ways(links, std::max(accuracy, finest_in_table));
-    const auto fits = [&](const MeasuredWay& way) {
-        const auto& method = *find_method(way.method);
-        if (way.model == Model::mechanism ? !spec.is_mechanism() && spec.model != ModelChoice::mechanism
-                                          : spec.is_mechanism())
-            return false;
-        if (spec.stabilise != Stabilise::none && (way.model == Model::angles || !method.angles)) return false;
-        if (spec.model == ModelChoice::automatic) return true;
-        return way.model == Model::angles        ? spec.model == ModelChoice::angles
-               : way.model == Model::constraints ? spec.model == ModelChoice::constraints
-                                                 : spec.model == ModelChoice::mechanism;
-    };
-    std::erase_if(ways, [&](const MeasuredWay& way) { return !fits(way); });
-    for (auto& way : ways)
-        if (find_method(way.method)->adaptive) way.setting *= std::min(1.0, accuracy / finest_in_table);
-    return ways;
-}
-
 /// √(l/g) of the mean link, s; of what knows no gravity, a sixtieth of the run.
 double time_unit_of(const SideSpec& spec, double duration) {
     if (spec.gravity_m_per_s2 == 0) return duration / 60;
@@ -228,13 +123,60 @@ Error out_of_reach(double accuracy, const Trial& trial, const SideSpec& spec, do
         quad ? "" : "; precision = \"quad\" reaches further");
 }
 
-std::string why_words(const std::vector<MeasuredWay>& ways, const Way& chosen, double accuracy) {
+/// A way, and the trial of it that did best.
+struct Found {
+    Way way;
+    Trial trial;
+
+    /// Nearly as far as `sample`: no way gets much further than rounding leaves.
+    bool reaches(long sample) const {
+        constexpr double nearly = 0.9;
+        return trial.horizon >= 0 && static_cast<double>(trial.horizon) >= nearly * static_cast<double>(sample);
+    }
+};
+
+/// What the search for one side goes by.
+struct Question {
+    const SideSpec& spec;
+    Rational sample_hz;
+    double accuracy, time_unit;  // rad, s
+    long samples;
+    const std::atomic<bool>& stop;
+};
+
+/// The first of the ways that does; or the one that comes furthest.
+Found best_of(const std::vector<MeasuredWay>& ways, const Question& question) {
+    if (ways.empty())
+        throw bad_input("no method that serves this system was measured to reach accuracy = {}", question.accuracy);
+    std::optional<Found> best;
+    constexpr std::size_t most_ways = 3;  // the first does, but for systems very unlike those of the table
+    for (std::size_t i = 0; i < std::min(ways.size(), most_ways); ++i) {
+        const Way way(question.spec, question.sample_hz, ways[i], question.time_unit);
+        auto trial = Search(way, question.accuracy, question.samples, question.stop).best();
+        if (!best || trial.horizon > best->trial.horizon) best.emplace(Found{way, std::move(trial)});
+        if (best->reaches(best->trial.rounding_horizon)) break;
+    }
+    return *std::move(best);
+}
+
+/// The cheapest for the accuracy; where rounding cuts the run short, the cheapest close to it.
+Found searched(const Question& question) {
+    auto found = best_of(allowed_ways(question.spec, question.accuracy), question);
+    if (found.trial.rounding_horizon == question.samples) return found;
+    auto fine = best_of(allowed_ways(question.spec, finest_in_table), question);
+    const auto work = [](const Found& of) { return of.trial.course.effort.evaluations; };
+    return fine.reaches(found.trial.horizon) && work(fine) < work(found) ? std::move(fine) : std::move(found);
+}
+
+std::string why_words(const SideSpec& spec, const Way& chosen, double accuracy) {
     auto words = fmt::format("the cheapest way to {} rad that was measured", scientific(accuracy));
-    const auto rival =
-        std::find_if(ways.begin(), ways.end(), [&](const auto& way) { return way.method != chosen.method().name; });
-    const auto taken =
-        std::find_if(ways.begin(), ways.end(), [&](const auto& way) { return way.method == chosen.method().name; });
-    if (rival != ways.end() && rival->cost > taken->cost)
+    const auto ways = allowed_ways(spec, accuracy);
+    const auto of_method = [&](bool same) {
+        return std::find_if(ways.begin(), ways.end(),
+                            [&](const auto& way) { return (way.method == chosen.method().name) == same; });
+    };
+    const auto taken = of_method(true), rival = of_method(false);
+    if (taken != ways.end() && rival != ways.end() && rival->cost > taken->cost)
         words += fmt::format("; {} would take {:.1f} times as long", rival->method, rival->cost / taken->cost);
     return words;
 }
@@ -245,41 +187,27 @@ Side choose_side(const SideSpec& spec, const Rational& duration, const Rational&
                  const std::atomic<bool>& stop) {
     const auto accuracy = static_cast<double>(*spec.accuracy);
     const long samples = product(duration, sample_hz)->numerator;
-    const auto ways = allowed_ways(spec, accuracy);
-    if (ways.empty())
-        throw bad_input("no method that serves this system was measured to reach accuracy = {}", accuracy);
     const double time_unit = time_unit_of(spec, duration.value()),
                  swing = std::min(duration.value(), 2 * pi * time_unit);
-    std::optional<Trial> best;
-    std::optional<Way> best_way;
-    constexpr std::size_t most_ways = 3;  // the first does, but for systems very unlike those of the table
-    for (std::size_t i = 0; i < std::min(ways.size(), most_ways); ++i) {
-        const Way way(spec, sample_hz, ways[i], time_unit);
-        auto trial = Search(way, accuracy, samples, stop).best();
-        if (!best || trial.horizon > best->horizon) {
-            best = std::move(trial);
-            best_way = way;
-        }
-        if (best->horizon == best->rounding_horizon && best->horizon >= 0) break;
-    }
-    auto side = best_way->side(best->setting);
-    if (static_cast<double>(best->horizon) / sample_hz.value() < swing * (1 - 1e-9))
-        throw best->course.failure.empty()
-            ? out_of_reach(accuracy, *best, spec, swing, sample_hz, samples)
+    const auto [way, trial] = searched({spec, sample_hz, accuracy, time_unit, samples, stop});
+    const auto& course = trial.course;
+    if (static_cast<double>(trial.horizon) / sample_hz.value() < swing * (1 - 1e-9))
+        throw course.failure.empty()
+            ? out_of_reach(accuracy, trial, spec, swing, sample_hz, samples)
             : method_failed("the motion breaks down within {:.2g} s: {}",
-                            static_cast<double>(best->course.truncation.size()) / sample_hz.value(),
-                            best->course.failure);
+                            static_cast<double>(course.truncation.size()) / sample_hz.value(), course.failure);
 
-    const auto finer = best_way->side(best_way->finer(best->setting));
-    const auto at = static_cast<std::size_t>(best->horizon);
-    const double seen = static_cast<double>(best->course.truncation.size() - 1);
-    side.choice = Choice{.accuracy = accuracy,
-                         .estimated_error = std::max(best->course.error(at), least_error(spec.precision)),
-                         .horizon = best->horizon,
-                         .verified_by = pace_words(finer),
-                         .evaluations = static_cast<double>(best->course.effort.evaluations) *
-                                        (seen > 0 ? static_cast<double>(samples) / seen : 1)};
-    side.why = why_words(ways, *best_way, accuracy);
+    auto side = way.side(trial.setting);
+    const auto finer = way.side(way.finer(trial.setting));
+    const double seen = static_cast<double>(course.truncation.size() - 1);
+    side.choice = Choice{
+        .accuracy = accuracy,
+        .estimated_error = std::max(course.error(static_cast<std::size_t>(trial.horizon)), least_error(spec.precision)),
+        .horizon = trial.horizon,
+        .verified_by = pace_words(finer),
+        .evaluations =
+            static_cast<double>(course.effort.evaluations) * (seen > 0 ? static_cast<double>(samples) / seen : 1)};
+    side.why = why_words(spec, way, accuracy);
     return side;
 }
 

@@ -100,9 +100,9 @@ TEST(Choice, MeetsTheAccuracyAndEstimatesItOnFiftyScenesDrawnByLot) {
 }
 
 TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
-    // 16 links, let go level: errors grow tenfold within half a second
+    // eight links, let go level: errors grow tenfold within half a second
     const auto scene =
-        make_scene(preset_from("[scene]\nduration_s = 12\n[system]\nlinks = 12\nlength_m = 0.2\naccuracy = 1e-6"));
+        make_scene(preset_from("[scene]\nduration_s = 10\n[system]\nlinks = 8\nlength_m = 0.2\naccuracy = 1e-6"));
     const auto& choice = *scene.a.choice;
     ASSERT_LT(choice.horizon, scene.samples);
     EXPECT_EQ(scene.horizon(), scene.time(choice.horizon));
@@ -131,7 +131,7 @@ TEST(Choice, TakesTheCheapestWayThatTheTableAllows) {
     };
     EXPECT_EQ(scene("").a.motion.model, Model::angles);
     EXPECT_EQ(scene("model = \"constraints\"").a.motion.model, Model::constraints);
-    EXPECT_EQ(scene("stabilise = \"projection\"").a.motion.stabilise, Stabilise::projection);
+    EXPECT_EQ(scene("stabilise = \"projection\"").a.motion.model, Model::constraints);
     EXPECT_EQ(scene("[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [2, 0]").a.motion.model,
               Model::mechanism);
     // finer costs more

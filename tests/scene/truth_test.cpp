@@ -118,7 +118,8 @@ TEST(Truth, WhatLiesBeyondTheHorizonIsShaded) {
     const auto scene = scene_of("horizon", {"scene.duration_s=35"});
     ASSERT_TRUE(scene.horizon());
     const auto picture = frame_of(scene, 0);
-    const auto& strip = *make_layout(scene).distance;
+    const auto layout = make_layout(scene);
+    const auto& strip = *layout.distance;
     const auto pixel = [&](float dx, double seconds) {  // away from the lines of the axes
         return picture.at(static_cast<int>(strip.time.at(seconds) + dx), static_cast<int>(strip.area.top) + 5);
     };
