@@ -97,6 +97,8 @@ public:
         if (const auto words = winner_words(ladders); !words.empty())
             figure.captions.push_back(
                 fmt::format("The least {}: {}.", cost_ == Cost::time ? "time, µs" : "evaluations", words));
+        if (const auto words = peer_words(ladders); !words.empty())
+            figure.captions.push_back(fmt::format("The best of the others takes so many times as much: {}.", words));
         if (cost_ == Cost::time) figure.captions.push_back(spread_words(ladders));
     }
 
@@ -240,6 +242,25 @@ private:
             }
             if (winners.empty()) continue;
             words += fmt::format("{}{} by {}", words.empty() ? "" : "; ", accuracy.words, fmt::join(winners, ", "));
+        }
+        return words;
+    }
+
+    /// How many times as long the best of the peers takes, at each accuracy a problem after the other; empty without
+    /// any.
+    std::string peer_words(const std::vector<Ladder>& ladders) const {
+        std::string words;
+        for (const auto& accuracy : accuracies) {
+            std::vector<std::string> ratios;
+            for (std::size_t p = 0; p < problems_.all.size(); ++p) {
+                const auto* ours = cheapest(p, ladders, cost_, accuracy.error, false);
+                const auto* peer = cheapest(p, ladders, cost_, accuracy.error, true);
+                if (ours && peer)
+                    ratios.push_back(fmt::format(
+                        "{:.1f}", *cost_at(*peer, cost_, accuracy.error) / *cost_at(*ours, cost_, accuracy.error)));
+            }
+            if (!ratios.empty())
+                words += fmt::format("{}{} at {}", words.empty() ? "" : "; ", fmt::join(ratios, ", "), accuracy.words);
         }
         return words;
     }

@@ -6,18 +6,34 @@
 #include "peers.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/chrono.h>
 
 #include <cstdio>
+#include <ctime>
 #include <exception>
+#include <fstream>
 
 namespace doppel {
 namespace {
 
+/// The processor as it calls itself, and the month: without them, times mean nothing.
+std::string where_and_when() {
+    std::ifstream about("/proc/cpuinfo");
+    const std::string key = "model name";
+    std::string processor = "an unnamed processor";
+    for (std::string line; std::getline(about, line);)
+        if (line.starts_with(key) && line.find(": ") != std::string::npos) {
+            processor = line.substr(line.find(": ") + 2);
+            break;
+        }
+    return fmt::format("Measured on {}, {:%B %Y}.", processor, fmt::localtime(std::time(nullptr)));
+}
+
 /// A chart of work against precision as `doppel figure` makes it, with the methods of other libraries in it.
 void make_figure(const RunCommandOptions& options) {
     const auto peers = all_peers();
-    const std::vector<FigurePreset> figures{
-        read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};
+    std::vector<FigurePreset> figures{read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};
+    figures[0].captions.push_back(where_and_when());
     ProgressReport show(progress_style(options.progress), figures[0].name, figures[0].work->unit());
     const FigureReport report{[&](std::size_t, const FigureProgress& progress) {
                                   show({std::lround(progress.done), std::lround(progress.total)});
