@@ -140,9 +140,11 @@ void print_figure(const FigurePreset& figure) {
     fmt::print("{}: {}\n  kind   {}: {} {} in {} trials\n", figure.name, figure.title, figure.kind,
                grouped(std::lround(units)), figure.work->unit(), grouped(static_cast<long>(figure.work->trials())));
     fmt::print("  chart  {}×{} px, {}\n", size.width, size.height, figure.chart.theme);
-    const auto estimate = estimated_computation(figure, cores());
-    fmt::print("  takes  {} {:.2g} s on {} threads, {} {}/s\n", estimate.at_least ? "more than" : "about",
-               estimate.seconds, cores(), roughly(units / estimate.seconds), figure.work->unit());
+    const int threads = figure.work->measures_time() ? 1 : cores();
+    const auto estimate = estimated_computation(figure, threads);
+    fmt::print("  takes  {} {:.2g} s on {} thread{}, {} {}/s\n", estimate.at_least ? "more than" : "about",
+               estimate.seconds, threads, threads == 1 ? "" : "s", roughly(units / estimate.seconds),
+               figure.work->unit());
 }
 
 }  // namespace

@@ -132,9 +132,15 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
     const auto& work = *figure.work;
     const std::size_t trials = work.trials(), together = work.together();
     double total = 0, done = 0;
-    for (std::size_t trial = 0; trial < trials; ++trial) total += work.units(trial);
-    const double start = now();
     std::atomic<bool> stop = false;
+    const double before = now();
+    for (std::size_t trial = 0; trial < trials; ++trial) {
+        total += work.units(trial);
+        // what counts for nothing is what others rest on: first, or the first of them would pay for it
+        TrialNumbers numbers;
+        if (work.units(trial) == 0) work.compute(trial, {&numbers, 1}, stop);
+    }
+    const double start = now();
     const std::jthread watch([&](const std::stop_token& quit) {
         while (!quit.stop_requested() && now() - start < allowed_s)
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -148,6 +154,7 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
         for (std::size_t i = 0; i < groups && !stop; ++i, place += golden - std::floor(place + golden)) {
             const auto first =
                 static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(groups)) * together;
+            if (work.units(first) == 0) continue;
             std::vector<TrialNumbers> numbers(std::min(together, trials - first));
             work.compute(first, numbers, stop);
             for (std::size_t k = 0; k < numbers.size(); ++k) done += work.units(first + k);
@@ -155,7 +162,7 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::interrupted) throw;
     }
-    const double cpu_s = (now() - start) * (done > 0 ? total / done : static_cast<double>(groups));
+    const double cpu_s = start - before + (now() - start) * (done > 0 ? total / done : static_cast<double>(groups));
     const double shared = std::min(static_cast<double>(threads), static_cast<double>(groups));
     return {cpu_s / shared, done == 0};
 }

@@ -32,7 +32,7 @@ public:
     virtual std::size_t together() const { return 1; }
     /// Whether its trials measure time, and so are computed one after the other, by themselves.
     virtual bool measures_time() const { return false; }
-    /// What a person would count, "pairs", and how many of them a trial is.
+    /// What a person would count, "pairs", and how many of them a trial is; 0 for what other trials rest on.
     virtual std::string unit() const { return "trials"; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
 

@@ -55,6 +55,7 @@ public:
     }
     bool measures_time() const override { return cost_ == Cost::time; }
     std::string unit() const override { return "ladders"; }
+    double units(std::size_t trial) const override { return trial < problems_.all.size() ? 0 : 1; }
 
     void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = computed(first + i, stop);
