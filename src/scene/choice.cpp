@@ -19,12 +19,12 @@ constexpr double no_better = 0.25;  // of what is asked: where a looser setting 
 
 /// A setting, tried.
 struct Trial {
-    Setting setting;
+    Pace setting;
     ErrorCourse course;
     long rounding_horizon;  // the last sample to which rounding leaves the accuracy
     long horizon;           // the last one to which both do
 
-    Trial(const Setting& of, ErrorCourse found, double allowed) : setting(of), course(std::move(found)) {
+    Trial(const Pace& of, ErrorCourse found, double allowed) : setting(of), course(std::move(found)) {
         const auto last_within = [&](const auto& error) {
             long last = -1;
             while (last + 1 < static_cast<long>(course.rounding.size()) && error(last + 1) <= allowed) ++last;
@@ -65,7 +65,7 @@ public:
     }
 
 private:
-    Trial tried(const Setting& setting) const {
+    Trial tried(const Pace& setting) const {
         const auto side = way_.side(setting);
         return {setting,
                 error_course(side.motion, way_.side(way_.finer(setting)).motion, samples_, side.reach, enough, stop_),

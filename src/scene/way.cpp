@@ -47,7 +47,7 @@ Way::Way(const SideSpec& spec, const Rational& sample_hz, const MeasuredWay& mea
         start_.steps = round_steps(1 / (sample_hz.value() * measured.setting * time_unit));
 }
 
-Side Way::side(const Setting& setting) const {
+Side Way::side(const Pace& setting) const {
     auto spec = spec_;
     if (method_.adaptive)
         spec.tolerance = parse_quad(fmt::format("{:.0e}", setting.tolerance));
@@ -56,13 +56,13 @@ Side Way::side(const Setting& setting) const {
     return make_side(spec, sample_hz_);
 }
 
-Setting Way::finer(const Setting& setting) const {
+Pace Way::finer(const Pace& setting) const {
     if (method_.adaptive) return {.tolerance = std::max(1e-3 * setting.tolerance, finest_check_)};
     return {.steps = setting.steps * std::max(2L, 16L >> (method_.order - 1))};
 }
 
-std::optional<Setting> Way::scaled(const Setting& setting, double factor) const {
-    Setting next = setting;
+std::optional<Pace> Way::scaled(const Pace& setting, double factor) const {
+    Pace next = setting;
     if (method_.adaptive) {
         next.tolerance = round_tolerance(std::clamp(setting.tolerance * factor, finest_, loosest));
         if (next.tolerance == setting.tolerance) return std::nullopt;

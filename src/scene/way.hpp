@@ -8,7 +8,7 @@
 namespace doppel {
 
 /// How finely to step: a tolerance, or steps to a sample.
-struct Setting {
+struct Pace {
     double tolerance = 0;
     long steps = 1;
 };
@@ -21,22 +21,22 @@ public:
     Way(const SideSpec& spec, const Rational& sample_hz, const MeasuredWay& measured, double time_unit);
 
     /// What the table suggests.
-    const Setting& start() const { return start_; }
+    const Pace& start() const { return start_; }
     const MethodEntry& method() const { return method_; }
 
-    Side side(const Setting& setting) const;
+    Side side(const Pace& setting) const;
     /// Errs a thousandth as much, or as little as the precision allows; with steps, a sixteenth.
-    Setting finer(const Setting& setting) const;
+    Pace finer(const Pace& setting) const;
     /// A setting that errs about `factor` times as much, > or < 1; nothing where there is none, or it takes far more
     /// steps than the table's.
-    std::optional<Setting> scaled(const Setting& setting, double factor) const;
+    std::optional<Pace> scaled(const Pace& setting, double factor) const;
 
 private:
     SideSpec spec_;
     Rational sample_hz_;
     MethodEntry method_;
     double finest_, finest_check_;  // tolerances
-    Setting start_;
+    Pace start_;
 };
 
 inline constexpr double finest_in_table = 1e-11;  // rad, that is asked of the table
