@@ -151,7 +151,13 @@ void print_figure(const FigurePreset& figure) {
 
 void add_check(CLI::App& app) {
     auto options = std::make_shared<PresetOptions>();
-    auto& command = *app.add_subcommand("check", "What a preset would run: models and why, steps, frames, time");
+    auto& command = *app.add_subcommand("check", "What a preset would run: models and why, errors, steps, time");
+    command.footer(
+        "Examples:\n"
+        "  doppel check butterfly\n"
+        "  doppel check butterfly --set system.accuracy=1e-6    the cheapest way to that error, in rad, and how far it "
+        "holds\n"
+        "  doppel check flip-map                                what a figure would take");
     add_preset_options(command, *options);
     command.callback([options] {
         const auto& stop = watch_interrupts();
