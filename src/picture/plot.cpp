@@ -102,6 +102,15 @@ bool legible(const Figure& figure, const Area& body, const Area& sheet, const Pl
     return body.height() >= std::max(0.5f * sheet.height(), 12.5f * style.tick * static_cast<float>(rows));
 }
 
+/// Whether panels are more than their words and ticks.
+bool has_room(const Figure& figure, const Area& body, const PlotStyle& style) {
+    if (figure.panels.empty()) return true;
+    const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
+    const int rows = (panels + columns - 1) / columns;
+    return body.height() >= 13 * style.tick * static_cast<float>(rows) &&
+           body.width() >= 9 * style.tick * static_cast<float>(columns);
+}
+
 /// All of the words where they leave the panels enough room, else without captions, else without subtitle.
 Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style) {
     for (const auto& [subtitle, captions] : {std::pair{true, true}, {true, false}}) {
@@ -148,6 +157,9 @@ DisplayList compose(const Figure& figure, Size size, const Theme& theme, float s
     const float across = std::round(34 * style.unit), down = std::round(28 * style.unit);
     const Area sheet{across, down, width - across, height - down};
     const Page page = laid_out(figure, sheet, style);
+    // many panels in a small picture: smaller words before empty panels
+    constexpr float least_scale = 0.1f;
+    if (!has_room(figure, page.body, style) && scale > least_scale) return compose(figure, size, theme, 0.8f * scale);
 
     DisplayList list{Box{0, 0, width, height, 0, theme.background}};
     page.title.draw({sheet.left, sheet.top}, list);

@@ -178,5 +178,20 @@ TEST(Plot, SaysWhatCannotBeDrawn) {
     EXPECT_THROW(compose(sweep(), {480, 270}, light, 0), Error);
 }
 
+TEST(Plot, ManyPanelsInASmallPictureKeepTheirCurves) {
+    Figure figure{.title = "twelve"};
+    for (int i = 0; i < 12; ++i)
+        figure.panels.push_back({.title = "panel",
+                                 .x = {.label = "x"},
+                                 .y = {.label = "y"},
+                                 .curves = {Curve{.x = {0, 1, 2}, .y = {0, 1, 0}}}});
+    for (const Size size : {Size{1600, 900}, Size{480, 270}, Size{320, 180}}) {
+        const auto list = compose(figure, size, themes[1]);
+        const auto curves = std::count_if(list.begin(), list.end(),
+                                          [](const Item& item) { return std::holds_alternative<Stroke>(item); });
+        EXPECT_EQ(curves, 12) << size.width;
+    }
+}
+
 }  // namespace
 }  // namespace doppel
