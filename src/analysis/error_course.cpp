@@ -24,8 +24,8 @@ double ErrorCourse::error(std::size_t sample) const {
 }
 
 MotionSpec some_roundings_away(MotionSpec spec) {
-    // a number errs by half an ulp at most; 4 ulps leave room for what the steps add
-    Quad change = 4 * (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
+    // a number errs by half an ulp at most; 12 ulps leave room for what the steps add
+    Quad change = 12 * (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
                                                             : Quad(std::numeric_limits<double>::epsilon()));
     const auto move = [&](Quad& number) {
         number *= 1 + change;

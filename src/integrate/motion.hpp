@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace doppel {
 
@@ -27,8 +28,9 @@ struct MotionSpec {
     long steps_per_sample = 250;       // of methods with a fixed step
     Quad tolerance = 0;                // of adaptive methods
     Stabilise stabilise = Stabilise::none;
-    Quad stabilise_rate = 0;    // Baumgarte's α = β, 1/s
-    bool follows_turns = true;  // false: angles of particles only up to whole turns, and no look between samples
+    Quad stabilise_rate = 0;     // Baumgarte's α = β, 1/s
+    bool follows_turns = true;   // false: angles of particles only up to whole turns, and no look between samples
+    bool wants_tension = false;  // the forces in the rods observed as well
 };
 
 /// The state at one sample, the same for every model.
@@ -38,6 +40,9 @@ struct Observation {
     double energy = 0;         // J
     double energy_change = 0;  // J, since the start; in quad the difference is taken in quad
     double length_error = 0;   // of the worst rod, m
+    /// In each rod, N, > 0 where it pulls, where it was wanted: in the chain's order, or in that of the mechanism's
+    /// constraints that are rods. Not a number where a constraint depends on others.
+    std::vector<double> tension;
 };
 
 /// What a motion has cost so far.

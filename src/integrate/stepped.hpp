@@ -2,8 +2,10 @@
 
 #include "integrate/motion.hpp"
 #include "integrate/registry.hpp"
+#include "integrate/turns.hpp"
 #include "numeric/error.hpp"
 #include "physics/stabilise.hpp"
+#include "physics/tension.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,13 +17,7 @@ Scalar scalar_of(const Rational& value) {
     return Scalar(value.numerator) / Scalar(value.denominator);
 }
 
-/// The angle that is `theta` up to whole turns and nearest to `near`.
-inline double unwrapped(double theta, double near) {
-    const double turns = std::round((near - theta) / (2 * pi));
-    return turns == 0 ? theta : theta + 2 * pi * turns;
-}
-
-/// The bobs of a chain in angles.
+/// The bobs of a chain in angles. Forces in rods are those of the state as doubles, for pictures.
 template <class Scalar>
 struct AnglesView {
     static constexpr bool follows_turns = false;
@@ -38,6 +34,9 @@ struct AnglesView {
     template <class State>
     Scalar length_error(const State&, const Bobs<Scalar>&) const {
         return Scalar(0);
+    }
+    std::vector<double> tension(const Bobs<double>& seen) const {
+        return tensions(pendulum.template cast<double>(), seen);
     }
 };
 
@@ -59,11 +58,13 @@ struct ParticlesView {
     Scalar length_error(const State&, const Bobs<Scalar>& seen) const {
         return doppel::length_error(pendulum, seen);
     }
+    std::vector<double> tension(const Bobs<double>& seen) const {
+        return tensions(pendulum.template cast<double>(), seen);
+    }
 };
 
-/// A model knows its angles only up to whole turns if it is built of particles: they are followed from one look to the
-/// next, which may be no further apart than half a turn.
-inline constexpr double longest_unwatched = 1.0 / 500;  // s; half a turn in it would be 1570 rad/s
+/// A whirl is watched every so many rad, so that an interruption is noticed within a sample of it; some 0.1 s of work.
+inline constexpr double most_unwatched = 1e4;
 
 /// A method at work on a model behind the door.
 template <class Model, class Which, class View>
@@ -73,24 +74,24 @@ public:
     using State = typename Model::State;
 
     Stepped(Model model, const State& start, View view, const MotionSpec& spec)
-        : model_(std::move(model)), view_(std::move(view)), stepper_(model_, start, pace(spec)) {
+        : model_(std::move(model)),
+          view_(std::move(view)),
+          stepper_(model_, start, pace(spec)),
+          wants_tension_(spec.wants_tension) {
         if constexpr (Which::method.adaptive) {
             const double interval = spec.sample_interval.value();
-            portions_ = follows_turns(spec) ? static_cast<long>(std::ceil(interval / longest_unwatched)) : 1;
+            const double whole = std::max(follows_turns(spec) ? interval / Turns::longest_unwatched : 1,
+                                          interval * fastest(view_.bobs(start)) / most_unwatched);
+            portions_ = static_cast<long>(std::ceil(std::min(whole, 1e12)));
             portion_ = scalar_of<Scalar>(spec.sample_interval) / Scalar(portions_);
         } else {
-            // short enough that an interruption is noticed, and the turns are not lost
             steps_per_sample_ = spec.steps_per_sample;
-            const double step = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
-            constexpr long most = 200'000;
-            portion_steps_ = std::max(1L, most / static_cast<long>(start.size()));
-            if (follows_turns(spec))
-                portion_steps_ = std::min(portion_steps_, std::max(1L, static_cast<long>(longest_unwatched / step)));
-            smallest_step_ = step;
+            portion_steps_ = steps_in_one_go(spec, start.size(), follows_turns(spec));
+            smallest_step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
         }
         if constexpr (View::follows_turns)
-            if (spec.follows_turns)
-                for (const auto& angle : view_.pendulum.angle) turns_.push_back(static_cast<double>(angle));
+            if (spec.follows_turns) turns_ = Turns(view_.pendulum.template cast<double>().angle);
+        turns_.look(start);
         start_energy_ = view_.energy(start, view_.bobs(start));
     }
 
@@ -128,9 +129,10 @@ public:
             const auto in_double = [](const Scalar& x) { return static_cast<double>(x); };
             seen.bobs.push_back({in_double(bob.mass), in_double(bob.x), in_double(bob.y), in_double(bob.vx),
                                  in_double(bob.vy), in_double(bob.theta), in_double(bob.omega)});
-            if (!turns_.empty()) seen.bobs[i].theta = unwrapped(seen.bobs[i].theta, turns_[i]);
         }
+        turns_.add_to(seen.bobs);
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
+        if (wants_tension_) seen.tension = view_.tension(seen.bobs);
         return seen;
     }
 
@@ -151,25 +153,29 @@ private:
             return scalar_of<Scalar>(spec.sample_interval) / Scalar(spec.steps_per_sample);
     }
 
+    /// The fastest rate of any bob, rad/s.
+    static double fastest(const Bobs<Scalar>& bobs) {
+        double rate = 0;
+        for (const auto& bob : bobs) rate = std::max(rate, std::abs(static_cast<double>(bob.omega)));
+        return rate;
+    }
+
     static bool follows_turns(const MotionSpec& spec) { return View::follows_turns && spec.follows_turns; }
 
     void follow_turns() {
-        if constexpr (View::follows_turns) {
-            if (turns_.empty()) return;
-            const auto bobs = view_.bobs(stepper_.state());
-            for (std::size_t i = 0; i < bobs.size(); ++i)
-                turns_[i] = unwrapped(static_cast<double>(bobs[i].theta), turns_[i]);
-        }
+        if constexpr (View::follows_turns)
+            if (turns_.followed()) turns_.look(stepper_.state());
     }
 
     Model model_;
     View view_;
     typename Which::template Stepper<Model> stepper_;
+    bool wants_tension_;
     long portions_ = 1, steps_per_sample_ = 0, portion_steps_ = 1, steps_ = 0;
     Scalar portion_{0};  // s
     double smallest_step_ = 0;
     Scalar start_energy_{0};
-    std::vector<double> turns_;  // the angles at the last look, unwrapped, rad
+    Turns turns_;
 };
 
 /// The method of that name at work on `model`. Throws Error (exit 2) where it cannot step it.

@@ -25,22 +25,32 @@ struct AngleChain {
     using Half = doppel::State<Scalar, N>;
 
     Pendulum<Scalar> pendulum;
-    Half w;         // 1/kg, inverse masses
-    Half sin, cos;  // of the angles last looked at
-    Half s, c;      // of the angle between a rod and the next
-    Half tension;   // N
+    Half w;                  // 1/kg, inverse masses
+    Half length, by_length;  // m, 1/m
+    Half sin, cos;           // of the angles last looked at
+    Half s, c;               // of the angle between a rod and the next, over the mass between them, 1/kg
+    Half tension;            // N
     Tridiagonal<Scalar, N> matrix;
 
     explicit AngleChain(const Pendulum<Scalar>& p)
         : pendulum(p),
-          w(rows(p)),
-          sin(rows(p)),
-          cos(rows(p)),
-          s(rows(p)),
-          c(rows(p)),
-          tension(rows(p)),
+          w(Half::Zero(rows(p))),
+          length(w),
+          by_length(w),
+          sin(w),
+          cos(w),
+          s(w),
+          c(w),
+          tension(w),
           matrix(rows(p)) {
-        for (Eigen::Index k = 0; k < w.size(); ++k) w[k] = Scalar(1) / p.mass[static_cast<std::size_t>(k)];
+        const auto n = w.size();
+        for (Eigen::Index k = 0; k < n; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            w[k] = Scalar(1) / p.mass[i];
+            length[k] = p.length[i];
+            by_length[k] = Scalar(1) / p.length[i];
+        }
+        by_last_ = Scalar(1) / (n > 1 ? Scalar(w[n - 2] + w[n - 1]) : w[0]);
     }
 
     static State start(const Pendulum<Scalar>& p) { return released_in_angles<Scalar, N>(p); }
@@ -49,18 +59,14 @@ struct AngleChain {
     void rate(const State& y, State& dydt) {
         const auto n = w.size();
         look(y);
-        for (Eigen::Index k = 0; k < n; ++k) tension[k] = length(k) * y[n + k] * y[n + k];
+        for (Eigen::Index k = 0; k < n; ++k) tension[k] = length[k] * y[n + k] * y[n + k];
         tension[0] += pendulum.gravity * cos[0];
         matrix.solve(tension);
         for (Eigen::Index k = 0; k < n; ++k) {
-            Scalar across(0);
-            if (k + 1 < n) across += tension[k + 1] * s[k] * w[k];
-            if (k > 0)
-                across -= tension[k - 1] * s[k - 1] * w[k - 1];
-            else
-                across -= pendulum.gravity * sin[0];
+            Scalar across = k == 0 ? Scalar(-(pendulum.gravity * sin[0])) : Scalar(-(tension[k - 1] * s[k - 1]));
+            if (k + 1 < n) across += tension[k + 1] * s[k];
             dydt[k] = y[n + k];
-            dydt[n + k] = across / length(k);
+            dydt[n + k] = across * by_length[k];
         }
     }
 
@@ -74,15 +80,13 @@ struct AngleChain {
             cos[k] = turn.cos;
         }
         for (Eigen::Index k = 0; k + 1 < n; ++k) {
-            s[k] = sin[k + 1] * cos[k] - cos[k + 1] * sin[k];
-            c[k] = cos[k + 1] * cos[k] + sin[k + 1] * sin[k];
+            s[k] = (sin[k + 1] * cos[k] - cos[k + 1] * sin[k]) * w[k];
+            c[k] = (cos[k + 1] * cos[k] + sin[k + 1] * sin[k]) * w[k];
+            matrix.upper[k] = matrix.lower[k] = -c[k];
+            matrix.diagonal[k + 1] = w[k] + w[k + 1];
         }
         matrix.diagonal[0] = w[0];
-        for (Eigen::Index k = 0; k + 1 < n; ++k) {
-            matrix.diagonal[k + 1] = w[k] + w[k + 1];
-            matrix.upper[k] = matrix.lower[k] = -(c[k] * w[k]);
-        }
-        matrix.factor();
+        matrix.factor(pendulum.mass[0], by_last_);
     }
 
     /// a ← M⁻¹ f at the angles last looked at, in O(N): the accelerations that generalized forces f (N m) would cause,
@@ -90,24 +94,25 @@ struct AngleChain {
     /// it, and τ solves the system of the tensions.
     void solve_mass(const Half& f, Half& a) {
         const auto n = w.size();
-        const auto across = [&](Eigen::Index k) { return f[k] / length(k); };
+        const auto across = [&](Eigen::Index k) { return f[k] * by_length[k]; };
         for (Eigen::Index k = 0; k < n; ++k) {
             tension[k] = Scalar(0);
-            if (k + 1 < n) tension[k] -= across(k + 1) * s[k] * w[k];
-            if (k > 0) tension[k] += across(k - 1) * s[k - 1] * w[k - 1];
+            if (k + 1 < n) tension[k] -= across(k + 1) * s[k];
+            if (k > 0) tension[k] += across(k - 1) * s[k - 1];
         }
         matrix.solve(tension);
         for (Eigen::Index k = 0; k < n; ++k) {
             Scalar sum = across(k) * w[k];
-            if (k + 1 < n) sum -= (across(k + 1) * c[k] + tension[k + 1] * s[k]) * w[k];
-            if (k > 0) sum += (across(k) - across(k - 1) * c[k - 1] + tension[k - 1] * s[k - 1]) * w[k - 1];
-            a[k] = sum / length(k);
+            if (k + 1 < n) sum -= across(k + 1) * c[k] + tension[k + 1] * s[k];
+            if (k > 0) sum += across(k) * w[k - 1] - across(k - 1) * c[k - 1] + tension[k - 1] * s[k - 1];
+            a[k] = sum * by_length[k];
         }
     }
 
 private:
     static Eigen::Index rows(const Pendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.links()); }
-    const Scalar& length(Eigen::Index k) const { return pendulum.length[static_cast<std::size_t>(k)]; }
+
+    Scalar by_last_;  // the inverse of the last entry of the diagonal, kg; that of the first is m_1
 };
 
 }  // namespace doppel

@@ -3,6 +3,7 @@
 #include "physics/constraint.hpp"
 #include "physics/constraint_matrix.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace doppel {
@@ -102,6 +103,20 @@ public:
             v[2 * i] += share * gradients[k][0];
             v[2 * i + 1] += share * gradients[k][1];
         }
+    }
+
+    /// The forces in the rods, N, > 0 where one pulls: λ r acts on its particle a, where r is its first gradient.
+    std::vector<Scalar> tensions(const Gradients& gradients, const Column& lambda) const {
+        using std::sqrt;
+        std::vector<Scalar> all;
+        for (std::size_t k = 0; k < blocks_.size(); ++k) {
+            const auto row = blocks_[k].row;
+            const bool first = k == 0 || blocks_[k - 1].row != row;
+            if (!first || !std::holds_alternative<Rod<Scalar>>(constraints_[owner(row)])) continue;
+            const auto& r = gradients[k];
+            all.push_back(-lambda[row] * sqrt(Scalar(r[0] * r[0] + r[1] * r[1])));
+        }
+        return all;
     }
 
     /// matrix ← J1 M⁻¹ J0ᵀ, with the inverse masses w

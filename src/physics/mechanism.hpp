@@ -5,6 +5,7 @@
 #include "physics/constraint_set.hpp"
 #include "physics/mechanism_assembly.hpp"
 
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -71,13 +72,9 @@ struct Mechanism {
         auto a = dydt.tail(2 * n);
         accelerate(q, v, a);
 
-        // λ from C″ = 0
         turn_to(q);
         factor_and_watch(q, gradients_);
-        set_.curvature(v, lambda_);
-        set_.add_slip(gradients_, a, lambda_);
-        lambda_ = -lambda_;
-        matrix_.solve(lambda_);
+        find_multipliers(gradients_, v, a);
         set_.add_pull(gradients_, masses_.w, lambda_, a);
     }
 
@@ -136,6 +133,22 @@ struct Mechanism {
     /// The constraint that is furthest from being met, m.
     Scalar length_error(const State& y) const { return set_.worst_error(y.head(y.size() / 2)); }
 
+    /// The forces in the rods, N, > 0 where one pulls, in the order of the constraints that are rods: the λ of C″ = 0,
+    /// without what a stabilisation adds. Not a number where a constraint depends on others, so that none is
+    /// determined.
+    std::vector<Scalar> tensions(const State& y) {
+        const auto q = y.head(y.size() / 2), v = y.tail(y.size() / 2);
+        Half a(q.size());
+        accelerate(q, v, a);
+        set_.look(q, other_gradients_);
+        set_.couple(other_gradients_, other_gradients_, masses_.w, matrix_);
+        if (matrix_.factor() < matrix_.rows())
+            lambda_.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+        else
+            find_multipliers(other_gradients_, v, a);
+        return set_.tensions(other_gradients_, lambda_);
+    }
+
     Bobs<Scalar> bobs(const State& y) const {
         const auto n = masses_.m.size();
         Bobs<Scalar> all;
@@ -175,6 +188,15 @@ private:
         a.setZero();
         for (const auto& force : forces_)
             std::visit([&](const auto& part) { part.accelerate(masses_, q, v, a); }, force);
+    }
+
+    /// λ from C″ = 0, of the factored matrix and the accelerations a without constraints
+    template <class Vector, class Sum>
+    void find_multipliers(const Gradients& gradients, const Vector& v, const Sum& a) {
+        set_.curvature(v, lambda_);
+        set_.add_slip(gradients, a, lambda_);
+        lambda_ = -lambda_;
+        matrix_.solve(lambda_);
     }
 
     /// J(q), and that of the call before.

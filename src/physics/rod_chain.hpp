@@ -3,6 +3,9 @@
 #include "numeric/tridiagonal.hpp"
 #include "physics/pendulum.hpp"
 
+#include <cmath>
+#include <vector>
+
 namespace doppel {
 
 /// N free particles that constraints hold on the rods of a chain (force-based dynamics).
@@ -44,11 +47,7 @@ struct RodChain {
     void rate(const State& y, State& dydt) {
         const auto n = w.size();
         const auto q = y.head(2 * n), v = y.tail(2 * n);
-        fill(q, q, matrix_);
-        for (Eigen::Index k = 0; k < n; ++k) lambda_[k] = -square(v, k);
-        lambda_[0] += g * q[1];
-        matrix_.factor();
-        matrix_.solve(lambda_);
+        find_multipliers(q, v);
         dydt.head(2 * n) = v;
         auto a = dydt.tail(2 * n);
         for (Eigen::Index k = 0; k < n; ++k) {
@@ -56,6 +55,17 @@ struct RodChain {
             a[2 * k + 1] = -g;
         }
         pull_on(q, lambda_, a);
+    }
+
+    /// The forces in the rods, N, > 0 where one pulls: on particle k acts λ_k r_k, so T_k = −λ_k |r_k|.
+    std::vector<Scalar> tensions(const State& y) {
+        using std::sqrt;
+        const auto n = w.size();
+        const auto q = y.head(2 * n);
+        find_multipliers(q, y.tail(2 * n));
+        std::vector<Scalar> all;
+        for (Eigen::Index k = 0; k < n; ++k) all.push_back(-lambda_[k] * sqrt(square(q, k)));
+        return all;
     }
 
     // What methods that keep to the constraints themselves need (physics/constrained.hpp). Positions q, velocities v.
@@ -108,6 +118,15 @@ private:
     static Scalar square(const Vector& q, Eigen::Index k) {
         const Scalar x = along(q, k, 0), y = along(q, k, 1);
         return x * x + y * y;
+    }
+
+    template <class Vector>
+    void find_multipliers(const Vector& q, const Vector& v) {
+        fill(q, q, matrix_);
+        for (Eigen::Index k = 0; k < w.size(); ++k) lambda_[k] = -square(v, k);
+        lambda_[0] += g * q[1];
+        matrix_.factor();
+        matrix_.solve(lambda_);
     }
 
     /// J(q1) M⁻¹ Jᵀ(q0)

@@ -1,6 +1,7 @@
 #include "integrate/euler.hpp"
 #include "integrate/midpoint.hpp"
 #include "integrate/rk4.hpp"
+#include "peers/chain_rate.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
@@ -40,9 +41,23 @@ void all_methods(const char* model, std::size_t links) {
     thousand_steps<Rk4::Stepper<Model>, Model>("rk4", model, links);
 }
 
+/// Three links as a careful user of a library writes them, for comparison.
+struct ByHand {
+    using Scalar = double;
+    using State = doppel::State<double, 6>;
+
+    ChainRate<3> chain;
+
+    explicit ByHand(const Pendulum<double>& p) : chain(p) {}
+    static State start(const Pendulum<double>& p) { return released_in_angles<double, 3>(p); }
+    void rate(const State& y, State& dydt) { chain(y.data(), dydt.data()); }
+};
+
 const bool registered = [] {
     all_methods<DoublePendulum<double>>("angles", 2);
     all_methods<AngleChain<double, 3>>("angles", 3);
+    all_methods<ByHand>("angles by hand", 3);
+    all_methods<AngleChain<double, Eigen::Dynamic>>("angles", 8);
     all_methods<RodChain<double, 2>>("constraints", 2);
     all_methods<RodChain<double, 3>>("constraints", 3);
     all_methods<RodChain<double, Eigen::Dynamic>>("constraints", 8);

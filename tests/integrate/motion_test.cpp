@@ -3,6 +3,7 @@
 #include "integrate/methods.hpp"
 #include "integrate/support.hpp"
 #include "numeric/error.hpp"
+#include "physics/chain_parts.hpp"
 
 #include <cmath>
 
@@ -35,6 +36,14 @@ TEST(Methods, AreThoseOfTheRegistry) {
     }
     EXPECT_THROW(make_motion(stepping(Model::angles, "ruler", released(40, 70), 1000)), Error);
     EXPECT_EQ(find_method("ruler"), nullptr);
+}
+
+/// The force in the first of two rods, N: physics/angle_chain.hpp by elimination.
+double at_release(const Pendulum<double>& p) {
+    const double D = p.angle[1] - p.angle[0], c = std::cos(D), m = p.mass[0] + p.mass[1];
+    const double pull1 = p.length[0] * p.rate[0] * p.rate[0] + p.gravity * std::cos(p.angle[0]);
+    const double pull2 = p.length[1] * p.rate[1] * p.rate[1];
+    return p.mass[0] * (m * pull1 + p.mass[1] * c * pull2) / (m - p.mass[1] * c * c);
 }
 
 TEST(Models, AgreeToTheOrderOfTheStep) {
@@ -131,6 +140,32 @@ TEST(Motion, CountsItsSteps) {
     EXPECT_EQ(run.motion->effort().steps, 30);
     EXPECT_EQ(run.motion->effort().evaluations, 120);
     EXPECT_DOUBLE_EQ(run.motion->effort().smallest_step, 0.01);
+}
+
+TEST(Motion, SeesTheForcesInTheRodsWhereWanted) {
+    // one motion by three models, in two precisions, with and without projection; forces of physics/tension.hpp
+    auto p = released(90, -20);
+    p.mass = {1, 2.5};
+    p.rate = {2, -3};
+    std::vector<double> expected;
+    for (const auto model : {Model::angles, Model::constraints, Model::mechanism})
+        for (const auto precision : {Precision::in_double, Precision::in_quad})
+            for (const auto stabilise : {Stabilise::none, Stabilise::projection}) {
+                if (model == Model::angles && stabilise != Stabilise::none) continue;
+                auto spec = stepping(model, "rk4", p, 1000);
+                spec.precision = precision;
+                spec.stabilise = stabilise;
+                if (model == Model::mechanism) spec.parts = parts_of(p.cast<Quad>());
+                EXPECT_TRUE(Course(spec).observe().tension.empty());
+                spec.wants_tension = true;
+                Course run(spec);
+                EXPECT_NEAR(run.observe().tension[0], at_release(p), 1e-13);  // measured 7e-16
+                const auto forces = run.advance(100).tension;
+                if (expected.empty()) expected = forces;
+                ASSERT_EQ(forces.size(), 2u);
+                for (std::size_t k = 0; k < 2; ++k)
+                    EXPECT_NEAR(forces[k], expected[k], 1e-8);  // measured 1.2e-10, of the steps
+            }
 }
 
 TEST(Motion, InQuadKeepsWhatDoubleRoundsAway) {

@@ -1,0 +1,131 @@
+#include "integrate/crowd.hpp"
+
+#include "integrate/ensemble.hpp"
+#include "integrate/support.hpp"
+#include "numeric/error.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace doppel {
+namespace {
+
+/// Chains that are released a degree apart.
+std::vector<MotionSpec> fan(Model model, std::string_view method, std::size_t links, std::size_t count) {
+    std::vector<MotionSpec> specs;
+    for (std::size_t k = 0; k < count; ++k) {
+        Pendulum<double> p;
+        p.mass.assign(links, 1.25);
+        p.length.assign(links, 0.75);
+        p.angle.assign(links, radians(170 - static_cast<double>(k)));
+        p.rate.assign(links, 3.5);
+        specs.push_back(stepping(model, method, p, 120));
+        specs.back().steps_per_sample = 250;
+        specs.back().tolerance = parse_quad("1e-10");
+    }
+    return specs;
+}
+
+void expect_same(const Bobs<double>& seen, const Bobs<double>& expected) {
+    ASSERT_EQ(seen.size(), expected.size());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const auto &one = seen[i], &other = expected[i];
+        EXPECT_EQ(one.mass, other.mass);
+        EXPECT_EQ(one.x, other.x);
+        EXPECT_EQ(one.y, other.y);
+        EXPECT_EQ(one.vx, other.vx);
+        EXPECT_EQ(one.vy, other.vy);
+        EXPECT_EQ(one.theta, other.theta);
+        EXPECT_EQ(one.omega, other.omega);
+    }
+}
+
+/// Each motion as it goes alone, at the start and after many samples.
+void expect_each_as_alone(const std::vector<MotionSpec>& specs, int jobs, int width, long samples = 6) {
+    Crowd crowd(specs, jobs);
+    std::atomic<bool> never = false;
+    ASSERT_EQ(crowd.size(), specs.size());
+    EXPECT_EQ(crowd.width(), width);
+    for (std::size_t k = 0; k < specs.size(); k += 5) expect_same(crowd.bobs(k), Course(specs[k]).observe().bobs);
+    for (long n = 0; n < samples; ++n) crowd.advance(never);
+    for (std::size_t k = 0; k < specs.size(); k += 5) {
+        SCOPED_TRACE(specs[k].method + ", motion " + std::to_string(k));
+        expect_same(crowd.bobs(k), Course(specs[k]).advance(samples).bobs);
+    }
+}
+
+TEST(Crowd, EachGoesAsItWouldAlone) {
+    const int wide = Ensemble::widths().back();
+    for (const auto model : {Model::angles, Model::constraints})
+        for (const std::size_t links : {1u, 2u, 3u, 4u, 5u})
+            expect_each_as_alone(fan(model, "euler", links, 70), 2, links <= 4 ? wide : 1);
+    expect_each_as_alone(fan(Model::angles, "rk4", 2, 70), 2, wide);
+    expect_each_as_alone(fan(Model::constraints, "rk4", 2, 130), 3, wide);
+    expect_each_as_alone(fan(Model::angles, "taylor", 2, 70), 2, 1);
+    expect_each_as_alone(fan(Model::constraints, "rattle", 2, 70), 1, 1);
+}
+
+TEST(Crowd, FollowsTheTurns) {
+    // thrown so that some go round, both ways; the lone motion's own turns are tested against angles
+    auto specs = fan(Model::constraints, "euler", 2, 30);
+    for (std::size_t k = 0; k < specs.size(); ++k) specs[k].chain->rate = {Quad(15 - static_cast<int>(k)), Quad(0)};
+    expect_each_as_alone(specs, 1, Ensemble::widths().back(), 200);
+    for (auto& spec : specs) spec.follows_turns = false;
+    expect_each_as_alone(specs, 1, Ensemble::widths().back(), 200);
+}
+
+TEST(Crowd, StepsOneByOneWhatDoesNotMarchInStep) {
+    const auto specs = fan(Model::constraints, "euler", 2, 20);
+    const auto expect_alone = [&](auto change) {
+        auto changed = specs;
+        change(changed[7]);
+        expect_each_as_alone(changed, 2, 1, 3);
+    };
+    expect_alone([](MotionSpec& spec) { spec.model = Model::angles; });
+    expect_alone([](MotionSpec& spec) { spec.method = "rk4"; });
+    expect_alone([](MotionSpec& spec) { spec.precision = Precision::in_quad; });
+    expect_alone([](MotionSpec& spec) { spec.stabilise = Stabilise::projection; });
+    expect_alone([](MotionSpec& spec) { spec.steps_per_sample = 100; });
+    expect_alone([](MotionSpec& spec) { spec.sample_interval = {1, 60}; });
+    expect_alone([](MotionSpec& spec) { spec.follows_turns = false; });
+    expect_alone([&](MotionSpec& spec) { spec.chain = fan(Model::constraints, "euler", 3, 1)[0].chain; });
+}
+
+/// The sentence of the error.
+template <class Act>
+std::string fault(ExitCode code, Act act) {
+    try {
+        act();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), code);
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Crowd, SaysWhoCannotGoOn) {
+    // two of them break down in the same sample, in different parts: the first is named whatever the threads do
+    auto specs = fan(Model::constraints, "rattle", 2, 200);
+    for (auto& spec : specs) spec.steps_per_sample = 1;
+    for (const std::size_t k : {100u, 180u}) specs[k].chain->rate = {Quad(4000), Quad(-4000)};
+    std::atomic<bool> stop = false;
+    for (const int jobs : {1, 4}) {
+        Crowd crowd(specs, jobs);
+        const auto words = fault(ExitCode::method_failed, [&] { crowd.advance(stop); });
+        EXPECT_EQ(words.find("pendulum 101 of 200: rattle: "), 0u) << words;
+    }
+    specs[50].method = "ruler";
+    EXPECT_EQ(fault(ExitCode::bad_input, [&] { Crowd(specs, 2); }), "pendulum 51 of 200: there is no method \"ruler\"");
+    EXPECT_NE(fault(ExitCode::bad_input, [&] { Crowd({}, 2); }), "");
+}
+
+TEST(Crowd, StopsWhenAsked) {
+    std::atomic<bool> stop = true;
+    for (const char* method : {"euler", "taylor"}) {
+        Crowd crowd(fan(Model::angles, method, 2, 10), 1);
+        EXPECT_EQ(fault(ExitCode::interrupted, [&] { crowd.advance(stop); }), "interrupted");
+    }
+}
+
+}  // namespace
+}  // namespace doppel
