@@ -23,8 +23,11 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
         meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
-int failed(doppel::ExitCode code, const char* message) {
-    fmt::print(stderr, "doppel: {}\n", message);
+/// One line, whatever the message quotes; throws nothing where nobody reads it.
+int failed(doppel::ExitCode code, std::string message) {
+    std::replace_if(
+        message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+    std::fprintf(stderr, "doppel: %s\n", message.c_str());
     return static_cast<int>(code);
 }
 
@@ -54,7 +57,7 @@ int main(int argc, char** argv) {
             app.parse(argc, argv);
         } catch (const CLI::ParseError& fault) {
             if (fault.get_exit_code() == 0) return app.exit(fault);
-            return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", fault.what()).c_str());
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", fault.what()));
         }
         return exit_code;
     } catch (const doppel::Error& fault) {

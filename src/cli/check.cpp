@@ -2,6 +2,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/options.hpp"
 #include "figure/computation.hpp"
+#include "film/schedule.hpp"
 #include "numeric/share_out.hpp"
 #include "scene/choice.hpp"
 #include "scene/outlook.hpp"
@@ -17,7 +18,16 @@ namespace doppel {
 namespace {
 
 long frames_of(const Scene& scene) {
-    return scene.samples / scene.samples_per_frame + 1;
+    return schedule_of(scene).frames();
+}
+
+/// "H.264 veryfast, crf 18", "PNG sequence", "GIF".
+std::string format_words(const VideoSpec& video) {
+    if (video.format == "png") return "PNG sequence";
+    if (video.format == "gif") return "GIF";
+    if (video.format == "apng") return "animated PNG";
+    const auto codec = video.format == "mp4" ? "H.264" : video.codec == "av1" ? "AV1" : "VP9";
+    return fmt::format("{} {}, crf {}, {}", codec, video.preset, video.crf, video.pixel_format);
 }
 
 /// What a look at the first samples tells of the whole run.
@@ -50,6 +60,8 @@ double estimated_pictures(const Scene& scene) {
     const double megapixels = 1e-6 * video.size.width * video.size.height;
     const bool slow = video.preset.find("slow") != std::string::npos;
     const double ms = video.format == "png"         ? 3.5
+                      : video.format == "webm"      ? 20
+                      : video.format != "mp4"       ? 10
                       : video.preset == "ultrafast" ? 2
                       : video.preset == "medium"    ? 6
                       : slow                        ? 12
@@ -127,7 +139,7 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
                grouped(estimate.steps_a + estimate.steps_b));
     fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames_of(scene)), video.size.width,
                video.size.height, scene.fps.text(),
-               video.format == "png" ? "PNG sequence" : fmt::format("H.264 {}, crf {}", video.preset, video.crf));
+               format_words(video));
     const double pictures = estimated_pictures(scene);
     fmt::print("  takes  about {:.2g} s to simulate, {:.2g} s to render\n", estimate.seconds,
                std::max(estimate.seconds, pictures));

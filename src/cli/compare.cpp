@@ -30,8 +30,8 @@ bool same(const fs::path& expected_path, const fs::path& actual_path, const fs::
     }
     const auto verdict = compare_golden(expected, actual);
     if (verdict.passes) return true;
-    PartFiles parts(out / "compare");
     const auto name = actual_path.stem().string() + ".diff.png";
+    PartFiles parts(out / "compare", name);
     write_png(parts.file(name), difference_picture(expected, actual));
     parts.publish();
     fmt::print("{}: differs from {}: {}; expected, actual and difference ×16: {}\n", actual_path.string(),

@@ -16,7 +16,7 @@ namespace doppel {
 namespace {
 
 struct FigureCommandOptions : RunCommandOptions {
-    std::string size, shard;
+    std::string size, shard, gl = "auto";
     double scale = 0;
     bool merge = false;
 };
@@ -95,7 +95,8 @@ void make_figures(const FigureCommandOptions& options) {
         [&](std::size_t k, const std::string& sentence) { reports(k, [&](auto& r) { r.note(sentence); }); },
         [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
     try {
-        run_figures(figures, {options.out, options.jobs, shard_of(options), options.merge}, watch_interrupts(), report);
+        run_figures(figures, {options.out, options.jobs, shard_of(options), options.merge, gl_named(options.gl)},
+                    watch_interrupts(), report);
     } catch (...) {
         reports.clear();
         throw;
@@ -121,6 +122,7 @@ void add_figure(CLI::App& app) {
     command.add_option("--scale", options->scale, "Pixels of the picture to one of the layout: 2 for print")
         ->type_name("N")
         ->check(CLI::Range(0.25, 8.0));
+    add_gl_option(command, options->gl);
     command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
     command.callback([options] { make_figures(*options); });

@@ -4,8 +4,8 @@
 
 namespace doppel {
 
-/// Becomes true when the person, or the system, asks the program to end (SIGINT, SIGTERM). The second time ends it at
-/// once.
+/// Becomes true when the person, or the system, asks the program to end (SIGINT, SIGTERM, SIGHUP). The second time ends
+/// it at once.
 const std::atomic<bool>& watch_interrupts();
 
 }  // namespace doppel

@@ -33,6 +33,13 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
         ->capture_default_str();
 }
 
+void add_gl_option(CLI::App& command, std::string& gl) {
+    command.add_option("--gl", gl, "What draws: osmesa, egl or auto: OSMesa, EGL where OSMesa is missing")
+        ->type_name("NAME")
+        ->check(CLI::IsMember(gl_names()))
+        ->capture_default_str();
+}
+
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
     long first = 0, second = 0;
     const char* const end = text.data() + text.size();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scene/preset.hpp"
-#include "scene/run.hpp"
+#include "film/run.hpp"
 
 #include <CLI/App.hpp>
 
@@ -26,6 +26,9 @@ struct RunCommandOptions : PresetOptions {
 void add_preset_options(CLI::App& command, PresetOptions& options);
 /// `jobs` = what --jobs counts, for the help.
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
+
+/// --gl, a name of gl_named().
+void add_gl_option(CLI::App& command, std::string& gl);
 
 /// "A<separator>B" as two whole numbers; nothing where it is not.
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator);

@@ -19,6 +19,12 @@ std::string bar(double share) {
     return text;
 }
 
+/// Where nobody reads it any more, the run goes on all the same.
+template <class... Args>
+void say(std::FILE* to, fmt::format_string<Args...> format, Args&&... args) {
+    std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), to);
+}
+
 std::string duration(double seconds) {
     const auto whole = std::lround(seconds);
     return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
@@ -62,15 +68,15 @@ void ProgressReport::operator()(const Progress& progress) {
         const nlohmann::ordered_json line = {{"event", "progress"},   {"preset", name_},         {"unit", unit_},
                                              {"done", progress.done}, {"total", progress.total}, {"per_second", rate},
                                              {"seconds_left", left}};
-        fmt::print("{}\n", line.dump());
+        say(stdout, "{}\n", line.dump());
         std::fflush(stdout);
     } else if (style_ == ProgressStyle::bar) {
-        fmt::print(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
-                   progress.done, progress.total, unit_, rate, unit_, duration(left));
+        say(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
+            progress.done, progress.total, unit_, rate, unit_, duration(left));
         on_screen_ = true;
     } else {
-        fmt::print(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total,
-                   unit_, 100 * share, rate, unit_, duration(left));
+        say(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
+            100 * share, rate, unit_, duration(left));
     }
 }
 
@@ -78,15 +84,15 @@ void ProgressReport::note(const std::string& sentence) {
     if (style_ == ProgressStyle::none) return;
     clear();
     if (style_ == ProgressStyle::json) {
-        fmt::print("{}\n", nlohmann::ordered_json{{"event", "note"}, {"preset", name_}, {"text", sentence}}.dump());
+        say(stdout, "{}\n", nlohmann::ordered_json{{"event", "note"}, {"preset", name_}, {"text", sentence}}.dump());
         std::fflush(stdout);
     } else {
-        fmt::print(stderr, "{}: {}\n", name_, sentence);
+        say(stderr, "{}: {}\n", name_, sentence);
     }
 }
 
 void ProgressReport::clear() {
-    if (on_screen_) fmt::print(stderr, "\r\033[K");
+    if (on_screen_) say(stderr, "\r\033[K");
     on_screen_ = false;
 }
 
@@ -97,20 +103,20 @@ void ProgressReport::done(const RunResult& result) {
         nlohmann::ordered_json line = {
             {"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
         for (const auto& file : result.files) line["files"].push_back(file.string());
-        fmt::print("{}\n", line.dump());
+        say(stdout, "{}\n", line.dump());
         return;
     }
     constexpr long few = 10;  // whose rate says nothing
     if (style_ != ProgressStyle::none && count < few)
-        fmt::print(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
+        say(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
     else if (style_ != ProgressStyle::none)
-        fmt::print(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
-                   static_cast<double>(count) / result.wall_s, unit_);
+        say(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
+            static_cast<double>(count) / result.wall_s, unit_);
     for (const auto& file : result.files)
-        fmt::print("{}\n", std::filesystem::is_directory(file)
-                               ? file.string() + "/"
-                               : fmt::format("{} ({})", file.string(),
-                                             bytes(static_cast<double>(std::filesystem::file_size(file)))));
+        say(stdout, "{}\n",
+            std::filesystem::is_directory(file)
+                ? file.string() + "/"
+                : fmt::format("{} ({})", file.string(), bytes(static_cast<double>(std::filesystem::file_size(file)))));
 }
 
 }  // namespace doppel

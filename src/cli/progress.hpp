@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/run.hpp"
+#include "film/run.hpp"
 
 #include <chrono>
 #include <optional>

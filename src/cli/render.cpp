@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
+#include "film/film.hpp"
 #include "numeric/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -10,7 +11,7 @@ namespace doppel {
 namespace {
 
 struct RenderOptions : RunCommandOptions {
-    std::string frames, size, format, quality, gl = "osmesa";
+    std::string frames, size, format, quality, gl = "auto";
 };
 
 std::vector<Override> overrides(const RenderOptions& options) {
@@ -35,24 +36,26 @@ void add_render(CLI::App& app) {
         "Examples:\n"
         "  doppel render butterfly\n"
         "  doppel render calm --size 1280x720 --format png --frames 0:240\n"
-        "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films");
+        "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films\n"
+        "  doppel render butterfly --format gif --size 640x360\n"
+        "  doppel render butterfly --set 'video.layout=\"overlay\"' --set video.poster_s=14 --set "
+        "'video.contact_sheet=[4, 3]'");
     add_run_options(command, *options, "Threads that encode; two a core where not given");
     command.add_option("--frames", options->frames, "Only the samples A to B-1; the same pixels as in the whole")
         ->type_name("A:B");
     command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")
         ->type_name("WxH");
-    command.add_option("--format", options->format, "mp4 (H.264) or png (a sequence); the preset's where not given")
+    command
+        .add_option("--format", options->format,
+                    "mp4, webm, gif, apng or png (a sequence); the preset's where not given")
         ->type_name("FORMAT")
-        ->check(CLI::IsMember({"mp4", "png"}));
+        ->check(CLI::IsMember({"mp4", "webm", "gif", "apng", "png"}));
     command.add_option("--quality", options->quality, "draft (fast), standard (what the preset says) or best (slow)")
         ->type_name("QUALITY")
         ->check(CLI::IsMember({"draft", "standard", "best"}));
-    command.add_option("--gl", options->gl, "What draws")
-        ->type_name("NAME")
-        ->check(CLI::IsMember({"osmesa"}))
-        ->capture_default_str();
+    add_gl_option(command, options->gl);
     command.callback([options] {
-        RunOptions run{.out = options->out, .pictures = true, .jobs = options->jobs};
+        RunOptions run{.out = options->out, .pictures = true, .jobs = options->jobs, .gl = gl_named(options->gl)};
         if (!options->frames.empty()) {
             const auto range = two_numbers(options->frames, ':');
             if (!range || range->first < 0 || range->second <= range->first)
@@ -60,7 +63,11 @@ void add_render(CLI::App& app) {
                                 options->frames);
             std::tie(run.first, run.last) = *range;
         }
-        run_all(read_scenes(*options, overrides(*options)), *options, run);
+        const auto scenes = read_scenes(*options, overrides(*options));
+        // before the first of them is filmed
+        for (const auto& scene : scenes)
+            if (scene.preset.video.format != "png") check_video(video_options(scene, 0));
+        run_all(scenes, *options, run);
     });
 }
 

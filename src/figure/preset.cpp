@@ -2,6 +2,7 @@
 
 #include "figure/kinds.hpp"
 #include "scene/resolved.hpp"
+#include "scene/style_reader.hpp"
 #include "scene/video_reader.hpp"
 
 #include <cmath>

@@ -156,7 +156,7 @@ public:
 
 private:
     Renderer& renderer_for(Size size) {
-        if (!renderer_ || size_ != size) renderer_.emplace(size);
+        if (!renderer_ || size_ != size) renderer_.emplace(size, DisplayList{}, options_.gl);
         size_ = size;
         return *renderer_;
     }
@@ -248,7 +248,8 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         return;
     }
     std::vector<std::unique_ptr<PartFiles>> files;  // now: a folder that cannot be made is told at once
-    for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name));
+    const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
+    for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name, run));
     Workshop workshop(figures, options, jobs, stop, report);
     if (!figures.empty()) press.warm_up(figures.front());
     while (const auto k = workshop.next()) {

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "figure/computation.hpp"
-#include "scene/run.hpp"
+#include "film/run.hpp"
+#include "picture/gl.hpp"
 
 #include <functional>
 #include <optional>
@@ -18,6 +19,7 @@ struct FigureOptions {
     int jobs = 0;                       // threads that compute; 0 = one a core
     std::optional<Shard> shard;         // compute this part alone, and keep its numbers for a merge
     bool merge = false;                 // compute nothing: put the parts together
+    Gl gl = Gl::automatic;              // what draws
 };
 
 /// How the figures get on, for the person who waits. Called by any thread, one at a time for one figure; numbers are

@@ -2,7 +2,9 @@
 
 #include "numeric/error.hpp"
 
-#include <ranges>
+#include <fcntl.h>
+
+#include <cstdio>
 #include <system_error>
 
 namespace doppel {
@@ -22,7 +24,7 @@ void remove_quietly(const fs::path& path) {
 /// Only those that are empty.
 void remove_folders(const std::vector<fs::path>& folders) {
     std::error_code ignored;
-    for (const fs::path& folder : std::views::reverse(folders)) fs::remove(folder, ignored);
+    for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) fs::remove(*folder, ignored);
 }
 
 /// Makes what is missing of the way to `folder`, and returns what it made, outermost first.
@@ -51,9 +53,11 @@ void move_to(const fs::path& from, const fs::path& to) {
     if (error) throw io_failed("{}: cannot be renamed to {}: {}", from.string(), to.string(), error.message());
 }
 
-/// Puts the folder `from` in the place of the folder `to`, whose files never mix with the new ones.
-void replace_folder(const fs::path& from, const fs::path& to) {
-    const fs::path aside = with_suffix(to, ".old");
+/// Puts the folder `from` in the place of the folder `to`, whose files never mix with the new ones; what stays of those
+/// has the name `from` or `aside`.
+void replace_folder(const fs::path& from, const fs::path& to, const fs::path& aside) {
+    // at once, where the file system can: whoever is killed then leaves the one or the other
+    if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return remove_quietly(from);
     remove_quietly(aside);
     move_to(to, aside);
     try {
@@ -66,12 +70,26 @@ void replace_folder(const fs::path& from, const fs::path& to) {
     remove_quietly(aside);
 }
 
+/// Where an older folder stands while a new one takes its place.
+fs::path aside_of(const fs::path& target) {
+    return with_suffix(target, ".old.part");
+}
+
 }  // namespace
 
-PartFiles::PartFiles(fs::path folder) : folder_(std::move(folder)), made_(make_folders(folder_)) {}
+PartFiles::PartFiles(fs::path folder, const std::string& run)
+    : folder_(std::move(folder)), made_(make_folders(folder_)) {
+    try {
+        lock_.emplace(folder_, run);
+    } catch (...) {
+        remove_folders(made_);
+        throw;
+    }
+}
 
 PartFiles::~PartFiles() {
     for (const Part& part : parts_) remove_quietly(part.written);
+    lock_.reset();
     remove_folders(made_);
 }
 
@@ -86,6 +104,7 @@ fs::path PartFiles::directory(const std::string& name) {
     if (fs::exists(target) && !fs::is_directory(target))
         throw io_failed("{} is a file; Doppel would make a folder there", target.string());
     fs::path part = add_part(name);
+    lock_->note(aside_of(target).filename().string());
     std::error_code error;
     if (!fs::create_directory(part, error))
         throw io_failed("{}: the folder cannot be made: {}", part.string(), error.message());
@@ -98,6 +117,7 @@ fs::path PartFiles::add_part(const std::string& name) {
     std::error_code error;
     fs::remove_all(part, error);
     if (error) throw io_failed("{}: a stale part cannot be removed: {}", part.string(), error.message());
+    lock_->note(part.filename().string());
     parts_.push_back({target, part});
     return part;
 }
@@ -114,7 +134,7 @@ void PartFiles::keep_only(const std::string& name, const std::string& new_name) 
 void PartFiles::publish() {
     for (Part& part : parts_) {
         if (fs::is_directory(part.written) && fs::is_directory(part.target))
-            replace_folder(part.written, part.target);
+            replace_folder(part.written, part.target, aside_of(part.target));
         else
             move_to(part.written, part.target);
         part.written = part.target;

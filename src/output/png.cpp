@@ -2,28 +2,77 @@
 
 #include "numeric/error.hpp"
 #include "output/output_file.hpp"
+#include "output/png_text.hpp"
+#include "output/pool.hpp"
+#include "output/samples.hpp"
 #include "output/workers.hpp"
 
 #include <libdeflate.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdlib>
+#include <exception>
 #include <string>
 
 namespace doppel {
 namespace {
 
-/// zlib's format through libdeflate, as stb_image_write asks for it: a block of malloc's, or null.
+/// Memory of a thread for stb_image_write, which asks for the same few blocks of megabytes for each picture: given back
+/// to the system and asked for again, they would cost a third of the work in page faults.
+class Arena {
+public:
+    /// Null where memory is out.
+    void* take(std::size_t size) {
+        // the smallest that fits; else the largest makes room
+        Block* best = nullptr;
+        for (Block& block : blocks_)
+            if (!block.taken && (!best || (best->size < size ? block.size > best->size
+                                                             : block.size >= size && block.size < best->size)))
+                best = &block;
+        if (!best) return nullptr;
+        if (best->size < size) {
+            best->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
+            best->size = best->bytes ? size : 0;
+            if (!best->bytes) return nullptr;
+        }
+        best->taken = true;
+        return best->bytes.get();
+    }
+
+    void give_back(const void* bytes) {
+        for (Block& block : blocks_)
+            if (block.bytes.get() == bytes) block.taken = false;
+    }
+
+private:
+    struct Free {
+        void operator()(std::byte* bytes) const { std::free(bytes); }
+    };
+    struct Block {
+        std::unique_ptr<std::byte, Free> bytes;
+        std::size_t size = 0;
+        bool taken = false;
+    };
+    std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed, the file: all that it holds at once
+};
+
+struct FreeCompressor {
+    void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
+};
+
+thread_local Arena arena;
+
+/// zlib's format through libdeflate, as stb_image_write asks for it: a block of the arena's, or null.
 unsigned char* compress(unsigned char* data, int length, int* compressed_length, int /*quality*/) {
     // the others take 1.8 times as long for a file 2 to 5 % smaller: see tests/output/png_test.cpp
     constexpr int level = 1;
-    struct Free {
-        void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
-    };
-    const std::unique_ptr<libdeflate_compressor, Free> compressor(libdeflate_alloc_compressor(level));
+    thread_local const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
+        libdeflate_alloc_compressor(level));
     if (!compressor) return nullptr;
     const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), std::size_t(length));
-    auto* compressed = static_cast<unsigned char*>(std::malloc(bound));
+    auto* compressed = static_cast<unsigned char*>(arena.take(bound));
     if (!compressed) return nullptr;
     *compressed_length =
         static_cast<int>(libdeflate_zlib_compress(compressor.get(), data, std::size_t(length), compressed, bound));
@@ -41,6 +90,9 @@ unsigned char* compress(unsigned char* data, int length, int* compressed_length,
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBIW_ZLIB_COMPRESS doppel::compress
+#define STBIW_MALLOC(size) doppel::arena.take(size)
+#define STBIW_REALLOC(block, size) (std::abort(), nullptr)  // asked for only by its own compressor
+#define STBIW_FREE(block) doppel::arena.give_back(block)
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
 
@@ -50,46 +102,59 @@ namespace {
 // flat colours compress best as they are; any filter takes 1.7 times as long for a larger file
 [[maybe_unused]] const int no_filter = stbi_write_force_png_filter = 0;
 
-struct Rgb {
-    Size size;
-    std::vector<std::uint8_t> bytes;
-};
-
-Rgb without_alpha(const Picture& picture) {
-    Rgb rgb{picture.size, std::vector<std::uint8_t>(picture.rgba.size() / 4 * 3)};
-    const std::uint8_t* from = picture.rgba.data();
-    std::uint8_t* to = rgb.bytes.data();
-    for (std::size_t left = picture.rgba.size() / 4; left > 0; --left, from += 4, to += 3) {
-        to[0] = from[0];
-        to[1] = from[1];
-        to[2] = from[2];
-    }
-    return rgb;
+Samples samples_of(const PngOptions& options) {
+    return options.with_alpha ? Samples::rgba : Samples::rgb;
 }
 
-void write_rgb(const std::filesystem::path& path, const Rgb& rgb) {
-    std::string file;
-    const auto append = [](void* to, void* bytes, int size) {
-        static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), std::size_t(size));
-    };
-    const auto [width, height] = rgb.size;
-    if (!stbi_write_png_to_func(append, &file, width, height, 3, rgb.bytes.data(), 3 * width))
-        throw io_failed("{}: a picture of {}x{} px cannot be compressed", path.string(), width, height);
+Rect all_of(Size size) {
+    return {0, 0, size.width, size.height};
+}
+
+/// A file's text chunks follow its signature and header.
+constexpr std::size_t header_bytes = 8 + 25;
+
+/// `bytes` are the picture's as samples_of() has them.
+void write_samples(const std::filesystem::path& path, Size size, const std::uint8_t* bytes, const PngOptions& options,
+                   const std::string& text_chunks) {
     OutputFile output(path);
-    output.write(file);
+    struct Target {
+        OutputFile& output;
+        const std::string& text_chunks;
+        std::exception_ptr error;
+    } target{output, text_chunks, nullptr};
+    const auto write = [](void* context, void* data, int count) {
+        auto& [file, chunks, error] = *static_cast<Target*>(context);
+        const std::string_view png(static_cast<const char*>(data), std::size_t(count));
+        try {
+            file.write(png.substr(0, header_bytes));
+            file.write(chunks);
+            file.write(png.substr(header_bytes));
+        } catch (...) {
+            error = std::current_exception();  // none can pass through C
+        }
+    };
+    const int channels = options.with_alpha ? 4 : 3;
+    if (!stbi_write_png_to_func(write, &target, size.width, size.height, channels, bytes, channels * size.width))
+        throw io_failed("{}: a picture of {}x{} px cannot be compressed", path.string(), size.width, size.height);
+    if (target.error) std::rethrow_exception(target.error);
     output.close();
 }
 
 class PngSink final : public Sink {
 public:
-    PngSink(const std::filesystem::path& folder, std::function<std::string(long)> name_of, int jobs)
+    PngSink(const std::filesystem::path& folder, std::function<std::string(long)> name_of, int jobs, PngOptions options)
         : folder_(folder),
           name_of_(std::move(name_of)),
-          writers_(std::max(jobs, 1), std::size_t(std::max(jobs, 1)),
-                   [](Job& job) { write_rgb(job.path, job.picture); }) {}
+          options_(std::move(options)),
+          text_chunks_(png_text_chunks(options_.metadata)),
+          writers_(std::max(jobs, 1), std::size_t(std::max(jobs, 1)), [this](Job& job) { write(job); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& /*changed*/) override {
-        writers_.give({folder_ / name_of_(taken_++), without_alpha(picture)});
+        Job job{folder_ / name_of_(taken_++), picture.size, spare_.take()};
+        const Rect all = all_of(picture.size);
+        const Samples samples = samples_of(options_);
+        convert(picture, all, samples, job.bytes.make_room(byte_count(samples, all)));
+        writers_.give(std::move(job));
     }
 
     void finish() override { writers_.finish(); }
@@ -97,23 +162,36 @@ public:
 private:
     struct Job {
         std::filesystem::path path;
-        Rgb picture;
+        Size size;
+        Buffer bytes;
     };
-    std::filesystem::path folder_;
-    std::function<std::string(long)> name_of_;
+
+    void write(Job& job) {
+        write_samples(job.path, job.size, job.bytes.data(), options_, text_chunks_);
+        spare_.give_back(std::move(job.bytes));
+    }
+
+    const std::filesystem::path folder_;
+    const std::function<std::string(long)> name_of_;
+    const PngOptions options_;
+    const std::string text_chunks_;
     long taken_ = 0;
+    Pool<Buffer> spare_;
     Workers<Job> writers_;
 };
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, const Picture& picture) {
-    write_rgb(path, without_alpha(picture));
+void write_png(const std::filesystem::path& path, const Picture& picture, const PngOptions& options) {
+    const Rect all = all_of(picture.size);
+    Buffer bytes;
+    convert(picture, all, samples_of(options), bytes.make_room(byte_count(samples_of(options), all)));
+    write_samples(path, picture.size, bytes.data(), options, png_text_chunks(options.metadata));
 }
 
 std::unique_ptr<Sink> make_png_sink(const std::filesystem::path& folder, std::function<std::string(long)> name_of,
-                                    int jobs) {
-    return std::make_unique<PngSink>(folder, std::move(name_of), jobs);
+                                    int jobs, PngOptions options) {
+    return std::make_unique<PngSink>(folder, std::move(name_of), jobs, std::move(options));
 }
 
 }  // namespace doppel

@@ -16,7 +16,7 @@ extern "C" {
 namespace doppel {
 namespace {
 
-// Besides mp4.cpp this is the only file that knows libav: the hash comes with it.
+// Besides libav*.cpp this is the only file that knows libav: the hash comes with it.
 class Hash {
 public:
     Hash() : sha_(av_sha_alloc()) {

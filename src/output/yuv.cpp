@@ -1,6 +1,5 @@
 #include "output/yuv.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -10,18 +9,19 @@
 #else
 #define DOPPEL_WIDEST_SIMD
 #endif
+#define DOPPEL_INLINE [[gnu::always_inline]] inline
 
 namespace doppel {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "a pixel is read as one word, red in its lowest byte");
 
-// ITU-R BT.709-6, items 3.2 to 3.4, on R, G, B of 0…255:
+// ITU-R BT.709-6, items 3.2 to 3.4, on R, G, B of 0…255, and s = 1 for 8 bits, 4 for 10:
 //
 //     E  = Kr R + Kg G + Kb B
-//     Y  =  16 + 219/255 E
-//     Cb = 128 + 224/255 (B - E) / (2 (1 - Kb))
-//     Cr = 128 + 224/255 (R - E) / (2 (1 - Kr))
+//     Y  = s ( 16 + 219/255 E)
+//     Cb = s (128 + 224/255 (B - E) / (2 (1 - Kb)))
+//     Cr = s (128 + 224/255 (R - E) / (2 (1 - Kr)))
 constexpr double kr = 0.2126, kb = 0.0722;
 constexpr double luma_range = 219.0 / 255.0, chroma_range = 224.0 / 255.0;
 
@@ -38,37 +38,42 @@ struct Weights {
 constexpr Weights with_green(int r, int b, int sum) {
     return {r, sum - r - b, b};
 }
-constexpr Weights to_y = with_green(fixed(luma_range * kr), fixed(luma_range* kb), fixed(luma_range));
-constexpr Weights to_cb = with_green(fixed(-chroma_range * kr / (2 * (1 - kb))), fixed(chroma_range / 2), 0);
-constexpr Weights to_cr = with_green(fixed(chroma_range / 2), fixed(-chroma_range* kb / (2 * (1 - kr))), 0);
+/// The scale s of samples of this type.
+template <class Sample>
+constexpr int scale = sizeof(Sample) == 1 ? 1 : 4;
+template <int s>
+constexpr Weights to_y = with_green(fixed(s* luma_range* kr), fixed(s* luma_range* kb), fixed(s* luma_range));
+template <int s>
+constexpr Weights to_cb = with_green(fixed(s * -chroma_range * kr / (2 * (1 - kb))), fixed(s* chroma_range / 2), 0);
+template <int s>
+constexpr Weights to_cr = with_green(fixed(s* chroma_range / 2), fixed(s * -chroma_range * kb / (2 * (1 - kr))), 0);
 
 /// offset + weights · (r, g, b), rounded; the colours are sums over 2^sum_bits pixels.
-template <int offset, int sum_bits>
-constexpr std::uint8_t sample(const Weights& weights, int r, int g, int b) {
+template <class Sample, int offset, int sum_bits>
+DOPPEL_INLINE constexpr Sample sample(const Weights& weights, int r, int g, int b) {
     constexpr int bits = fraction_bits + sum_bits;
-    constexpr int rounded_offset = (offset << bits) + (1 << (bits - 1));
-    return static_cast<std::uint8_t>((weights.r * r + weights.g * g + weights.b * b + rounded_offset) >> bits);
+    constexpr int rounded_offset = (scale<Sample> * offset << bits) + (1 << (bits - 1));
+    return static_cast<Sample>((weights.r * r + weights.g * g + weights.b * b + rounded_offset) >> bits);
 }
 
 template <class Word>
-Word load(const std::uint8_t* bytes) {
+DOPPEL_INLINE Word load(const std::uint8_t* bytes) {
     Word word;
     std::memcpy(&word, bytes, sizeof word);
     return word;
 }
 
-DOPPEL_WIDEST_SIMD
-void luma_row(const std::uint8_t* __restrict rgba, int width, std::uint8_t* __restrict y) {
+template <class Sample>
+DOPPEL_INLINE void luma(const std::uint8_t* __restrict rgba, int width, Sample* __restrict y) {
     for (int i = 0; i < width; ++i) {
         const auto pixel = load<std::uint32_t>(rgba + 4 * i);
-        y[i] = sample<16, 0>(to_y, pixel & 0xff, pixel >> 8 & 0xff, pixel >> 16 & 0xff);
+        y[i] = sample<Sample, 16, 0>(to_y<scale<Sample>>, pixel & 0xff, pixel >> 8 & 0xff, pixel >> 16 & 0xff);
     }
 }
 
-/// From two rows of pixels, one of each chroma.
-DOPPEL_WIDEST_SIMD
-void chroma_row(const std::uint8_t* __restrict upper, const std::uint8_t* __restrict lower, int width,
-                std::uint8_t* __restrict cb, std::uint8_t* __restrict cr) {
+template <class Sample>
+DOPPEL_INLINE void chroma_of_four(const std::uint8_t* __restrict upper, const std::uint8_t* __restrict lower, int width,
+                                  Sample* __restrict cb, Sample* __restrict cr) {
     // two pixels at once in four lanes of 16 bits: R and B of both, then G and A of both
     constexpr std::uint64_t lanes = 0x00ff00ff00ff00ff;
     for (int i = 0; i < width / 2; ++i) {
@@ -78,34 +83,53 @@ void chroma_row(const std::uint8_t* __restrict upper, const std::uint8_t* __rest
         const auto red_blue_sum = static_cast<std::uint32_t>(red_blue + (red_blue >> 32));
         const auto green_sum = static_cast<std::uint32_t>(green + (green >> 32));
         const int r = red_blue_sum & 0xffff, g = green_sum & 0xffff, b = red_blue_sum >> 16;
-        cb[i] = sample<128, 2>(to_cb, r, g, b);
-        cr[i] = sample<128, 2>(to_cr, r, g, b);
+        cb[i] = sample<Sample, 128, 2>(to_cb<scale<Sample>>, r, g, b);
+        cr[i] = sample<Sample, 128, 2>(to_cr<scale<Sample>>, r, g, b);
     }
 }
 
 }  // namespace
 
-YuvPart::YuvPart(const Rect& a)
-    : area(a), samples(std::make_unique_for_overwrite<std::uint8_t[]>(std::size_t(width()) * height() * 3 / 2)) {}
-
-Rect even(const Rect& area, Size picture) {
-    return {std::max(area.left, 0) & ~1, std::max(area.top, 0) & ~1, std::min(area.right + 1, picture.width) & ~1,
-            std::min(area.bottom + 1, picture.height) & ~1};
+DOPPEL_WIDEST_SIMD
+void luma_row(const std::uint8_t* rgba, int width, std::uint8_t* y) {
+    luma(rgba, width, y);
 }
 
-YuvPart convert(const Picture& picture, const Rect& area) {
-    YuvPart part(even(area, picture.size));
-    const int width = part.width(), left = part.area.left;
-    for (int row = 0; row < part.height(); row += 2) {
-        const std::uint8_t* upper = picture.at(left, part.area.top + row);
-        const std::uint8_t* lower = picture.at(left, part.area.top + row + 1);
-        std::uint8_t* y = part.y() + std::size_t(row) * width;
-        const std::size_t chroma = std::size_t(row / 2) * (width / 2);
-        luma_row(upper, width, y);
-        luma_row(lower, width, y + width);
-        chroma_row(upper, lower, width, part.cb() + chroma, part.cr() + chroma);
+DOPPEL_WIDEST_SIMD
+void luma_row(const std::uint8_t* rgba, int width, std::uint16_t* y) {
+    luma(rgba, width, y);
+}
+
+DOPPEL_WIDEST_SIMD
+void chroma_row(const std::uint8_t* __restrict rgba, int width, std::uint8_t* __restrict cb,
+                std::uint8_t* __restrict cr) {
+    for (int i = 0; i < width; ++i) {
+        const auto pixel = load<std::uint32_t>(rgba + 4 * i);
+        const int r = pixel & 0xff, g = pixel >> 8 & 0xff, b = pixel >> 16 & 0xff;
+        cb[i] = sample<std::uint8_t, 128, 0>(to_cb<1>, r, g, b);
+        cr[i] = sample<std::uint8_t, 128, 0>(to_cr<1>, r, g, b);
     }
-    return part;
+}
+
+DOPPEL_WIDEST_SIMD
+void chroma_row(const std::uint8_t* upper, const std::uint8_t* lower, int width, std::uint8_t* cb, std::uint8_t* cr) {
+    chroma_of_four(upper, lower, width, cb, cr);
+}
+
+DOPPEL_WIDEST_SIMD
+void chroma_row(const std::uint8_t* upper, const std::uint8_t* lower, int width, std::uint16_t* cb, std::uint16_t* cr) {
+    chroma_of_four(upper, lower, width, cb, cr);
+}
+
+DOPPEL_WIDEST_SIMD
+void alpha_row(const std::uint8_t* __restrict rgba, int width, std::uint8_t* __restrict alpha) {
+    for (int i = 0; i < width; ++i) alpha[i] = rgba[4 * i + 3];
+}
+
+void rgb_row(const std::uint8_t* __restrict rgba, int width, std::uint8_t* __restrict rgb) {
+    // each pixel as four bytes, of which the next takes one away: quicker than three
+    for (int i = 0; i < width - 1; ++i) std::memcpy(rgb + 3 * i, rgba + 4 * i, 4);
+    std::memcpy(rgb + 3 * (width - 1), rgba + 4 * (width - 1), 3);
 }
 
 }  // namespace doppel

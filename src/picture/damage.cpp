@@ -3,14 +3,91 @@
 #include "picture/sketch.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <utility>
 
 namespace doppel {
 namespace {
 
-constexpr long price_of_a_rect = 8192;  // as many pixels could be restored and read in the time one more costs
+constexpr long price_of_a_rect = 3000;  // as many pixels could be restored and read in the time one more costs
 
 long area(const Rect& r) {
     return long{r.right - r.left} * (r.bottom - r.top);
+}
+
+bool cheaper_as_one(const Rect& a, const Rect& b) {
+    return area(united(a, b)) <= area(a) + area(b) + price_of_a_rect;
+}
+
+/// Adds what of `rect` lies outside all of disjoint[from…].
+void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint) {
+    if (rect.empty()) return;
+    for (std::size_t i = from; i < disjoint.size(); ++i) {
+        const Rect hole = common(rect, disjoint[i]);
+        if (hole.empty()) continue;
+        add_outside({rect.left, rect.top, rect.right, hole.top}, i + 1, disjoint);
+        add_outside({rect.left, hole.bottom, rect.right, rect.bottom}, i + 1, disjoint);
+        add_outside({rect.left, hole.top, hole.left, hole.bottom}, i + 1, disjoint);
+        add_outside({hole.right, hole.top, rect.right, hole.bottom}, i + 1, disjoint);
+        return;
+    }
+    disjoint.push_back(rect);
+}
+
+/// Gathers rectangles that come one after another along a path.
+class Gatherer {
+public:
+    void add(const Rect& rect) {
+        if (!rects_.empty() && cheaper_as_one(rects_.back(), rect)) {
+            rects_.back() = united(rects_.back(), rect);
+        } else {
+            rects_.push_back(rect);
+        }
+    }
+    std::vector<Rect> take() { return std::move(rects_); }
+
+private:
+    std::vector<Rect> rects_;
+};
+
+std::size_t hash_of(const Quad& q) {
+    std::size_t hash = 0;
+    const auto mix = [&](float value) { hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15u; };
+    for (const float value : {q.origin.x, q.origin.y, q.axis.x, q.half.x, q.half.y, q.shape[1], q.shape[2], q.shape[3]})
+        mix(value);
+    return hash ^ hash >> 29;
+}
+
+/// The quads of a part, to be looked up.
+class Known {
+public:
+    Known(const Sketch& sketch, const Sketch::Part& part) : sketch_(sketch) {
+        for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(sketch.quads[i]), i);
+        std::sort(places_.begin(), places_.end());
+    }
+    bool has(const Quad& quad, const Rect& bounds) const {
+        const auto hash = hash_of(quad);
+        auto at = std::lower_bound(places_.begin(), places_.end(), std::pair{hash, std::size_t{0}});
+        for (; at != places_.end() && at->first == hash; ++at)
+            if (sketch_.quads[at->second] == quad && sketch_.bounds[at->second] == bounds) return true;
+        return false;
+    }
+
+private:
+    const Sketch& sketch_;
+    std::vector<std::pair<std::size_t, std::size_t>> places_;
+};
+
+/// Strokes: their quads may come in any order, and more than once, without a change to the picture.
+template <class Add>
+void compare_masks(const Sketch& before, const Sketch::Part& old, const Sketch& after, const Sketch::Part& now,
+                   const Add& add) {
+    const Known olds(before, old), news(after, now);
+    for (std::size_t i = old.begin; i < old.end; ++i)
+        if (!news.has(before.quads[i], before.bounds[i])) for_each_band(before.quads[i], before.bounds[i], add);
+    for (std::size_t j = now.begin; j < now.end; ++j)
+        if (!olds.has(after.quads[j], after.bounds[j])) for_each_band(after.quads[j], after.bounds[j], add);
 }
 
 }  // namespace
@@ -19,59 +96,41 @@ std::vector<Rect> merged(std::vector<Rect> rects) {
     // take each rectangle in turn; what it swallows makes it larger, so it looks at all others again
     for (std::size_t i = 0; i < rects.size(); ++i) {
         for (std::size_t j = 0; j < rects.size(); ++j) {
-            if (i == j) continue;
-            const Rect both = united(rects[i], rects[j]);
-            if (area(both) > area(rects[i]) + area(rects[j]) + price_of_a_rect) continue;
-            rects[std::min(i, j)] = both;
+            if (i == j || !cheaper_as_one(rects[i], rects[j])) continue;
+            rects[std::min(i, j)] = united(rects[i], rects[j]);
             rects[std::max(i, j)] = rects.back();
             rects.pop_back();
             i = std::min(i, j);
             j = static_cast<std::size_t>(-1);
         }
     }
-    return rects;
-}
-
-std::vector<Rect> chunks(const std::vector<Rect>& bounds, std::size_t begin, std::size_t end) {
-    constexpr std::size_t few = 16;
-    std::vector<Rect> covers;
-    for (std::size_t i = begin; i < end; ++i) {
-        if ((i - begin) % few == 0) covers.emplace_back();
-        covers.back() = united(covers.back(), bounds[i]);
-    }
-    return covers;
+    std::vector<Rect> disjoint;
+    for (const Rect& rect : rects) add_outside(rect, 0, disjoint);
+    return disjoint;
 }
 
 std::vector<Rect> damage(const Sketch& before, const Sketch& after) {
-    std::vector<Rect> touched;
-    // the rectangles of quads that come one after another are neighbours: gather them first
-    std::vector<Rect> bounds;
-    const auto add_part = [&](const Sketch& sketch, const Sketch::Part& part, const std::vector<bool>& same) {
-        bounds.clear();
-        for (std::size_t i = part.begin; i < part.end; ++i) {
-            const std::size_t k = i - part.begin;
-            if (k >= same.size() || !same[k]) bounds.push_back(sketch.bounds[i]);
-        }
-        const std::vector<Rect> covers = chunks(bounds, 0, bounds.size());
-        touched.insert(touched.end(), covers.begin(), covers.end());
-    };
-
-    // a cover shows nothing by itself: its stroke's mask holds the colour too
-    std::vector<bool> same;
+    Gatherer touched;
     for (std::size_t p = 0; p < std::max(before.parts.size(), after.parts.size()); ++p) {
-        const Sketch::Part* old = p < before.parts.size() ? &before.parts[p] : nullptr;
-        const Sketch::Part* now = p < after.parts.size() ? &after.parts[p] : nullptr;
-        same.clear();
-        if (old && now && old->kind == now->kind) {
-            const std::size_t shared = std::min(old->end - old->begin, now->end - now->begin);
-            for (std::size_t k = 0; k < shared; ++k) {
-                same.push_back(before.quads[old->begin + k] == after.quads[now->begin + k]);
-            }
+        const Sketch::Part none{.kind = Kind::shape};
+        const Sketch::Part& old = p < before.parts.size() ? before.parts[p] : none;
+        const Sketch::Part& now = p < after.parts.size() ? after.parts[p] : none;
+        const std::size_t olds = old.end - old.begin, nows = now.end - now.begin;
+        const auto add = [&](const Rect& r) { touched.add(r); };
+        if (old.kind == Kind::mask && now.kind == Kind::mask) {
+            compare_masks(before, old, after, now, add);
+            continue;
         }
-        if (old && old->kind != Kind::cover) add_part(before, *old, same);
-        if (now && now->kind != Kind::cover) add_part(after, *now, same);
+        for (std::size_t k = 0; k < std::max(olds, nows); ++k) {
+            const std::size_t i = old.begin + k, j = now.begin + k;
+            if (k < olds && k < nows && old.kind == now.kind && before.bounds[i] == after.bounds[j] &&
+                before.quads[i] == after.quads[j])
+                continue;
+            if (k < olds) for_each_band(before.quads[i], before.bounds[i], add);
+            if (k < nows) for_each_band(after.quads[j], after.bounds[j], add);
+        }
     }
-    return merged(std::move(touched));
+    return merged(touched.take());
 }
 
 }  // namespace doppel

@@ -27,6 +27,7 @@ struct Capsule {
     Point from, to;
     float radius = 1;  // px
     Color color;
+    float glow = 0;  // px that a soft glow reaches beyond the edge; 0 = none
 };
 
 /// A circle drawn with a pen: `width` px wide, half of it on either side of `radius`.
@@ -36,17 +37,28 @@ struct Ring {
     Color color;
 };
 
-/// A path of constant width whose opacity varies along it. It never adds to itself: where it crosses or joins itself
-/// the more opaque part shows.
+// GCC 12 takes the moved-from rest of a variant for uninitialised (PR 105562 and kin)
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+/// A path whose opacity and width vary along it. It never adds to itself: where it crosses or joins itself the more
+/// opaque part shows.
 struct Stroke {
     struct Vertex {
         Point at;
         float alpha = 1;  // times color.a
+        float width = 1;  // times Stroke::width
+        float glow = 1;   // times Stroke::glow
     };
     std::vector<Vertex> vertices;
     float width = 1;  // px
     Color color;
+    float glow = 0;  // px that a soft glow reaches beyond the edge; 0 = none
 };
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 enum class Align { left, center, right };
 enum class Weight { regular, bold };

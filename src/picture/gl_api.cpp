@@ -4,19 +4,19 @@
 
 namespace doppel::gl {
 
-#define X(type, name) type name = nullptr;
-DOPPEL_GL_FUNCTIONS(X)
-#undef X
+constinit thread_local const Functions* current = nullptr;
 
-void load(const Context& context) {
-    const auto find = [&](const char* name) {
-        const Context::Function found = context.function(name);
-        if (!found) throw io_failed("this OpenGL has no {}", name);
-        return found;
+Functions load(const std::function<Function(const char* name)>& find) {
+    const auto found = [&](const char* name) {
+        const Function function = find(name);
+        if (!function) throw io_failed("its OpenGL has no {}", name);
+        return function;
     };
-#define X(type, name) name = reinterpret_cast<type>(find("gl" #name));
+    Functions functions;
+#define X(type, name) functions.name = reinterpret_cast<type>(found("gl" #name));
     DOPPEL_GL_FUNCTIONS(X)
 #undef X
+    return functions;
 }
 
 }  // namespace doppel::gl

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "picture/gl_context.hpp"
-
 #include <GL/glcorearb.h>
+
+#include <functional>
 
 /// The functions of OpenGL that Doppel calls: X(type, name) each.
 #define DOPPEL_GL_FUNCTIONS(X)                                   \
@@ -11,14 +11,12 @@
     X(PFNGLBINDATTRIBLOCATIONPROC, BindAttribLocation)           \
     X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
-    X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
     X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
     X(PFNGLBLENDEQUATIONPROC, BlendEquation)                     \
-    X(PFNGLBLENDFUNCPROC, BlendFunc)                             \
     X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
-    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                 \
     X(PFNGLBUFFERDATAPROC, BufferData)                           \
+    X(PFNGLBUFFERSUBDATAPROC, BufferSubData)                     \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
     X(PFNGLCLEARCOLORPROC, ClearColor)                           \
     X(PFNGLCLEARPROC, Clear)                                     \
@@ -29,18 +27,15 @@
     X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                     \
     X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)           \
     X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
-    X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)         \
     X(PFNGLDELETESHADERPROC, DeleteShader)                       \
     X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
     X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
-    X(PFNGLDISABLEPROC, Disable)                                 \
     X(PFNGLDRAWELEMENTSBASEVERTEXPROC, DrawElementsBaseVertex)   \
     X(PFNGLENABLEPROC, Enable)                                   \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
-    X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
     X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
-    X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
     X(PFNGLGENTEXTURESPROC, GenTextures)                         \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
     X(PFNGLGETERRORPROC, GetError)                               \
@@ -54,11 +49,10 @@
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
     X(PFNGLREADPIXELSPROC, ReadPixels)                           \
-    X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
-    X(PFNGLSCISSORPROC, Scissor)                                 \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
+    X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D)                     \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                             \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
@@ -66,11 +60,30 @@
 
 namespace doppel::gl {
 
-#define X(type, name) extern type name;
+using Function = void (*)();
+
+/// The functions above as one library has them.
+struct Functions {
+#define X(type, name) type name = nullptr;
+    DOPPEL_GL_FUNCTIONS(X)
+#undef X
+};
+
+/// Those of the context that is current in this thread; null where none is.
+extern constinit thread_local const Functions* current;
+
+/// A function of the current context.
+template <class Type, Type Functions::*function>
+struct Call;
+template <class Result, class... Arguments, Result (*Functions::*function)(Arguments...)>
+struct Call<Result (*)(Arguments...), function> {
+    Result operator()(Arguments... arguments) const { return (current->*function)(arguments...); }
+};
+#define X(type, name) inline constexpr Call<type, &Functions::name> name;
 DOPPEL_GL_FUNCTIONS(X)
 #undef X
 
-/// Finds the functions above; they serve all contexts. Throws Error where one is missing.
-void load(const Context& context);
+/// Asks `find` for each function. Throws Error where one is missing.
+Functions load(const std::function<Function(const char* name)>& find);
 
 }  // namespace doppel::gl

@@ -43,20 +43,27 @@ void attach(GLuint program, GLenum type, const std::string& name) {
 Canvas::Canvas(Size size) {
     while (GetError() != GL_NO_ERROR) {
     }
-    BindRenderbuffer(GL_RENDERBUFFER, pixels_);
-    RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, size.width, size.height);
+    BindTexture(GL_TEXTURE_2D, pixels_);
+    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, pixels_);
+    FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, pixels_, 0);
     if (GetError() != GL_NO_ERROR || CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         throw io_failed("OpenGL has no memory for a picture of {} × {} px", size.width, size.height);
     }
 }
 
-Program::Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[4])
+void Canvas::put(const Picture& picture, const Rect& r) {
+    BindTexture(GL_TEXTURE_2D, pixels_);
+    TexSubImage2D(GL_TEXTURE_2D, 0, r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                  picture.at(r.left, r.top));
+}
+
+Program::Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[5])
     : number_(CreateProgram()) {
     attach(number_, GL_VERTEX_SHADER, vertex);
     attach(number_, GL_FRAGMENT_SHADER, fragment);
-    for (GLuint location = 0; location < 4; ++location) BindAttribLocation(number_, location, inputs[location]);
+    for (GLuint location = 0; location < 5; ++location) BindAttribLocation(number_, location, inputs[location]);
     LinkProgram(number_);
     GLint linked = GL_FALSE;
     GetProgramiv(number_, GL_LINK_STATUS, &linked);

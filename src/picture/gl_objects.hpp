@@ -31,8 +31,12 @@ public:
     explicit Canvas(Size size);
     operator GLuint() const { return framebuffer_; }
 
+    /// Puts back what the picture shows within `r`, from memory; binds the canvas's texture. The unpack row length must
+    /// be the picture's.
+    void put(const Picture& picture, const Rect& r);
+
 private:
-    Object<GenRenderbuffers, DeleteRenderbuffers> pixels_;
+    Texture pixels_;
     Object<GenFramebuffers, DeleteFramebuffers> framebuffer_;
 };
 
@@ -40,7 +44,7 @@ private:
 class Program {
 public:
     /// `inputs` of the vertex shader, in the order of their locations.
-    Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[4]);
+    Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[5]);
     ~Program() { DeleteProgram(number_); }
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;

@@ -1,19 +1,31 @@
 #include "numeric/error.hpp"
 #include "picture/gl_context.hpp"
+#include "picture/gl_library.hpp"
 
 #include <GL/osmesa.h>
 
 #include <array>
-#include <cstdlib>
 
 namespace doppel {
 namespace {
 
-class OsmesaContext : public Context {
+/// The functions of OSMesa that Doppel calls.
+struct Osmesa {
+    explicit Osmesa(const Library& library) {
+        library.find("OSMesaCreateContextAttribs", create);
+        library.find("OSMesaMakeCurrent", make_current);
+        library.find("OSMesaDestroyContext", destroy);
+        library.find("OSMesaGetProcAddress", function);
+    }
+    decltype(&OSMesaCreateContextAttribs) create;
+    decltype(&OSMesaMakeCurrent) make_current;
+    decltype(&OSMesaDestroyContext) destroy;
+    decltype(&OSMesaGetProcAddress) function;
+};
+
+class OsmesaContext final : public Context {
 public:
-    OsmesaContext() {
-        // the threads of the machine have better work than sharing one small picture; the user may think otherwise
-        setenv("LP_NUM_THREADS", "0", 0);
+    explicit OsmesaContext(const std::vector<std::string>& libraries) : osmesa_(Library(libraries)) {
         const int attributes[] = {OSMESA_FORMAT,
                                   OSMESA_RGBA,
                                   OSMESA_PROFILE,
@@ -23,31 +35,35 @@ public:
                                   OSMESA_CONTEXT_MINOR_VERSION,
                                   3,
                                   0};
-        context_ = OSMesaCreateContextAttribs(attributes, nullptr);
-        if (!context_) throw io_failed("OSMesa gives no OpenGL 3.3 core context (is libosmesa6 6.5 or newer there?)");
+        context_ = osmesa_.create(attributes, nullptr);
+        if (!context_) throw io_failed("it gives no OpenGL 3.3 core context");
     }
-    ~OsmesaContext() override { OSMesaDestroyContext(context_); }
+    ~OsmesaContext() override {
+        retire();
+        osmesa_.destroy(context_);
+    }
     OsmesaContext(const OsmesaContext&) = delete;
     OsmesaContext& operator=(const OsmesaContext&) = delete;
 
-    void make_current() override {
-        if (OSMesaGetCurrentContext() == context_) return;
-        if (!OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, 1, 1)) {
-            throw io_failed("OSMesa made an OpenGL context but cannot use it");
-        }
-    }
-
-    Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
+    std::string library() const override { return "OSMesa"; }
 
 private:
+    void bind() override {
+        if (!osmesa_.make_current(context_, window_.data(), GL_UNSIGNED_BYTE, 1, 1))
+            throw io_failed("it made an OpenGL context but cannot use it");
+    }
+    void release() override { osmesa_.make_current(nullptr, nullptr, 0, 0, 0); }
+    gl::Function function(const char* name) const override { return osmesa_.function(name); }
+
+    Osmesa osmesa_;
     OSMesaContext context_ = nullptr;
     std::array<unsigned char, 4> window_{};  // the one pixel that OSMesa wants; we draw elsewhere
 };
 
 }  // namespace
 
-std::unique_ptr<Context> make_osmesa_context() {
-    return std::make_unique<OsmesaContext>();
+std::unique_ptr<Context> make_osmesa_context(const std::vector<std::string>& libraries) {
+    return std::make_unique<OsmesaContext>(libraries);
 }
 
 }  // namespace doppel

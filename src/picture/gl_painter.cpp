@@ -9,7 +9,7 @@ namespace doppel::gl {
 namespace {
 
 constexpr std::size_t most_quads = 16384;  // of one call: what 16-bit indices reach
-constexpr const char* inputs[4] = {"at", "local_at", "shape_of", "tint_of"};
+constexpr const char* inputs[5] = {"at", "place_of", "shape_of", "more_of", "tint_of"};
 
 /// The texture that is bound shows its texels as they are.
 void set_crisp() {
@@ -21,12 +21,12 @@ void set_crisp() {
 
 Painter::Painter(Size size)
     : programs_{Program("quad.vert", "shape.frag", inputs), Program("quad.vert", "glyph.frag", inputs),
-                Program("quad.vert", "mask.frag", inputs), Program("quad.vert", "cover.frag", inputs),
-                Program("quad.vert", "image.frag", inputs)} {
+                Program("quad.vert", "mask.frag", inputs), Program("quad.vert", "image.frag", inputs)},
+      cover_("quad.vert", "cover.frag", inputs) {
     // the same for good: pixels from the top left, and the corners of each quad make two triangles
-    for (const Program& program : programs_) {
-        UseProgram(program);
-        Uniform2f(GetUniformLocation(program, "picture"), static_cast<float>(size.width),
+    for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &programs_[3], &cover_}) {
+        UseProgram(*program);
+        Uniform2f(GetUniformLocation(*program, "picture"), static_cast<float>(size.width),
                   static_cast<float>(size.height));
     }
     Viewport(0, 0, size.width, size.height);
@@ -48,58 +48,111 @@ Painter::Painter(Size size)
         VertexAttribPointer(location, count, type, GL_TRUE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
     };
     input(0, 2, GL_FLOAT, offsetof(Vertex, at));
-    input(1, 2, GL_FLOAT, offsetof(Vertex, local));
+    input(1, 4, GL_FLOAT, offsetof(Vertex, origin));
     input(2, 4, GL_FLOAT, offsetof(Vertex, shape));
-    input(3, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
+    input(3, 4, GL_FLOAT, offsetof(Vertex, more));
+    input(4, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
 
     BindTexture(GL_TEXTURE_2D, atlas_);
     set_crisp();
     PixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }
 
-void Painter::load(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
+void Painter::paint(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
+    plan(sketch, places);
     vertices_.clear();
-    runs_.clear();
-    for (std::size_t place = 0; place < places.size(); ++place) {
-        for (const Sketch::Part& part : sketch.parts) {
-            const std::size_t begin = vertices_.size() / 4;
-            for (std::size_t i = part.begin; i < part.end; ++i) {
-                if (!common(sketch.bounds[i], places[place]).empty()) add(sketch.quads[i]);
-            }
-            const std::size_t end = vertices_.size() / 4;
-            if (end == begin) continue;
-            const Picture* image = sketch.quads[part.begin].image;
-            if (!runs_.empty() && runs_.back().place == place && runs_.back().kind == part.kind &&
-                runs_.back().image == image) {
-                runs_.back().end = end;
-            } else {
-                runs_.push_back({place, part.kind, begin, end, image});
+    for (std::size_t r = 0; r < used_runs_; ++r) {
+        Run& run = runs_[r];
+        run.begin = vertices_.size() / 4;
+        for (const std::size_t p : run.parts) {
+            for (std::size_t i = sketch.parts[p].begin; i < sketch.parts[p].end; ++i) {
+                add(sketch.quads[i], sketch.bounds[i], places);
             }
         }
+        run.end = vertices_.size() / 4;
     }
+    upload_vertices();
     upload(atlas);
     upload(sketch.images);
+    for (std::size_t r = 0; r < used_runs_; ++r) draw(runs_[r]);
 }
 
-void Painter::add(const Quad& quad) {
-    for (const float y : {-quad.half.y, quad.half.y}) {
-        for (const float x : {-quad.half.x, quad.half.x}) {
-            const Point at{quad.center.x + x * quad.axis.x - y * quad.axis.y,
-                           quad.center.y + x * quad.axis.y + y * quad.axis.x};
-            vertices_.push_back({at, {x, y}, quad.shape, quad.tint});
+/// Shares out the parts among few runs. A part may be drawn earlier than its turn if it meets nothing on the way.
+void Painter::plan(const Sketch& sketch, const std::vector<Rect>& places) {
+    used_runs_ = 0;
+    const auto meet = [](const Rect& a, const Rect& b) { return !common(a, b).empty(); };
+    for (std::size_t p = 0; p < sketch.parts.size(); ++p) {
+        const Sketch::Part& part = sketch.parts[p];
+        if (std::none_of(places.begin(), places.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
+        const Picture* image = sketch.quads[part.begin].image;
+        std::size_t home = used_runs_;
+        for (std::size_t r = used_runs_; r-- > 0;) {
+            const bool met = meet(runs_[r].bounds, part.bounds);
+            // the masks of two strokes must not mix
+            if (runs_[r].kind == part.kind && runs_[r].image == image && !(met && part.kind == Kind::mask)) home = r;
+            if (met || used_runs_ - r > 16) break;
+        }
+        if (home == used_runs_) {
+            if (++used_runs_ > runs_.size()) runs_.emplace_back();
+            runs_[home].kind = part.kind;
+            runs_[home].image = image;
+            runs_[home].bounds = {};
+            runs_[home].parts.clear();
+        }
+        runs_[home].bounds = united(runs_[home].bounds, part.bounds);
+        runs_[home].parts.push_back(p);
+    }
+}
+
+/// What of the quad lies within the places. A pixel that it touches is drawn once, whichever way.
+void Painter::add(const Quad& quad, const Rect& bounds, const std::vector<Rect>& places) {
+    for (const Rect& place : places) {
+        const Rect seen = common(bounds, place);
+        if (seen.empty()) continue;
+        if (seen == bounds && quad.half.x > 0) return add_turned(quad);
+        for_each_band(quad, seen, [&](const Rect& part) { add(quad, part); });
+    }
+}
+
+void Painter::add(const Quad& quad, const Rect& part) {
+    const auto left = static_cast<float>(part.left), right = static_cast<float>(part.right);
+    const auto top = static_cast<float>(part.top), bottom = static_cast<float>(part.bottom);
+    for (const Point at : {Point{left, top}, Point{right, top}, Point{left, bottom}, Point{right, bottom}})
+        add(quad, at);
+}
+
+/// Along its own axes, where fewer pixels lie around what it shows.
+void Painter::add_turned(const Quad& quad) {
+    const float room = 0.05f;  // px, so that rounding loses none
+    const Point half{quad.half.x + room, quad.half.y + room};
+    for (const float y : {-half.y, half.y}) {
+        for (const float x : {-half.x, half.x}) {
+            add(quad, Point{quad.origin.x + x * quad.axis.x - y * quad.axis.y,
+                            quad.origin.y + x * quad.axis.y + y * quad.axis.x});
         }
     }
+}
+
+void Painter::add(const Quad& quad, Point at) {
+    vertices_.push_back({at, quad.origin, quad.axis, quad.shape, quad.more, quad.tint});
+}
+
+void Painter::upload_vertices() {
+    const std::size_t needed = vertices_.size() * sizeof(Vertex);
+    if (needed > vertex_room_) {
+        vertex_room_ = needed + needed / 2;
+        BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertex_room_), nullptr, GL_DYNAMIC_DRAW);
+    }
+    BufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(needed), vertices_.data());
 }
 
 void Painter::upload(const GlyphAtlas& atlas) {
-    BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(Vertex)), vertices_.data(),
-               GL_STREAM_DRAW);
-    if (atlas.count() != atlas_glyphs_) {
-        BindTexture(GL_TEXTURE_2D, atlas_);
-        TexImage2D(GL_TEXTURE_2D, 0, GL_R8, GlyphAtlas::width, atlas.height(), 0, GL_RED, GL_UNSIGNED_BYTE,
-                   atlas.values().data());
-        atlas_glyphs_ = atlas.count();
-    }
+    if (atlas.count() == atlas_glyphs_) return;
+    PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    BindTexture(GL_TEXTURE_2D, atlas_);
+    TexImage2D(GL_TEXTURE_2D, 0, GL_R8, GlyphAtlas::width, atlas.height(), 0, GL_RED, GL_UNSIGNED_BYTE,
+               atlas.values().data());
+    atlas_glyphs_ = atlas.count();
 }
 
 void Painter::upload(const std::vector<std::shared_ptr<const Picture>>& images) {
@@ -116,6 +169,7 @@ void Painter::upload(const std::vector<std::shared_ptr<const Picture>>& images) 
             throw io_failed("OpenGL takes images of up to {} px a side; {} × {} px is too large", most, size.width,
                             size.height);
         }
+        PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
         images_.push_back({pixels, std::make_unique<Texture>()});
         BindTexture(GL_TEXTURE_2D, *images_.back().texture);
         set_crisp();
@@ -124,35 +178,31 @@ void Painter::upload(const std::vector<std::shared_ptr<const Picture>>& images) 
     }
 }
 
-void Painter::use(const Run& run) const {
-    UseProgram(programs_[static_cast<std::size_t>(run.kind)]);
-    BlendEquation(run.kind == Kind::mask ? GL_MIN : GL_FUNC_ADD);
-    const GLboolean color = run.kind != Kind::mask, alpha = run.kind == Kind::mask || run.kind == Kind::cover;
-    ColorMask(color, color, color, alpha);
-    if (run.kind == Kind::cover) {
-        BlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ZERO);
-    } else {
-        BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    }
-    if (run.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
-    for (const Loaded& loaded : images_) {
-        if (loaded.pixels.get() == run.image) BindTexture(GL_TEXTURE_2D, *loaded.texture);
-    }
-}
-
-void Painter::paint(std::size_t place, const Rect& within) const {
-    Enable(GL_SCISSOR_TEST);
-    Scissor(within.left, within.top, within.right - within.left, within.bottom - within.top);
-    for (const Run& run : runs_) {
-        if (run.place != place) continue;
-        use(run);
+void Painter::draw(const Run& run) {
+    const auto draw_quads = [&](const Program& program) {
+        UseProgram(program);
         for (std::size_t begin = run.begin; begin < run.end; begin += most_quads) {
             const std::size_t count = std::min(run.end - begin, most_quads);
             DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_SHORT, nullptr,
                                    static_cast<GLint>(4 * begin));
         }
+    };
+    if (run.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
+    for (const Loaded& loaded : images_) {
+        if (loaded.pixels.get() == run.image) BindTexture(GL_TEXTURE_2D, *loaded.texture);
     }
-    Disable(GL_SCISSOR_TEST);
+    if (run.kind == Kind::mask) {
+        BlendEquation(GL_MIN);
+        ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+        draw_quads(programs_[static_cast<std::size_t>(run.kind)]);
+        BlendEquation(GL_FUNC_ADD);
+        ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        BlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ZERO);
+        draw_quads(cover_);
+    } else {
+        BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+        draw_quads(programs_[static_cast<std::size_t>(run.kind)]);
+    }
 }
 
 }  // namespace doppel::gl

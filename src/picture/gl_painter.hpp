@@ -10,29 +10,30 @@ namespace doppel::gl {
 /// Draws sketches onto the canvas that is bound.
 ///
 /// A canvas's alpha is 1 at rest. While a stroke is drawn it holds how transparent the stroke is there: segments keep
-/// the smallest value, so that they do not add up where they meet; then the cover blends the colour and restores the 1.
+/// the smallest value, so that they do not add up where they meet; then the cover blends the colour and restores the 1,
+/// so that covering a pixel again changes nothing.
 class Painter {
 public:
     explicit Painter(Size size);
 
-    /// Takes what of the sketch touches each of the `places`, and glyphs and images that are new. Throws Error where an
-    /// image is larger than OpenGL takes.
-    void load(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas);
-    /// Draws what was loaded for places[place], cut off at its edges.
-    void paint(std::size_t place, const Rect& within) const;
+    /// Draws what of the sketch lies within the `places`, which must not overlap. Throws Error where an image is larger
+    /// than OpenGL takes.
+    void paint(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas);
 
 private:
     struct Vertex {
-        Point at, local;
+        Point at, origin, axis;
         std::array<float, 4> shape;
+        std::array<float, 4> more;
         std::array<std::uint8_t, 4> tint;
     };
-    /// Quads drawn by one call.
+    /// Parts drawn together.
     struct Run {
-        std::size_t place;
         Kind kind;
-        std::size_t begin, end;
         const Picture* image;
+        Rect bounds;             // of all its parts
+        std::size_t begin, end;  // in quads
+        std::vector<std::size_t> parts;
     };
     /// An image among OpenGL's textures.
     struct Loaded {
@@ -40,19 +41,27 @@ private:
         std::unique_ptr<Texture> texture;
     };
 
-    void add(const Quad& quad);
+    void plan(const Sketch& sketch, const std::vector<Rect>& places);
+    void add(const Quad& quad, const Rect& bounds, const std::vector<Rect>& places);
+    void add(const Quad& quad, const Rect& part);
+    void add(const Quad& quad, Point at);
+    void add_turned(const Quad& quad);
+    void upload_vertices();
     void upload(const GlyphAtlas& atlas);
     void upload(const std::vector<std::shared_ptr<const Picture>>& images);
-    void use(const Run& run) const;
+    void draw(const Run& run);
 
-    std::array<Program, 5> programs_;  // by kind
+    std::array<Program, 4> programs_;  // by kind
+    Program cover_;
     VertexArray vertex_array_;
     Buffer vertex_buffer_, index_buffer_;
+    std::size_t vertex_room_ = 0;  // in the buffer, bytes
     Texture atlas_;
     std::size_t atlas_glyphs_ = 0;
     std::vector<Loaded> images_;
     std::vector<Vertex> vertices_;
-    std::vector<Run> runs_;
+    std::vector<Run> runs_;  // kept for their memory; those in use come first
+    std::size_t used_runs_ = 0;
 };
 
 }  // namespace doppel::gl

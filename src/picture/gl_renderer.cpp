@@ -1,33 +1,30 @@
 #include "numeric/error.hpp"
 #include "picture/damage.hpp"
+#include "picture/gl_context.hpp"
 #include "picture/gl_painter.hpp"
 #include "picture/renderer.hpp"
 
 #include <optional>
+#include <utility>
 
 namespace doppel {
 
-/// What the renderer is made of: a context, two canvases, and the sketch of the last picture.
+/// What the renderer is made of: a context, a canvas, the backdrop, and the sketch of the last picture.
 class Renderer::Machine {
 public:
-    Machine(Size size, const DisplayList& backdrop) : size_(size), context_(make_osmesa_context()) {
-        context_->make_current();
-        gl::load(*context_);
+    Machine(Size size, const DisplayList& backdrop, Gl gl) : size_(size), context_(make_context(gl)) {
         check_size();
         atlas_.emplace(limit(GL_MAX_TEXTURE_SIZE));
-        backdrop_.emplace(size);
         canvas_.emplace(size);
         painter_.emplace(size);
-        picture_ = Picture(size);
+        picture_ = backdrop_ = Picture(size);
         gl::PixelStorei(GL_PACK_ROW_LENGTH, size.width);
 
-        gl::BindFramebuffer(GL_FRAMEBUFFER, *backdrop_);
         gl::ClearColor(0, 0, 0, 1);
         gl::Clear(GL_COLOR_BUFFER_BIT);
-        painter_->load(sketch(backdrop, size, *atlas_), {whole()}, *atlas_);
-        painter_->paint(0, whole());
-        gl::BindFramebuffer(GL_READ_FRAMEBUFFER, *backdrop_);
-        gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, *canvas_);
+        sketch(backdrop, size, *atlas_, now_);
+        painter_->paint(now_, {whole()}, *atlas_);
+        read(whole(), backdrop_);
     }
 
     ~Machine() { context_->make_current(); }
@@ -36,24 +33,17 @@ public:
 
     const Picture& draw(const DisplayList& list) {
         context_->make_current();
-        Sketch now = sketch(list, size_, *atlas_);
-        changed_ = first_ ? std::vector{whole()} : damage(last_, now);
+        sketch(list, size_, *atlas_, now_);
+        changed_ = first_ ? std::vector{whole()} : damage(last_, now_);
         first_ = false;
-        last_ = std::move(now);
-        painter_->load(last_, changed_, *atlas_);
 
-        gl::BindFramebuffer(GL_READ_FRAMEBUFFER, *backdrop_);
-        for (std::size_t place = 0; place < changed_.size(); ++place) {
-            const Rect& r = changed_[place];
-            gl::BlitFramebuffer(r.left, r.top, r.right, r.bottom, r.left, r.top, r.right, r.bottom, GL_COLOR_BUFFER_BIT,
-                                GL_NEAREST);
-            painter_->paint(place, r);
-        }
-        gl::BindFramebuffer(GL_READ_FRAMEBUFFER, *canvas_);
-        for (const Rect& r : changed_) {
-            gl::ReadPixels(r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
-                           picture_.at(r.left, r.top));
-        }
+        // each switch between putting back, drawing and reading makes OpenGL finish what it has in hand: one of each a
+        // picture. Putting back from memory is a mere copy; a blit would draw, and finish, for every rectangle.
+        gl::PixelStorei(GL_UNPACK_ROW_LENGTH, size_.width);
+        for (const Rect& r : changed_) canvas_->put(backdrop_, r);
+        painter_->paint(now_, changed_, *atlas_);
+        std::swap(last_, now_);
+        for (const Rect& r : changed_) read(r, picture_);
         return picture_;
     }
 
@@ -62,11 +52,16 @@ public:
     std::string description() const {
         context_->make_current();
         const auto text = [](GLenum name) { return reinterpret_cast<const char*>(gl::GetString(name)); };
-        return fmt::format("{}, OpenGL {}", text(GL_RENDERER), text(GL_VERSION));
+        return fmt::format("{}, {}, OpenGL {}", context_->library(), text(GL_RENDERER), text(GL_VERSION));
     }
 
 private:
     Rect whole() const { return {0, 0, size_.width, size_.height}; }
+
+    static void read(const Rect& r, Picture& into) {
+        gl::ReadPixels(r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                       into.at(r.left, r.top));
+    }
 
     static int limit(GLenum name) {
         GLint value = 0;
@@ -75,7 +70,7 @@ private:
     }
 
     void check_size() const {
-        const int most = limit(GL_MAX_RENDERBUFFER_SIZE);
+        const int most = limit(GL_MAX_TEXTURE_SIZE);
         if (size_.width < 1 || size_.height < 1 || size_.width > most || size_.height > most) {
             throw io_failed("OpenGL draws pictures of 1 to {} px a side; {} × {} px is none", most, size_.width,
                             size_.height);
@@ -85,15 +80,16 @@ private:
     Size size_;
     std::unique_ptr<Context> context_;
     std::optional<GlyphAtlas> atlas_;
-    std::optional<gl::Canvas> backdrop_, canvas_;
+    std::optional<gl::Canvas> canvas_;
     std::optional<gl::Painter> painter_;
-    Picture picture_;
-    Sketch last_;
+    Picture backdrop_, picture_;
+    Sketch last_, now_;  // of the last picture; of the one in hand, kept for its memory
     bool first_ = true;
     std::vector<Rect> changed_;
 };
 
-Renderer::Renderer(Size size, const DisplayList& backdrop) : machine_(std::make_unique<Machine>(size, backdrop)) {}
+Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl)
+    : machine_(std::make_unique<Machine>(size, backdrop, gl)) {}
 Renderer::~Renderer() = default;
 const Picture& Renderer::draw(const DisplayList& list) {
     return machine_->draw(list);

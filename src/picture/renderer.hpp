@@ -1,6 +1,7 @@
 #pragma once
 
 #include "picture/display_list.hpp"
+#include "picture/gl.hpp"
 #include "picture/picture.hpp"
 
 #include <memory>
@@ -9,14 +10,14 @@
 
 namespace doppel {
 
-/// Draws display lists into pictures of one size, without a display (OSMesa).
+/// Draws display lists into pictures of one size, without a display (OSMesa or EGL).
 ///
 /// A picture is a backdrop, which stays, with a list on top, which is new every time. Only the rectangles that the last
 /// list or this one touches are drawn and read back; the pixels are the same as if everything had been drawn anew.
 class Renderer {
 public:
-    /// Throws Error (exit 4) where no OpenGL context or no memory for this size is to be had.
-    explicit Renderer(Size size, const DisplayList& backdrop = {});
+    /// Throws Error (exit 4) where no OpenGL context of this kind or no memory for this size is to be had.
+    explicit Renderer(Size size, const DisplayList& backdrop = {}, Gl gl = Gl::automatic);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
@@ -27,7 +28,7 @@ public:
     /// Where the last picture differs from the one before it; the whole picture after the first draw().
     const std::vector<Rect>& changed() const;
 
-    /// What draws, for the manifest: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3 Mesa 22.3.6".
+    /// What draws, for the manifest: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3 Mesa 22.3.6".
     std::string description() const;
 
 private:

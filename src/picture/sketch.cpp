@@ -1,6 +1,5 @@
 #include "picture/sketch.hpp"
 
-#include "picture/damage.hpp"
 #include "picture/font.hpp"
 #include "picture/stroke.hpp"
 
@@ -10,7 +9,7 @@
 namespace doppel {
 namespace {
 
-constexpr float edge = 1;  // px that a quad reaches past its shape, for the soft edge
+constexpr float edge = 1;  // px, the width of a soft edge: half of it lies beyond the shape
 
 std::uint8_t byte(float channel) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.f, 1.f)));
@@ -23,7 +22,7 @@ std::array<std::uint8_t, 4> tint(const Color& color, float opacity = 1) {
 /// Turns items into quads. What is thinner than a pixel is drawn a pixel thin and fainter.
 class Sketcher {
 public:
-    Sketcher(Size size, GlyphAtlas& atlas) : size_(size), atlas_(atlas) {}
+    Sketcher(Size size, GlyphAtlas& atlas, Sketch& made) : size_(size), atlas_(atlas), made_(made) {}
 
     void operator()(const Box& box) {
         const Point half{(box.right - box.left) / 2, (box.bottom - box.top) / 2};
@@ -34,42 +33,50 @@ public:
     void operator()(const Capsule& capsule) {
         if (!(capsule.radius > 0)) return;
         const Segment s(capsule.from, capsule.to);
-        add_shape(s.center, s.axis, {s.length / 2 + capsule.radius, capsule.radius}, capsule.radius, capsule.color);
+        add_shape(s.center, s.axis, {s.length / 2 + capsule.radius, capsule.radius}, capsule.radius, capsule.color,
+                  std::max(capsule.glow, 0.f));
     }
 
     void operator()(const Ring& ring) {
         if (!(ring.radius >= 0 && ring.width > 0)) return;
-        const float pen = std::max(ring.width, 1.f) / 2, reach = ring.radius + pen + edge;
+        const float pen = std::max(ring.width, 1.f) / 2, reach = ring.radius + pen + edge / 2;
         begin(Kind::shape);
-        add({.center = ring.center,
-             .half = {reach, reach},
+        add({.origin = ring.center,
              .shape = {0, 0, ring.radius, pen},
-             .tint = tint(ring.color, std::min(ring.width, 1.f))});
+             .tint = tint(ring.color, std::min(ring.width, 1.f))},
+            {reach, reach});
     }
 
     void operator()(const Stroke& stroke) {
         begin(Kind::mask);
-        const std::size_t first = made.quads.size();
-        const float half_width = std::max(stroke.width, 1.f) / 2;
-        const float opacity = stroke.color.a * std::clamp(stroke.width, 0.f, 1.f);
-        if (!(opacity > 0)) return;
-        for_each_segment(stroke.vertices, [&](const Stroke::Vertex& from, const Stroke::Vertex& to) {
-            const Segment s(from.at, to.at);
-            const float slope = s.length > 0 ? (to.alpha - from.alpha) / s.length : 0;
-            const float alpha = s.length > 0 ? (from.alpha + to.alpha) / 2 : std::max(from.alpha, to.alpha);
-            add({.center = s.center,
-                 .axis = s.axis,
-                 .half = {s.length / 2 + half_width + edge / 2, half_width + edge / 2},
-                 .shape = {s.length / 2, half_width, opacity * alpha, opacity * slope},
-                 .tint = tint(stroke.color)});
+        if (!(stroke.color.a > 0 && stroke.width > 0)) return;
+        // as it is drawn: opacity with the colour's, width in px
+        path_ = stroke.vertices;
+        for (Stroke::Vertex& v : path_) {
+            const float width = stroke.width * v.width;
+            v.alpha *= stroke.color.a * std::clamp(width, 0.f, 1.f);
+            v.width = std::max(width, 1.f);
+            v.glow *= std::max(stroke.glow, 0.f);
+        }
+        segments_.clear();
+        for_each_segment(path_, [&](const Stroke::Vertex& from, const Stroke::Vertex& to) {
+            segments_.push_back({from, to, Segment(from.at, to.at)});
         });
-
-        const std::vector<Rect> covers = merged(chunks(made.bounds, first, made.bounds.size()));
-        begin(Kind::cover);
-        for (const Rect& r : covers) {
-            const Point half{static_cast<float>(r.right - r.left) / 2, static_cast<float>(r.bottom - r.top) / 2};
-            const Point center{static_cast<float>(r.left) + half.x, static_cast<float>(r.top) + half.y};
-            add({.center = center, .half = half, .tint = tint(stroke.color)});
+        for (std::size_t i = 0; i < segments_.size(); ++i) {
+            const auto& [from, to, s] = segments_[i];
+            if (!(from.alpha > 0 || to.alpha > 0)) continue;
+            const float per_px = s.length > 0 ? 1 / s.length : 0;
+            const float alpha = s.length > 0 ? (from.alpha + to.alpha) / 2 : std::max(from.alpha, to.alpha);
+            const float reach = std::max(from.width, to.width) / 2 + std::max({edge / 2, from.glow, to.glow});
+            const float half_length =
+                s.length / 2 + edge / 2 + reach * std::max(share_at_joint(i, i - 1), share_at_joint(i, i + 1));
+            add({.origin = s.center,
+                 .axis = s.axis,
+                 .shape = {s.length / 2, (from.width + to.width) / 4, alpha, (to.alpha - from.alpha) * per_px},
+                 .more = {(to.width - from.width) / 2 * per_px, (from.glow + to.glow) / 2,
+                          (to.glow - from.glow) * per_px, half_length},
+                 .tint = tint(stroke.color)},
+                {half_length, reach});
         }
     }
 
@@ -86,31 +93,29 @@ public:
             const GlyphAtlas::Slot& slot =
                 atlas_.slot(glyph.number, label.size, label.weight, stop % GlyphAtlas::stops);
             if (slot.size.width == 0) continue;
-            const Point half{static_cast<float>(slot.size.width) / 2, static_cast<float>(slot.size.height) / 2};
-            const float left = whole + static_cast<float>(stop / GlyphAtlas::stops + slot.left);
-            const float top = baseline + static_cast<float>(slot.top);
-            add({.center = {left + half.x, top + half.y},
-                 .half = half,
-                 .shape = {static_cast<float>(slot.x) + half.x, static_cast<float>(slot.y) + half.y},
-                 .tint = tint(label.color)});
+            const Point corner{whole + static_cast<float>(stop / GlyphAtlas::stops + slot.left),
+                               baseline + static_cast<float>(slot.top)};
+            add({.origin = corner,
+                 .shape = {static_cast<float>(slot.x), static_cast<float>(slot.y)},
+                 .tint = tint(label.color)},
+                corner,
+                {corner.x + static_cast<float>(slot.size.width), corner.y + static_cast<float>(slot.size.height)});
         }
     }
 
     void operator()(const Image& image) {
-        const float left = std::round(image.left), top = std::round(image.top);
-        const Point half{(std::round(image.right) - left) / 2, (std::round(image.bottom) - top) / 2};
-        if (!(half.x > 0 && half.y > 0) || !image.pixels || image.pixels->rgba.empty()) return;
+        const Point corner{std::round(image.left), std::round(image.top)};
+        const Point end{std::round(image.right), std::round(image.bottom)};
+        if (!(end.x > corner.x && end.y > corner.y) || !image.pixels || image.pixels->rgba.empty()) return;
         const Size texels = image.pixels->size;
         begin(Kind::image);
-        add({.center = {left + half.x, top + half.y},
-             .half = half,
-             .shape = {half.x, half.y, static_cast<float>(texels.width) / (2 * half.x),
-                       static_cast<float>(texels.height) / (2 * half.y)},
-             .image = image.pixels.get()});
-        made.images.push_back(image.pixels);
+        add({.origin = corner,
+             .shape = {static_cast<float>(texels.width) / (end.x - corner.x),
+                       static_cast<float>(texels.height) / (end.y - corner.y)},
+             .image = image.pixels.get()},
+            corner, end);
+        made_.images.push_back(image.pixels);
     }
-
-    Sketch made;
 
 private:
     struct Segment {
@@ -123,50 +128,82 @@ private:
         }
     };
 
-    void begin(Kind kind) { made.parts.push_back({kind, made.quads.size(), made.quads.size()}); }
+    struct StrokeSegment {
+        Stroke::Vertex from, to;
+        Segment line;
+    };
 
-    void add(const Quad& quad) {
-        const float x = std::abs(quad.axis.x) * quad.half.x + std::abs(quad.axis.y) * quad.half.y;
-        const float y = std::abs(quad.axis.y) * quad.half.x + std::abs(quad.axis.x) * quad.half.y;
-        // fmin and fmax, for they lose what is not a number
-        const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
-        const Rect bounds{static_cast<int>(std::floor(within(quad.center.x - x, size_.width))),
-                          static_cast<int>(std::floor(within(quad.center.y - y, size_.height))),
-                          static_cast<int>(std::ceil(within(quad.center.x + x, size_.width))),
-                          static_cast<int>(std::ceil(within(quad.center.y + y, size_.height)))};
-        if (bounds.empty()) return;
-        made.quads.push_back(quad);
-        made.bounds.push_back(bounds);
-        made.parts.back().end = made.quads.size();
+    /// How far segment i must reach beyond its end where segment j goes on, in units of the stroke's reach: what is
+    /// round there is shared by the two, each up to the bisector; an end of its own it rounds off alone.
+    float share_at_joint(std::size_t i, std::size_t j) const {
+        if (j >= segments_.size()) return 1;
+        const Segment &a = segments_[i].line, &b = segments_[j].line;
+        const float along = a.axis.x * b.axis.x + a.axis.y * b.axis.y;  // cosine of the turn
+        return along > 0 && a.length > 0 && b.length > 0 ? std::sqrt((1 - std::min(along, 1.f)) / 2) : 1;
     }
 
-    void add_shape(Point center, Point axis, Point half, float corner, const Color& color) {
+    void begin(Kind kind) { made_.parts.push_back({kind, made_.quads.size(), made_.quads.size()}); }
+
+    /// Adds the quad, which touches no pixels but those that [from, to] reaches into.
+    void add(const Quad& quad, Point from, Point to) {
+        // fmin and fmax, for they lose what is not a number
+        const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
+        const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
+                          static_cast<int>(std::ceil(within(to.x, size_.width))),
+                          static_cast<int>(std::ceil(within(to.y, size_.height)))};
+        if (bounds.empty()) return;
+        made_.quads.push_back(quad);
+        made_.bounds.push_back(bounds);
+        made_.parts.back().end = made_.quads.size();
+        made_.parts.back().bounds = united(made_.parts.back().bounds, bounds);
+    }
+
+    /// Adds the quad, which reaches `half` from its origin along either of its axes.
+    void add(Quad quad, Point half) {
+        const float across = std::abs(quad.axis.x), down = std::abs(quad.axis.y);
+        const Point reach{across * half.x + down * half.y, down * half.x + across * half.y};
+        quad.half = half;
+        add(quad, {quad.origin.x - reach.x, quad.origin.y - reach.y},
+            {quad.origin.x + reach.x, quad.origin.y + reach.y});
+    }
+
+    void add_shape(Point center, Point axis, Point half, float corner, const Color& color, float glow = 0) {
         const float opacity = std::min(2 * half.x, 1.f) * std::min(2 * half.y, 1.f);
         half = {std::max(half.x, 0.5f), std::max(half.y, 0.5f)};
         corner = std::clamp(corner, 0.f, std::min(half.x, half.y));
+        const float beyond = std::max(edge / 2, glow);
         begin(Kind::shape);
-        add({.center = center,
+        add({.origin = center,
              .axis = axis,
-             .half = {half.x + edge, half.y + edge},
              .shape = {half.x - corner, half.y - corner, corner, 0},
-             .tint = tint(color, opacity)});
+             .more = {0, glow},
+             .tint = tint(color, opacity)},
+            {half.x + beyond, half.y + beyond});
     }
 
     Size size_;
     GlyphAtlas& atlas_;
+    Sketch& made_;
+    // of the stroke in hand; kept for their memory
+    std::vector<Stroke::Vertex> path_;
+    std::vector<StrokeSegment> segments_;
 };
 
 }  // namespace
 
 bool operator==(const Quad& a, const Quad& b) {
-    return a.center.x == b.center.x && a.center.y == b.center.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
-           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.tint == b.tint && a.image == b.image;
+    return a.origin.x == b.origin.x && a.origin.y == b.origin.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
+           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.more == b.more && a.tint == b.tint &&
+           a.image == b.image;
 }
 
-Sketch sketch(const DisplayList& list, Size size, GlyphAtlas& atlas) {
-    Sketcher sketcher(size, atlas);
+void sketch(const DisplayList& list, Size size, GlyphAtlas& atlas, Sketch& made) {
+    made.parts.clear();
+    made.quads.clear();
+    made.bounds.clear();
+    made.images.clear();
+    Sketcher sketcher(size, atlas, made);
     for (const Item& item : list) std::visit(sketcher, item);
-    return std::move(sketcher.made);
 }
 
 }  // namespace doppel

@@ -6,7 +6,7 @@
 namespace doppel {
 namespace {
 
-constexpr float hair = 1.0f / 32;  // px
+constexpr float hair = 1.0f / 10;  // px
 
 /// Whether the segment from…to stands for the vertex `v` as well.
 bool passes(const Stroke::Vertex& from, const Stroke::Vertex& to, const Stroke::Vertex& v) {
@@ -14,7 +14,9 @@ bool passes(const Stroke::Vertex& from, const Stroke::Vertex& to, const Stroke::
     const float square = along.x * along.x + along.y * along.y;
     const float part = square > 0 ? std::clamp((along.x * out.x + along.y * out.y) / square, 0.f, 1.f) : 0;
     const float x = out.x - part * along.x, y = out.y - part * along.y;
-    return x * x + y * y <= hair * hair && std::abs(std::lerp(from.alpha, to.alpha, part) - v.alpha) <= 1.0f / 255;
+    return x * x + y * y <= hair * hair && std::abs(std::lerp(from.alpha, to.alpha, part) - v.alpha) <= 1.0f / 255 &&
+           std::abs(std::lerp(from.width, to.width, part) - v.width) <= 2 * hair &&
+           std::abs(std::lerp(from.glow, to.glow, part) - v.glow) <= 5 * hair;
 }
 
 }  // namespace

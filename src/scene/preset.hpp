@@ -3,8 +3,7 @@
 #include "integrate/motion.hpp"
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
-#include "picture/color.hpp"
-#include "picture/picture.hpp"
+#include "scene/video_spec.hpp"
 
 #include <array>
 #include <optional>
@@ -74,25 +73,6 @@ struct SideSpec {
     std::size_t links() const { return mass_kg.size(); }
     /// Whether it takes more than a chain under gravity.
     bool is_mechanism() const { return !particles.empty() || !constraints.empty() || !forces.empty(); }
-};
-
-/// An axis from `low` to `high`, both > 0.
-struct Range {
-    double low, high;
-};
-
-struct VideoSpec {
-    Size size{1920, 1080};
-    std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given
-    Rational speed{1, 1};         // seconds of motion shown a second
-    std::string format = "mp4";   // or "png"
-    std::string preset = "veryfast";
-    int crf = 18;
-    std::string theme = "dark";                             // or "light"
-    std::optional<std::array<Color, 2>> side_colors;        // the theme's where not given
-    double trail_s = 2.5;                                   // s; 0 = none
-    bool pendulums = true, distance = true, energy = true;  // which panels
-    std::optional<Range> distance_range, energy_range;      // fitted to the scene where not given
 };
 
 /// A scene as a preset file describes it: read, complete and checked, nothing computed yet.

@@ -26,24 +26,65 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
     return text.empty() ? "a longer or shorter step_s would" : text + " would";
 }
 
+/// The most frames a second, up to 30, at which every frame and the last sample fall together; where there is none, a
+/// frame a sample.
+std::optional<Rational> usual_gif_rate(const Rational& sampled, long samples) {
+    constexpr double most = 30;
+    for (long stride = 1; stride <= samples; ++stride)
+        if (const auto rate = quotient(sampled, {stride, 1}); rate && samples % stride == 0 && rate->value() <= most)
+            return rate;
+    return sampled;
+}
+
 /// Frames must fall on samples exactly.
-void check_frames(const Preset& preset, const TomlReader& video) {
-    const auto samples = *product(preset.duration_s, preset.sample_hz);  // whole: check_clock() saw to it
+void check_frames(Preset& preset, const TomlReader& video) {
+    const long samples = product(preset.duration_s, preset.sample_hz)->numerator;  // check_clock() saw to it
     const auto sampled = product(preset.sample_hz, preset.video.speed);
+    if (sampled && !preset.video.fps && preset.video.format == "gif")
+        preset.video.fps = usual_gif_rate(*sampled, samples);
     const auto fps = preset.video.fps ? preset.video.fps : sampled;
     constexpr double most_fps = 1000;
     constexpr long most_digits = 1'000'000;
     if (!fps || fps->value() > most_fps || fps->numerator > most_digits || fps->denominator > most_digits)
         throw video.fault("fps", "must be at most {} and a fraction of whole numbers up to {}; it is {}", most_fps,
                           most_digits, fps ? fps->text() : "beyond them");
-    if (!preset.video.fps) return;
-    const auto stride = sampled ? quotient(*sampled, *preset.video.fps) : std::nullopt;
+    const auto stride = sampled ? quotient(*sampled, *fps) : std::nullopt;
     if (!stride || !stride->is_whole())
         throw video.fault("fps", "must divide sample_hz · speed = {}, so that each frame is a sample; it is {}",
                           sampled ? sampled->text() : "?", preset.video.fps->text());
-    if (samples.numerator % stride->numerator != 0)
-        throw video.fault("fps", "must let the last of {} samples be a frame; with {} one sample in {} is one",
-                          samples.numerator, preset.video.fps->text(), stride->numerator);
+    if (samples % stride->numerator != 0)
+        throw video.fault("fps", "must let the last of {} samples be a frame; with {} one sample in {} is one", samples,
+                          preset.video.fps->text(), stride->numerator);
+    if (!preset.video.poster_s) return;
+    const auto poster = product(*preset.video.poster_s, preset.sample_hz);
+    if (!poster || !poster->is_whole() || poster->numerator > samples || poster->numerator % stride->numerator != 0)
+        throw video.fault("poster_s", "must be the time of a frame, a multiple of {} s up to {} s; it is {}",
+                          quotient(*stride, preset.sample_hz).value_or(Rational{0, 1}).text(), preset.duration_s.text(),
+                          preset.video.poster_s->text());
+}
+
+/// What layouts and strips ask of the system.
+void check_layout(const Preset& preset, const TomlReader& video) {
+    const auto layout = preset.video.layout;
+    const auto name = arrangement_names[static_cast<std::size_t>(layout)];
+    const bool chains = preset.a.particles.empty() && preset.b.particles.empty();
+    if (!chains && (layout == Arrangement::ensemble || layout == Arrangement::phase))
+        throw video.fault("layout", "\"{}\" is of chains; the sides are mechanisms of particles", name);
+    if (layout == Arrangement::phase) {
+        const long links = static_cast<long>(preset.a.links());
+        if (preset.video.phase_link > links)
+            throw video.fault("phase_link", "must be from 1 to {}, as there are links; it is {}", links,
+                              preset.video.phase_link);
+    }
+    if (layout != Arrangement::ensemble) return;
+    const auto &a = preset.a, &b = preset.b;
+    if (a.is_mechanism() || b.is_mechanism())
+        throw video.fault("layout", "\"{}\" is of chains without further constraints and forces", name);
+    if (a.model != b.model || a.integrator != b.integrator || a.step() != b.step() ||
+        a.allowed_error() != b.allowed_error() || a.accuracy != b.accuracy || a.precision != b.precision ||
+        a.stabilise != b.stabilise)
+        throw video.fault("layout",
+                          "\"{}\" takes sides that differ in their numbers alone, not in how they are stepped", name);
 }
 
 }  // namespace
@@ -113,6 +154,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     top.finish();
     check_clock(preset, scene);
     check_frames(preset, video);
+    check_layout(preset, video);
     return preset;
 }
 

@@ -5,25 +5,17 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace doppel {
 
 std::string toml_text(const std::string& text) {
     return nlohmann::json(text).dump();
 }
 
-namespace {
-
-std::string hex(const Color& color) {
-    const auto channel = [](float x) { return static_cast<int>(std::lround(x * 255)); };
-    return fmt::format("\"#{:02x}{:02x}{:02x}\"", channel(color.r), channel(color.g), channel(color.b));
-}
-
-/// A number where it is whole, "a/b" where it is not.
-std::string ratio(const Rational& value) {
+std::string toml_ratio(const Rational& value) {
     return value.is_whole() ? value.text() : fmt::format("\"{}\"", value.text());
 }
+
+namespace {
 
 std::string numbers(const std::vector<Quad>& values) {
     std::vector<std::string> texts;
@@ -79,7 +71,7 @@ std::string chain_toml(const SideSpec& side) {
 
 std::string pace_toml(const SideSpec& side) {
     return find_method(side.integrator)->adaptive ? fmt::format("tolerance = {}\n", text_of(side.allowed_error()))
-                                                  : fmt::format("step_s = {}\n", ratio(side.step()));
+                                                  : fmt::format("step_s = {}\n", toml_ratio(side.step()));
 }
 
 /// [a] or [b] with everything in it.
@@ -104,7 +96,8 @@ std::string side_toml(const std::string& name, const SideSpec& side) {
 }  // namespace
 
 std::string resolved_pair(const Preset& preset) {
-    return fmt::format("duration_s = {}\nsample_hz = {}\n", ratio(preset.duration_s), ratio(preset.sample_hz)) +
+    return fmt::format("duration_s = {}\nsample_hz = {}\n", toml_ratio(preset.duration_s),
+                       toml_ratio(preset.sample_hz)) +
            resolved_sides(preset);
 }
 
@@ -121,27 +114,8 @@ std::string resolved_chain(const SideSpec& side) {
 }
 
 std::string resolved_toml(const Preset& preset) {
-    const auto& video = preset.video;
-    std::vector<std::string> panels;
-    if (video.pendulums) panels.emplace_back("\"pendulums\"");
-    if (video.distance) panels.emplace_back("\"distance\"");
-    if (video.energy) panels.emplace_back("\"energy\"");
-
-    auto text =
-        fmt::format("title = {}\n\n[scene]\nkind = \"pair\"\n", toml_text(preset.title)) + resolved_pair(preset);
-    text += fmt::format(
-        "\n[video]\nsize = [{}, {}]\nspeed = {}\nformat = \"{}\"\npreset = \"{}\"\ncrf = {}\ntheme = \"{}\"\n",
-        video.size.width, video.size.height, ratio(video.speed), video.format, video.preset, video.crf, video.theme);
-    text += fmt::format("trail_s = {}\npanels = [{}]\n", video.trail_s, fmt::join(panels, ", "));
-    if (video.fps) text += fmt::format("fps = {}\n", ratio(*video.fps));
-    if (video.side_colors)
-        text += fmt::format("side_colors = [{}, {}]\n", hex((*video.side_colors)[0]), hex((*video.side_colors)[1]));
-    const auto add_range = [&](const char* key, const std::optional<Range>& range) {
-        if (range) text += fmt::format("{} = [{}, {}]\n", key, range->low, range->high);
-    };
-    add_range("distance_range", video.distance_range);
-    add_range("energy_range", video.energy_range);
-    return text;
+    return fmt::format("title = {}\n\n[scene]\nkind = \"pair\"\n", toml_text(preset.title)) + resolved_pair(preset) +
+           resolved_video(preset.video);
 }
 
 }  // namespace doppel

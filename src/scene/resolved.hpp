@@ -20,6 +20,12 @@ std::string resolved_release(const SideSpec& side);
 /// The same without the release.
 std::string resolved_chain(const SideSpec& side);
 
+/// [video] with everything in it.
+std::string resolved_video(const VideoSpec& video);
+
+/// A number where it is whole, "a/b" where it is not.
+std::string toml_ratio(const Rational& value);
+
 /// A basic TOML string, with its quotes.
 std::string toml_text(const std::string& text);
 

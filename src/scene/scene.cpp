@@ -3,6 +3,7 @@
 #include "analysis/distance.hpp"
 #include "analysis/energy_error.hpp"
 #include "numeric/error.hpp"
+#include "scene/assemble.hpp"
 #include "scene/choice.hpp"
 #include "scene/choose.hpp"
 #include "scene/precision.hpp"
@@ -37,6 +38,26 @@ Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::a
     }
 }
 
+/// The members of an ensemble, stepped as side a is.
+std::vector<MotionSpec> crowd_of(const Scene& scene) {
+    const auto &first = scene.preset.a, &last = scene.preset.b;
+    std::vector<MotionSpec> crowd;
+    for (int k = 0; k < scene.preset.video.members; ++k) {
+        const Quad share = Quad(k) / (scene.preset.video.members - 1);
+        const auto between = [&](const Quad& from, const Quad& to) { return Quad(from + share * (to - from)); };
+        SideSpec member = first;
+        for (const auto numbers :
+             {&SideSpec::mass_kg, &SideSpec::length_m, &SideSpec::angle_deg, &SideSpec::omega_deg_per_s})
+            std::transform((first.*numbers).begin(), (first.*numbers).end(), (last.*numbers).begin(),
+                           (member.*numbers).begin(), between);
+        member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
+        crowd.push_back(scene.a.motion);
+        crowd.back().chain = chain_of(member);
+        crowd.back().wants_tension = false;
+    }
+    return crowd;
+}
+
 }  // namespace
 
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
@@ -44,12 +65,18 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
                 .a = side_of(preset, preset.a, 'a', stop),
                 .b = side_of(preset, preset.b, 'b', stop),
                 .samples = product(preset.duration_s, preset.sample_hz)->numerator,
+                .crowd = {},
                 .fps = {},
                 .samples_per_frame = 1};
     const auto samples_a_second = *product(preset.sample_hz, preset.video.speed);
     scene.fps = preset.video.fps.value_or(samples_a_second);
     scene.samples_per_frame = quotient(samples_a_second, scene.fps)->numerator;
+    const auto wanted = [&](StripKind kind) {
+        return std::find(preset.video.strips.begin(), preset.video.strips.end(), kind) != preset.video.strips.end();
+    };
+    scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
     check_precision(scene);
+    if (preset.video.layout == Arrangement::ensemble) scene.crowd = crowd_of(scene);
     return scene;
 }
 

@@ -14,15 +14,7 @@ constexpr std::array model_names{"auto"sv, "angles"sv, "constraints"sv, "mechani
 constexpr std::array precision_names{"double"sv, "quad"sv};
 constexpr std::array stabilise_names{"none"sv, "baumgarte"sv, "projection"sv};
 constexpr int most_links = 10'000;
-
-/// A choice by name, for an enumeration in the order of its names.
-template <class Choice, std::size_t N>
-void read_enumerated(TomlReader& table, std::string_view key, Choice& into,
-                     const std::array<std::string_view, N>& names) {
-    std::string name(names[static_cast<std::size_t>(into)]);
-    table.read_choice(key, name, names);
-    into = static_cast<Choice>(std::find(names.begin(), names.end(), name) - names.begin());
-}
+constexpr int most_angle = 1'000'000;  // degrees
 
 void read_chain(TomlReader& table, SideSpec& side) {
     int links = static_cast<int>(side.links());
@@ -36,6 +28,10 @@ void read_chain(TomlReader& table, SideSpec& side) {
     table.read_positives("mass_kg", side.mass_kg, "one a link");
     table.read_positives("length_m", side.length_m, "one a link");
     table.read_numbers("angle_deg", side.angle_deg, "one a link");
+    for (const auto& angle : side.angle_deg)
+        if (abs(angle) > most_angle)
+            throw table.fault("angle_deg", "must be from -{0} to {0}: more leaves no digits to move by; one is {1}",
+                              most_angle, text_of(angle));
     table.read_numbers("omega_deg_per_s", side.omega_deg_per_s, "one a link");
 }
 
@@ -230,10 +226,10 @@ void read_side(TomlReader& table, SideSpec& side) {
     read_chain(table, side);
     read_mechanism(table, side);
     read_gravity(table, side);
-    read_enumerated(table, "model", side.model, model_names);
+    table.read_enumerated("model", side.model, model_names);
     read_method(table, side);
-    read_enumerated(table, "precision", side.precision, precision_names);
-    read_enumerated(table, "stabilise", side.stabilise, stabilise_names);
+    table.read_enumerated("precision", side.precision, precision_names);
+    table.read_enumerated("stabilise", side.stabilise, stabilise_names);
     table.read_positive("stabilise_rate_per_s", side.stabilise_rate_per_s);
     check_choices(table, side);
     table.finish();

@@ -126,7 +126,7 @@ double TomlReader::number(std::string_view key, std::string_view element, const 
     const auto name = fmt::format("{}{}", key, element);
     if (!value) throw bad_input("{}: {} must be a number; {}", place(key), subject(name), found(node));
     if (!std::isfinite(*value)) throw bad_input("{}: {} must be finite; it is {}", place(key), subject(name), *value);
-    return *value;
+    return *value + 0.0;  // −0 is 0
 }
 
 Quad TomlReader::exact(std::string_view key, std::string_view element, const toml::node& node) const {
@@ -134,7 +134,7 @@ Quad TomlReader::exact(std::string_view key, std::string_view element, const tom
     if (const auto* whole = node.as_integer()) return Quad(whole->get());
     const auto& origin = node.source().path;
     const auto text = texts_->find(origin ? *origin : path_);
-    return text == texts_->end() ? Quad(rounded) : parse_quad(literal_at(text->second, node.source().begin));
+    return text == texts_->end() ? Quad(rounded) : parse_quad(literal_at(text->second, node.source().begin)) + 0;
 }
 
 void TomlReader::read_number(std::string_view key, Quad& into) {
@@ -219,9 +219,9 @@ void TomlReader::read_truth(std::string_view key, bool& into) {
     into = node->as_boolean()->get();
 }
 
-void TomlReader::read_positive_ratio(std::string_view key, Rational& into) {
+std::optional<Rational> TomlReader::ratio(std::string_view key) {
     const auto* node = find(key);
-    if (!node) return;
+    if (!node) return std::nullopt;
     std::optional<Rational> value;
     if (const auto* text = node->as_string()) {
         value = parse_rational(text->get());
@@ -232,8 +232,30 @@ void TomlReader::read_positive_ratio(std::string_view key, Rational& into) {
         value = rational_from_decimal(number(key, "", *node));
     }
     if (!value) throw fault(key, "has more digits than Doppel counts with; it is {}", shown(*node));
-    if (value->numerator <= 0) throw fault(key, "must be > 0; it is {}", shown(*node));
+    return value;
+}
+
+void TomlReader::read_positive_ratio(std::string_view key, Rational& into) {
+    const auto value = ratio(key);
+    if (!value) return;
+    if (value->numerator <= 0) throw fault(key, "must be > 0; it is {}", shown(*find(key)));
     into = *value;
+}
+
+void TomlReader::read_ratio_from_zero(std::string_view key, Rational& into) {
+    const auto value = ratio(key);
+    if (!value) return;
+    if (value->numerator < 0) throw fault(key, "must be ≥ 0; it is {}", shown(*find(key)));
+    into = *value;
+}
+
+void TomlReader::read_color(std::string_view key, Color& into) {
+    const auto* node = find(key);
+    if (!node) return;
+    const auto* text = node->as_string();
+    const auto color = text ? parse_color(text->get()) : std::nullopt;
+    if (!color) throw fault(key, "must be a colour such as \"#ff9f40\"; {}", found(*node));
+    into = *color;
 }
 
 std::optional<std::vector<std::string>> TomlReader::read_texts(std::string_view key) {

@@ -3,9 +3,11 @@
 #include "numeric/error.hpp"
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
+#include "picture/color.hpp"
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -33,10 +35,19 @@ public:
     bool has(std::string_view key);
     void read_text(std::string_view key, std::string& into);
     void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices);
+    /// A choice by name, for an enumeration in the order of its names.
+    template <class Choice, std::size_t N>
+    void read_enumerated(std::string_view key, Choice& into, const std::array<std::string_view, N>& names) {
+        std::string name(names[static_cast<std::size_t>(into)]);
+        read_choice(key, name, names);
+        into = static_cast<Choice>(std::find(names.begin(), names.end(), name) - names.begin());
+    }
     void read_whole(std::string_view key, int& into, int least, int most);
     void read_truth(std::string_view key, bool& into);
     /// A number, or "a/b" in quotes; > 0.
     void read_positive_ratio(std::string_view key, Rational& into);
+    /// The same, or 0.
+    void read_ratio_from_zero(std::string_view key, Rational& into);
     void read_number(std::string_view key, double& into);  // finite
     void read_positive(std::string_view key, double& into);
     void read_numbers(std::string_view key, std::span<double> into, std::string_view one_each);
@@ -50,6 +61,8 @@ public:
     /// An array of 1 to `most` numbers > 0.
     void read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most);
     std::optional<std::vector<std::string>> read_texts(std::string_view key);
+    /// "#rrggbb"
+    void read_color(std::string_view key, Color& into);
     const toml::table* read_table(std::string_view key);
     /// The tables of [[key]]; none where it is absent.
     std::vector<const toml::table*> read_tables(std::string_view key);
@@ -81,6 +94,7 @@ public:
 private:
     const toml::node* find(std::string_view key);
     std::string subject(std::string_view key) const;
+    std::optional<Rational> ratio(std::string_view key);
     double number(std::string_view key, std::string_view element, const toml::node& node) const;
     Quad exact(std::string_view key, std::string_view element, const toml::node& node) const;
 

@@ -11,7 +11,5 @@ namespace doppel {
 void read_video(TomlReader& table, VideoSpec& video);
 /// `size`: any that a picture may have.
 void read_picture_size(TomlReader& table, Size& into);
-/// `theme`: the name of one.
-void read_theme(TomlReader& table, std::string& into);
 
 }  // namespace doppel

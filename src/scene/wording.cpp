@@ -168,7 +168,8 @@ std::string scene_words(const Scene& scene) {
     if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));
     if (scene.a.method.name == scene.b.method.name) common.emplace_back(scene.a.method.title);
     if (pace_words(scene.a) == pace_words(scene.b)) common.push_back(pace_words(scene.a));
-    return fmt::format("two {}{}{}{}", system_words(scene.preset.a),
+    const auto number = scene.crowd.empty() ? std::string("two") : grouped(static_cast<long>(scene.crowd.size()));
+    return fmt::format("{} {}{}{}{}", number, system_words(scene.preset.a),
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));
 }

@@ -1,6 +1,6 @@
 #include "output/fixtures.hpp"
 
-#include "output/video.hpp"
+#include "output/decoded.hpp"
 
 #include <sys/resource.h>
 
@@ -121,14 +121,20 @@ void expect_error(ExitCode code, const std::vector<std::string>& words, const st
     }
 }
 
-void expect_tags(const Video& video) {
-    EXPECT_EQ(video.codec, "h264");
-    EXPECT_EQ(video.pixel_format, "yuv420p");
+void expect_bt709(const Video& video) {
     EXPECT_EQ(video.range, "tv");
     EXPECT_EQ(video.matrix, "bt709");
     EXPECT_EQ(video.primaries, "bt709");
     EXPECT_EQ(video.transfer, "bt709");
-    EXPECT_EQ(video.chroma_location, "center");
+    if (video.pixel_format != "yuv444p") {
+        EXPECT_EQ(video.chroma_location, "center");
+    }
+}
+
+void expect_tags(const Video& video) {
+    expect_bt709(video);
+    EXPECT_EQ(video.codec, "h264");
+    EXPECT_EQ(video.pixel_format, "yuv420p");
     EXPECT_TRUE(video.index_at_front);
 }
 

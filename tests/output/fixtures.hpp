@@ -39,7 +39,9 @@ public:
 
 struct Video;
 
-/// H.264, yuv420p, BT.709 in limited range, chroma in the centre, the index at the front.
+/// BT.709 in limited range, chroma in the centre.
+void expect_bt709(const Video& video);
+/// The same, H.264, yuv420p, the index at the front.
 void expect_tags(const Video& video);
 
 /// What `action` threw: its exit code, and that the message holds `words`.

@@ -2,6 +2,10 @@
 
 #include "output/fixtures.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <set>
 
 using namespace doppel;
@@ -20,6 +24,20 @@ std::set<std::string> listing(const fs::path& folder) {
 
 using Names = std::set<std::string>;
 
+const std::string lock = ".run.lock";
+
+/// Runs `action` in a process of its own, until it raises SIGKILL.
+void killed(const std::function<void()>& action) {
+    const pid_t child = fork();
+    if (child == 0) {
+        action();
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+}
+
 }  // namespace
 
 TEST(PartFiles, AppearTogetherWhenPublished) {
@@ -28,9 +46,9 @@ TEST(PartFiles, AppearTogetherWhenPublished) {
     write_bytes(files.file("x.csv"), "table");
     write_bytes(files.file("x.mp4"), "video");
     write_bytes(files.directory("frames") / "0.png", "picture");
-    EXPECT_EQ(listing(out / "a/b"), (Names{"x.csv.part", "x.mp4.part", "frames.part", "frames.part/0.png"}));
+    EXPECT_EQ(listing(out / "a/b"), (Names{lock, "x.csv.part", "x.mp4.part", "frames.part", "frames.part/0.png"}));
     files.publish();
-    EXPECT_EQ(listing(out / "a/b"), (Names{"x.csv", "x.mp4", "frames", "frames/0.png"}));
+    EXPECT_EQ(listing(out / "a/b"), (Names{lock, "x.csv", "x.mp4", "frames", "frames/0.png"}));
     EXPECT_EQ(bytes_of(out / "a/b/x.csv"), "table");
 }
 
@@ -69,20 +87,19 @@ TEST(PartFiles, OlderFilesStayUntilPublishedAndStalePartsGo) {
     write_bytes(files.file("x.csv"), "new");
     files.publish();
     EXPECT_EQ(bytes_of(out / "x.csv"), "new");
-    EXPECT_EQ(listing(out), Names{"x.csv"});
+    EXPECT_EQ(listing(out), (Names{lock, "x.csv"}));
 }
 
 TEST(PartFiles, AFolderIsReplacedAsAWhole) {
     const auto out = fresh_folder();
     fs::create_directories(out / "frames");
     fs::create_directories(out / "frames.part");
-    fs::create_directories(out / "frames.old");
     write_bytes(out / "frames/old.png", "old");
     write_bytes(out / "frames.part/stale.png", "stale");
     PartFiles files(out);
     write_bytes(files.directory("frames") / "new.png", "new");
     files.publish();
-    EXPECT_EQ(listing(out), (Names{"frames", "frames/new.png"}));
+    EXPECT_EQ(listing(out), (Names{lock, "frames", "frames/new.png"}));
 }
 
 TEST(PartFiles, OneThatCannotBePublishedTakesTheOthersWithIt) {
@@ -107,4 +124,51 @@ TEST(PartFiles, WhatIsInTheWayIsNamed) {
     expect_error(ExitCode::io_failed, {"file is no folder"}, [&] { PartFiles(out / "file/x"); });
     expect_error(ExitCode::io_failed, {"/proc/doppel", "No such file"}, [] { PartFiles("/proc/doppel/x"); });
     EXPECT_EQ(listing(out), (Names{"x", "x/x.csv", "file"}));
+}
+
+TEST(PartFiles, HoldTheFolderForOneRunAtATime) {
+    const auto out = fresh_folder();
+    const auto pid = std::to_string(getpid());
+    {
+        PartFiles files(out / "a");
+        expect_error(ExitCode::io_failed, {(out / "a").string() + ": ", "another run, process " + pid, "--out"},
+                     [&] { PartFiles(out / "a"); });
+        PartFiles shard(out / "a", "shard-1-of-2");  // of another name
+        EXPECT_EQ(listing(out / "a"), (Names{lock, ".shard-1-of-2.lock"}));
+        write_bytes(files.file("x.csv"), "table");
+        files.publish();
+    }
+    EXPECT_EQ(listing(out), (Names{"a", "a/x.csv"}));
+    PartFiles(out / "a").file("x.csv");
+}
+
+TEST(PartFiles, WhatAKilledRunLeftGoesWithTheNext) {
+    const auto out = fresh_folder();
+    write_bytes(out / "notes.part", "somebody's");
+    killed([&] {
+        PartFiles files(out);
+        write_bytes(files.file("x.mp4"), "video");
+        write_bytes(files.directory("frames") / "0.png", "picture");
+        fs::create_directory(out / "frames.old.part");  // as where it is killed while publishing
+        raise(SIGKILL);
+    });
+    EXPECT_EQ(listing(out),
+              (Names{lock, "frames.old.part", "frames.part", "frames.part/0.png", "notes.part", "x.mp4.part"}));
+    { PartFiles files(out, "another"); }  // is not concerned
+    EXPECT_TRUE(fs::exists(out / "x.mp4.part"));
+    {
+        PartFiles files(out);
+        EXPECT_EQ(listing(out), (Names{lock, "notes.part"}));
+    }
+    EXPECT_EQ(listing(out), Names{"notes.part"});
+}
+
+TEST(PartFiles, AStaleListRemovesNothingButParts) {
+    const auto out = fresh_folder();
+    fs::create_directory(out / "a");
+    write_bytes(out / "x.part", "");
+    write_bytes(out / "a/x.csv", "");
+    write_bytes(out / "a" / lock, "1\n../x.part\nx.csv\n.\n..\n\n.part\n/\n" + (out / "x.part").string() + "\n");
+    { PartFiles files(out / "a"); }
+    EXPECT_EQ(listing(out), (Names{"a", "a/x.csv", "x.part"}));
 }

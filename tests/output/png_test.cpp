@@ -1,5 +1,6 @@
 #include "output/png.hpp"
 
+#include "output/decoded.hpp"
 #include "output/fixtures.hpp"
 
 #include <fmt/format.h>
@@ -27,6 +28,49 @@ TEST(Png, LeavesAlphaOut) {
     picture.rgba = {10, 20, 30, 0};
     write_png(folder / "x.png", picture);
     EXPECT_EQ(read_png(folder / "x.png").rgba, (std::vector<std::uint8_t>{10, 20, 30, 255}));
+}
+
+TEST(Png, KeepsAlphaWhereAskedTo) {
+    const auto folder = fresh_folder();
+    Picture picture = noise({37, 21}, 3);
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = static_cast<std::uint8_t>(3 * i);
+    write_png(folder / "x.png", picture, {.with_alpha = true});
+    EXPECT_EQ(read_png(folder / "x.png").rgba, picture.rgba);
+    const auto sink = make_png_sink(folder, [](long k) { return fmt::format("{}.png", k); }, 2, {.with_alpha = true});
+    sink->take(picture, whole(picture.size));
+    sink->finish();
+    EXPECT_EQ(read_png(folder / "0.png").rgba, picture.rgba);
+}
+
+TEST(Png, WordsCanBeReadBack) {
+    const auto folder = fresh_folder();
+    const Picture picture = noise({64, 48}, 3);
+    const Metadata words{{"title", "Sensitivity, 90.003°"}, {"comment", "θ → π"}, {"encoder", "doppel 0.1"}};
+    const auto check_words = [&](const std::filesystem::path& path) {
+        // libav reads tEXt, but not iTXt
+        const auto found = read_video(path).metadata;
+        EXPECT_EQ(found.at("title"), "Sensitivity, 90.003°");
+        EXPECT_EQ(found.at("software"), "doppel 0.1");
+        EXPECT_NE(test::bytes_of(path).find(std::string("iTXtComment\0\0\0\0\0θ → π", 24)), std::string::npos);
+        EXPECT_EQ(read_png(path).rgba, picture.rgba);
+    };
+    write_png(folder / "x.png", picture, {.metadata = words});
+    check_words(folder / "x.png");
+    const auto sink = make_png_sink(folder, [](long k) { return fmt::format("{}.png", k); }, 2, {.metadata = words});
+    for (int k = 0; k < 3; ++k) sink->take(picture, whole(picture.size));
+    sink->finish();
+    check_words(folder / "2.png");
+}
+
+TEST(Png, SizesMayChangeFromPictureToPicture) {
+    // a thread's memory is used again: larger, smaller, in any order
+    const auto folder = fresh_folder();
+    for (const Size size : {Size{40, 30}, Size{400, 300}, Size{1, 1}, Size{300, 7}, Size{7, 300}, Size{800, 600}}) {
+        const Picture picture = noise(size, 5);
+        write_png(folder / "x.png", picture);
+        ASSERT_EQ(read_png(folder / "x.png").rgba, picture.rgba) << size.width;
+        expect_error(ExitCode::io_failed, {"/dev/full"}, [&] { write_png("/dev/full", picture); });
+    }
 }
 
 // A finished 1080p frame of two panels and a strip, by level of libdeflate, ms of compression and KB:

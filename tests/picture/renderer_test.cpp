@@ -22,6 +22,7 @@ public:
         if (list_.size() > 6) list_.resize(6);
         for (Item& item : list_) {
             if (auto* stroke = std::get_if<Stroke>(&item)) grow(*stroke);
+            if (auto* capsule = std::get_if<Capsule>(&item); capsule && chance(0.3f)) move(*capsule);
         }
         for (int i = 0; i < 3; ++i) list_.push_back(item());
         return list_;
@@ -37,24 +38,42 @@ private:
         Point at = stroke.vertices.empty() ? point() : stroke.vertices.back().at;
         for (int i = 0; i < 20; ++i) {
             at = {at.x + between(-6, 8), at.y + between(-6, 6)};
-            stroke.vertices.push_back({at, between(0, 1)});
+            stroke.vertices.push_back({at, between(0, 1), between(0, 1)});
         }
+    }
+
+    /// As far as out of the picture.
+    void move(Capsule& capsule) {
+        const float x = between(-150, 150), y = between(-150, 150);
+        for (Point* end : {&capsule.from, &capsule.to}) *end = {end->x + x, end->y + y};
+    }
+
+    std::shared_ptr<const Picture> pixels() {
+        auto made = std::make_shared<Picture>(Size{9, 7});
+        for (std::uint8_t& value : made->rgba) value = static_cast<std::uint8_t>(random_());
+        return made;
     }
 
     Item item() {
         const Point a = point(), b = point();
-        switch (random_() % 5) {
+        const float glow = chance(0.4f) ? between(0, 25) : 0;
+        switch (random_() % 7) {
             case 0:
                 return Box{a.x, a.y, a.x + between(0, 90), a.y + between(0, 90), between(0, 20), color()};
             case 1:
-                return Capsule{a, chance(0.3f) ? a : b, between(0.1f, 20), color()};
+                return Capsule{a, chance(0.3f) ? a : b, between(0.1f, 20), color(), glow};
             case 2:
                 return Ring{a, between(1, 50), between(0.2f, 9), color()};
             case 3: {
-                Stroke stroke{.vertices = {}, .width = between(0.3f, 9), .color = color()};
+                Stroke stroke{.vertices = {}, .width = between(0.3f, 9), .color = color(), .glow = glow};
                 grow(stroke);
                 return stroke;
             }
+            case 4:
+                return Image{a.x, a.y, a.x + between(0, 120), a.y + between(0, 120), pixels()};
+            case 5:
+                // long and slanting: drawn in bands where the damage cuts it
+                return Capsule{{between(-900, 0), a.y}, {between(320, 1200), b.y}, between(0.3f, 8), color(), glow};
             default: {
                 const Weight weight = chance(0.5f) ? Weight::bold : Weight::regular;
                 const float em = chance(0.5f) ? 16.0f : 31.5f;

@@ -58,7 +58,7 @@ TEST(Stroke, FadesAlongItself) {
 }
 
 TEST(Stroke, CoversWhatLiesWithinHalfItsWidth) {
-    // many more vertices than bends: those skipped may shift an edge by 1/32 px, 8 of 255
+    // many more vertices than bends: those skipped may shift an edge by 1/10 px
     std::vector<Point> points;
     for (int i = 0; i <= 5000; ++i) {  // 0.1 px apart at most
         const float x = 10 + 0.028f * static_cast<float>(i);
@@ -69,8 +69,32 @@ TEST(Stroke, CoversWhatLiesWithinHalfItsWidth) {
         for (int x = 0; x < size.width; ++x) {
             double nearest = 1e9;
             for (const Point& p : points) nearest = std::min(nearest, std::hypot(x + 0.5 - p.x, y + 0.5 - p.y));
-            ASSERT_NEAR(picture.at(x, y)[0], 255 * std::clamp(0.5 - (nearest - 1.5), 0.0, 1.0), 9);  // measured 8.3
+            ASSERT_NEAR(picture.at(x, y)[0], 255 * std::clamp(0.5 - (nearest - 1.5), 0.0, 1.0), 14);  // measured 11.6
         }
+    }
+}
+
+TEST(Stroke, TapersBetweenItsVertices) {
+    const Picture picture =
+        drawn({Stroke{.vertices = {{{20, 60}, 1, 0.25f}, {{140, 60}, 1, 1}}, .width = 20, .color = white}});
+    for (int x = 20; x < 140; ++x) {
+        double covered = 0;
+        for (int y = 0; y < size.height; ++y) covered += picture.at(x, y)[0] / 255.0;
+        EXPECT_NEAR(covered, 5 + 15 * (x + 0.5 - 20) / 120, 0.02) << x;  // measured 0.0037
+    }
+}
+
+TEST(Stroke, GlowsBeyondItsEdge) {
+    const Stroke stroke{.vertices = {{{20, 60}, 0.8f}, {{140, 60}, 0.8f}}, .width = 6, .color = white, .glow = 12};
+    const Capsule capsule{{20, 60}, {140, 60}, 3, white.with_alpha(0.8f), 12};
+    for (const Picture& picture : {drawn({stroke}), drawn({capsule})}) {
+        EXPECT_EQ(picture.at(80, 60)[0], 204);
+        for (int y = 63; y < 80; ++y) {
+            const double beyond = y + 0.5 - 63, dim = std::max(0.0, 1 - beyond / 12);
+            const double edge = std::max(0.0, 0.5 - beyond);
+            EXPECT_NEAR(picture.at(80, y)[0], 204 * (edge + (1 - edge) * dim * dim / 3), 1) << y;  // measured 0.5
+        }
+        EXPECT_EQ(picture.at(80, 75)[0], 0);
     }
 }
 

@@ -126,13 +126,16 @@ INSTANTIATE_TEST_SUITE_P(
     Video, PresetErrors,
     testing::Values(
         Case{"[video]\nsize = [641, 360]",
-             "presets/x.toml:2:1: [video] size must be even, as H.264 needs it; it is [641, 360]; [642, 360] would do"},
+             "presets/x.toml:2:1: [video] size must be even, as H.264 needs it in yuv420p; it is [641, 360]; [642, "
+             "360] would do"},
         Case{"[video]\nsize = [0, 100]",
              "presets/x.toml:2:1: [video] size must be whole numbers from 64 to 16384; it is [0, 100]"},
-        Case{"[video]\nformat = \"avi\"", R"(presets/x.toml:2:1: [video] format must be "mp4" or "png"; it is "avi")"},
+        Case{"[video]\nformat = \"avi\"",
+             R"(presets/x.toml:2:1: [video] format must be "mp4", "webm", "gif", "apng" or "png"; it is "avi")"},
         Case{"[video]\ncrf = 60", "presets/x.toml:2:1: [video] crf must be from 0 to 51; it is 60"},
-        Case{"[video]\ntheme = \"drak\"",
-             R"(presets/x.toml:2:1: [video] theme must be "dark" or "light"; it is "drak"; did you mean "dark"?)"},
+        Case{
+            "[video]\ntheme = \"drak\"",
+            R"(presets/x.toml:2:1: [video] theme must be "dark", "light" or "high-contrast"; it is "drak"; did you mean "dark"?)"},
         Case{
             "[video]\npreset = \"quick\"",
             R"(presets/x.toml:2:1: [video] preset must be "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower" or "veryslow"; it is "quick")"},
@@ -142,11 +145,12 @@ INSTANTIATE_TEST_SUITE_P(
              "presets/x.toml:2:1: [video] side_colors must have 2 colours, a and b; it has 1"},
         Case{"[video]\nside_colors = [1, 2]",
              "presets/x.toml:2:1: [video] side_colors must be an array of strings; 1 is a whole number"},
-        Case{"[video]\npanels = []",
-             R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "energy")"},
+        Case{
+            "[video]\npanels = []",
+            R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force")"},
         Case{
             "[video]\npanels = [\"phase\"]",
-            R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "energy"; "phase" is none of them)"},
+            R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force"; "phase" is none of them)"},
         Case{"[video]\npanels = \"energy\"",
              "presets/x.toml:2:1: [video] panels must be an array of strings; it is a string (\"energy\")"},
         Case{"[video]\ntrail_s = -1", "presets/x.toml:2:1: [video] trail_s must be from 0 (none) to 3600; it is -1"},

@@ -169,18 +169,6 @@ TEST(PairRun, TellsWhereAMethodBrokeDown) {
     EXPECT_NE(message.find("constraints, explicit Euler, 1/3 s"), std::string::npos) << message;
 }
 
-TEST(Layout, AxesStayFiniteForAnyPreset) {
-    for (const char* key :
-         {"system.length_m=[1e200, 1]", "system.mass_kg=[1e300, 1]", "system.mass_kg=[1e-300, 1]",
-          "system.gravity_m_per_s2=1e300", "system.length_m=[1e-200, 1e-200]", "b.mass_kg=[1e300, 1]"}) {
-        const Axis axis = make_layout(scene_of("butterfly", {key})).distance->value;
-        EXPECT_GT(axis.low, 0) << key;
-        EXPECT_GE(axis.high / axis.low, 9.99) << key;
-        EXPECT_LE(axis.high / axis.low, 1.01e60) << key;
-        EXPECT_LT(axis.high, 1e61) << key;
-    }
-}
-
 TEST(PairRun, StopsInTheMiddleOfALongSample) {
     const auto scene = scene_of("butterfly", {"scene.sample_hz=1", "system.step_s=1e-9", "video.fps=1"});
     PairRun pair(scene);

@@ -2,8 +2,6 @@
 
 #include "numeric/error.hpp"
 #include "numeric/state.hpp"
-#include "picture/renderer.hpp"
-#include "scene/composer.hpp"
 #include "scene/scene.hpp"
 
 #include <string>
@@ -20,16 +18,6 @@ inline std::vector<Override> sets(const std::vector<std::string>& arguments) {
 
 inline Scene scene_of(const std::string& preset, const std::vector<std::string>& arguments = {}) {
     return make_scene(read_preset(find_preset(preset), sets(arguments)));
-}
-
-/// The picture of one sample.
-inline Picture frame_of(const Scene& scene, long sample) {
-    Composer composer(scene);
-    PairRun pair(scene);
-    const std::atomic<bool> never = false;
-    for (long n = 0; n <= sample; ++n) composer.add(pair.next(never));
-    Renderer renderer(scene.preset.video.size, composer.backdrop());
-    return renderer.draw(composer.frame());
 }
 
 /// The error that `action` throws; fails where it throws none.

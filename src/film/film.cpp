@@ -1,0 +1,176 @@
+#include "film/film.hpp"
+
+#include "numeric/clock.hpp"
+#include "output/png.hpp"
+#include "output/video.hpp"
+#include "picture/matte.hpp"
+#include "picture/reduce.hpp"
+#include "scene/version.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// Adds the CPU time that this thread spends while it lives, s.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& total) : total_(total), start_(seconds_of(CLOCK_THREAD_CPUTIME_ID)) {}
+    ~Stopwatch() { total_ += seconds_of(CLOCK_THREAD_CPUTIME_ID) - start_; }
+
+private:
+    double& total_;
+    double start_;
+};
+
+/// By which a film can be traced to its manifest.
+Metadata metadata_of(const Preset& preset) {
+    return {{"title", preset.title},
+            {"comment", fmt::format("preset {}; how it was made is in {}.json", preset.name, preset.name)},
+            {"encoder", fmt::format("Doppel {} ({})", version(), revision())}};
+}
+
+DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
+    DisplayList list{Box{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, page}};
+    list.insert(list.end(), backdrop.begin(), backdrop.end());
+    return list;
+}
+
+/// The samples of `count` frames spread over those from first to last − 1, both ends included.
+std::vector<long> spread(long first, long last, long stride, long count) {
+    const long low = (first + stride - 1) / stride, high = (last - 1) / stride;
+    std::vector<long> samples;
+    for (long k = 0; k < count; ++k)
+        samples.push_back(stride * (count == 1 ? high
+                                               : low + std::lround(static_cast<double>((high - low) * k) /
+                                                                   static_cast<double>(count - 1))));
+    return samples;
+}
+
+}  // namespace
+
+VideoOptions video_options(const Scene& scene, int threads) {
+    const auto& video = scene.preset.video;
+    return {.format = video.format == "webm"   ? VideoFormat::webm
+                      : video.format == "gif"  ? VideoFormat::gif
+                      : video.format == "apng" ? VideoFormat::apng
+                                               : VideoFormat::mp4,
+            .codec = video.codec,
+            .size = video.size,
+            .fps_numerator = static_cast<int>(scene.fps.numerator),
+            .fps_denominator = static_cast<int>(scene.fps.denominator),
+            .pixel_format = video.pixel_format == "yuv444p"     ? PixelFormat::yuv444
+                            : video.pixel_format == "yuv420p10" ? PixelFormat::yuv420_10
+                                                                : PixelFormat::yuv420,
+            .preset = video.preset,
+            .crf = video.crf,
+            .threads = threads,
+            .transparent = video.transparent,
+            .metadata = metadata_of(scene.preset)};
+}
+
+Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record)
+    : scene_(scene), schedule_(schedule_of(scene)), composer_(scene), parts_(parts) {
+    const int jobs = run_threads(options.jobs);
+    const auto& video = scene.preset.video;
+    if (video.format == "png") {
+        const auto folder = parts.directory("frames");
+        record.files.emplace_back("frames", folder);
+        sink_ = make_png_sink(folder, [this](long k) { return fmt::format("{:06}.png", first_number_ + k); }, jobs,
+                              {.with_alpha = video.transparent, .metadata = metadata_of(scene.preset)});
+    } else {
+        const auto file = video_options(scene, jobs);
+        const auto name = scene.preset.name + extension(file.format);
+        const auto path = parts.file(name);
+        record.files.emplace_back(name, path);
+        sink_ = make_video_sink(path, file);
+        record.libav = libav_description();
+    }
+    auto backdrop = composer_.backdrop();
+    if (video.transparent) {
+        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), options.gl);
+        backdrop = on_page(backdrop, video.size, rgb(0x000000));
+        matted_ = Picture(video.size);
+    }
+    renderer_.emplace(video.size, backdrop, options.gl);
+    record.gl = renderer_->description();
+    if (video.contact_sheet)
+        sheet_samples_ = spread(options.first, options.last, scene.samples_per_frame,
+                                long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]);
+}
+
+const Picture& Film::drawn(const DisplayList& list) {
+    const auto& picture = renderer_->draw(list);
+    changed_ = renderer_->changed();
+    if (!on_white_) return picture;
+    const auto& white = on_white_->draw(list);
+    changed_.insert(changed_.end(), on_white_->changed().begin(), on_white_->changed().end());
+    for (const auto& area : changed_) matte(picture, white, area, matted_);
+    return matted_;
+}
+
+const Picture& Film::take(const DisplayList& list, RunRecord& record) {
+    const Picture* picture = nullptr;
+    {
+        Stopwatch watch(record.draw_cpu_s);
+        picture = &drawn(list);
+    }
+    Stopwatch watch(record.write_cpu_s);
+    sink_->take(*picture, changed_);
+    ++record.frames;
+    return *picture;
+}
+
+/// The frame shown last under a card that goes, or comes up.
+void Film::take_card(long frames, bool comes_up, RunRecord& record) {
+    for (long k = 0; k < frames; ++k) {
+        const double opacity = card_opacity(k, frames, scene_.fps.value(), comes_up);
+        auto list = composer_.frame();
+        const auto card = comes_up ? composer_.end_card(opacity) : composer_.title_card(opacity);
+        list.insert(list.end(), card.begin(), card.end());
+        take(list, record);
+    }
+}
+
+/// What is wanted of a frame besides the film.
+void Film::keep(const Picture& picture) {
+    const auto& video = scene_.preset.video;
+    if (video.poster_s && product(*video.poster_s, scene_.preset.sample_hz)->numerator == sample_) poster_ = picture;
+    const auto times = std::count(sheet_samples_.begin(), sheet_samples_.end(), sample_);
+    if (times == 0) return;
+    constexpr int sheet_width = 1920;  // px, about
+    const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
+    const int height = std::max(1, static_cast<int>(std::lround(double(width) * video.size.height / video.size.width)));
+    sheet_.insert(sheet_.end(), static_cast<std::size_t>(times), reduced(picture, {width, height}));
+}
+
+void Film::shoot(RunRecord& record) {
+    const long number = sample_ / scene_.samples_per_frame;
+    const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
+    if (record.frames == 0) first_number_ = is_first ? 0 : schedule_.title + schedule_.hold_start + number;
+    if (is_first) take_card(schedule_.title, false, record);
+    const auto list = composer_.frame();
+    const long times = 1 + (is_first ? schedule_.hold_start : 0) + (is_last ? schedule_.hold_end : 0);
+    for (long k = 0; k < times; ++k) {
+        const auto& picture = take(list, record);
+        if (k == 0) keep(picture);
+    }
+    if (is_last) take_card(schedule_.end, true, record);
+}
+
+void Film::finish(RunRecord& record) {
+    sink_->finish();
+    const auto& preset = scene_.preset;
+    const auto write = [&](const std::string& ending, const Picture& picture) {
+        const auto name = preset.name + ending;
+        const auto path = parts_.file(name);
+        write_png(path, picture, {.with_alpha = preset.video.transparent, .metadata = metadata_of(preset)});
+        record.files.emplace_back(name, path);
+    };
+    if (poster_) write(".poster.png", *poster_);
+    if (!sheet_.empty())
+        write(".contact.png", contact_sheet(sheet_, (*preset.video.contact_sheet)[0], 8, composer_.page_color()));
+}
+
+}  // namespace doppel

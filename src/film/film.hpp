@@ -1,0 +1,63 @@
+#pragma once
+
+#include "film/composer.hpp"
+#include "film/manifest.hpp"
+#include "film/run.hpp"
+#include "film/schedule.hpp"
+#include "output/part_files.hpp"
+#include "output/sink.hpp"
+#include "output/video.hpp"
+#include "picture/renderer.hpp"
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace doppel {
+
+/// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
+class Film {
+public:
+    /// For the samples options.first … options.last − 1. Adds its files to `parts` and to the record.
+    Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record);
+
+    /// Every sample, from 0 on.
+    void add(const Shot& shot) {
+        sample_ = shot.moment.sample;
+        composer_.add(shot);
+    }
+
+    /// The shot added last becomes a frame; before the first of all comes the title, after the last the end.
+    void shoot(RunRecord& record);
+
+    /// Writes what was kept.
+    void finish(RunRecord& record);
+
+private:
+    const Picture& take(const DisplayList& list, RunRecord& record);
+    void take_card(long frames, bool comes_up, RunRecord& record);
+    void keep(const Picture& picture);
+    const Picture& drawn(const DisplayList& list);
+
+    const Scene& scene_;
+    Schedule schedule_;
+    Composer composer_;
+    PartFiles& parts_;
+    long sample_ = 0;                     // added last
+    std::atomic<long> first_number_ = 0;  // of the first picture; compressor threads ask
+    std::unique_ptr<Sink> sink_;
+    std::optional<Renderer> renderer_;
+    // with opacity: the same on white, and the two as one
+    std::optional<Renderer> on_white_;
+    Picture matted_;
+    std::vector<Rect> changed_;
+    std::optional<Picture> poster_;
+    std::vector<long> sheet_samples_;
+    std::vector<Picture> sheet_;
+};
+
+/// How the video file of a scene is written. `threads` of the encoder.
+VideoOptions video_options(const Scene& scene, int threads);
+
+}  // namespace doppel

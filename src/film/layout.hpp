@@ -1,0 +1,66 @@
+#pragma once
+
+#include "film/style.hpp"
+#include "picture/area.hpp"
+#include "picture/axis.hpp"
+#include "picture/display_list.hpp"
+#include "scene/scene.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// A panel of pendulums and how metres become pixels in it.
+struct PendulumPanel {
+    /// What is said of a side, at the panel's top.
+    struct Words {
+        std::size_t side = 0;
+        std::string heading, note;  // what differs; what else defines the side
+        Align align = Align::left;
+    };
+    Area area;
+    std::vector<std::size_t> sides;  // whose pendulum it shows, the front one first
+    std::vector<Words> words;
+    Point center;                       // px, where (center_x, center_y) is
+    double center_x = 0, center_y = 0;  // m: the pivot of a chain
+    float px_per_m = 1;
+    Point at(double x_m, double y_m) const;  // within a million px of the centre, wherever a blow-up throws a bob
+};
+
+/// A panel of phase space: angles across, rates up.
+struct PhasePanel {
+    Area area;  // of the axes
+    Axis angle, rate;
+};
+
+/// A strip of the chart below: time across, a quantity up.
+struct StripLayout {
+    StripKind kind;
+    Area area;
+    Axis time, value;
+};
+
+/// Where everything of a film's picture goes: a function of the scene alone.
+struct Layout {
+    float unit = 1;  // 1 px of a 1920×1080 picture
+    float text = 1;  // the same for words, which stay legible in small pictures
+    Style style;
+    Area page;  // within the margins
+    std::string title, subtitle;
+    std::vector<PendulumPanel> panels;
+    std::optional<PhasePanel> phase;
+    std::vector<StripLayout> strips;  // from the top down
+    float reach = 0;            // px, the radius of the circle that an outstretched chain reaches; 0 = none to show
+    float bob_radius = 0;       // px, of the heaviest
+    float last_bob_radius = 0;  // px, at least, of the one that leaves the trail; of long chains
+    float rod_radius = 0;       // half its width, px
+    float time_labels = 0;      // their baseline, px
+};
+
+Layout make_layout(const Scene& scene);
+
+}  // namespace doppel

@@ -1,0 +1,67 @@
+#include "film/manifest.hpp"
+
+#include "scene/manifest_json.hpp"
+#include "scene/resolved.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace doppel {
+namespace {
+
+Json side_json(const Scene& scene, const Side& side, const Effort& effort, double energy_error, double length_error) {
+    Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
+    if (side.method.adaptive) {
+        json["tolerance"] = static_cast<double>(side.motion.tolerance);
+    } else {
+        json["step_s"] = side.step.text();
+        json["steps_per_sample"] = side.motion.steps_per_sample;
+    }
+    if (side.choice)
+        json["accuracy"] = {{"asked_rad", side.choice->accuracy},
+                            {"estimated_error_rad", side.choice->estimated_error},
+                            {"horizon_s", scene.time(side.choice->horizon)},
+                            {"holds_to_the_end", side.choice->horizon == scene.samples},
+                            {"verified_by", side.choice->verified_by}};
+    json["steps"] = effort.steps;
+    json["evaluations"] = effort.evaluations;
+    json["smallest_step_s"] = effort.smallest_step;
+    json["worst_energy_error"] = energy_error;
+    json["worst_length_error_m"] = length_error;
+    return json;
+}
+
+}  // namespace
+
+void write_manifest(const std::filesystem::path& path, const Scene& scene, const RunRecord& record) {
+    Json manifest = {
+        {"doppel", program_json()},
+        {"preset", scene.preset.name},
+        {"resolved_preset", json_of_toml(resolved_toml(scene.preset))},
+        {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
+        {"frames",
+         {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", scene.samples_per_frame}}},
+        {"steps", record.effort_a.steps + record.effort_b.steps},
+        {"a", side_json(scene, scene.a, record.effort_a, record.worst.energy_a, record.worst.length_a)},
+        {"b", side_json(scene, scene.b, record.effort_b, record.worst.energy_b, record.worst.length_b)},
+        {"largest_distance", record.largest_distance},
+        {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
+        {"time",
+         {{"wall_s", record.wall_s},
+          {"cpu_s", record.cpu_s},
+          {"cpu_by_stage_s",
+           {{"simulate", record.simulate_cpu_s},
+            {"draw", record.draw_cpu_s},
+            {"convert", record.write_cpu_s},
+            {"encode_and_rest", record.encode_cpu_s}}}}},
+        {"files", files_json(record.files)},
+    };
+    if (!record.failure.empty()) manifest["failed"] = record.failure;
+    write_json(path, manifest);
+}
+
+}  // namespace doppel

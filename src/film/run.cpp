@@ -1,0 +1,127 @@
+#include "film/run.hpp"
+
+#include "film/film.hpp"
+#include "film/manifest.hpp"
+#include "film/rescue.hpp"
+#include "film/simulation.hpp"
+#include "film/table.hpp"
+#include "numeric/clock.hpp"
+#include "numeric/error.hpp"
+#include "output/part_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+void watch_worst(WorstErrors& worst, const Moment& moment) {
+    worst.energy_a = std::max(worst.energy_a, std::abs(moment.energy_error_a));
+    worst.energy_b = std::max(worst.energy_b, std::abs(moment.energy_error_b));
+    worst.length_a = std::max(worst.length_a, moment.a.length_error);
+    worst.length_b = std::max(worst.length_b, moment.b.length_error);
+}
+
+/// "NAME.failed.csv": what stays of a run that broke down.
+std::string failed_name(const std::string& name, const std::string& ending) {
+    return name + ".failed" + ending;
+}
+
+/// A failed run's files from before are no news beside a whole one.
+void remove_failed(const std::filesystem::path& folder, const std::string& name, const char* ending) {
+    std::error_code ignored;
+    std::filesystem::remove(folder / failed_name(name, ending), ignored);
+}
+
+/// Keeps the samples before the break-down, under a name that says so, with a manifest; throws the error that tells
+/// where they are, and which step would have held.
+[[noreturn]] void keep_failed(const Scene& scene, const BreakDown& fault, RunRecord& record, PartFiles& parts,
+                              const std::atomic<bool>& stop) {
+    const auto& name = scene.preset.name;
+    const auto advice = step_that_holds(scene, fault, stop);
+    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    record.failure = fmt::format("{}; {}", fault.what(), advice);
+    record.last_sample = fault.sample - 1;
+    const auto csv = failed_name(name, ".csv"), manifest = failed_name(name, ".json");
+    parts.keep_only(name + ".csv", csv);
+    std::erase_if(record.files, [&](const auto& file) { return file.first != name + ".csv"; });
+    record.files.front().first = csv;
+    write_manifest(parts.file(manifest), scene, record);
+    parts.publish();
+    throw method_failed("{}; the samples before are in {}", record.failure, (parts.folder() / csv).string());
+}
+
+}  // namespace
+
+int run_threads(int jobs) {
+    return jobs > 0 ? jobs : 2 * static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
+              const std::function<void(const Progress&)>& report) {
+    const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
+    if (first < 0 || first >= last || last > scene.samples + 1)
+        throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
+                        scene.preset.name, scene.samples, scene.samples + 1);
+    const long stride = options.pictures ? scene.samples_per_frame : 1;
+    const long total = (last - 1) / stride - (first - 1 + stride) / stride + 1;
+    if (options.pictures && total < 1)
+        throw bad_input("--frames {}:{}: no frame falls into it; every {}th sample is one", first, last, stride);
+    RunRecord record{.first_sample = first, .last_sample = last - 1};
+    PartFiles parts(options.out / scene.preset.name);
+    std::optional<Film> film;
+    auto range = options;
+    range.first = first, range.last = last;
+    if (options.pictures) film.emplace(scene, range, parts, record);
+    const auto csv_name = scene.preset.name + ".csv";
+    record.files.emplace_back(csv_name, parts.file(csv_name));
+    PairTable table(record.files.back().second, scene);
+
+    Simulation simulation(scene, last, options.pictures, stop);
+    const auto take_efforts = [&] { std::tie(record.effort_a, record.effort_b) = simulation.efforts(); };
+    double start_distance = 0;
+    for (long sample = 0, done = 0; sample < last; ++sample) {
+        Shot shot;
+        try {
+            shot = simulation.next();
+        } catch (const BreakDown& fault) {
+            take_efforts();
+            table.finish();
+            keep_failed(scene, fault, record, parts, stop);
+        }
+        const auto& moment = shot.moment;
+        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        if (sample == 0) start_distance = moment.distance;
+        watch_worst(record.worst, moment);
+        record.largest_distance = std::max(record.largest_distance, moment.distance);
+        if (film) film->add(shot);
+        if (sample < first) continue;
+        table.add(moment, start_distance);
+        if (sample % stride != 0) continue;
+        if (film) film->shoot(record);
+        report({++done, total});
+    }
+    take_efforts();
+    table.finish();
+    if (film) film->finish(record);
+
+    record.simulate_cpu_s = simulation.cpu_s();
+    record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+    record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
+    record.encode_cpu_s = std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
+    const auto manifest = scene.preset.name + ".json";
+    write_manifest(parts.file(manifest), scene, record);
+    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    parts.publish();
+    for (const char* ending : {".csv", ".json"}) remove_failed(parts.folder(), scene.preset.name, ending);
+
+    RunResult result{.files = {}, .frames = record.frames, .samples = last - first, .wall_s = record.wall_s};
+    for (const auto& file : record.files) result.files.push_back(parts.folder() / file.first);
+    result.files.push_back(parts.folder() / manifest);
+    return result;
+}
+
+}  // namespace doppel

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "picture/gl.hpp"
+#include "scene/scene.hpp"
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace doppel {
+
+/// What a run writes, and where.
+struct RunOptions {
+    std::filesystem::path out = "out";  // the files go to OUT/NAME/
+    bool pictures = true;               // false: the table and the manifest alone; no GL
+    long first = 0, last = -1;          // samples first … last − 1; all where last < 0
+    int jobs = 0;                       // threads that encode or compress; 0 = run_threads() decides
+    Gl gl = Gl::automatic;              // what draws
+};
+
+/// The threads that encode where `jobs` of them were asked for: that many, or two a core where it is 0 (x264 waits for
+/// itself otherwise).
+int run_threads(int jobs);
+
+/// How far a run is, as often as a frame is done.
+struct Progress {
+    long done, total;  // frames (samples where no pictures are made)
+};
+
+/// What came of a run.
+struct RunResult {
+    std::vector<std::filesystem::path> files;
+    long frames = 0;   // pictures written
+    long samples = 0;  // rows of the table
+    double wall_s = 0;
+};
+
+/// Simulates, draws and writes; the three overlap through bounded queues. Files appear complete or not at all.
+/// Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.
+RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
+              const std::function<void(const Progress&)>& report);
+
+}  // namespace doppel

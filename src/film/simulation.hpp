@@ -1,0 +1,42 @@
+#pragma once
+
+#include "film/shot.hpp"
+#include "integrate/crowd.hpp"
+#include "output/queue.hpp"
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace doppel {
+
+/// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of shots ahead of who takes
+/// them.
+class Simulation {
+public:
+    /// Shots 0 … last − 1. The members of an ensemble are stepped where `with_crowd`.
+    Simulation(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop);
+    ~Simulation();
+
+    /// The next shot; rethrows what stopped the simulation.
+    Shot next();
+
+    /// CPU time of the thread, s, and what the sides have cost; whole once the last shot was taken.
+    double cpu_s() const { return cpu_s_; }
+    std::pair<Effort, Effort> efforts();
+
+private:
+    void work(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop);
+
+    Queue<Shot> ahead_;
+    std::exception_ptr fault_;
+    std::atomic<double> cpu_s_ = 0;
+    std::mutex mutex_;
+    std::pair<Effort, Effort> efforts_;
+    std::thread thread_;  // last: it uses all the rest
+};
+
+}  // namespace doppel

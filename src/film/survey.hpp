@@ -1,0 +1,24 @@
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <optional>
+
+namespace doppel {
+
+/// How far a pair gets, from a run without pictures: what a picture needs to know that no formula gives.
+struct Survey {
+    double left, right, bottom, top;  // m, of all bobs of both sides at all samples
+    double largest_distance = 0;      // state space
+    double fastest = 0;               // rad/s, of the link that a phase panel shows
+    Range exponent{0, 0};             // 1/s, so far
+    Range rod_force{0, 0};            // N, where it was asked for
+};
+
+/// Nothing where formulas do. Ends without an error where a side breaks down.
+std::optional<Survey> survey(const Scene& scene);
+
+/// ln(d/d0) / t, 1/s: nothing in the first twentieth of the scene, when it says nothing yet, or where a distance is 0.
+std::optional<double> exponent_so_far(const Scene& scene, const Moment& moment, double start_distance);
+
+}  // namespace doppel

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "output/video.hpp"
+
+namespace doppel {
+
+/// The sink of VideoFormat::gif, of checked options. See make_video_sink().
+std::unique_ptr<Sink> make_gif_sink(const std::filesystem::path& path, const VideoOptions& options);
+
+}  // namespace doppel

@@ -1,0 +1,192 @@
+#include "output/libav_encoder.hpp"
+
+#include "numeric/error.hpp"
+#include "output/video.hpp"
+
+extern "C" {
+#include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
+}
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+/// What libav allocates is null only where memory is out.
+template <class T>
+Libav<T> owned(T* thing) {
+    if (!thing) throw std::bad_alloc();
+    return Libav<T>(thing);
+}
+
+Libav<AVFormatContext> open_format(const std::string& path, const char* container) {
+    // libav prints unless told not to; and takes what is before a colon for a protocol unless one is named
+    av_log_set_level(AV_LOG_QUIET);
+    // and SVT-AV1, which asks the environment alone
+    setenv("SVT_LOG", "0", 0);
+    AVFormatContext* format = nullptr;
+    avformat_alloc_output_context2(&format, nullptr, container, ("file:" + path).c_str());
+    return owned(format);
+}
+
+bool has_chroma(AVPixelFormat pixels) {
+    const AVPixFmtDescriptor& about = *av_pix_fmt_desc_get(pixels);
+    return !(about.flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL));
+}
+
+void tag_bt709(AVCodecContext& codec) {
+    codec.color_primaries = AVCOL_PRI_BT709;
+    codec.color_trc = AVCOL_TRC_BT709;
+    codec.colorspace = AVCOL_SPC_BT709;
+    codec.color_range = AVCOL_RANGE_MPEG;
+    codec.chroma_sample_location = AVCHROMA_LOC_CENTER;
+}
+
+std::string version(const char* name, unsigned number) {
+    return fmt::format("{} {}.{}.{}", name, AV_VERSION_MAJOR(number), AV_VERSION_MINOR(number),
+                       AV_VERSION_MICRO(number));
+}
+
+}  // namespace
+
+const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec) {
+    for (const char* name : names)
+        if (const AVCodec* encoder = avcodec_find_encoder_by_name(name)) return *encoder;
+    std::vector<std::string_view> others;
+    void* position = nullptr;
+    while (const AVCodec* other = av_codec_iterate(&position))
+        if (other->id == codec && av_codec_is_encoder(other)) others.emplace_back(other->name);
+    throw io_failed("libav was built here without {}, which Doppel encodes with; its encoders of {}: {}",
+                    fmt::join(names, " and "), avcodec_get_name(codec),
+                    others.empty() ? "none" : fmt::format("{}", fmt::join(others, ", ")));
+}
+
+Encoder::Encoder(const std::filesystem::path& path, Encoding encoding)
+    : path_(path.string()),
+      encoding_(std::move(encoding)),
+      format_(open_format(path_, encoding_.container)),
+      packet_(owned(av_packet_alloc())) {
+    for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
+    check(avio_open(&format_->pb, format_->url, AVIO_FLAG_WRITE), "cannot be opened");
+    open_frame();
+}
+
+void Encoder::open_frame() {
+    frame_ = owned(av_frame_alloc());
+    frame_->width = encoding_.size.width;
+    frame_->height = encoding_.size.height;
+    frame_->format = encoding_.pixels;
+    check(av_frame_get_buffer(frame_.get(), 0), "no memory for a frame");
+}
+
+void Encoder::open_codec() {
+    codec_ = owned(avcodec_alloc_context3(encoding_.encoder));
+    codec_->width = encoding_.size.width;
+    codec_->height = encoding_.size.height;
+    codec_->sample_aspect_ratio = {1, 1};
+    codec_->framerate = encoding_.frame_rate;
+    codec_->time_base = encoding_.tick;
+    codec_->pix_fmt = encoding_.pixels;
+    if (has_chroma(encoding_.pixels)) tag_bt709(*codec_);
+    codec_->thread_count = encoding_.threads;
+    codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    const char* name = encoding_.encoder->name;
+    for (const auto& [key, value] : encoding_.encoder_options)
+        check(av_opt_set(codec_.get(), key.c_str(), value.c_str(), AV_OPT_SEARCH_CHILDREN),
+              fmt::format("{} refuses {} = {}", name, key, value));
+    check(avcodec_open2(codec_.get(), encoding_.encoder, nullptr), fmt::format("{} cannot be opened", name));
+}
+
+void Encoder::write_header() {
+    stream_ = avformat_new_stream(format_.get(), nullptr);
+    if (!stream_) throw std::bad_alloc();
+    check(avcodec_parameters_from_context(stream_->codecpar, codec_.get()), "the stream cannot be described");
+    // MP4 multiplies 1/time_base by a power of two: every frame starts at a whole tick
+    stream_->time_base = codec_->time_base;
+    stream_->avg_frame_rate = stream_->r_frame_rate = codec_->framerate;
+    check(avformat_init_output(format_.get(), nullptr), "the header cannot be made");
+    // here, as libav has just named itself as the encoder
+    for (const auto& [key, text] : encoding_.metadata)
+        check(av_dict_set(&format_->metadata, key.c_str(), text.c_str(), 0), "no memory for metadata");
+    check(avformat_write_header(format_.get(), nullptr), "the header cannot be written");
+}
+
+void Encoder::set_option(const char* name, const std::string& value) {
+    check(av_opt_set(format_->priv_data, name, value.c_str(), 0),
+          fmt::format("{} refuses {} = {}", format_->oformat->name, name, value));
+}
+
+AVFrame& Encoder::frame() {
+    // copies it where the encoder still holds it; x264, libvpx and the AV1 encoders keep copies of their own
+    check(av_frame_make_writable(frame_.get()), "no memory for a frame");
+    return *frame_;
+}
+
+void Encoder::send_frame(std::int64_t time, std::int64_t lasting) {
+    frame_->pts = time;
+    lasting_ = lasting;
+    if (!codec_) open_codec();
+    check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
+    if (!stream_) write_header();
+    write_packets();
+}
+
+/// What comes out of the encoder.
+void Encoder::write_packets() {
+    for (;;) {
+        const int result = avcodec_receive_packet(codec_.get(), packet_.get());
+        if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
+        check(result, "cannot be encoded");
+        if (!encoding_.png_chunks.empty()) insert_png_chunks();
+        packet_->duration = lasting_;
+        av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
+        check(av_write_frame(format_.get(), packet_.get()), "cannot be written");
+        av_packet_unref(packet_.get());
+    }
+}
+
+/// The header of an APNG travels with the first packet.
+void Encoder::insert_png_chunks() {
+    std::size_t size = 0;
+    const auto* header = av_packet_get_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, &size);
+    if (!header) return;
+    const std::string longer = std::string(reinterpret_cast<const char*>(header), size) + encoding_.png_chunks;
+    auto* place = av_packet_new_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, longer.size());
+    if (!place) throw std::bad_alloc();
+    std::memcpy(place, longer.data(), longer.size());
+    encoding_.png_chunks.clear();
+}
+
+void Encoder::finish(std::string_view ending, int replaced) {
+    if (!stream_) throw std::logic_error("a video without frames");
+    check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
+    write_packets();
+    check(av_write_trailer(format_.get()), "the end cannot be written");
+    if (!ending.empty()) {
+        check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -replaced, SEEK_CUR), 0)), "cannot seek");
+        avio_write(format_->pb, reinterpret_cast<const unsigned char*>(ending.data()), static_cast<int>(ending.size()));
+    }
+    avio_flush(format_->pb);
+    check(format_->pb->error, "cannot be written");
+    check(avio_closep(&format_->pb), "cannot be closed");
+}
+
+void Encoder::check(int result, std::string_view what) const {
+    if (result >= 0) return;
+    std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
+    av_strerror(result, reason.data(), reason.size());
+    throw io_failed("{}: {}: {}", path_, what, reason.data());
+}
+
+std::string libav_description() {
+    return version("libavcodec", avcodec_version()) + ", " + version("libavformat", avformat_version());
+}
+
+}  // namespace doppel

@@ -1,0 +1,84 @@
+#pragma once
+
+#include "output/metadata.hpp"
+#include "picture/picture.hpp"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+}
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace doppel {
+
+/// Frees what libav allocated.
+struct LibavFree {
+    void operator()(AVFormatContext* format) const {
+        avio_closep(&format->pb);
+        avformat_free_context(format);
+    }
+    void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
+    void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+    void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+};
+template <class T>
+using Libav = std::unique_ptr<T, LibavFree>;
+
+/// The first of these encoders that libav has. Throws Error (exit 4) that lists what it has for the codec instead.
+const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec);
+
+/// How a film becomes a file.
+struct Encoding {
+    const char* container;   // libav's name of it
+    const AVCodec* encoder;  // of find_encoder()
+    AVPixelFormat pixels;    // those in Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
+    Size size;
+    AVRational frame_rate;
+    AVRational tick;                                        // s; the times of frames are counted in it
+    int threads = 0;                                        // 0 = the encoder's own choice
+    Metadata encoder_options = {}, container_options = {};  // by libav's names
+    Metadata metadata = {};
+    std::string png_chunks = {};  // to follow the header of an APNG
+};
+
+/// An encoder and the file it fills. All throw Error (exit 4) with the path and libav's reason.
+class Encoder {
+public:
+    /// Opens the file. The encoder itself is opened with the first frame: SVT-AV1 waits for ever where it is closed
+    /// before it had one.
+    Encoder(const std::filesystem::path& path, Encoding encoding);
+
+    /// The picture as it is now: its planes can be written to.
+    AVFrame& frame();
+    /// The picture is the next frame; it starts at this time and lasts so long, in ticks.
+    void send_frame(std::int64_t time, std::int64_t lasting);
+    /// Of the container; it counts from the next write on.
+    void set_option(const char* name, const std::string& value);
+    /// No frame follows (there must have been one); the file is complete, but for its last bytes, as many as told,
+    /// which `ending` takes the place of.
+    void finish(std::string_view ending = {}, int replaced = 0);
+
+private:
+    void open_codec();
+    void open_frame();
+    void write_header();
+    void write_packets();
+    void insert_png_chunks();
+    void check(int result, std::string_view what) const;
+
+    const std::string path_;
+    Encoding encoding_;
+    Libav<AVFormatContext> format_;
+    Libav<AVCodecContext> codec_;
+    Libav<AVFrame> frame_;
+    Libav<AVPacket> packet_;
+    AVStream* stream_ = nullptr;
+    std::int64_t lasting_ = 1;
+};
+
+}  // namespace doppel

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "output/metadata.hpp"
+#include "output/sink.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace doppel {
+
+enum class VideoFormat { mp4, webm, gif, apng };
+
+/// Of H.264, VP9 and AV1: chroma for 2×2 pixels or for each; 8 bits a sample or 10.
+enum class PixelFormat { yuv420, yuv444, yuv420_10 };
+
+struct VideoOptions {
+    VideoFormat format = VideoFormat::mp4;
+    std::string codec = {};   // "h264" (mp4), "vp9" or "av1" (webm); empty = h264, vp9
+    Size size;                // px; even where chroma is for 2×2 pixels
+    int fps_numerator = 120;  // frames/s = numerator / denominator
+    int fps_denominator = 1;
+    PixelFormat pixel_format = PixelFormat::yuv420;  // gif and apng: not used
+    std::string preset = "veryfast";                 // x264's names, for each codec; gif and apng: not used
+    int crf = 18;              // h264 0…51, vp9 and av1 0…63, lower is better; gif and apng: not used
+    int threads = 0;           // of the encoder; 0 = its own choice
+    bool transparent = false;  // the pictures' alpha counts: apng, webm of vp9; else it is taken for 255
+    Metadata metadata = {};
+};
+
+/// A video file:
+/// mp4   H.264, the index at the front.
+/// webm  VP9 or AV1. The container counts milliseconds: frames start within 0.5 ms of their time.
+/// gif   One palette of 255 colours for all frames, no dithering, so that what rests keeps still; plays for ever. Times
+///       count 1/100 s: each frame starts within 0.005 s of its time, the whole lasts what it should. What was taken
+///       waits in PATH.spool until finish(), as the palette needs to know all of it.
+/// apng  Every pixel and every time as given; plays for ever.
+/// mp4 and webm are BT.709 (limited range), converted and tagged, at a constant rate. Alpha is not premultiplied.
+/// take() converts what changed; a thread of the sink's encodes, fed through a queue of a few frames.
+/// Throws Error: exit 2 for what the format cannot have, exit 4 where libav has no encoder for it (those present are
+/// listed) or writing fails.
+std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& path, const VideoOptions& options);
+
+/// Throws what make_video_sink() would, but for the file.
+void check_video(const VideoOptions& options);
+
+/// ".mp4", ".webm", ".gif", ".apng".
+std::string extension(VideoFormat format);
+
+/// Versions of the libraries that write the video, for the manifest: "libavcodec 59.37.100, libavformat …".
+std::string libav_description();
+
+}  // namespace doppel

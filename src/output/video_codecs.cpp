@@ -1,0 +1,235 @@
+#include "output/video_codecs.hpp"
+
+#include "numeric/error.hpp"
+#include "output/png_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string_view>
+
+namespace doppel {
+namespace {
+
+/// What a codec can have.
+struct Codec {
+    VideoFormat format;
+    std::string_view name;   // VideoOptions::codec's
+    std::string_view title;  // as errors have it
+    int largest_side;        // px
+    int largest_crf;         // 0 where it has none
+    bool alpha;
+};
+
+// the first of a format is its usual one
+constexpr std::array codecs{
+    Codec{VideoFormat::mp4, "h264", "H.264", 16384, 51, false}, Codec{VideoFormat::webm, "vp9", "VP9", 16384, 63, true},
+    Codec{VideoFormat::webm, "av1", "AV1", 16384, 63, false},   Codec{VideoFormat::gif, "", "GIF", 65535, 0, false},
+    Codec{VideoFormat::apng, "", "APNG", 65535, 0, true},
+};
+
+/// One rung of x264's ladder, and the one as high of the others' (their speed: the more, the faster).
+struct Preset {
+    std::string_view name;
+    int vpx, svt, aom;
+};
+constexpr std::array presets{Preset{"ultrafast", 5, 12, 6}, Preset{"superfast", 5, 11, 6}, Preset{"veryfast", 4, 10, 6},
+                             Preset{"faster", 3, 9, 5},     Preset{"fast", 3, 8, 5},       Preset{"medium", 2, 7, 4},
+                             Preset{"slow", 1, 6, 3},       Preset{"slower", 1, 5, 2},     Preset{"veryslow", 0, 4, 1},
+                             Preset{"placebo", 0, 3, 0}};
+
+const Preset* find_preset(std::string_view name) {
+    const auto* found = std::ranges::find(presets, name, &Preset::name);
+    return found == presets.end() ? nullptr : found;
+}
+
+template <class Things, class Word>
+std::string listed(const Things& things, Word Things::value_type::*word) {
+    std::vector<Word> words;
+    for (const auto& thing : things) words.push_back(thing.*word);
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+const Codec& codec_of(const VideoOptions& options) {
+    std::vector<Codec> of_format;
+    for (const Codec& codec : codecs) {
+        if (codec.format != options.format) continue;
+        if (options.codec.empty() || codec.name == options.codec) return codec;
+        of_format.push_back(codec);
+    }
+    const auto container = extension(options.format).substr(1);
+    if (of_format.front().name.empty())
+        throw bad_input("{} has only one codec, and no name for it; \"{}\" is none", container, options.codec);
+    throw bad_input("{} holds {}, not \"{}\"", container, listed(of_format, &Codec::name), options.codec);
+}
+
+bool is_yuv(const VideoOptions& options) {
+    return options.format == VideoFormat::mp4 || options.format == VideoFormat::webm;
+}
+
+void check_size(const VideoOptions& options, const Codec& codec) {
+    const auto [width, height] = options.size;
+    if (width < 1 || height < 1 || std::max(width, height) > codec.largest_side)
+        throw bad_input("{} has sizes of 1x1 … {}x{} px; {}x{} is none", codec.title, codec.largest_side,
+                        codec.largest_side, width, height);
+    const bool halved = is_yuv(options) && options.pixel_format != PixelFormat::yuv444;
+    if (halved && (width % 2 != 0 || height % 2 != 0))
+        throw bad_input("{} needs even sizes; {}x{} is not; {}x{} would do", codec.title, width, height,
+                        width + width % 2, height + height % 2);
+}
+
+void check_rate(const VideoOptions& options) {
+    const auto [numerator, denominator] = std::pair(options.fps_numerator, options.fps_denominator);
+    if (numerator < 1 || denominator < 1)
+        throw bad_input("frames per second must be > 0; they are {}/{}", numerator, denominator);
+    const auto limit = [&](int most, std::string_view why) {
+        if (numerator > std::int64_t{most} * denominator)
+            throw bad_input("{}; {} frames/s are too many, at most {} would do", why,
+                            denominator == 1 ? fmt::to_string(numerator) : fmt::format("{}/{}", numerator, denominator),
+                            most);
+    };
+    switch (options.format) {
+        case VideoFormat::mp4:
+            break;
+        case VideoFormat::webm:
+            limit(1000, "WebM counts milliseconds");
+            break;
+        // a frame of 1/100 s is shown for 1/10 s by most that show it
+        case VideoFormat::gif:
+            limit(50, "GIF counts 1/100 s and needs two of them a frame");
+            break;
+        case VideoFormat::apng:
+            if (const int common = std::gcd(numerator, denominator);
+                numerator / common > 65535 || denominator / common > 65535)
+                throw bad_input("APNG has rates of numerators and denominators up to 65535; {}/{} is none", numerator,
+                                denominator);
+    }
+}
+
+Metadata x264_options(const VideoOptions& options) {
+    return {{"preset", options.preset}, {"crf", fmt::to_string(options.crf)}};
+}
+
+Metadata vpx_options(const VideoOptions& options) {
+    Metadata result{{"deadline", "good"}, {"cpu-used", fmt::to_string(find_preset(options.preset)->vpx)},
+                    {"row-mt", "1"},      {"tile-columns", "2"},
+                    {"b", "0"},           {"crf", fmt::to_string(options.crf)}};
+    // hidden frames of the colours would have no partner among those of alpha
+    if (options.transparent) result.emplace_back("auto-alt-ref", "0");
+    return result;
+}
+
+Metadata av1_options(const VideoOptions& options, std::string_view encoder) {
+    const Preset& preset = *find_preset(options.preset);
+    const auto crf = fmt::to_string(options.crf);
+    if (encoder != "libsvtav1")
+        return {{"cpu-used", fmt::to_string(preset.aom)}, {"row-mt", "1"}, {"b", "0"}, {"crf", crf}};
+    Metadata result{{"preset", fmt::to_string(preset.svt)}, {"crf", crf}};
+    if (options.threads > 0) result.emplace_back("svtav1-params", fmt::format("lp={}", options.threads));
+    return result;
+}
+
+/// SVT-AV1 is several times as fast as libaom, but has neither 4:4:4 nor every size.
+std::vector<const char*> av1_encoders(const VideoOptions& options) {
+    const auto [width, height] = options.size;
+    const bool svt = options.pixel_format != PixelFormat::yuv444 && std::min(width, height) >= 64 && height <= 8704;
+    return svt ? std::vector{"libsvtav1", "libaom-av1"} : std::vector{"libaom-av1"};
+}
+
+AVPixelFormat pixels_of(Samples samples) {
+    switch (samples) {
+        case Samples::yuv420:
+            return AV_PIX_FMT_YUV420P;
+        case Samples::yuv444:
+            return AV_PIX_FMT_YUV444P;
+        case Samples::yuv420_10:
+            return AV_PIX_FMT_YUV420P10LE;
+        case Samples::yuva420:
+            return AV_PIX_FMT_YUVA420P;
+        case Samples::rgb:
+            return AV_PIX_FMT_RGB24;
+        case Samples::rgba:
+            return AV_PIX_FMT_RGBA;
+    }
+    return AV_PIX_FMT_NONE;
+}
+
+void choose_encoder(const VideoOptions& options, Encoding& encoding) {
+    switch (options.format) {
+        case VideoFormat::mp4:
+            encoding.container = "mp4";
+            encoding.encoder = &find_encoder({"libx264"}, AV_CODEC_ID_H264);
+            encoding.encoder_options = x264_options(options);
+            encoding.container_options = {{"movflags", "+faststart"}};
+            break;
+        case VideoFormat::webm:
+            encoding.container = "webm";
+            if (codec_of(options).name == "av1") {
+                encoding.encoder = &find_encoder(av1_encoders(options), AV_CODEC_ID_AV1);
+                encoding.encoder_options = av1_options(options, encoding.encoder->name);
+            } else {
+                encoding.encoder = &find_encoder({"libvpx-vp9"}, AV_CODEC_ID_VP9);
+                encoding.encoder_options = vpx_options(options);
+            }
+            break;
+        case VideoFormat::gif:
+            encoding.container = "gif";
+            encoding.encoder = &find_encoder({"gif"}, AV_CODEC_ID_GIF);
+            encoding.pixels = AV_PIX_FMT_PAL8;
+            encoding.tick = {1, 100};
+            break;
+        case VideoFormat::apng:
+            encoding.container = "apng";
+            encoding.encoder = &find_encoder({"apng"}, AV_CODEC_ID_APNG);
+            encoding.container_options = {{"plays", "0"}};
+            encoding.png_chunks = png_text_chunks(options.metadata);
+            break;
+    }
+}
+
+}  // namespace
+
+void check_options(const VideoOptions& options) {
+    const Codec& codec = codec_of(options);
+    check_size(options, codec);
+    check_rate(options);
+    if (options.transparent && !codec.alpha)
+        throw bad_input("{} has no transparency; webm of vp9 and apng have", codec.title);
+    if (!is_yuv(options)) return;
+    if (options.transparent && options.pixel_format != PixelFormat::yuv420)
+        throw bad_input("{} has transparency only beside 4:2:0 of 8 bits", codec.title);
+    if (!find_preset(options.preset))
+        throw bad_input("there is no preset \"{}\"; there are {}", options.preset, listed(presets, &Preset::name));
+    if (options.crf < 0 || options.crf > codec.largest_crf)
+        throw bad_input("crf of {} must be 0 … {}; it is {}", codec.title, codec.largest_crf, options.crf);
+}
+
+Samples samples_of(const VideoOptions& options) {
+    if (options.format == VideoFormat::gif) return Samples::rgb;
+    if (options.format == VideoFormat::apng) return options.transparent ? Samples::rgba : Samples::rgb;
+    switch (options.pixel_format) {
+        case PixelFormat::yuv420:
+            break;
+        case PixelFormat::yuv444:
+            return Samples::yuv444;
+        case PixelFormat::yuv420_10:
+            return Samples::yuv420_10;
+    }
+    return options.transparent ? Samples::yuva420 : Samples::yuv420;
+}
+
+Encoding encoding_of(const VideoOptions& options) {
+    const AVRational rate{options.fps_numerator, options.fps_denominator};
+    Encoding encoding{.container = nullptr,
+                      .encoder = nullptr,
+                      .pixels = pixels_of(samples_of(options)),
+                      .size = options.size,
+                      .frame_rate = rate,
+                      .tick = av_inv_q(rate),
+                      .threads = options.threads,
+                      .metadata = options.metadata};
+    choose_encoder(options, encoding);
+    return encoding;
+}
+
+}  // namespace doppel

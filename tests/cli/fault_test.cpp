@@ -1,0 +1,276 @@
+// What goes wrong around a run: disks, signals, neighbours, files that change. With the real program.
+#include "cli/sandbox.hpp"
+#include "output/png.hpp"
+#include "output/decoded.hpp"
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <map>
+#include <sstream>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using Names = std::set<std::string>;
+
+const std::vector<std::string> small{"--size", "64x64", "--quality", "draft", "--progress", "none"};
+const std::vector<std::string> quick{"--set", "system.integrator=\"taylor\"", "--set", "scene.duration_s=0.1"};
+const std::vector<std::string> endless{"--set", "scene.duration_s=3600"};
+
+/// All that a whole run writes of 12 + 1 frames.
+Names whole_run(const std::string& format) {
+    Names names{"butterfly", "butterfly/butterfly.csv", "butterfly/butterfly.json"};
+    if (format == "mp4") names.insert("butterfly/butterfly.mp4");
+    if (format != "png") return names;
+    names.insert("butterfly/frames");
+    for (int k = 0; k < 13; ++k) names.insert(fmt::format("butterfly/frames/{:06}.png", k));
+    return names;
+}
+
+void expect_whole(const fs::path& out, const std::string& format) {
+    EXPECT_EQ(listing(out), whole_run(format));
+    if (format == "mp4") {
+        EXPECT_EQ(read_video(out / "butterfly/butterfly.mp4").times.size(), 13u);
+        return;
+    }
+    for (const auto& file : fs::directory_iterator(out / "butterfly/frames"))
+        EXPECT_EQ(read_png(file.path()).size, (Size{64, 64}));
+}
+
+std::vector<std::string> film(const std::string& format, const std::vector<std::string>& more) {
+    return with(with({"render", "butterfly", "--format", format}, small), more);
+}
+
+/// Starts a film that does not end, and returns where it is writing its pictures.
+pid_t start_endless(const fs::path& folder, const std::string& format) {
+    const auto child = start(folder, film(format, endless));
+    const auto part = folder / "out/butterfly" / (format == "mp4" ? "butterfly.mp4.part" : "frames.part");
+    EXPECT_TRUE(wait_until([&] {
+        return format == "mp4" ? fs::exists(part) && fs::file_size(part) > 0 : fs::exists(part / "000005.png");
+    }));
+    return child;
+}
+
+TEST(Faults, AFullDiskIsToldAndLeavesNothing) {
+    const auto folder = fresh_folder();
+    if (!can_mount(folder)) GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4OnAFullDisk stands in";
+    // a disk of so many pages, or so few files, that the run stops at another place each time; then one where it fits
+    const std::string script = R"sh(set -u; mkdir -p out
+        for room in size=4k size=12k size=32k nr_inodes=2 nr_inodes=4 nr_inodes=5 size=16m; do
+            mount -t tmpfs -o $room none out || exit 77
+            "$DOPPEL" $COMMAND 2>message >/dev/null; code=$?
+            echo "$room $code $(find out -mindepth 1 | wc -l) $(wc -l <message) $(cut -c1-16 message)"
+            umount out
+        done)sh";
+    for (const std::string command :
+         {"render butterfly --format mp4", "render butterfly --format png", "simulate butterfly", "figure fig6"}) {
+        const bool film = command.starts_with("render"), figure = command.starts_with("figure");
+        auto line = command + " --progress none" +
+                    (film     ? " --size 64x64"
+                     : figure ? " --size 160x90 --scale 0.5"
+                              : "");
+        if (!figure) line += " --set system.integrator=\"taylor\" --set scene.duration_s=2";
+        const auto result = shell_with_mounts(folder, "COMMAND='" + line + "';" + script);
+        ASSERT_EQ(result.code, 0) << result.err << result.out;
+        std::istringstream lines(result.out);
+        int refused = 0;
+        std::string room, code, files, messages, message;
+        while (lines >> room >> code >> files >> messages && std::getline(lines, message)) {
+            if (code == "0") continue;
+            ++refused;
+            EXPECT_EQ(code, "4") << command << ", " << room;
+            EXPECT_EQ(files, "0") << command << ", " << room;
+            EXPECT_EQ(messages, "1") << command << ", " << room;
+            EXPECT_EQ(message.rfind(" doppel: out/", 0), 0u) << command << ", " << room << ": " << message;
+        }
+        EXPECT_EQ(room + code, "size=16m0") << command;
+        EXPECT_GE(refused, 3) << command;
+    }
+}
+
+TEST(Faults, AReadOnlyTargetIsTold) {
+    const auto folder = fresh_folder();
+    if (!can_mount(folder)) GTEST_SKIP() << "mounting is not allowed here";
+    const auto result = shell_with_mounts(folder, R"sh(mkdir -p out && mount -t tmpfs none out && mkdir out/butterfly &&
+        mount -o remount,ro out && "$DOPPEL" simulate butterfly --progress none)sh");
+    EXPECT_EQ(result.code, 4);
+    EXPECT_EQ(result.err, "doppel: out/butterfly: cannot be written to: Read-only file system\n");
+}
+
+TEST(Faults, AfterKill9TheNextRunIsWhole) {
+    for (const std::string format : {"mp4", "png"})
+        for (const std::string next : {"mp4", "png"}) {
+            const auto folder = fresh_folder();
+            kill(start_endless(folder, format), SIGKILL);
+            wait_for(-1);
+            EXPECT_FALSE(fs::exists(folder / "out/butterfly/butterfly.mp4"));
+            EXPECT_FALSE(fs::exists(folder / "out/butterfly/frames"));
+            const auto result = doppel(folder, film(next, quick));
+            EXPECT_EQ(result.code, 0) << result.err;
+            expect_whole(folder / "out", next);
+        }
+}
+
+TEST(Faults, EndsSoonAndCleanWhenAsked) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        for (const std::string format : {"mp4", "png"}) {
+            const auto folder = fresh_folder();
+            const auto child = start_endless(folder, format);
+            const auto asked = std::chrono::steady_clock::now();
+            kill(child, signal);
+            EXPECT_EQ(wait_for(child), 130);
+            EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(2));  // measured 0.1 s
+            EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
+            EXPECT_EQ(listing(folder / "out"), Names{});
+        }
+}
+
+TEST(Faults, GoesOnWhereNobodyReadsItsProgress) {
+    const auto folder = fresh_folder();
+    const std::string run = R"sh(("$DOPPEL" render butterfly --size 64x64 --set 'system.integrator="taylor"' \
+        --set scene.duration_s=0.1; echo $? >code) )sh";
+    for (const char* reader : {"| true", "2>&1 | true", ">/dev/full 2>&1"}) {
+        const auto result = shell(folder, run + reader);
+        EXPECT_EQ(bytes_of(folder / "code"), "0\n") << reader << result.err;
+        expect_whole(folder / "out", "mp4");
+        fs::remove_all(folder / "out");
+    }
+}
+
+TEST(Faults, OldFramesNeverMixWithNew) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(doppel(folder, film("png", {"--set", "scene.duration_s=0.5"})).code, 0);  // 61 frames
+    write_bytes(folder / "out/butterfly/frames/000007.png", "no picture");
+    ASSERT_EQ(doppel(folder, film("png", quick)).code, 0);
+    expect_whole(folder / "out", "png");
+}
+
+TEST(Faults, OldFramesStayWhereTheNewRunFails) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(doppel(folder, film("png", quick)).code, 0);
+    std::map<std::string, std::string> before;
+    const auto contents = [&] {
+        std::map<std::string, std::string> all;
+        for (const auto& name : listing(folder / "out"))
+            if (fs::is_regular_file(folder / "out" / name)) all[name] = bytes_of(folder / "out" / name);
+        return all;
+    };
+    before = contents();
+    // interrupted, killed, on a full disk
+    auto child = start_endless(folder, "png");
+    kill(child, SIGTERM);
+    EXPECT_EQ(wait_for(child), 130);
+    EXPECT_EQ(contents(), before);
+    child = start_endless(folder, "png");
+    kill(child, SIGKILL);
+    wait_for(child);
+    const auto full = doppel(folder, film("png", endless), [] {
+        const rlimit little{10'000, 10'000};
+        setrlimit(RLIMIT_FSIZE, &little);
+    });
+    EXPECT_EQ(full.code, 4) << full.err;
+    EXPECT_EQ(contents(), before);
+    expect_whole(folder / "out", "png");
+}
+
+TEST(Faults, ASecondRunIsRefusedWhileTheFirstIsWriting) {
+    const auto folder = fresh_folder();
+    const auto first = start_endless(folder, "mp4");
+    const auto second = doppel(folder, film("png", quick));
+    EXPECT_EQ(second.code, 4);
+    EXPECT_EQ(second.err, fmt::format("doppel: out/butterfly: another run, process {}, is writing there; wait for it, "
+                                      "or give another folder with --out\n",
+                                      first));
+    EXPECT_EQ(doppel(folder, with(film("png", quick), {"--out", "other"})).code, 0);
+    EXPECT_TRUE(fs::exists(folder / "out/butterfly/butterfly.mp4.part"));
+    kill(first, SIGKILL);
+    wait_for(first);
+    EXPECT_EQ(doppel(folder, film("png", quick)).code, 0);  // no stale lock
+    expect_whole(folder / "out", "png");
+}
+
+TEST(Faults, OfRunsThatStartAtOnceOneIsWhole) {
+    for (int round = 0; round < 3; ++round) {
+        const auto folder = fresh_folder();
+        std::vector<pid_t> runs;
+        for (int i = 0; i < 4; ++i) runs.push_back(start(folder, film("mp4", quick)));
+        int done = 0;
+        for (const auto run : runs) {
+            const int code = wait_for(run);
+            EXPECT_TRUE(code == 0 || code == 4) << code;
+            done += code == 0;
+        }
+        EXPECT_GE(done, 1);
+        expect_whole(folder / "out", "mp4");
+    }
+}
+
+TEST(Faults, APresetIsReadOnce) {
+    const auto text = bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/butterfly.toml");
+    const auto run = [&](const fs::path& folder, const std::function<void()>& meanwhile) {
+        write_bytes(folder / "butterfly.toml", text);
+        const auto child =
+            start(folder, with({"render", "butterfly.toml", "--set", "scene.duration_s=4", "--format", "png"}, small));
+        EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/frames.part/000005.png"); }));
+        meanwhile();
+        EXPECT_FALSE(fs::exists(folder / "out/butterfly/frames")) << "it was over before the preset changed";
+        EXPECT_EQ(wait_for(child), 0) << bytes_of(folder / "stderr");
+        return std::pair(nlohmann::json::parse(bytes_of(folder / "out/butterfly/butterfly.json"))["preset"],
+                         bytes_of(folder / "out/butterfly/butterfly.csv"));
+    };
+    const auto folder = fresh_folder();
+    const auto calm = run(folder, [] {});
+    EXPECT_FALSE(calm.first.is_null());
+    fs::remove_all(folder / "out");
+    const auto changed = run(folder, [&] { write_bytes(folder / "butterfly.toml", "[system]\nlinks = 7\n"); });
+    EXPECT_TRUE(calm == changed);
+    fs::remove_all(folder / "out");
+    const auto gone = run(folder, [&] { fs::remove(folder / "butterfly.toml"); });
+    EXPECT_TRUE(calm == gone);
+}
+
+/// The most memory a run had, kB.
+long peak_memory(const fs::path& folder, const std::vector<std::string>& arguments) {
+    const auto child = start(folder, arguments, [] {
+        setenv("ASAN_OPTIONS", "quarantine_size_mb=1", 1);  // which otherwise keeps what was freed
+    });
+    int status = 0;
+    rusage usage{};
+    wait4(child, &status, 0, &usage);
+    EXPECT_EQ(status, 0) << bytes_of(folder / "stderr");
+    return usage.ru_maxrss;
+}
+
+TEST(Faults, MemoryStaysFlatOverALongFilm) {
+    const auto folder = fresh_folder();
+    for (const std::string command : {"render", "simulate"}) {
+        const auto peak = [&](const char* seconds) {
+            auto line = with({command, "butterfly", "--set", "system.integrator=\"taylor\""},
+                             {"--set", fmt::format("scene.duration_s={}", seconds), "--progress", "none"});
+            if (command == "render") line = with(line, {"--size", "64x64", "--quality", "draft"});
+            return peak_memory(folder, line);
+        };
+        const long brief = peak("20"), lengthy = peak("120");
+        // measured 0.1 MB, and 1 MB from run to run; over 600 s, 72 001 frames, 4 MB: the video's index
+        EXPECT_LT(lengthy - brief, 3000) << command;
+    }
+}
+
+TEST(Faults, AMessageIsOneLineWhateverItQuotes) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "keys.toml", "\"a\\nb\\u001b[31m\" = 1\n");
+    write_bytes(folder / "number.toml", "title = in\n");
+    for (const char* preset : {"keys.toml", "number.toml"}) {
+        const auto result = doppel(folder, {"check", preset});
+        EXPECT_EQ(result.code, 2);
+        EXPECT_TRUE(one_line(result.err)) << result.err;
+        EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace doppel

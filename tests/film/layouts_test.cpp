@@ -1,0 +1,242 @@
+#include "film/run.hpp"
+#include "film/support.hpp"
+#include "film/survey.hpp"
+#include "output/fixtures.hpp"
+#include "output/png.hpp"
+#include "scene/resolved.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+bool is_color(const std::uint8_t* pixel, Color color, int slack = 3) {
+    const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
+    return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
+}
+
+const std::uint8_t* pixel_at(const Picture& picture, Point at) {
+    return picture.at(static_cast<int>(at.x), static_cast<int>(at.y));
+}
+
+TEST(Layouts, OverlayShowsBothSidesInOnePanel) {
+    const auto scene = scene_of("butterfly", {"video.layout=\"overlay\"", "b.angle_deg=[-60, 20]"});
+    const auto layout = make_layout(scene);
+    ASSERT_EQ(layout.panels.size(), 1u);
+    const auto picture = frame_of(scene, 0);
+    const auto& panel = layout.panels[0];
+    const double angle1 = radians(-60.0), angle2 = radians(20.0);
+    EXPECT_TRUE(is_color(pixel_at(picture, panel.at(2, 0)), themes[0].sides[0]));
+    EXPECT_TRUE(
+        is_color(pixel_at(picture, panel.at(std::sin(angle1) + std::sin(angle2), -std::cos(angle1) - std::cos(angle2))),
+                 themes[0].sides[1]));
+}
+
+TEST(Layouts, PortraitStacksPanelsOfOneScale) {
+    const auto scene = scene_of("butterfly", {"video.layout=\"portrait\""});
+    EXPECT_EQ(scene.preset.video.size, (Size{1080, 1920}));
+    const auto layout = make_layout(scene);
+    ASSERT_EQ(layout.panels.size(), 2u);
+    EXPECT_LT(layout.panels[0].area.bottom, layout.panels[1].area.top);
+    EXPECT_EQ(layout.panels[0].area.left, layout.panels[1].area.left);
+    EXPECT_EQ(layout.panels[0].px_per_m, layout.panels[1].px_per_m);
+}
+
+TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
+    const std::vector<std::string> all{"\"distance\"", "\"exponent\"", "\"energy\"", "\"rod-error\"", "\"rod-force\""};
+    for (const auto* layout_name : {"side-by-side", "overlay", "phase", "portrait", "ensemble"})
+        for (const auto* size : {"[1920, 1080]", "[480, 270]", "[1080, 1920]", "[3840, 2160]"})
+            for (std::size_t strips = 0; strips <= all.size(); ++strips) {
+                std::string panels = "[\"pendulums\"";
+                for (std::size_t i = 0; i < strips; ++i) panels += ", " + all[i];
+                if (std::string(layout_name) == "portrait" && std::string(size) != "[1080, 1920]") continue;
+                const auto scene = scene_of(
+                    "butterfly", {fmt::format("video.layout=\"{}\"", layout_name), fmt::format("video.size={}", size),
+                                  "video.panels=" + panels + "]", "scene.duration_s=1"});
+                const auto layout = make_layout(scene);
+                const auto what = fmt::format("{} {} {}", layout_name, size, strips);
+                std::vector<Area> areas;
+                for (const auto& panel : layout.panels) areas.push_back(panel.area);
+                for (const auto& strip : layout.strips) areas.push_back(strip.area);
+                const Area picture{0, 0, static_cast<float>(scene.preset.video.size.width),
+                                   static_cast<float>(scene.preset.video.size.height)};
+                for (std::size_t i = 0; i < areas.size(); ++i) {
+                    EXPECT_TRUE(picture.holds(areas[i])) << what;
+                    EXPECT_GT(areas[i].width(), 20) << what;
+                    EXPECT_GT(areas[i].height(), 6) << what;
+                    for (std::size_t j = 0; j < i; ++j)
+                        EXPECT_FALSE(areas[i].overlaps(areas[j])) << what << ' ' << i << ' ' << j;
+                }
+                // the pendulums' circle stays inside its panel
+                for (const auto& panel : layout.panels) {
+                    const float reach = layout.reach;
+                    EXPECT_GE(panel.center.x - reach, panel.area.left) << what;
+                    EXPECT_LE(panel.center.x + reach, panel.area.right) << what;
+                    EXPECT_GE(panel.center.y - reach, panel.area.top) << what;
+                    EXPECT_LE(panel.center.y + reach, panel.area.bottom) << what;
+                }
+            }
+}
+
+TEST(Layouts, PhaseHeadIsAtItsAngleAndRate) {
+    const auto scene = scene_of("butterfly", {"video.layout=\"phase\"", "b.angle_deg=[-30, 300]",
+                                              "system.omega_deg_per_s=[0, 120]", "video.trail_s=0.1"});
+    const auto layout = make_layout(scene);
+    ASSERT_TRUE(layout.phase);
+    const auto picture = frame_of(scene, 0);
+    const auto at = [&](double degrees, double rate) {
+        return Point{layout.phase->angle.at(degrees), layout.phase->rate.at(rate)};
+    };
+    EXPECT_TRUE(is_color(pixel_at(picture, at(90, 120)), themes[0].sides[0]));
+    EXPECT_TRUE(is_color(pixel_at(picture, at(-60, 120)), themes[0].sides[1])) << "300° is −60°";
+}
+
+TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
+    // a lone fast upper link with a light lower one: it turns steadily, ω1 hardly changes, and passes 0 once a turn
+    const std::vector<std::string> arguments{
+        "video.layout=\"phase\"",       "video.phase=\"section\"",           "video.phase_link=1",
+        "system.gravity_m_per_s2=1e-9", "system.omega_deg_per_s=[360, 360]", "scene.duration_s=3",
+        "system.integrator=\"taylor\""};
+    const auto scene = scene_of("butterfly", arguments);
+    const auto layout = make_layout(scene);
+    const Point expected{layout.phase->angle.at(0), layout.phase->rate.at(360)};
+    const auto before = frame_of(scene, 80), after = frame_of(scene, 100);  // it starts at 90°: 0.75 s to go
+    EXPECT_FALSE(is_color(pixel_at(before, expected), mixed(themes[0].panel, themes[0].sides[0], 0.8f), 40));
+    EXPECT_TRUE(is_color(pixel_at(after, expected), mixed(themes[0].panel, themes[0].sides[0], 0.8f), 40));
+}
+
+TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
+    const auto scene = scene_of("fan", {"video.members=5", "scene.duration_s=1"});
+    ASSERT_EQ(scene.crowd.size(), 5u);
+    const auto degrees = [](const MotionSpec& spec) { return static_cast<double>(spec.chain->angle[0]) * 180 / pi; };
+    for (std::size_t k = 0; k < 5; ++k)
+        EXPECT_NEAR(degrees(scene.crowd[k]), 120 + 0.025 * static_cast<double>(k), 1e-12);
+    // its ends are the pair, to the last bit
+    for_each_shot(scene, 60, [](const Shot& shot) {
+        EXPECT_EQ(shot.crowd.front().back().x, shot.moment.a.bobs.back().x) << shot.moment.sample;
+        EXPECT_EQ(shot.crowd.back().back().y, shot.moment.b.bobs.back().y) << shot.moment.sample;
+    });
+    // one for each at sample 0 on the line from member to member, the first in front
+    const auto layout = make_layout(scene);
+    const auto picture = frame_of(scene, 0);
+    const double angle = radians(120.0);
+    EXPECT_TRUE(is_color(pixel_at(picture, layout.panels[0].at(2 * std::sin(angle), -2 * std::cos(angle))),
+                         member_color(layout.style, 0)));
+}
+
+TEST(Layouts, ExponentSoFarIsTheSlopeOfTheLogarithm) {
+    const auto scene = scene_of("butterfly");
+    Moment moment;
+    moment.distance = 1e-4 * std::exp(0.7 * 10);
+    moment.sample = 1200;
+    EXPECT_NEAR(*exponent_so_far(scene, moment, 1e-4), 0.7, 1e-14);
+    EXPECT_FALSE(exponent_so_far(scene, moment, 0));
+    moment.sample = 179;  // before a twentieth of 30 s
+    EXPECT_FALSE(exponent_so_far(scene, moment, 1e-4));
+}
+
+TEST(Layouts, ForcesOfTheRodsAreDrawnWherePhysicsSays) {
+    // hanging at rest, two masses of 1 kg: 2 g in the upper rod, g in the lower
+    const auto scene =
+        scene_of("butterfly", {"system.angle_deg=[0, 0]", "b.angle_deg=[0.5, 0]", "scene.duration_s=2",
+                               "video.panels=[\"pendulums\", \"rod-force\"]", "video.rod_force_range=[0, 40]"});
+    ASSERT_TRUE(scene.a.motion.wants_tension);
+    const auto layout = make_layout(scene);
+    const auto& strip = layout.strips[0];
+    const auto picture = frame_of(scene, 120);
+    const float x = strip.time.at(0.5);
+    EXPECT_TRUE(is_color(pixel_at(picture, {x, strip.value.at(9.8)}), themes[0].sides[1], 60));
+    EXPECT_TRUE(
+        is_color(pixel_at(picture, {x, strip.value.at(19.6)}), mixed(themes[0].sides[1], themes[0].text, 0.6f), 60));
+    EXPECT_FALSE(scene_of("butterfly").a.motion.wants_tension) << "only where it is shown";
+}
+
+TEST(Layouts, AxesStayFiniteForAnyPreset) {
+    for (const char* key :
+         {"system.length_m=[1e200, 1]", "system.mass_kg=[1e300, 1]", "system.mass_kg=[1e-300, 1]",
+          "system.gravity_m_per_s2=1e300", "system.length_m=[1e-200, 1e-200]", "b.mass_kg=[1e300, 1]"}) {
+        const Axis axis = make_layout(scene_of("butterfly", {key})).strips.front().value;
+        EXPECT_GT(axis.low, 0) << key;
+        EXPECT_GE(axis.high / axis.low, 9.99) << key;
+        EXPECT_LE(axis.high / axis.low, 1.01e60) << key;
+        EXPECT_LT(axis.high, 1e61) << key;
+    }
+}
+
+TEST(Layouts, ColoursWidthsAndSizesAreThePresets) {
+    const auto scene = scene_of("butterfly", {"video.colors.background=\"#203040\"", "video.colors.bob=\"#00ff00\"",
+                                              "video.side_colors=[\"#ff0000\", \"#0000ff\"]", "video.widths_px.bob=60",
+                                              "video.trail_s=0", "video.glow_px=0", "video.fonts_px.title=80"});
+    const auto layout = make_layout(scene);
+    const auto picture = frame_of(scene, 0);
+    EXPECT_TRUE(is_color(picture.at(5, 5), rgb(0x203040), 0));
+    const auto last = layout.panels[0].at(2, 0), first = layout.panels[0].at(1, 0);
+    for (const float away : {0.f, 54.f}) {
+        EXPECT_TRUE(is_color(pixel_at(picture, {first.x, first.y - away}), rgb(0x00ff00), 0)) << away;
+        EXPECT_TRUE(is_color(pixel_at(picture, {last.x, last.y - away}), rgb(0xff0000), 0)) << away;
+    }
+    EXPECT_FALSE(is_color(pixel_at(picture, {first.x, first.y - 64}), rgb(0x00ff00), 0));
+    EXPECT_EQ(layout.style.font.title, 80);
+}
+
+/// WCAG 2.1: the contrast between two colours.
+double contrast(Color a, Color b) {
+    const auto luminance = [](Color c) {
+        const auto linear = [](float v) { return v <= 0.04045f ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+        return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+    };
+    const double x = luminance(a) + 0.05, y = luminance(b) + 0.05;
+    return std::max(x, y) / std::min(x, y);
+}
+
+TEST(Layouts, ThemesCanBeRead) {
+    // WCAG 2.1 §1.4.3: 4.5 for text; 7 is its enhanced level
+    for (const auto& theme : themes) {
+        const double least = theme.name == "high-contrast" ? 7 : 4.5;
+        for (const auto ground : {theme.background, theme.panel}) {
+            for (const auto color : {theme.text, theme.quiet_text, theme.sides[0], theme.sides[1]})
+                EXPECT_GE(contrast(color, ground), theme.name == "light" ? 4.0 : least) << theme.name;
+            EXPECT_GE(contrast(theme.text, ground), 7) << theme.name;
+        }
+    }
+}
+
+TEST(Layouts, TransparentFilmsHaveNoPage) {
+    const auto out = test::fresh_folder();
+    const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.25", "video.format=\"png\"",
+                                              "video.transparent=true"});
+    run(scene, {.out = out}, std::atomic<bool>(false), [](const Progress&) {});
+    const auto picture = read_png(out / "butterfly/frames/000000.png");
+    EXPECT_EQ(picture.at(2, 2)[3], 0);
+    const auto layout = make_layout(scene);
+    const auto* bob = pixel_at(picture, layout.panels[0].at(2, 0));
+    EXPECT_EQ(bob[3], 255);
+    EXPECT_TRUE(is_color(bob, themes[0].sides[0]));
+}
+
+TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {
+    const std::vector<std::vector<std::string>> all{
+        {"video.layout=\"ensemble\"", "video.members=17", "video.colors.rod=\"#123456\"", "video.widths_px.trail=5",
+         "video.fonts_px.axis=30"},
+        {"video.layout=\"phase\"", "video.phase=\"section\"", "video.phase_link=1", "video.glow_px=3"},
+        {"video.layout=\"portrait\"", "video.poster_s=5", "video.contact_sheet=[2, 3]", "video.hold_end_s=\"1/3\""},
+        {"video.format=\"webm\"", "video.codec=\"av1\"", "video.crf=60", "video.title_card_s=1"},
+        {"video.format=\"png\"", "video.transparent=true", "video.panels=[\"rod-force\", \"exponent\", \"pendulums\"]",
+         "video.exponent_range=[-1, 2]"},
+        {"video.pixel_format=\"yuv420p10\"", "video.speed=\"1/4\"", "video.theme=\"high-contrast\""},
+        {"video.format=\"gif\""}};
+    for (const auto& arguments : all) {
+        const auto text = resolved_toml(read_preset(find_preset("butterfly"), sets(arguments)));
+        EXPECT_EQ(resolved_toml(read_preset({"butterfly", "resolved", text})), text);
+        for (const auto& argument : arguments) {
+            const auto key =
+                argument.substr(0, argument.find('=')).substr(argument.find_last_of('.', argument.find('=')) + 1);
+            EXPECT_NE(text.find(key + " = "), std::string::npos) << key << " is missing in\n" << text;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace doppel

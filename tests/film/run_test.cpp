@@ -1,0 +1,244 @@
+#include "film/run.hpp"
+
+#include "film/support.hpp"
+#include "output/decoded.hpp"
+#include "output/fixtures.hpp"
+#include "output/png.hpp"
+#include "output/sha256.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::fresh_folder;
+const std::atomic<bool> never = false;
+
+std::vector<std::string> lines_of(const fs::path& path) {
+    std::istringstream text(bytes_of(path));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(text, line, '\n');) {
+        EXPECT_TRUE(line.ends_with('\r')) << "RFC 4180 ends lines with CR LF";
+        lines.push_back(line.substr(0, line.size() - 1));
+    }
+    return lines;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells;
+    std::string cell;
+    for (std::istringstream text(line + ","); std::getline(text, cell, ',');) cells.push_back(cell);
+    return cells;
+}
+
+Scene small(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"video.size=[320, 180]", "scene.duration_s=0.5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return scene_of("butterfly", arguments);
+}
+
+RunResult render(const Scene& scene, RunOptions options) {
+    return run(scene, options, never, [](const Progress&) {});
+}
+
+TEST(Run, WritesVideoTableAndManifest) {
+    const auto out = fresh_folder();
+    const auto result = render(small(), {.out = out});
+    EXPECT_EQ(result.frames, 61);  // 0.5 s at 120 Hz, both ends
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(out / "butterfly")) names.insert(entry.path().filename().string());
+    EXPECT_EQ(names, (std::set<std::string>{"butterfly.mp4", "butterfly.csv", "butterfly.json"}));
+}
+
+TEST(Run, VideoHasTheFramesThatWereDrawn) {
+    const auto out = fresh_folder();
+    const auto scene = small();
+    render(scene, {.out = out});
+    const auto path = out / "butterfly/butterfly.mp4";
+    double worst = 1e9;
+    const auto video = test::read_video(path, [&](const test::Luma& luma) {
+        if (luma.frame % 10 == 0) worst = std::min(worst, test::luma_psnr(frame_of(scene, luma.frame), luma));
+    });
+    ASSERT_EQ(video.times.size(), 61u);
+    for (std::size_t k = 0; k < video.times.size(); ++k)
+        EXPECT_EQ(video.times[k], (test::Ratio{static_cast<std::int64_t>(k), 120})) << k;
+    EXPECT_GT(worst, 36);  // dB; measured 42.9
+    EXPECT_EQ(video.size, (Size{320, 180}));
+    test::expect_tags(video);
+    EXPECT_EQ(video.average_rate, (test::Ratio{120, 1}));
+}
+
+TEST(Run, TableHasTheColumnsOfTheContract) {
+    const auto out = fresh_folder();
+    render(small(), {.out = out, .pictures = false});
+    const auto lines = lines_of(out / "butterfly/butterfly.csv");
+    EXPECT_EQ(lines.front(),
+              "sample,time_s,"
+              "a_theta1_rad,a_theta2_rad,a_omega1_rad_per_s,a_omega2_rad_per_s,"
+              "a_x1_m,a_y1_m,a_vx1_m_per_s,a_vy1_m_per_s,a_x2_m,a_y2_m,a_vx2_m_per_s,a_vy2_m_per_s,"
+              "a_energy_J,a_energy_error,a_length_error_m,"
+              "b_theta1_rad,b_theta2_rad,b_omega1_rad_per_s,b_omega2_rad_per_s,"
+              "b_x1_m,b_y1_m,b_vx1_m_per_s,b_vy1_m_per_s,b_x2_m,b_y2_m,b_vx2_m_per_s,b_vy2_m_per_s,"
+              "b_energy_J,b_energy_error,b_length_error_m,"
+              "distance,log_ratio");
+    ASSERT_EQ(lines.size(), 62u);
+    const auto first = cells_of(lines[1]), last = cells_of(lines.back());
+    EXPECT_EQ(first[0], "0");
+    EXPECT_EQ(first[2], fmt::format("{}", pi / 2));
+    EXPECT_EQ(first.back(), "0");  // ln(d0/d0)
+    EXPECT_EQ(last[0], "60");
+    EXPECT_EQ(last[1], "0.5");
+}
+
+TEST(Run, TableLeavesTheLogRatioEmptyWhereThePairStartsAsOne) {
+    const auto out = fresh_folder();
+    render(scene_of("two-methods", {"scene.duration_s=0.1"}), {.out = out, .pictures = false});
+    for (const auto& line : lines_of(out / "two-methods/two-methods.csv"))
+        EXPECT_TRUE(line.ends_with("log_ratio") || line.ends_with(","));
+}
+
+TEST(Run, TableIsTheSameForAnyJobsAndWithOrWithoutPictures) {
+    const auto out = fresh_folder();
+    std::set<std::string> tables;
+    for (const int jobs : {1, 2, 5}) {
+        render(small(), {.out = out, .pictures = jobs != 2, .jobs = jobs});
+        tables.insert(sha256_of_file(out / "butterfly/butterfly.csv"));
+    }
+    EXPECT_EQ(tables.size(), 1u);
+}
+
+TEST(Run, AnyFramesAloneAreThoseOfTheWhole) {
+    const auto out = fresh_folder();
+    const auto all = out / "all", some = out / "some";
+    const auto scene = small({"video.format=\"png\""});
+    render(scene, {.out = all});
+    render(scene, {.out = some, .first = 37, .last = 45, .jobs = 2});
+    long count = 0;
+    for (const auto& entry : fs::directory_iterator(some / "butterfly/frames")) {
+        const auto name = entry.path().filename();
+        EXPECT_EQ(bytes_of(entry.path()), bytes_of(all / "butterfly/frames" / name)) << name;
+        ++count;
+    }
+    EXPECT_EQ(count, 8);
+    EXPECT_TRUE(fs::exists(some / "butterfly/frames/000037.png"));
+    // the table has the same rows, too
+    const auto rows = lines_of(some / "butterfly/butterfly.csv"), all_rows = lines_of(all / "butterfly/butterfly.csv");
+    ASSERT_EQ(rows.size(), 9u);
+    EXPECT_EQ(rows[1], all_rows[1 + 37]);
+}
+
+TEST(Run, DrawsTheSameInSequenceAsAlone) {
+    // the renderer redraws only what changes; no pixel may depend on it
+    const auto out = fresh_folder();
+    const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "video.format=\"png\"", "scene.duration_s=1.5"});
+    render(scene, {.out = out});
+    for (const long sample : {0L, 1L, 90L, 180L})
+        EXPECT_EQ(read_png(out / fmt::format("butterfly/frames/{:06}.png", sample)).rgba, frame_of(scene, sample).rgba)
+            << sample;
+}
+
+TEST(Run, ShowsEveryOtherSampleAtHalfTheRate) {
+    const auto out = fresh_folder();
+    const auto scene = small({"video.format=\"png\"", "video.fps=60"});
+    EXPECT_EQ(render(scene, {.out = out}).frames, 31);
+    EXPECT_EQ(read_png(out / "butterfly/frames/000030.png").rgba, frame_of(scene, 60).rgba);
+}
+
+TEST(Run, ManifestTellsWhatRanAndHashesIt) {
+    const auto out = fresh_folder();
+    render(small({"b.model=\"constraints\""}), {.out = out});
+    const auto manifest = nlohmann::json::parse(bytes_of(out / "butterfly/butterfly.json"));
+    EXPECT_EQ(manifest["preset"], "butterfly");
+    EXPECT_EQ(manifest["resolved_preset"]["b"]["angle_deg"][0], 90.003);
+    EXPECT_EQ(manifest["resolved_preset"]["video"]["size"][0], 320);
+    EXPECT_EQ(manifest["steps"], 2 * 60 * 250);
+    EXPECT_EQ(manifest["a"]["model"], "angles");
+    EXPECT_EQ(manifest["b"]["model"], "constraints");
+    EXPECT_GT(manifest["b"]["worst_length_error_m"], 0);
+    EXPECT_NE(manifest["libraries"]["gl"].get<std::string>().find("llvmpipe"), std::string::npos);
+    EXPECT_GT(manifest["time"]["cpu_by_stage_s"]["draw"], 0);
+    for (const char* name : {"butterfly.mp4", "butterfly.csv"})
+        EXPECT_EQ(manifest["files"][name]["sha256"], sha256_of_file(out / "butterfly" / name));
+}
+
+TEST(Run, LeavesNothingWhenItIsInterrupted) {
+    for (const char* format : {"mp4", "png"}) {
+        const auto out = fresh_folder();
+        std::atomic<bool> stop = false;
+        const auto [code, message] = error_of([&] {
+            run(small({fmt::format("video.format=\"{}\"", format)}), {.out = out}, stop,
+                [&](const Progress& p) { stop = p.done == 20; });
+        });
+        EXPECT_EQ(code, ExitCode::interrupted);
+        EXPECT_TRUE(fs::is_empty(out)) << format;
+    }
+}
+
+TEST(Run, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
+    const auto out = fresh_folder();
+    const auto scene = scene_of("butterfly", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000",
+                                              "video.size=[64, 64]", "system.model=\"constraints\""});
+    const auto [code, message] = error_of([&] { render(scene, {.out = out}); });
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("butterfly.failed.csv"), std::string::npos) << message;
+
+    // two files, no video and nothing that looks whole
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(out / "butterfly")) names.insert(entry.path().filename());
+    EXPECT_EQ(names, (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
+    const auto manifest = nlohmann::json::parse(std::ifstream(out / "butterfly" / "butterfly.failed.json"));
+    const std::string failure = manifest["failed"];
+    EXPECT_EQ(message.rfind(failure, 0), 0u);
+    std::ifstream table(out / "butterfly" / "butterfly.failed.csv");
+    long rows = -1;  // the header
+    for (std::string line; std::getline(table, line);) ++rows;
+    EXPECT_EQ(rows, manifest["samples"]["last"].get<long>() + 1);
+    EXPECT_GT(rows, 1);
+
+    // a whole run takes them away
+    render(scene_of("butterfly", {"scene.duration_s=0.1", "video.size=[64, 64]"}), {.out = out});
+    EXPECT_FALSE(fs::exists(out / "butterfly" / "butterfly.failed.csv"));
+    EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
+}
+
+TEST(Run, OfAnAdaptiveMethodSaysWhichStepHeld) {
+    const auto failure = [](const std::vector<std::string>& arguments) {
+        auto all = arguments;
+        all.emplace_back("scene.duration_s=2");
+        const auto scene = scene_of("butterfly", all);
+        return error_of([&] { run(scene, {.out = fresh_folder(), .pictures = false}, never, [](const Progress&) {}); });
+    };
+    const auto [code, message] = failure({"system.integrator=\"taylor\"", "system.tolerance=1000"});
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("the smallest step that held was 0.9"), std::string::npos) << message;
+    const auto hopeless = failure({"system.integrator=\"dop853\"", "system.length_m=[1e-200, 1]"});
+    EXPECT_EQ(hopeless.first, ExitCode::method_failed);
+    EXPECT_NE(hopeless.second.find("not even a first step held"), std::string::npos) << hopeless.second;
+}
+
+TEST(Run, RefusesFramesThatAreNotThere) {
+    const auto [code, message] = error_of([&] { render(small(), {.out = fresh_folder(), .first = 60, .last = 62}); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_EQ(message, "--frames 60:62: butterfly has the samples 0 to 60; A:B must have 0 ≤ A < B ≤ 61");
+}
+
+TEST(Run, NeverMixesOldFramesIntoNewOnes) {
+    const auto out = fresh_folder();
+    const auto scene = small({"video.format=\"png\""});
+    render(scene, {.out = out, .first = 0, .last = 5});
+    render(scene, {.out = out, .first = 10, .last = 12});
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(out / "butterfly/frames"))
+        names.insert(entry.path().filename().string());
+    EXPECT_EQ(names, (std::set<std::string>{"000010.png", "000011.png"}));
+}
+
+}  // namespace
+}  // namespace doppel

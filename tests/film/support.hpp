@@ -1,0 +1,33 @@
+#pragma once
+
+#include "film/composer.hpp"
+#include "integrate/crowd.hpp"
+#include "picture/renderer.hpp"
+#include "scene/support.hpp"
+
+namespace doppel {
+
+/// Calls visit(shot) for the samples 0 … last.
+template <class Visit>
+void for_each_shot(const Scene& scene, long last, Visit&& visit) {
+    PairRun pair(scene);
+    std::optional<Crowd> crowd;
+    if (!scene.crowd.empty()) crowd.emplace(scene.crowd, 1);
+    const std::atomic<bool> never = false;
+    for (long n = 0; n <= last; ++n) {
+        Shot shot{pair.next(never), {}};
+        if (crowd && n > 0) crowd->advance(never);
+        for (std::size_t k = 0; crowd && k < crowd->size(); ++k) shot.crowd.push_back(crowd->bobs(k));
+        visit(shot);
+    }
+}
+
+/// The picture of one sample.
+inline Picture frame_of(const Scene& scene, long sample) {
+    Composer composer(scene);
+    for_each_shot(scene, sample, [&](const Shot& shot) { composer.add(shot); });
+    Renderer renderer(scene.preset.video.size, composer.backdrop());
+    return renderer.draw(composer.frame());
+}
+
+}  // namespace doppel

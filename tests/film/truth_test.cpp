@@ -1,0 +1,194 @@
+#include "film/support.hpp"
+#include "picture/font.hpp"
+#include "picture/theme.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+namespace doppel {
+namespace {
+
+// Where the truth is known, the picture is measured against it, not against an older picture.
+
+bool is_color(const std::uint8_t* pixel, Color color, int slack = 2) {
+    const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
+    return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
+}
+
+struct Blob {
+    double x = 0, y = 0;  // centroid, px
+    long area = 0;        // px
+};
+
+/// The pixels of exactly that colour within `radius` of a place.
+Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
+    Blob blob;
+    for (int y = static_cast<int>(place.y - radius); y <= static_cast<int>(place.y + radius); ++y)
+        for (int x = static_cast<int>(place.x - radius); x <= static_cast<int>(place.x + radius); ++x) {
+            if (!is_color(picture.at(x, y), color)) continue;
+            blob.x += x + 0.5;
+            blob.y += y + 0.5;
+            ++blob.area;
+        }
+    blob.x /= static_cast<double>(blob.area);
+    blob.y /= static_cast<double>(blob.area);
+    return blob;
+}
+
+TEST(Truth, BobsAreWherePhysicsSaysInTheirColour) {
+    // released at rest from 37/−61 with unequal rods: sample 0 is known in closed form
+    const auto scene = scene_of("butterfly", {"system.angle_deg=[37, -61]", "b.angle_deg=[-80, 20]",
+                                              "system.length_m=[1.3, 0.6]", "video.trail_s=0"});
+    const auto picture = frame_of(scene, 0);
+    const auto layout = make_layout(scene);
+    const auto& theme = themes[0];
+    const std::array starts{std::array{37.0, -61.0}, std::array{-80.0, 20.0}};
+    for (std::size_t side = 0; side < 2; ++side) {
+        const auto& panel = layout.panels[side];
+        double x = 0, y = 0;
+        for (std::size_t link = 0; link < 2; ++link) {
+            const double length = link == 0 ? 1.3 : 0.6, angle = radians(starts[side][link]);
+            x += length * std::sin(angle);
+            y -= length * std::cos(angle);
+            const Point expected{panel.center.x + panel.px_per_m * static_cast<float>(x),
+                                 panel.center.y - panel.px_per_m * static_cast<float>(y)};
+            const auto found =
+                blob_at(picture, expected, 1.5f * layout.bob_radius, link == 1 ? theme.sides[side] : theme.bob);
+            EXPECT_NEAR(found.x, expected.x, 0.5);  // measured 0.1 at most
+            EXPECT_NEAR(found.y, expected.y, 0.5);
+            // the fully covered pixels of the disc: all but a ring of half a pixel
+            const double core = pi * std::pow(layout.bob_radius - 0.5, 2);
+            EXPECT_NEAR(static_cast<double>(found.area), core, 0.06 * core);  // measured 3 %
+        }
+    }
+}
+
+TEST(Truth, BobsHaveAnAreaLikeTheirMass) {
+    const auto scene = scene_of("butterfly", {"system.mass_kg=[2, 0.5]", "video.trail_s=0"});
+    const auto picture = frame_of(scene, 0);
+    const auto layout = make_layout(scene);
+    const auto& panel = layout.panels.front();
+    const auto heavy = blob_at(picture, panel.at(1, 0), 1.5f * layout.bob_radius, themes[0].bob);
+    const auto light = blob_at(picture, panel.at(2, 0), 1.5f * layout.bob_radius, themes[0].sides[0]);
+    EXPECT_NEAR(static_cast<double>(heavy.area) / static_cast<double>(light.area), 4,
+                0.4);  // measured 4.2: the smaller loses more to its edge
+}
+
+/// The rows of the strip in which the pixel at `x` has the colour.
+std::vector<int> rows_of(const Picture& picture, int x, const Area& area, Color color) {
+    std::vector<int> rows;
+    for (int y = static_cast<int>(area.top); y < static_cast<int>(area.bottom); ++y)
+        if (is_color(picture.at(x, y), color)) rows.push_back(y);
+    return rows;
+}
+
+TEST(Truth, AxisTicksFallOnDecades) {
+    const auto scene = scene_of("butterfly", {"video.distance_range=[1e-5, 1e1]"});
+    const auto picture = frame_of(scene, 0);
+    const auto layout = make_layout(scene);
+    const auto& strip = layout.strips[0];
+    // between two lines of the time grid nothing but the decades' lines is in the grid's colour
+    const int x = static_cast<int>(strip.time.at(27)) + 3;
+    const auto rows = rows_of(picture, x, strip.area, themes[0].grid);
+    ASSERT_FALSE(rows.empty());
+    for (const int row : rows) {
+        const double share = (strip.area.bottom - (row + 0.5)) / strip.area.height();
+        const double decade = -5 + 6 * share;
+        EXPECT_NEAR(decade, std::round(decade), 0.75 * 6 / strip.area.height());  // within 3/4 of a pixel
+    }
+    EXPECT_GE(rows.size(), 2u);
+}
+
+TEST(Truth, TraceIsAtTheDistanceItShows) {
+    // mirror twins: the distance stays what it is at the start as long as both rest, d = 2 (x1, x2) here, 10^0.65
+    const auto scene = scene_of("butterfly", {"b.angle_deg=[-90, -90]", "video.distance_range=[1e-3, 1e3]"});
+    const auto picture = frame_of(scene, 0);
+    const auto layout = make_layout(scene);
+    const auto& strip = layout.strips[0];
+    const double distance = std::sqrt(4.0 + 16.0);
+    const double y = strip.area.bottom - strip.area.height() * (std::log10(distance) + 3) / 6;
+    const auto dot = blob_at(picture, {strip.area.left + 4, static_cast<float>(y)}, 12, themes[0].trace);
+    EXPECT_GT(dot.area, 20);
+    EXPECT_NEAR(dot.y, y, 0.5);  // measured 0.2
+}
+
+TEST(Truth, WhatLiesBeyondTheHorizonIsShaded) {
+    const auto scene = scene_of("horizon", {"scene.duration_s=35"});
+    ASSERT_TRUE(scene.horizon());
+    const auto picture = frame_of(scene, 0);
+    const auto layout = make_layout(scene);
+    const auto& strip = layout.strips[0];
+    const auto pixel = [&](float dx, double seconds) {  // away from the lines of the axes
+        return picture.at(static_cast<int>(strip.time.at(seconds) + dx), static_cast<int>(strip.area.top) + 5);
+    };
+    const auto& theme = themes[0];
+    EXPECT_TRUE(is_color(pixel(-6, *scene.horizon()), theme.background));
+    EXPECT_TRUE(is_color(pixel(6, *scene.horizon()), theme.panel));
+    // one that can be predicted to its end has none
+    EXPECT_FALSE(scene_of("horizon", {"scene.duration_s=20"}).horizon());
+    EXPECT_FALSE(scene_of("butterfly").horizon());
+}
+
+TEST(Truth, ABlowUpStaysInItsPanel) {
+    // Euler with giant steps tears the rods: bobs and trails leave the panel, and must not be drawn over the rest
+    const auto scene =
+        scene_of("butterfly", {"system.model=\"constraints\"", "system.step_s=\"1/120\"", "video.size=[640, 360]"});
+    const auto layout = make_layout(scene);
+    bool outside = false;
+    PairRun pair(scene);
+    const std::atomic<bool> never = false;
+    long sample = 0;
+    for (; sample < 2400 && !outside; ++sample) {
+        const auto moment = pair.next(never);
+        const auto& bob = moment.a.bobs[1];
+        outside = !layout.panels.front().area.holds(layout.panels.front().at(bob.x, bob.y));
+    }
+    ASSERT_TRUE(outside);
+    const auto picture = frame_of(scene, sample - 1), calm = frame_of(scene, 0);
+    const auto& left = layout.panels[0].area;
+    const auto& right = layout.panels[1].area;
+    // the gap between the panels, and what is above them but for the clock
+    for (int y = static_cast<int>(left.top); y < static_cast<int>(left.bottom); ++y)
+        for (int x = static_cast<int>(left.right) + 3; x < static_cast<int>(right.left) - 3; ++x)
+            ASSERT_TRUE(is_color(picture.at(x, y), themes[0].background)) << x << " " << y;
+    for (int y = 0; y < static_cast<int>(left.top) - 8; ++y)
+        for (int x = 0; x < 300; ++x)
+            ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, calm.at(x, y))) << x << " " << y;
+}
+
+TEST(Truth, LongWordsShrinkUntilTheyFit) {
+    const auto scene = scene_of(
+        "butterfly", {"title=\"A title that goes on and on, for as long as a double pendulum swings, and then some\"",
+                      "video.size=[640, 360]"});
+    const auto picture = frame_of(scene, 0), usual = frame_of(scene_of("butterfly", {"video.size=[640, 360]"}), 0);
+    const auto layout = make_layout(scene);
+    const int clock = static_cast<int>(layout.page.right - text_width("30.00 s", 40 * layout.text) - 20 * layout.text);
+    for (int y = 0; y < static_cast<int>(layout.page.top + 50 * layout.text); ++y)
+        for (int x = clock; x < 640; ++x)
+            ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, usual.at(x, y)));
+}
+
+TEST(Truth, TwinsDrawnMirroredAreMirrored) {
+    // each panel is the other's mirror image where the starts are
+    const auto scene = scene_of("butterfly", {"system.angle_deg=[70, 120]", "b.angle_deg=[-70, -120]",
+                                              "video.side_colors=[\"#ff8800\", \"#ff8800\"]"});
+    const auto picture = frame_of(scene, 150);
+    const auto layout = make_layout(scene);
+    const auto& left = layout.panels[0];
+    const auto& right = layout.panels[1];
+    long differing = 0;
+    const int reach = static_cast<int>(2.2f * left.px_per_m);
+    for (int dy = -reach; dy <= reach; ++dy)
+        for (int dx = -reach / 2; dx <= reach / 2; ++dx) {
+            const auto* l = picture.at(static_cast<int>(left.center.x) + dx, static_cast<int>(left.center.y) + dy);
+            const auto* r =
+                picture.at(static_cast<int>(right.center.x) - dx - 1, static_cast<int>(right.center.y) + dy);
+            for (int c = 0; c < 3; ++c) differing += std::abs(l[c] - r[c]) > 40;
+        }
+    EXPECT_LT(differing, 40);  // measured 0, where both pivots are at whole or both at half pixels
+}
+
+}  // namespace
+}  // namespace doppel

@@ -1,0 +1,278 @@
+// What holds of every format; mp4 alone: video_test.cpp.
+#include "output/decoded.hpp"
+#include "output/fixtures.hpp"
+#include "output/libav_encoder.hpp"
+#include "output/video.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <tuple>
+
+using namespace doppel;
+using namespace doppel::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr Size small{320, 180}, tiny{96, 64};
+
+/// The scene, clear where it is dark: opacity follows the brightest colour.
+Picture clear_scene(Size size, long k) {
+    Picture picture = moving_scene(size, k);
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+        picture.rgba[i + 3] = std::max({picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]});
+    return picture;
+}
+
+fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
+    const auto sink = make_video_sink(path, options);
+    for (long k = 0; k < frames; ++k) sink->take(clear_scene(options.size, k), whole(options.size));
+    sink->finish();
+    return path;
+}
+
+struct Kind {
+    const char* name;
+    VideoFormat format;
+    const char* codec;
+    PixelFormat pixel_format;
+    bool transparent;
+    const char *codec_found, *pixels_found;
+    double psnr;  // dB, of the worst frame; measured
+};
+constexpr auto yuv420 = PixelFormat::yuv420, yuv444 = PixelFormat::yuv444, yuv420_10 = PixelFormat::yuv420_10;
+constexpr std::array kinds{
+    Kind{"h264", VideoFormat::mp4, "", yuv420, false, "h264", "yuv420p", 42.8},
+    Kind{"h264-444", VideoFormat::mp4, "h264", yuv444, false, "h264", "yuv444p", 42.4},
+    Kind{"h264-10", VideoFormat::mp4, "", yuv420_10, false, "h264", "yuv420p10le", 42.7},
+    Kind{"vp9", VideoFormat::webm, "", yuv420, false, "vp9", "yuv420p", 48.7},
+    Kind{"vp9-444", VideoFormat::webm, "vp9", yuv444, false, "vp9", "yuv444p", 48.7},
+    Kind{"vp9-10", VideoFormat::webm, "", yuv420_10, false, "vp9", "yuv420p10le", 49.0},
+    Kind{"vp9-alpha", VideoFormat::webm, "", yuv420, true, "vp9", "yuv420p", 48.7},
+    Kind{"av1", VideoFormat::webm, "av1", yuv420, false, "av1", "yuv420p", 49.0},
+    Kind{"av1-444", VideoFormat::webm, "av1", yuv444, false, "av1", "yuv444p", 50.4},
+    Kind{"av1-10", VideoFormat::webm, "av1", yuv420_10, false, "av1", "yuv420p10le", 49.5},
+    Kind{"gif", VideoFormat::gif, "", yuv420, false, "gif", "bgra", 61.3},
+    Kind{"apng", VideoFormat::apng, "", yuv420, false, "apng", "rgb24", 1e9},
+    Kind{"apng-alpha", VideoFormat::apng, "", yuv420, true, "apng", "rgba", 1e9},
+};
+
+VideoOptions options_of(const Kind& kind, Size size = small) {
+    return {.format = kind.format,
+            .codec = kind.codec,
+            .size = size,
+            .fps_numerator = 50,
+            .pixel_format = kind.pixel_format,
+            .threads = 2,
+            .transparent = kind.transparent,
+            .metadata = {{"title", "Three thousandths of a degree"}, {"comment", "butterfly – 90.003°"}}};
+}
+
+std::string name_of(const testing::TestParamInfo<Kind>& kind) {
+    std::string name = kind.param.name;
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
+class Formats : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(All, Formats, testing::ValuesIn(kinds), name_of);
+
+/// Every encoder and container once.
+class Encoders : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(All, Encoders, testing::Values(kinds[0], kinds[6], kinds[7], kinds[10], kinds[12]), name_of);
+
+bool is_yuv(const Kind& kind) {
+    return kind.format == VideoFormat::mp4 || kind.format == VideoFormat::webm;
+}
+
+}  // namespace
+
+TEST_P(Formats, HaveTheFramesTimesTagsWordsAndLooksAskedFor) {
+    const Kind& kind = GetParam();
+    const auto options = options_of(kind);
+    double worst = 1e9, worst_alpha = 1e9;
+    const auto each = [&](const Luma& frame) {
+        const Picture source = clear_scene(small, frame.frame);
+        worst = std::min(worst, is_yuv(kind) ? luma_psnr(source, frame) : rgb_psnr(source, frame.picture));
+        if (!kind.transparent) return;
+        ASSERT_EQ(frame.alpha.size(), source.rgba.size() / 4);
+        double squares = 0.0;
+        for (std::size_t i = 0; i < frame.alpha.size(); ++i)
+            squares += std::pow(frame.alpha[i] - source.rgba[4 * i + 3], 2);
+        worst_alpha =
+            std::min(worst_alpha, 10 * std::log10(255.0 * 255.0 * static_cast<double>(frame.alpha.size()) / squares));
+    };
+    const auto path = film(fresh_folder() / ("x" + extension(kind.format) + ".part"), options, 24);
+    Video video = read_video(path, each);
+
+    EXPECT_EQ(video.size, small);
+    EXPECT_EQ(video.codec, kind.codec_found);
+    EXPECT_EQ(video.pixel_format, kind.pixels_found);
+    if (is_yuv(kind)) expect_bt709(video);
+    ASSERT_EQ(video.times.size(), 24u);
+    for (long k = 0; k < 24; ++k) EXPECT_EQ(video.times[std::size_t(k)], (Ratio{k, 50})) << k;
+    EXPECT_EQ(video.average_rate, (Ratio{50, 1}));
+
+    if (kind.format == VideoFormat::gif) {
+        EXPECT_EQ(video.metadata.at("comment"), "title: Three thousandths of a degree\ncomment: butterfly – 90.003°");
+    } else {
+        EXPECT_EQ(video.metadata.at("title"), "Three thousandths of a degree");
+        // PNG: a dash is beyond Latin-1, and libav does not read iTXt
+        EXPECT_EQ(video.metadata.count("comment"), kind.format == VideoFormat::apng ? 0u : 1u);
+        EXPECT_EQ(video.metadata["comment"], kind.format == VideoFormat::apng ? "" : "butterfly – 90.003°");
+    }
+    EXPECT_GT(worst, kind.psnr - 1.0);
+    const double alpha_floor = !kind.transparent                  ? 0.0
+                               : kind.format == VideoFormat::apng ? 1e8
+                                                                  : 46.0;  // measured 48.2
+    EXPECT_GT(worst_alpha, alpha_floor);
+}
+
+TEST_P(Encoders, OnlyWhatChangedNeedsToBeTaken) {
+    const Kind& kind = GetParam();
+    if (kind.format == VideoFormat::gif) return;  // what is taken more often weighs more in the palette
+    auto options = options_of(kind);
+    options.threads = 1;
+    const auto square = [](long k) {
+        Picture picture = clear_scene(small, 0);
+        for (int y = 51; y < 84; ++y)
+            for (int x = 31 + 3 * static_cast<int>(k); x < 60 + 3 * static_cast<int>(k); ++x)
+                std::fill_n(picture.at(x, y), 4, 200);
+        return picture;
+    };
+    const auto folder = fresh_folder();
+    using Frame = std::tuple<std::vector<double>, std::vector<std::uint8_t>, std::vector<std::uint8_t>>;
+    const auto film_squares = [&](const char* name, auto changed_in) {
+        const auto sink = make_video_sink(folder / name, options);
+        for (long k = 0; k < 8; ++k) sink->take(square(k), changed_in(k));
+        sink->finish();
+        std::vector<Frame> frames;
+        read_video(folder / name, [&](const Luma& f) { frames.emplace_back(f.y, f.alpha, f.picture.rgba); });
+        return frames;
+    };
+    const auto all = film_squares("all", [](long) { return whole(small); });
+    const auto areas = film_squares("areas", [](long k) {
+        const int left = 31 + 3 * static_cast<int>(k);
+        return k == 0 ? whole(small) : std::vector<Rect>{{left - 3, 51, left, 84}, {}, {left + 26, 51, left + 29, 84}};
+    });
+    EXPECT_TRUE(all == areas);
+}
+
+TEST_P(Encoders, WhereverTheDiskIsFullItIsAnError) {
+    const Kind& kind = GetParam();
+    const auto folder = fresh_folder();
+    const auto path = folder / ("x" + extension(kind.format) + ".part");
+    const auto options = options_of(kind, tiny);
+    const auto size = static_cast<long>(fs::file_size(film(path, options, 6)));
+    for (const long room : {0L, size / 2, size - 1}) {
+        const FullDisk full(static_cast<std::uintmax_t>(room));
+        expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] { film(path, options, 6); });
+    }
+    // nothing is left beside the part that its owner removes
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+    expect_error(ExitCode::io_failed, {"none/x", "No such file"}, [&] { make_video_sink(folder / "none/x", options); });
+}
+
+TEST_P(Encoders, DestroyedUnfinishedLeavesNothingBeside) {
+    const auto folder = fresh_folder();
+    auto sink = make_video_sink(folder / "x.part", options_of(GetParam(), tiny));
+    for (long k = 0; k < 5; ++k) sink->take(clear_scene(tiny, k), whole(tiny));
+    sink.reset();
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+    make_video_sink(folder / "x.part", options_of(GetParam(), tiny)).reset();  // before the first frame
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+TEST(FormatsDetail, MoreBitsAndFullChromaCarryMore) {
+    // red and blue lines of one pixel: half the chroma cannot tell them apart
+    const auto worst_chroma = [](PixelFormat pixel_format) {
+        Picture stripes(small);
+        for (int y = 0; y < small.height; ++y)
+            for (int x = 0; x < small.width; ++x)
+                std::copy_n(
+                    std::array<std::uint8_t, 4>{std::uint8_t(x % 2 ? 200 : 20), 40, std::uint8_t(x % 2 ? 20 : 200), 255}
+                        .data(),
+                    4, stripes.at(x, y));
+        const auto path = fresh_folder() / "x.mp4";
+        const auto sink = make_video_sink(path, {.size = small, .pixel_format = pixel_format, .crf = 10});
+        for (int k = 0; k < 3; ++k) sink->take(stripes, whole(small));
+        sink->finish();
+        double worst = 0;
+        read_video(path, [&](const Luma& frame) {
+            const std::size_t width = std::size_t(small.width) * frame.chroma[1].size() / frame.y.size();
+            const double by = pixel_format == yuv444 ? 1 : 2;
+            for (std::size_t i = 0; i < frame.chroma[1].size(); ++i) {
+                const auto x = static_cast<std::size_t>(by * static_cast<double>(i % width));
+                const double r = x % 2 ? 200 : 20, e = 0.2126 * r + 0.7152 * 40 + 0.0722 * (220 - r);
+                worst = std::max(worst, std::abs(128 + 224 * (r - e) / 1.5748 / 255 - frame.chroma[1][i]));
+            }
+        });
+        return worst;
+    };
+    EXPECT_LT(worst_chroma(yuv444), 6.0);   // measured
+    EXPECT_GT(worst_chroma(yuv420), 30.0);  // measured
+
+    // a ramp from 100 to 101: 8 bits have a step or two, 10 bits have several
+    const auto levels = [](PixelFormat pixel_format) {
+        Picture grey(small);
+        for (int y = 0; y < small.height; ++y)
+            for (int x = 0; x < small.width; ++x) {
+                const auto v = static_cast<std::uint8_t>(100 + 4 * x / small.width);
+                std::copy_n(std::array<std::uint8_t, 4>{v, v, v, 255}.data(), 4, grey.at(x, y));
+            }
+        const auto path = fresh_folder() / "x.mp4";
+        const auto sink = make_video_sink(path, {.size = small, .pixel_format = pixel_format, .crf = 1});
+        for (int k = 0; k < 3; ++k) sink->take(grey, whole(small));
+        sink->finish();
+        double worst = 0;
+        read_video(path, [&](const Luma& frame) {
+            for (std::size_t i = 0; i < frame.y.size(); ++i) {
+                const double v = grey.rgba[4 * i];
+                worst = std::max(worst, std::abs(16 + 219 * v / 255 - frame.y[i]));
+            }
+        });
+        return worst;
+    };
+    EXPECT_LT(levels(yuv420_10), 0.26);  // measured
+    EXPECT_GT(levels(yuv420), 0.3);      // measured
+}
+
+TEST(FormatsRefusals, AreMadeBeforeAnyWork) {
+    const auto refused = [](const VideoOptions& options, const std::vector<std::string>& words) {
+        const auto path = fresh_folder() / "x";
+        expect_error(ExitCode::bad_input, words, [&] { check_video(options); });
+        expect_error(ExitCode::bad_input, words, [&] { make_video_sink(path, options); });
+        EXPECT_FALSE(fs::exists(path));
+    };
+    using F = VideoFormat;
+    refused({.format = F::webm, .codec = "h264", .size = small}, {"webm holds vp9, av1, not \"h264\""});
+    refused({.format = F::mp4, .codec = "vp9", .size = small}, {"mp4 holds h264, not \"vp9\""});
+    refused({.format = F::gif, .codec = "lzw", .size = small}, {"gif has only one codec", "lzw"});
+    refused({.format = F::webm, .size = {641, 360}}, {"VP9 needs even sizes; 641x360 is not; 642x360 would do"});
+    refused({.format = F::mp4, .size = {640, 361}, .pixel_format = yuv420_10}, {"even sizes", "640x362"});
+    refused({.format = F::mp4, .size = {20000, 20}}, {"1x1 … 16384x16384", "20000x20"});
+    refused({.format = F::gif, .size = {70000, 1}}, {"65535"});
+    refused({.format = F::apng, .size = {0, 1}}, {"0x1"});
+    refused({.format = F::gif, .size = small, .fps_numerator = 60}, {"1/100 s", "60 frames/s", "at most 50 would do"});
+    refused({.format = F::webm, .size = small, .fps_numerator = 3001, .fps_denominator = 3}, {"3001/3", "1000"});
+    refused({.format = F::apng, .size = small, .fps_numerator = 65537}, {"65535", "65537/1"});
+    refused({.format = F::mp4, .size = small, .fps_numerator = 0}, {"frames per second must be > 0"});
+    refused({.format = F::mp4, .size = small, .transparent = true},
+            {"H.264 has no transparency; webm of vp9 and apng"});
+    refused({.format = F::webm, .codec = "av1", .size = small, .transparent = true}, {"AV1 has no transparency"});
+    refused({.format = F::gif, .size = small, .fps_numerator = 25, .transparent = true}, {"GIF has no transparency"});
+    refused({.format = F::webm, .size = small, .pixel_format = yuv444, .transparent = true}, {"4:2:0 of 8 bits"});
+    refused({.format = F::webm, .size = small, .preset = "swift"}, {"\"swift\"", "veryfast"});
+    refused({.format = F::webm, .size = small, .crf = 64}, {"crf of VP9 must be 0 … 63; it is 64"});
+    for (const Kind& kind : kinds) EXPECT_NO_THROW(check_video(options_of(kind)));
+    check_video({.format = F::mp4, .size = {641, 361}, .pixel_format = yuv444});
+    check_video({.format = F::apng, .size = {641, 361}, .fps_numerator = 131072, .fps_denominator = 2048});
+}
+
+TEST(FormatsRefusals, AMissingEncoderNamesThosePresent) {
+    expect_error(ExitCode::io_failed, {"without libnone and libnix", "encoders of h264", "libx264"}, [] {
+        find_encoder({"libnone", "libnix"}, AV_CODEC_ID_H264);
+    });
+    EXPECT_STREQ(find_encoder({"libnone", "libx264"}, AV_CODEC_ID_H264).name, "libx264");
+}

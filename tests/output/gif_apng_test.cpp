@@ -1,0 +1,197 @@
+#include "output/decoded.hpp"
+#include "output/fixtures.hpp"
+#include "output/palette.hpp"
+#include "output/spool.hpp"
+#include "output/video.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace doppel;
+using namespace doppel::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr Size small{160, 90};
+
+fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
+    const auto sink = make_video_sink(path, options);
+    for (long k = 0; k < frames; ++k) sink->take(moving_scene(options.size, k), whole(options.size));
+    sink->finish();
+    return path;
+}
+
+unsigned big_endian(const std::string& bytes, std::size_t at, int count) {
+    unsigned number = 0;
+    for (int i = 0; i < count; ++i) number = number << 8 | static_cast<unsigned char>(bytes[at + std::size_t(i)]);
+    return number;
+}
+
+/// PNG's check sum, bit by bit (W3C 2003, annex D).
+std::uint32_t check_sum(const std::string& bytes) {
+    std::uint32_t sum = 0xffffffff;
+    for (const char byte : bytes) {
+        sum ^= static_cast<unsigned char>(byte);
+        for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320 : 0);
+    }
+    return ~sum;
+}
+
+/// Calls visit(type, content) for each chunk of a PNG.
+template <class Visit>
+void for_each_chunk(const fs::path& path, Visit&& visit) {
+    const std::string png = bytes_of(path);
+    ASSERT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+    for (std::size_t at = 8; at < png.size();) {
+        const std::size_t length = big_endian(png, at, 4);
+        ASSERT_EQ(big_endian(png, at + 8 + length, 4), check_sum(png.substr(at + 4, length + 4)))
+            << png.substr(at + 4, 4);
+        visit(png.substr(at + 4, 4), png.substr(at + 8, length));
+        at += length + 12;
+    }
+}
+
+}  // namespace
+
+TEST(Gif, TimesAreRoundedWithoutAddingUp) {
+    const auto folder = fresh_folder();
+    for (const Ratio rate : {Ratio{30, 1}, Ratio{50, 1}, Ratio{24, 1}, Ratio{30000, 1001}, Ratio{7, 1}, Ratio{1, 2}}) {
+        const Video video = read_video(film(folder / "x.gif",
+                                            {.format = VideoFormat::gif,
+                                             .size = small,
+                                             .fps_numerator = static_cast<int>(rate.numerator),
+                                             .fps_denominator = static_cast<int>(rate.denominator)},
+                                            13));
+        ASSERT_EQ(video.times.size(), 13u);
+        for (std::size_t k = 0; k < 13; ++k)
+            EXPECT_NEAR(video.times[k].value(), static_cast<double>(k) / rate.value(), 0.005 + 1e-9) << k;
+        EXPECT_NEAR(video.times.back().value() + video.lasting.back().value(), 13 / rate.value(), 0.005 + 1e-9);
+    }
+}
+
+TEST(Gif, WhatRestsKeepsItsColours) {
+    const auto path =
+        film(fresh_folder() / "x.gif", {.format = VideoFormat::gif, .size = small, .fps_numerator = 50}, 20);
+    Picture source, shown;
+    std::set<std::uint32_t> colours;
+    read_video(path, [&](const Luma& frame) {
+        const Picture next = moving_scene(small, frame.frame);
+        for (std::size_t i = 0; i < next.rgba.size(); i += 4) {
+            const auto same = [&](const Picture& a, const Picture& b) {
+                return std::equal(&a.rgba[i], &a.rgba[i] + 4, &b.rgba[i]);
+            };
+            ASSERT_TRUE(frame.frame == 0 || !same(source, next) || same(shown, frame.picture)) << i;
+            colours.insert(std::uint32_t{frame.picture.rgba[i]} << 16 | std::uint32_t{frame.picture.rgba[i + 1]} << 8 |
+                           frame.picture.rgba[i + 2]);
+        }
+        source = next;
+        shown = frame.picture;
+    });
+    EXPECT_LE(colours.size(), 255u);
+    EXPECT_GT(colours.size(), 200u);
+}
+
+TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
+    const auto path = fresh_folder() / "x.gif";
+    Picture picture(small);
+    for (int y = 0; y < small.height; ++y)
+        for (int x = 0; x < small.width; ++x)
+            std::copy_n(
+                std::array<std::uint8_t, 4>{std::uint8_t(17 * (x % 16)), std::uint8_t(17 * (y % 14)), 9, 0}.data(), 4,
+                picture.at(x, y));
+    const auto sink = make_video_sink(path, {.format = VideoFormat::gif, .size = small, .fps_numerator = 25});
+    for (int k = 0; k < 5; ++k) sink->take(picture, k == 0 ? whole(small) : std::vector<Rect>{});
+    sink->finish();
+    double worst = 1e9;
+    const Video video =
+        read_video(path, [&](const Luma& frame) { worst = std::min(worst, rgb_psnr(picture, frame.picture)); });
+    EXPECT_EQ(video.times.size(), 5u);
+    EXPECT_GT(worst, 50.0);
+    const std::string bytes = bytes_of(path);
+    EXPECT_NE(bytes.find("NETSCAPE2.0"), std::string::npos);
+    EXPECT_EQ(bytes.substr(bytes.find("NETSCAPE2.0") + 11, 4), std::string("\x03\x01\x00\x00", 4));  // for ever
+    EXPECT_EQ(bytes.back(), '\x3b');
+}
+
+TEST(Gif, TheSameFramesGiveTheSameBytes) {
+    const auto folder = fresh_folder();
+    const VideoOptions options{.format = VideoFormat::gif, .size = small, .fps_numerator = 50};
+    const auto first = bytes_of(film(folder / "a.gif", options, 10));
+    for (int k = 0; k < 2; ++k) EXPECT_TRUE(bytes_of(film(folder / "b.gif", options, 10)) == first);
+}
+
+TEST(Gif, EvenNoiseHasAPalette) {
+    const auto path = fresh_folder() / "x.gif";
+    const auto sink = make_video_sink(path, {.format = VideoFormat::gif, .size = small, .fps_numerator = 50});
+    for (unsigned k = 0; k < 4; ++k) sink->take(noise(small, k), whole(small));
+    sink->finish();
+    double worst = 1e9;
+    read_video(path, [&](const Luma& frame) {
+        worst = std::min(worst, rgb_psnr(noise(small, static_cast<unsigned>(frame.frame)), frame.picture));
+    });
+    EXPECT_GT(worst, 18.0);
+}
+
+TEST(Apng, FramesTimesAndWordsAreExact) {
+    const auto path = film(fresh_folder() / "x.apng",
+                           {.format = VideoFormat::apng,
+                            .size = {241, 137},
+                            .fps_numerator = 30000,
+                            .fps_denominator = 1001,
+                            .metadata = {{"title", "20°"}, {"comment", "π"}, {"encoder", "doppel 1"}}},
+                           6);
+    std::vector<std::string> types, texts;
+    std::set<std::pair<unsigned, unsigned>> delays;
+    unsigned frames = 0, plays = 7;
+    for_each_chunk(path, [&](const std::string& type, const std::string& content) {
+        types.push_back(type);
+        if (type == "acTL") frames = big_endian(content, 0, 4), plays = big_endian(content, 4, 4);
+        if (type == "fcTL") delays.insert({big_endian(content, 20, 2), big_endian(content, 22, 2)});
+        if (type == "tEXt" || type == "iTXt") texts.push_back(content);
+    });
+    EXPECT_EQ(types.front(), "IHDR");
+    EXPECT_EQ(types.back(), "IEND");
+    EXPECT_EQ(frames, 6u);
+    EXPECT_EQ(std::ranges::count(types, "fcTL"), 6);
+    EXPECT_EQ(plays, 0u);  // for ever
+    EXPECT_EQ(delays, (std::set<std::pair<unsigned, unsigned>>{{1001, 30000}}));
+    EXPECT_EQ(texts,
+              (std::vector<std::string>{std::string("Title\0"
+                                                    "20\xb0",
+                                                    9),
+                                        std::string("Comment\0\0\0\0\0π", 14), std::string("Software\0doppel 1", 17)}));
+    const Video video = read_video(path, [](const Luma& frame) {
+        EXPECT_TRUE(frame.picture.rgba == moving_scene({241, 137}, frame.frame).rgba) << frame.frame;
+    });
+    EXPECT_EQ(video.times.size(), 6u);
+    EXPECT_EQ(video.metadata.at("title"), "20°");
+    EXPECT_EQ(video.metadata.at("software"), "doppel 1");
+}
+
+TEST(Spool, GivesBackWhatWasWrittenAndGoes) {
+    const auto path = fresh_folder() / "x.spool";
+    {
+        Spool spool(path, Samples::rgba);
+        SampledAreas frame;
+        for (unsigned k = 0; k < 6; ++k) {
+            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, Samples::rgba, frame);
+            spool.write(frame);
+        }
+        EXPECT_EQ(spool.frames(), 6);
+        spool.rewind();
+        SampledAreas expected;
+        for (unsigned k = 0; k < 6; ++k) {
+            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, Samples::rgba, expected);
+            spool.read(frame);
+            ASSERT_EQ(frame.areas, expected.areas);
+            std::size_t bytes = 0;
+            for (const Rect& area : frame.areas) bytes += byte_count(Samples::rgba, area);
+            EXPECT_TRUE(std::equal(frame.bytes.data(), frame.bytes.data() + bytes, expected.bytes.data()));
+        }
+        expect_error(ExitCode::io_failed, {"x.spool", "cannot be read"}, [&] { spool.read(frame); });
+    }
+    EXPECT_FALSE(fs::exists(path));
+    expect_error(ExitCode::io_failed, {"/none/x.spool", "No such file"}, [] { Spool("/none/x.spool", Samples::rgb); });
+}

@@ -1,0 +1,215 @@
+#include "output/samples.hpp"
+
+#include "output/fixtures.hpp"
+
+extern "C" {
+#include <libswscale/swscale.h>
+}
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <random>
+
+using namespace doppel;
+using namespace doppel::test;
+
+namespace {
+
+constexpr std::array all_samples{Samples::yuv420,  Samples::yuv444, Samples::yuv420_10,
+                                 Samples::yuva420, Samples::rgb,    Samples::rgba};
+
+std::vector<std::uint8_t> bytes_of_area(const Picture& picture, const Rect& area, Samples samples) {
+    std::vector<std::uint8_t> bytes(byte_count(samples, area));
+    convert(picture, area, samples, bytes.data());
+    return bytes;
+}
+
+/// The samples of a picture, plane by plane.
+std::vector<std::vector<int>> planes_of(const Picture& picture, Samples samples) {
+    const Rect all{0, 0, picture.size.width, picture.size.height};
+    const auto bytes = bytes_of_area(picture, all, samples);
+    std::vector<std::vector<int>> planes;
+    const std::uint8_t* next = bytes.data();
+    for (int k = 0; k < plane_count(samples); ++k) {
+        const auto place = plane_area(samples, k, all);
+        std::vector<int> plane;
+        for (const auto* end = next + place.row_bytes * place.rows; next < end; ++next) {
+            plane.push_back(*next);
+            if (samples == Samples::yuv420_10) plane.back() |= *++next << 8;
+        }
+        planes.push_back(plane);
+    }
+    return planes;
+}
+
+struct Exact {
+    double y, cb, cr;
+};
+
+/// ITU-R BT.709-6 in double: E = Kr R + Kg G + Kb B, and the differences of B and R from it.
+Exact exact(double r, double g, double b, double scale) {
+    const double e = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    return {scale * (16 + 219 * e / 255), scale * (128 + 224 * (b - e) / 1.8556 / 255),
+            scale * (128 + 224 * (r - e) / 1.5748 / 255)};
+}
+
+/// Of the mean of by×by pixels.
+Exact exact_mean(const Picture& picture, int x, int y, int by, double scale) {
+    double mean[3] = {};
+    for (int i = 0; i < by * by; ++i)
+        for (int c = 0; c < 3; ++c) mean[c] += picture.at(x + i % by, y + i / by)[c] / double(by * by);
+    return exact(mean[0], mean[1], mean[2], scale);
+}
+
+}  // namespace
+
+TEST(Samples, AreTheExactFormulaRounded) {
+    for (const Samples samples : {Samples::yuv420, Samples::yuv444, Samples::yuv420_10, Samples::yuva420}) {
+        const Size size{514, 256};
+        const Picture picture = noise(size, 1);
+        const auto planes = planes_of(picture, samples);
+        const double scale = samples == Samples::yuv420_10 ? 4 : 1;
+        const int by = samples == Samples::yuv444 ? 1 : 2;
+        double worst_luma = 0.0, worst_chroma = 0.0;
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+                worst_luma = std::max(worst_luma, std::abs(exact_mean(picture, x, y, 1, scale).y -
+                                                           planes[0][std::size_t(y) * size.width + x]));
+        for (int y = 0; y < size.height / by; ++y)
+            for (int x = 0; x < size.width / by; ++x) {
+                const Exact e = exact_mean(picture, by * x, by * y, by, scale);
+                const std::size_t i = std::size_t(y) * (size.width / by) + x;
+                worst_chroma = std::max({worst_chroma, std::abs(e.cb - planes[1][i]), std::abs(e.cr - planes[2][i])});
+            }
+        // rounding alone costs 0.5; the coefficients' 16 bits add the rest
+        EXPECT_LT(worst_luma, 0.504) << int(samples);    // measured 0.5012, of 10 bits 0.5014
+        EXPECT_LT(worst_chroma, 0.504) << int(samples);  // measured 0.5012
+    }
+}
+
+TEST(Samples, GreysAndPrimariesAreTheStandards) {
+    const auto of = [](Samples samples, int r, int g, int b) {
+        Picture picture({2, 2});
+        for (std::size_t i = 0; i < 16; ++i) picture.rgba[i] = static_cast<std::uint8_t>(std::array{r, g, b, 0}[i % 4]);
+        const auto planes = planes_of(picture, samples);
+        return std::vector<int>{planes[0][0], planes[1][0], planes[2][0]};
+    };
+    for (int v = 0; v < 256; ++v) {
+        const std::vector<int> grey{static_cast<int>(std::lround(16 + v * 219 / 255.0)), 128, 128};
+        EXPECT_EQ(of(Samples::yuv420, v, v, v), grey);
+        EXPECT_EQ(of(Samples::yuv444, v, v, v), grey);
+        EXPECT_EQ(of(Samples::yuv420_10, v, v, v),
+                  (std::vector<int>{static_cast<int>(std::lround(64 + v * 876 / 255.0)), 512, 512}));
+    }
+    // Poynton, Digital Video and HD, 75 % and 100 % colour bars
+    for (const Samples samples : {Samples::yuv420, Samples::yuv444}) {
+        EXPECT_EQ(of(samples, 255, 0, 0), (std::vector<int>{63, 102, 240}));
+        EXPECT_EQ(of(samples, 0, 255, 0), (std::vector<int>{173, 42, 26}));
+        EXPECT_EQ(of(samples, 0, 0, 255), (std::vector<int>{32, 240, 118}));
+    }
+    EXPECT_EQ(of(Samples::yuv420_10, 255, 0, 0), (std::vector<int>{250, 409, 960}));
+}
+
+TEST(Samples, AgreeWithSwscale) {
+    const Size size{640, 360};
+    Picture picture = noise(size, 2);
+    // swscale filters chroma over more than 2x2 pixels: let those be alike, and the pictures smooth
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            std::uint8_t* p = picture.at(x, y);
+            p[0] = static_cast<std::uint8_t>(x * 255 / size.width);
+            p[1] = static_cast<std::uint8_t>(y * 255 / size.height);
+            p[2] = static_cast<std::uint8_t>((x + y) * 255 / (size.width + size.height));
+        }
+    const std::unique_ptr<SwsContext, void (*)(SwsContext*)> sws(
+        sws_getContext(size.width, size.height, AV_PIX_FMT_RGBA, size.width, size.height, AV_PIX_FMT_YUV420P,
+                       SWS_AREA | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP, nullptr, nullptr,
+                       nullptr),
+        sws_freeContext);
+    ASSERT_TRUE(sws);
+    const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
+    sws_setColorspaceDetails(sws.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
+    const std::size_t pixels = std::size_t(size.width) * size.height;
+    std::vector<std::uint8_t> theirs(pixels * 3 / 2);
+    const std::uint8_t* from[] = {picture.rgba.data()};
+    const int from_stride[] = {4 * size.width};
+    std::uint8_t* to[] = {theirs.data(), theirs.data() + pixels, theirs.data() + pixels * 5 / 4};
+    const int to_stride[] = {size.width, size.width / 2, size.width / 2};
+    ASSERT_EQ(sws_scale(sws.get(), from, from_stride, 0, size.height, to, to_stride), size.height);
+
+    const auto ours = bytes_of_area(picture, {0, 0, size.width, size.height}, Samples::yuv420);
+    int worst = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) worst = std::max(worst, std::abs(ours[i] - theirs[i]));
+    EXPECT_LE(worst, 1);  // measured 1
+}
+
+TEST(Samples, ColoursAndAlphaStayWhereTheyAreKept) {
+    Picture picture = noise({37, 5}, 9);
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = static_cast<std::uint8_t>(7 * i);
+    const Rect area{3, 1, 36, 4};
+    const auto rgb = bytes_of_area(picture, area, Samples::rgb), rgba = bytes_of_area(picture, area, Samples::rgba);
+    for (int i = 0; i < 33 * 3; ++i) {
+        const auto* pixel = picture.at(3 + i % 33, 1 + i / 33);
+        EXPECT_TRUE(std::equal(pixel, pixel + 3, rgb.data() + 3 * i)) << i;
+        EXPECT_TRUE(std::equal(pixel, pixel + 4, rgba.data() + 4 * i)) << i;
+    }
+    Picture even = noise({36, 6}, 9);
+    for (std::size_t i = 3; i < even.rgba.size(); i += 4) even.rgba[i] = static_cast<std::uint8_t>(7 * i);
+    const auto planes = planes_of(even, Samples::yuva420);
+    for (std::size_t i = 0; i < planes[3].size(); ++i) EXPECT_EQ(planes[3][i], even.rgba[4 * i + 3]);
+    EXPECT_EQ(planes_of(even, Samples::yuv420)[1], planes[1]);  // colour is no darker where alpha is low
+}
+
+TEST(Samples, AnyCoverByAreasGivesTheBytesOfTheWhole) {
+    const Size size{322, 178};
+    const Picture picture = noise(size, 3);
+    std::mt19937 random(4);
+    const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+    for (const Samples samples : all_samples) {
+        const Rect all{0, 0, size.width, size.height};
+        const auto whole_bytes = bytes_of_area(picture, all, samples);
+        for (int trial = 0; trial < 100; ++trial) {
+            const int left = upto(size.width), top = upto(size.height);
+            const Rect asked{left, top, left + 1 + upto(size.width - left), top + 1 + upto(size.height - top)};
+            const Rect area = aligned(samples, asked, size);
+            ASSERT_EQ(united(area, asked), area);
+            ASSERT_TRUE(asked.left - area.left < 2 && area.right - asked.right < 2 && asked.top - area.top < 2);
+            const auto bytes = bytes_of_area(picture, area, samples);
+            const std::uint8_t *mine = bytes.data(), *plane = whole_bytes.data();
+            for (int k = 0; k < plane_count(samples); ++k) {
+                const auto part = plane_area(samples, k, area), full = plane_area(samples, k, all);
+                for (int row = 0; row < part.rows; ++row, mine += part.row_bytes)
+                    ASSERT_TRUE(std::equal(mine, mine + part.row_bytes,
+                                           plane + (part.top + row) * full.row_bytes + part.offset));
+                plane += full.rows * full.row_bytes;
+            }
+            ASSERT_EQ(mine, bytes.data() + bytes.size());
+        }
+    }
+}
+
+TEST(Samples, AreasAreCutToThePictureAndEvenWhereTheyMust) {
+    EXPECT_EQ(aligned(Samples::yuv420, {-3, -1, 1, 1}, {8, 6}), (Rect{0, 0, 2, 2}));
+    EXPECT_EQ(aligned(Samples::yuva420, {5, 3, 99, 99}, {8, 6}), (Rect{4, 2, 8, 6}));
+    EXPECT_EQ(aligned(Samples::yuv444, {5, 3, 99, 99}, {7, 5}), (Rect{5, 3, 7, 5}));
+    EXPECT_EQ(aligned(Samples::rgb, {-5, 3, 2, 4}, {7, 5}), (Rect{0, 3, 2, 4}));
+    EXPECT_TRUE(aligned(Samples::yuv420, {8, 0, 9, 2}, {8, 6}).empty());
+}
+
+TEST(Samples, WhatChangedKeepsItsMemory) {
+    const Size size{64, 48};
+    const Picture picture = noise(size, 5);
+    SampledAreas frame;
+    convert(picture, whole(size), Samples::yuv420, frame);
+    const auto* memory = frame.bytes.data();
+    convert(picture, {{3, 3, 9, 9}, {}, {70, 0, 90, 8}, {20, 10, 30, 12}}, Samples::yuv420, frame);
+    EXPECT_EQ(frame.bytes.data(), memory);
+    EXPECT_EQ(frame.areas, (std::vector<Rect>{{2, 2, 10, 10}, {20, 10, 30, 12}}));
+    const auto first = bytes_of_area(picture, {2, 2, 10, 10}, Samples::yuv420);
+    const auto second = bytes_of_area(picture, {20, 10, 30, 12}, Samples::yuv420);
+    EXPECT_TRUE(std::equal(first.begin(), first.end(), memory));
+    EXPECT_TRUE(std::equal(second.begin(), second.end(), memory + first.size()));
+}

@@ -1,0 +1,133 @@
+#include "output/video.hpp"
+
+#include "output/decoded.hpp"
+#include "output/fixtures.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+using namespace doppel;
+using namespace doppel::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr Size small{480, 270};
+
+fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
+    const auto sink = make_video_sink(path, options);
+    for (long k = 0; k < frames; ++k) sink->take(moving_scene(options.size, k), whole(options.size));
+    sink->finish();
+    return path;
+}
+
+}  // namespace
+
+TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
+    const auto folder = fresh_folder();
+    for (const Ratio rate :
+         {Ratio{120, 1}, Ratio{24, 1}, Ratio{25, 1}, Ratio{30, 1}, Ratio{60, 1}, Ratio{30000, 1001}}) {
+        const VideoOptions options{.size = small,
+                                   .fps_numerator = static_cast<int>(rate.numerator),
+                                   .fps_denominator = static_cast<int>(rate.denominator),
+                                   .metadata = {{"title", "Three thousandths of a degree"}}};
+        const Video video = read_video(film(folder / "x.mp4.part", options, 61));
+        EXPECT_EQ(video.size, small);
+        expect_tags(video);
+        EXPECT_EQ(video.title, "Three thousandths of a degree");
+        EXPECT_EQ(video.average_rate, rate);
+        EXPECT_EQ(video.base_rate, rate);
+        EXPECT_EQ(video.duration, (Ratio{61 * rate.denominator, rate.numerator}));
+        ASSERT_EQ(video.times.size(), 61u);
+        for (long k = 0; k < 61; ++k) {
+            EXPECT_EQ(video.times[static_cast<std::size_t>(k)], (Ratio{k * rate.denominator, rate.numerator})) << k;
+            EXPECT_EQ(video.lasting[static_cast<std::size_t>(k)], (Ratio{rate.denominator, rate.numerator})) << k;
+        }
+    }
+}
+
+TEST(Mp4, LooksLikeItsSource) {
+    double worst = 1e9;
+    const auto path = film(fresh_folder() / "x.mp4", {.size = small}, 60);
+    const Video video = read_video(
+        path, [&](const Luma& luma) { worst = std::min(worst, luma_psnr(moving_scene(small, luma.frame), luma)); });
+    EXPECT_EQ(video.times.size(), 60u);
+    EXPECT_GT(worst, 36.0);  // dB; measured 42.8
+}
+
+TEST(Mp4, OnlyWhatChangedNeedsToBeTaken) {
+    const auto folder = fresh_folder();
+    const auto square = [](long k) {
+        Picture picture = moving_scene(small, 0);
+        for (int y = 51; y < 84; ++y)
+            for (int x = 31 + 3 * static_cast<int>(k); x < 60 + 3 * static_cast<int>(k); ++x)
+                std::fill_n(picture.at(x, y), 3, 200);
+        return picture;
+    };
+    const auto film_squares = [&](const fs::path& path, auto changed_in) {
+        const auto sink = make_video_sink(path, {.size = small, .threads = 1});
+        for (long k = 0; k < 40; ++k) sink->take(square(k), changed_in(k));
+        sink->finish();
+        return bytes_of(path);
+    };
+    const std::string all = film_squares(folder / "all.mp4", [](long) { return whole(small); });
+    const std::string areas = film_squares(folder / "areas.mp4", [](long k) {
+        const int left = 31 + 3 * static_cast<int>(k);
+        return k == 0 ? whole(small) : std::vector<Rect>{{left - 3, 51, left, 84}, {}, {left + 26, 51, left + 29, 84}};
+    });
+    EXPECT_TRUE(all == areas);
+}
+
+TEST(Mp4, WhatCannotBeEncodedIsRefused) {
+    const auto path = fresh_folder() / "x.mp4";
+    expect_error(ExitCode::bad_input, {"H.264 needs even sizes; 641x360 is not; 642x360 would do"}, [&] {
+        make_video_sink(path, {.size = {641, 360}});
+    });
+    expect_error(ExitCode::bad_input, {"\"swift\"", "veryfast"},
+                 [&] { make_video_sink(path, {.size = small, .preset = "swift"}); });
+    expect_error(ExitCode::bad_input, {"crf of H.264 must be 0 … 51; it is 52"},
+                 [&] { make_video_sink(path, {.size = small, .crf = 52}); });
+    EXPECT_FALSE(fs::exists(path));
+    expect_error(ExitCode::io_failed, {"none/x.mp4", "No such file"},
+                 [&] { make_video_sink(path.parent_path() / "none/x.mp4", {.size = small}); });
+}
+
+TEST(Mp4, WhereverTheDiskIsFullItIsAnError) {
+    const auto path = fresh_folder() / "x.mp4.part";
+    const VideoOptions options{.size = small, .threads = 1};
+    const auto size = static_cast<long>(fs::file_size(film(path, options, 60)));
+    // in the header, the packets, the index, and while the packets move to make room for it at the front
+    for (const long room : {0L, 10L, size / 2, size - 5000, size - 1500, size - 500, size - 1}) {
+        const FullDisk full(static_cast<std::uintmax_t>(room));
+        expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] { film(path, options, 60); });
+    }
+    const FullDisk just_enough(static_cast<std::uintmax_t>(size));
+    EXPECT_NO_THROW(film(path, options, 60));
+}
+
+TEST(Mp4, AnErrorOfTheEncodersThreadComesOutOfTake) {
+    const auto path = fresh_folder() / "x.mp4.part";
+    const auto sink = make_video_sink(path, {.size = small, .preset = "ultrafast"});
+    const FullDisk full(100'000);
+    expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] {
+        for (unsigned k = 0; k < 1000; ++k) sink->take(noise(small, k), whole(small));
+    });
+    expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] { sink->finish(); });
+}
+
+TEST(Mp4, DestroyedUnfinishedStopsAtOnce) {
+    const Size large{1920, 1080};
+    const Picture a = noise(large, 1), b = moving_scene(large, 1);
+    auto sink = make_video_sink(fresh_folder() / "x.mp4", {.size = large, .preset = "medium"});
+    for (int k = 0; k < 20; ++k) sink->take(k % 2 ? a : b, whole(large));
+    // by the clock of the process, which does not run while others have the cores
+    const std::clock_t start = std::clock();
+    sink.reset();
+    const double taken = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    EXPECT_LT(taken, 0.5);  // s; measured 0.18, and 5.0 where the queue is encoded to its end
+}
+
+TEST(Mp4, NamesItsLibraries) {
+    EXPECT_EQ(libav_description().find("libavcodec "), 0u);
+    EXPECT_NE(libav_description().find(", libavformat "), std::string::npos);
+}
