@@ -81,8 +81,13 @@ private:
 
 /// Strokes: their quads may come in any order, and more than once, without a change to the picture.
 template <class Add>
-void compare_masks(const Sketch& before, const Sketch::Part& old, const Sketch& after, const Sketch::Part& now,
-                   const Add& add) {
+void compare_masks(const Sketch& before, Sketch::Part old, const Sketch& after, Sketch::Part now, const Add& add) {
+    // most of a path stays as it was, in its place
+    const auto same = [&](std::size_t i, std::size_t j) {
+        return before.bounds[i] == after.bounds[j] && before.quads[i] == after.quads[j];
+    };
+    while (old.begin < old.end && now.begin < now.end && same(old.begin, now.begin)) ++old.begin, ++now.begin;
+    while (old.begin < old.end && now.begin < now.end && same(old.end - 1, now.end - 1)) --old.end, --now.end;
     const Known olds(before, old), news(after, now);
     for (std::size_t i = old.begin; i < old.end; ++i)
         if (!news.has(before.quads[i], before.bounds[i])) for_each_band(before.quads[i], before.bounds[i], add);
