@@ -46,7 +46,8 @@ TEST(Program, SimulatesWithoutPictures) {
 
 TEST(Program, ListsShowsAndChecks) {
     const auto folder = fresh_folder();
-    EXPECT_NE(doppel(folder, {"list"}).out.find("butterfly    Three thousandths of a degree\n"), std::string::npos);
+    EXPECT_NE(doppel(folder, {"list"}).out.find("butterfly          Three thousandths of a degree\n"),
+              std::string::npos);
     EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out,
               bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/butterfly.toml"));
     const auto check = doppel(folder, {"check", "butterfly"});

@@ -144,12 +144,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Chart, FigureErrors,
-    testing::Values(
-        Case{"sweep", "[chart]\nsize = [0, 3]", ":4:1: [chart] size", {"it is [0, 3]"}},
-        Case{"sweep", "[chart]\nscale = 9", ":4:1: [chart] scale", {"at most 8; it is 9"}},
-        Case{"sweep", "[chart]\nscale = 0", ":4:1: [chart] scale", {"must be > 0; it is 0"}},
-        Case{"sweep", "[chart]\ntheme = \"blue\"", ":4:1: [chart] theme", {"\"dark\" or \"light\"; it is \"blue\""}},
-        Case{"sweep", "[chart]\nfps = 3", ":4:1: [chart] has no \"fps\"", {}}));
+    testing::Values(Case{"sweep", "[chart]\nsize = [0, 3]", ":4:1: [chart] size", {"it is [0, 3]"}},
+                    Case{"sweep", "[chart]\nscale = 9", ":4:1: [chart] scale", {"at most 8; it is 9"}},
+                    Case{"sweep", "[chart]\nscale = 0", ":4:1: [chart] scale", {"must be > 0; it is 0"}},
+                    Case{"sweep",
+                         "[chart]\ntheme = \"blue\"",
+                         ":4:1: [chart] theme",
+                         {"\"dark\", \"light\" or \"high-contrast\"; it is \"blue\""}},
+                    Case{"sweep", "[chart]\nfps = 3", ":4:1: [chart] has no \"fps\"", {}}));
 
 INSTANTIATE_TEST_SUITE_P(
     Curves, FigureErrors,
