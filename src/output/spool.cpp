@@ -48,7 +48,7 @@ void Spool::write(const SampledAreas& frame) {
     const Head head{frame.areas.size(),
                     libdeflate_deflate_compress(compressor_.get(), frame.bytes.data(), size, packed, bound)};
     const auto put = [&](const void* bytes, std::size_t count) {
-        if (std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
+        if (count > 0 && std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
     };
     put(&head, sizeof head);
     put(frame.areas.data(), frame.areas.size() * sizeof(Rect));
@@ -63,7 +63,7 @@ void Spool::rewind() {
 
 void Spool::read(SampledAreas& frame) {
     const auto get = [&](void* bytes, std::size_t count) {
-        if (std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
+        if (count > 0 && std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
     };
     Head head{};
     get(&head, sizeof head);
