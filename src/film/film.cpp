@@ -26,9 +26,11 @@ private:
 
 /// By which a film can be traced to its manifest.
 Metadata metadata_of(const Preset& preset) {
+    const auto program = fmt::format("Doppel {} ({})", version(), revision());
+    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
     return {{"title", preset.title},
-            {"comment", fmt::format("preset {}; how it was made is in {}.json", preset.name, preset.name)},
-            {"encoder", fmt::format("Doppel {} ({})", version(), revision())}};
+            {"comment", fmt::format("{}, preset {}; how it was made is in {}.json", program, preset.name, preset.name)},
+            {"encoder", program}};
 }
 
 DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {

@@ -168,6 +168,20 @@ TEST(Run, ManifestTellsWhatRanAndHashesIt) {
         EXPECT_EQ(manifest["files"][name]["sha256"], sha256_of_file(out / "butterfly" / name));
 }
 
+TEST(Run, FilmsCanBeTracedToTheirManifest) {
+    for (const auto* format : {"mp4", "webm", "gif"}) {
+        const auto out = fresh_folder();
+        render(small({fmt::format("video.format=\"{}\"", format)}), {.out = out});
+        const auto film =
+            test::read_video(out / fmt::format("butterfly/butterfly.{}", format), [](const test::Luma&) {});
+        std::string said;
+        for (const auto& [key, text] : film.metadata) said += text + "\n";
+        for (const std::string word :
+             {"Three thousandths of a degree", "preset butterfly", "butterfly.json", "Doppel 0."})
+            EXPECT_NE(said.find(word), std::string::npos) << format << " lacks " << word << " in " << said;
+    }
+}
+
 TEST(Run, LeavesNothingWhenItIsInterrupted) {
     for (const char* format : {"mp4", "png"}) {
         const auto out = fresh_folder();
