@@ -1,5 +1,6 @@
 #include "film/composer.hpp"
 #include "picture/font.hpp"
+#include "scene/wording.hpp"
 
 #include <fmt/format.h>
 
@@ -31,13 +32,6 @@ std::optional<double> upward_passage(const Bob<double>& from, const Bob<double>&
         (beyond ? high : low) = middle;
     }
     return high;
-}
-
-std::string subscript(int link) {
-    constexpr std::array digits{"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
-    std::string text;
-    for (const char digit : fmt::format("{}", link)) text += digits[static_cast<std::size_t>(digit - '0')];
-    return text;
 }
 
 }  // namespace
@@ -74,7 +68,7 @@ void Composer::compose_phase_backdrop(DisplayList& list) const {
             tick.text, {area.left - 12 * t, y + 0.36f * size}, size, Align::right, Weight::regular, theme.quiet_text});
     }
     const auto& video = scene_.preset.video;
-    const auto link = subscript(video.phase_link);
+    const auto link = subscript(static_cast<std::size_t>(video.phase_link));
     const auto heading = video.phase == PhaseKind::section
                              ? fmt::format("ω{0} over θ{0}, °/s, as θ₁ passes 0 upwards", link)
                              : fmt::format("ω{0} over θ{0}, °/s", link);

@@ -11,14 +11,6 @@
 namespace doppel {
 namespace {
 
-/// 12 → "₁₂"
-std::string subscript(std::size_t number) {
-    constexpr std::array<std::string_view, 10> digits{"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
-    std::string text;
-    for (const char digit : fmt::format("{}", number)) text += digits[static_cast<std::size_t>(digit - '0')];
-    return text;
-}
-
 /// One thing that can be said of a side; the same place in both sides' lists is about the same thing.
 struct Statement {
     std::string text;
@@ -110,6 +102,13 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 }  // namespace
+
+std::string subscript(std::size_t number) {
+    constexpr std::array<std::string_view, 10> digits{"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
+    std::string text;
+    for (const char digit : fmt::format("{}", number)) text += digits[static_cast<std::size_t>(digit - '0')];
+    return text;
+}
 
 std::string pace_words(const Side& side) {
     return side.method.adaptive ? fmt::format("tolerance {}", text_of(side.motion.tolerance)) : step_words(side.step);

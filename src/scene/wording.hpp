@@ -20,6 +20,9 @@ std::string scene_words(const Scene& scene);
 /// How finely a side is stepped: "1/30 000 s", "tolerance 1e-12".
 std::string pace_words(const Side& side);
 
+/// 12 → "₁₂"
+std::string subscript(std::size_t number);
+
 /// 30000 → "30 000" with thin spaces.
 std::string grouped(long number);
 
