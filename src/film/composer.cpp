@@ -93,7 +93,8 @@ void Composer::add(const Shot& shot) {
     if (moment.sample == 0) start_distance_ = moment.distance;
     largest_distance_ = std::max(largest_distance_, moment.distance);
     for (std::size_t side = 0; side < 2; ++side) {
-        if (!layout_.panels.empty()) extend_trail(side, seen(side).bobs.back(), time);
+        if (!layout_.panels.empty() && scene_.preset.video.trail_s > 0)
+            extend_trail(side, seen(side).bobs.back(), time);
         if (layout_.phase) extend_phase(side, seen(side).bobs, time);
     }
     for (std::size_t i = 0; i < layout_.strips.size(); ++i) {

@@ -78,8 +78,7 @@ void Composer::compose_panel(const PendulumPanel& panel, DisplayList& list) cons
     }
     for (auto side = panel.sides.rbegin(); side != panel.sides.rend(); ++side) {
         const auto& bob = seen(*side).bobs.back();
-        if (scene_.preset.video.trail_s > 0)
-            compose_trail(*side, panel.area, panel.at(bob.x, bob.y), trails_[*side], list);
+        compose_trail(*side, panel.area, panel.at(bob.x, bob.y), trails_[*side], list);
     }
     for (auto side = panel.sides.rbegin(); side != panel.sides.rend(); ++side)
         compose_pendulum(panel, *side, alone, list);

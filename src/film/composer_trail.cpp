@@ -7,7 +7,8 @@ namespace doppel {
 namespace {
 
 // What fades would have to be drawn anew at every sample. Instead the points of a trail fade in groups, each group at
-// every fourth sample only and in turn: a step is 2 % of the light at most, at 30 Hz, and no two groups take it at once.
+// every fourth sample only and in turn: a step is 2 % of the light at most, at 30 Hz, and no two groups take it at
+// once.
 constexpr long group = 24, tick = 4;  // samples
 
 /// The sample for which the fading of group `g` was last brought up to date.
@@ -65,6 +66,7 @@ long Composer::group_of(double time) const {
 void Composer::compose_trail(std::size_t side, const Area& area, std::optional<Point> head, const Trail& trail,
                              DisplayList& list) const {
     const double time = now(), trail_s = scene_.preset.video.trail_s;
+    if (!(trail_s > 0)) return;
     const Stroke pen{.vertices = {},
                      .width = static_cast<float>(layout_.style.width.trail),
                      .color = layout_.style.theme.sides[side],

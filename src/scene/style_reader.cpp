@@ -56,10 +56,15 @@ void read_style(TomlReader& video, VideoSpec& into) {
         video.read_number("glow_px", glow);
         if (!(glow >= 0 && glow <= 100)) throw video.fault("glow_px", "must be from 0 (none) to 100; it is {}", glow);
     }
-    if (!video.has("trail_s") && into.layout == Arrangement::ensemble) into.trail_s = 0.4;
+    const bool is_ensemble = into.layout == Arrangement::ensemble;
+    if (is_ensemble) into.trail_s = 0;
     video.read_number("trail_s", into.trail_s);
     if (!(into.trail_s >= 0 && into.trail_s <= 3600))
         throw video.fault("trail_s", "must be from 0 (none) to 3600; it is {}", into.trail_s);
+    for (const auto& [key, value] : {std::pair{"trail_s", into.trail_s}, {"glow_px", into.glow_px.value_or(0)}})
+        if (is_ensemble && value > 0)
+            throw video.fault(key, "must be 0 for the layout \"ensemble\", whose members leave no trails; it is {}",
+                              value);
 }
 
 }  // namespace doppel

@@ -93,6 +93,21 @@ TEST(Layouts, PhaseHeadIsAtItsAngleAndRate) {
     EXPECT_TRUE(is_color(pixel_at(picture, at(-60, 120)), themes[0].sides[1])) << "300° is −60°";
 }
 
+TEST(Layouts, PhasePathsAreGoneWhereTrailsAre) {
+    const auto with = [](const char* seconds) {
+        const auto scene = scene_of("phase-dance", {std::string("video.trail_s=") + seconds});
+        const Area axes = make_layout(scene).phase->area;
+        const auto picture = frame_of(scene, 120);
+        long hued = 0;
+        for (int y = static_cast<int>(axes.top); y < static_cast<int>(axes.bottom); ++y)
+            for (int x = static_cast<int>(axes.left); x < static_cast<int>(axes.right); ++x)
+                hued += picture.at(x, y)[0] > picture.at(x, y)[2] + 40;
+        return hued;
+    };
+    EXPECT_LT(with("0"), 400);   // the head alone; measured 131
+    EXPECT_GT(with("4"), 1000);  // measured 1801
+}
+
 TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
     // a lone fast upper link with a light lower one: it turns steadily, ω1 hardly changes, and passes 0 once a turn
     const std::vector<std::string> arguments{
