@@ -27,22 +27,22 @@ void remove_folders(const std::vector<fs::path>& folders) {
     for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) fs::remove(*folder, ignored);
 }
 
-/// Makes what is missing of the way to `folder`, and returns what it made, outermost first.
+/// Makes what is missing of the way to `folder`, and returns what it made, outermost first: other runs may make the same
+/// folders meanwhile.
 std::vector<fs::path> make_folders(const fs::path& folder) {
     std::vector<fs::path> made;
     fs::path way;
     for (const fs::path& step : folder) {
         way /= step;
-        std::error_code error;
-        if (fs::is_directory(way, error)) continue;
-        const bool taken = fs::exists(fs::symlink_status(way, error));
-        if (!taken && fs::create_directory(way, error)) {
-            made.push_back(way);
-            continue;
+        std::error_code error, ignored;
+        while (!fs::is_directory(way, ignored)) {
+            if (fs::create_directory(way, error)) made.push_back(way);
+            if (!error) continue;
+            remove_folders(made);
+            if (fs::exists(fs::symlink_status(way, ignored)))
+                throw io_failed("{} is no folder; Doppel would write into a folder there", way.string());
+            throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
         }
-        remove_folders(made);
-        if (taken) throw io_failed("{} is no folder; Doppel would write into a folder there", way.string());
-        throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
     }
     return made;
 }

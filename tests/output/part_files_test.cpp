@@ -5,8 +5,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <barrier>
 #include <csignal>
 #include <set>
+#include <thread>
 
 using namespace doppel;
 using namespace doppel::test;
@@ -72,6 +75,30 @@ TEST(PartFiles, FoldersWithOtherThingsInThemStay) {
         write_bytes(out / "a/notes", "somebody's");
     }
     EXPECT_EQ(listing(out), (Names{"a", "a/notes"}));
+}
+
+TEST(PartFiles, RunsThatStartTogetherShareTheFoldersTheyMake) {
+    const auto out = fresh_folder();
+    for (int round = 0; round < 50; ++round) {
+        const auto folder = out / std::to_string(round) / "a/b";
+        std::barrier start(4);
+        std::atomic<int> begun = 0;
+        std::vector<std::jthread> runs;
+        for (int run = 0; run < 4; ++run)
+            runs.emplace_back([&, run] {
+                start.arrive_and_wait();
+                try {
+                    const PartFiles files(folder, std::to_string(run));
+                    ++begun;
+                    start.arrive_and_wait();
+                } catch (const std::exception& error) {
+                    ADD_FAILURE() << error.what();
+                    start.arrive_and_drop();
+                }
+            });
+        runs.clear();
+        ASSERT_EQ(begun, 4) << "round " << round;
+    }
 }
 
 TEST(PartFiles, OlderFilesStayUntilPublishedAndStalePartsGo) {
