@@ -36,7 +36,10 @@ public:
 private:
     struct TrailPoint {
         Point at;
-        double time;  // s
+        double time;         // s
+        long group;          // of points that fade together
+        float bend = 0;      // px, of the way to the next one
+        bool joint = false;  // this one stays
     };
     using Trail = std::deque<TrailPoint>;
     /// What goes up in a strip: a line of its own for each.
@@ -57,6 +60,7 @@ private:
     // composer_panel.cpp: the pendulums
     void compose_panel_backdrop(const PendulumPanel& panel, DisplayList& list) const;
     void compose_panel(const PendulumPanel& panel, DisplayList& list) const;
+    bool swing_as_one(const PendulumPanel& panel) const;
     void compose_pendulum(const PendulumPanel& panel, std::size_t side, bool alone, DisplayList& list) const;
     void compose_crowd(const PendulumPanel& panel, DisplayList& list) const;
     void compose_lines(std::size_t side, const PendulumPanel& panel, const Bobs<double>& bobs, float radius,
@@ -68,9 +72,11 @@ private:
 
     // composer_trail.cpp: the path of the last bob
     void extend_trail(std::size_t side, const Bob<double>& bob, double time);
-    void drop_faded(Trail& trail) const;
-    long group_of(double time) const;
-    void compose_trail(std::size_t side, const Area& area, std::optional<Point> head, const Trail& trail,
+    void extend(Trail& trail, Point at, double time) const;
+    void settle(Trail& trail) const;
+    double end_of(long group) const;
+    double faded_until(long group) const;
+    void compose_trail(std::size_t side, const Area& area, std::optional<Point> head, Trail trail,
                        DisplayList& list) const;
 
     // composer_phase.cpp: the panel of phase space

@@ -72,9 +72,12 @@ void Composer::compose_panel(const PendulumPanel& panel, DisplayList& list) cons
     if (alone) {
         // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
         const std::size_t other = 1 - panel.sides.front();
-        const Color ghost = mixed(theme.panel, theme.sides[other], 0.26f);
-        compose_lines(other, panel, seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
-        for (const auto& bob : seen(other).bobs) add_disc(panel, panel.at(bob.x, bob.y), bob_radius(bob), ghost, list);
+        if (!swing_as_one(panel)) {
+            const Color ghost = mixed(theme.panel, theme.sides[other], 0.26f);
+            compose_lines(other, panel, seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
+            for (const auto& bob : seen(other).bobs)
+                add_disc(panel, panel.at(bob.x, bob.y), bob_radius(bob), ghost, list);
+        }
     }
     for (auto side = panel.sides.rbegin(); side != panel.sides.rend(); ++side) {
         const auto& bob = seen(*side).bobs.back();
@@ -82,6 +85,17 @@ void Composer::compose_panel(const PendulumPanel& panel, DisplayList& list) cons
     }
     for (auto side = panel.sides.rbegin(); side != panel.sides.rend(); ++side)
         compose_pendulum(panel, *side, alone, list);
+}
+
+/// Whether the two cannot be told apart in this panel.
+bool Composer::swing_as_one(const PendulumPanel& panel) const {
+    const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
+        return a.mass == b.mass && apart(panel.at(a.x, a.y), panel.at(b.x, b.y)) < 0.1f;  // px
+    };
+    const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
+        return a.kind == b.kind && a.from == b.from && a.to == b.to;
+    };
+    return std::ranges::equal(seen(0).bobs, seen(1).bobs, same_bob) && std::ranges::equal(lines(0), lines(1), same_line);
 }
 
 /// Rods, then the pivot and the bobs, each on a rim that sets it off. Where two share a panel all of each has its hue.

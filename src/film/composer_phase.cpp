@@ -86,9 +86,7 @@ void Composer::extend_phase(std::size_t side, const Bobs<double>& bobs, double t
         return Point{phase.angle.at(wrapped(theta)), phase.rate.at(omega * 180 / pi)};
     };
     if (video.phase == PhaseKind::rate) {
-        auto& trail = phase_trails_[side];
-        trail.push_back({at(bobs[link].theta, bobs[link].omega), time});
-        drop_faded(trail);
+        extend(phase_trails_[side], at(bobs[link].theta, bobs[link].omega), time);
         return;
     }
     if (const auto& last = last_bobs_[side]) {

@@ -51,7 +51,7 @@ private:
     std::vector<Rect> rects_;
 };
 
-std::size_t hash_of(const Quad& q) {
+std::size_t hash_of(const Mark& q) {
     std::size_t hash = 0;
     const auto mix = [&](float value) { hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15u; };
     for (const float value : {q.origin.x, q.origin.y, q.axis.x, q.half.x, q.half.y, q.shape[1], q.shape[2], q.shape[3]})
@@ -59,18 +59,18 @@ std::size_t hash_of(const Quad& q) {
     return hash ^ hash >> 29;
 }
 
-/// The quads of a part, to be looked up.
+/// The marks of a part, to be looked up.
 class Known {
 public:
     Known(const Sketch& sketch, const Sketch::Part& part) : sketch_(sketch) {
-        for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(sketch.quads[i]), i);
+        for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(sketch.marks[i]), i);
         std::sort(places_.begin(), places_.end());
     }
-    bool has(const Quad& quad, const Rect& bounds) const {
-        const auto hash = hash_of(quad);
+    bool has(const Mark& mark, const Rect& bounds) const {
+        const auto hash = hash_of(mark);
         auto at = std::lower_bound(places_.begin(), places_.end(), std::pair{hash, std::size_t{0}});
         for (; at != places_.end() && at->first == hash; ++at)
-            if (sketch_.quads[at->second] == quad && sketch_.bounds[at->second] == bounds) return true;
+            if (sketch_.marks[at->second] == mark && sketch_.bounds[at->second] == bounds) return true;
         return false;
     }
 
@@ -79,20 +79,20 @@ private:
     std::vector<std::pair<std::size_t, std::size_t>> places_;
 };
 
-/// Strokes: their quads may come in any order, and more than once, without a change to the picture.
+/// Strokes: their marks may come in any order, and more than once, without a change to the picture.
 template <class Add>
 void compare_masks(const Sketch& before, Sketch::Part old, const Sketch& after, Sketch::Part now, const Add& add) {
     // most of a path stays as it was, in its place
     const auto same = [&](std::size_t i, std::size_t j) {
-        return before.bounds[i] == after.bounds[j] && before.quads[i] == after.quads[j];
+        return before.bounds[i] == after.bounds[j] && before.marks[i] == after.marks[j];
     };
     while (old.begin < old.end && now.begin < now.end && same(old.begin, now.begin)) ++old.begin, ++now.begin;
     while (old.begin < old.end && now.begin < now.end && same(old.end - 1, now.end - 1)) --old.end, --now.end;
     const Known olds(before, old), news(after, now);
     for (std::size_t i = old.begin; i < old.end; ++i)
-        if (!news.has(before.quads[i], before.bounds[i])) for_each_band(before.quads[i], before.bounds[i], add);
+        if (!news.has(before.marks[i], before.bounds[i])) for_each_band(before.marks[i], before.bounds[i], add);
     for (std::size_t j = now.begin; j < now.end; ++j)
-        if (!olds.has(after.quads[j], after.bounds[j])) for_each_band(after.quads[j], after.bounds[j], add);
+        if (!olds.has(after.marks[j], after.bounds[j])) for_each_band(after.marks[j], after.bounds[j], add);
 }
 
 }  // namespace
@@ -129,10 +129,10 @@ std::vector<Rect> damage(const Sketch& before, const Sketch& after) {
         for (std::size_t k = 0; k < std::max(olds, nows); ++k) {
             const std::size_t i = old.begin + k, j = now.begin + k;
             if (k < olds && k < nows && old.kind == now.kind && before.bounds[i] == after.bounds[j] &&
-                before.quads[i] == after.quads[j])
+                before.marks[i] == after.marks[j])
                 continue;
-            if (k < olds) for_each_band(before.quads[i], before.bounds[i], add);
-            if (k < nows) for_each_band(after.quads[j], after.bounds[j], add);
+            if (k < olds) for_each_band(before.marks[i], before.bounds[i], add);
+            if (k < nows) for_each_band(after.marks[j], after.bounds[j], add);
         }
     }
     return merged(touched.take());

@@ -12,7 +12,7 @@ struct Sketch;
 /// one.
 std::vector<Rect> merged(std::vector<Rect> rects);
 
-/// Where the two sketches may differ, as few rectangles that do not overlap. Elsewhere the same quads lie in the same
+/// Where the two sketches may differ, as few rectangles that do not overlap. Elsewhere the same marks lie in the same
 /// order.
 std::vector<Rect> damage(const Sketch& before, const Sketch& after);
 

@@ -59,11 +59,11 @@ void Canvas::put(const Picture& picture, const Rect& r) {
                   picture.at(r.left, r.top));
 }
 
-Program::Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[5])
+Program::Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[6])
     : number_(CreateProgram()) {
     attach(number_, GL_VERTEX_SHADER, vertex);
     attach(number_, GL_FRAGMENT_SHADER, fragment);
-    for (GLuint location = 0; location < 5; ++location) BindAttribLocation(number_, location, inputs[location]);
+    for (GLuint location = 0; location < 6; ++location) BindAttribLocation(number_, location, inputs[location]);
     LinkProgram(number_);
     GLint linked = GL_FALSE;
     GetProgramiv(number_, GL_LINK_STATUS, &linked);

@@ -44,7 +44,7 @@ private:
 class Program {
 public:
     /// `inputs` of the vertex shader, in the order of their locations.
-    Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[5]);
+    Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[6]);
     ~Program() { DeleteProgram(number_); }
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;

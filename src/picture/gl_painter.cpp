@@ -9,12 +9,23 @@ namespace doppel::gl {
 namespace {
 
 constexpr std::size_t most_quads = 16384;  // of one call: what 16-bit indices reach
-constexpr const char* inputs[5] = {"at", "place_of", "shape_of", "more_of", "tint_of"};
+constexpr const char* inputs[6] = {"at", "place_of", "shape_of", "more_of", "bow_of", "tint_of"};
 
 /// The texture that is bound shows its texels as they are.
 void set_crisp() {
     TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+/// The corners of a mark that turns, one after another.
+std::array<Point, 4> outline(const Mark& mark) {
+    const float room = 0.05f;  // px, so that rounding loses none
+    const Point x{mark.axis.x * (mark.half.x + room), mark.axis.y * (mark.half.x + room)};
+    const Point y{-mark.axis.y * (mark.half.y + room), mark.axis.x * (mark.half.y + room)};
+    const auto corner = [&](float along, float across) {
+        return Point{mark.origin.x + along * x.x + across * y.x, mark.origin.y + along * x.y + across * y.y};
+    };
+    return {corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
 }
 
 }  // namespace
@@ -51,7 +62,8 @@ Painter::Painter(Size size)
     input(1, 4, GL_FLOAT, offsetof(Vertex, origin));
     input(2, 4, GL_FLOAT, offsetof(Vertex, shape));
     input(3, 4, GL_FLOAT, offsetof(Vertex, more));
-    input(4, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
+    input(4, 2, GL_FLOAT, offsetof(Vertex, bow));
+    input(5, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
 
     BindTexture(GL_TEXTURE_2D, atlas_);
     set_crisp();
@@ -66,7 +78,7 @@ void Painter::paint(const Sketch& sketch, const std::vector<Rect>& places, const
         run.begin = vertices_.size() / 4;
         for (const std::size_t p : run.parts) {
             for (std::size_t i = sketch.parts[p].begin; i < sketch.parts[p].end; ++i) {
-                add(sketch.quads[i], sketch.bounds[i], places);
+                add(sketch.marks[i], sketch.bounds[i], places);
             }
         }
         run.end = vertices_.size() / 4;
@@ -84,7 +96,7 @@ void Painter::plan(const Sketch& sketch, const std::vector<Rect>& places) {
     for (std::size_t p = 0; p < sketch.parts.size(); ++p) {
         const Sketch::Part& part = sketch.parts[p];
         if (std::none_of(places.begin(), places.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
-        const Picture* image = sketch.quads[part.begin].image;
+        const Picture* image = sketch.marks[part.begin].image;
         std::size_t home = used_runs_;
         for (std::size_t r = used_runs_; r-- > 0;) {
             const bool met = meet(runs_[r].bounds, part.bounds);
@@ -104,37 +116,47 @@ void Painter::plan(const Sketch& sketch, const std::vector<Rect>& places) {
     }
 }
 
-/// What of the quad lies within the places. A pixel that it touches is drawn once, whichever way.
-void Painter::add(const Quad& quad, const Rect& bounds, const std::vector<Rect>& places) {
+/// What of the mark lies within the places. A pixel that it touches is drawn once, whichever way.
+void Painter::add(const Mark& mark, const Rect& bounds, const std::vector<Rect>& places) {
     for (const Rect& place : places) {
         const Rect seen = common(bounds, place);
         if (seen.empty()) continue;
-        if (seen == bounds && quad.half.x > 0) return add_turned(quad);
-        for_each_band(quad, seen, [&](const Rect& part) { add(quad, part); });
-    }
-}
-
-void Painter::add(const Quad& quad, const Rect& part) {
-    const auto left = static_cast<float>(part.left), right = static_cast<float>(part.right);
-    const auto top = static_cast<float>(part.top), bottom = static_cast<float>(part.bottom);
-    for (const Point at : {Point{left, top}, Point{right, top}, Point{left, bottom}, Point{right, bottom}})
-        add(quad, at);
-}
-
-/// Along its own axes, where fewer pixels lie around what it shows.
-void Painter::add_turned(const Quad& quad) {
-    const float room = 0.05f;  // px, so that rounding loses none
-    const Point half{quad.half.x + room, quad.half.y + room};
-    for (const float y : {-half.y, half.y}) {
-        for (const float x : {-half.x, half.x}) {
-            add(quad, Point{quad.origin.x + x * quad.axis.x - y * quad.axis.y,
-                            quad.origin.y + x * quad.axis.y + y * quad.axis.x});
+        const auto left = static_cast<float>(seen.left), right = static_cast<float>(seen.right);
+        const auto top = static_cast<float>(seen.top), bottom = static_cast<float>(seen.bottom);
+        outline_ = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
+        if (mark.half.x > 0) {
+            // along its own axes fewer pixels lie around what it shows
+            const auto corners = outline(mark);
+            outline_.assign(corners.begin(), corners.end());
+            if (seen != bounds) clip(left, right, top, bottom);
         }
+        // a fan, two triangles at a time
+        for (std::size_t i = 2; i < outline_.size(); i += 2)
+            for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
+                vertices_.push_back({outline_[corner], mark.origin, mark.axis, mark.shape, mark.more, mark.bow, mark.tint});
     }
 }
 
-void Painter::add(const Quad& quad, Point at) {
-    vertices_.push_back({at, quad.origin, quad.axis, quad.shape, quad.more, quad.tint});
+/// Keeps what of the convex outline lies within (Sutherland & Hodgman 1974). The cuts lie at edges of pixels exactly.
+void Painter::clip(float left, float right, float top, float bottom) {
+    const auto cut = [&](float Point::*across, float Point::*along, float edge, float side) {
+        clipped_.clear();
+        for (std::size_t i = 0; i < outline_.size(); ++i) {
+            const Point &from = outline_[i], &to = outline_[(i + 1) % outline_.size()];
+            const float before = side * (from.*across - edge), after = side * (to.*across - edge);  // ≥ 0 within
+            if (before >= 0) clipped_.push_back(from);
+            if ((before >= 0) == (after >= 0)) continue;
+            Point at;
+            at.*across = edge;
+            at.*along = from.*along + (to.*along - from.*along) * (before / (before - after));
+            clipped_.push_back(at);
+        }
+        std::swap(outline_, clipped_);
+    };
+    cut(&Point::x, &Point::y, left, 1);
+    cut(&Point::x, &Point::y, right, -1);
+    cut(&Point::y, &Point::x, top, 1);
+    cut(&Point::y, &Point::x, bottom, -1);
 }
 
 void Painter::upload_vertices() {

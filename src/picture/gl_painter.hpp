@@ -25,6 +25,7 @@ private:
         Point at, origin, axis;
         std::array<float, 4> shape;
         std::array<float, 4> more;
+        std::array<float, 2> bow;
         std::array<std::uint8_t, 4> tint;
     };
     /// Parts drawn together.
@@ -42,10 +43,8 @@ private:
     };
 
     void plan(const Sketch& sketch, const std::vector<Rect>& places);
-    void add(const Quad& quad, const Rect& bounds, const std::vector<Rect>& places);
-    void add(const Quad& quad, const Rect& part);
-    void add(const Quad& quad, Point at);
-    void add_turned(const Quad& quad);
+    void add(const Mark& mark, const Rect& bounds, const std::vector<Rect>& places);
+    void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);
     void upload(const std::vector<std::shared_ptr<const Picture>>& images);
@@ -60,6 +59,7 @@ private:
     std::size_t atlas_glyphs_ = 0;
     std::vector<Loaded> images_;
     std::vector<Vertex> vertices_;
+    std::vector<Point> outline_, clipped_;  // of what is added
     std::vector<Run> runs_;  // kept for their memory; those in use come first
     std::size_t used_runs_ = 0;
 };

@@ -19,7 +19,7 @@ std::array<std::uint8_t, 4> tint(const Color& color, float opacity = 1) {
     return {byte(color.r), byte(color.g), byte(color.b), byte(color.a * opacity)};
 }
 
-/// Turns items into quads. What is thinner than a pixel is drawn a pixel thin and fainter.
+/// Turns items into marks. What is thinner than a pixel is drawn a pixel thin and fainter.
 class Sketcher {
 public:
     Sketcher(Size size, GlyphAtlas& atlas, Sketch& made) : size_(size), atlas_(atlas), made_(made) {}
@@ -58,25 +58,33 @@ public:
             v.width = std::max(width, 1.f);
             v.glow *= std::max(stroke.glow, 0.f);
         }
-        segments_.clear();
-        for_each_segment(path_, [&](const Stroke::Vertex& from, const Stroke::Vertex& to) {
-            segments_.push_back({from, to, Segment(from.at, to.at)});
-        });
-        for (std::size_t i = 0; i < segments_.size(); ++i) {
-            const auto& [from, to, s] = segments_[i];
+        bows_.clear();
+        if (path_.size() == 1) bows_.push_back({path_[0], path_[0], 0});
+        for (std::size_t i = 0; i + 1 < path_.size();) {
+            const StrokePiece piece = next_piece(path_, i, Bends::no);
+            const Bow bow{path_[i], path_[piece.last], piece.bend};
+            // from joint to joint it changes its looks on the spot
+            if (!(bow.from.joint && bow.to.joint && bow.chord.length == 0)) bows_.push_back(bow);
+            i = piece.last;
+        }
+        for (std::size_t i = 0; i < bows_.size(); ++i) {
+            const auto& [from, to, bend, s] = bows_[i];
             if (!(from.alpha > 0 || to.alpha > 0)) continue;
             const float per_px = s.length > 0 ? 1 / s.length : 0;
             const float alpha = s.length > 0 ? (from.alpha + to.alpha) / 2 : std::max(from.alpha, to.alpha);
             const float reach = std::max(from.width, to.width) / 2 + std::max({edge / 2, from.glow, to.glow});
             const float half_length =
-                s.length / 2 + edge / 2 + reach * std::max(share_at_joint(i, i - 1), share_at_joint(i, i + 1));
-            add({.origin = s.center,
+                s.length / 2 + edge / 2 +
+                reach * std::max(i > 0 ? share_at_joint(bows_[i - 1], bows_[i]) : 1,
+                                 i + 1 < bows_.size() ? share_at_joint(bows_[i], bows_[i + 1]) : 1);
+            add({.origin = {s.center.x - s.axis.y * bend / 2, s.center.y + s.axis.x * bend / 2},
                  .axis = s.axis,
                  .shape = {s.length / 2, (from.width + to.width) / 4, alpha, (to.alpha - from.alpha) * per_px},
                  .more = {(to.width - from.width) / 2 * per_px, (from.glow + to.glow) / 2,
                           (to.glow - from.glow) * per_px, half_length},
+                 .bow = {bend / 2, 4 * bend * per_px * per_px},
                  .tint = tint(stroke.color)},
-                {half_length, reach});
+                {half_length, reach + std::abs(bend) / 2});
         }
     }
 
@@ -128,43 +136,52 @@ private:
         }
     };
 
-    struct StrokeSegment {
+    /// A piece of a stroke.
+    struct Bow {
         Stroke::Vertex from, to;
-        Segment line;
+        float bend;  // px
+        Segment chord{from.at, to.at};
+
+        float steepness() const { return chord.length > 0 ? 4 * bend / chord.length : 0; }  // at its start; at its end -
+        Point direction(float slope) const {
+            const float scale = 1 / std::sqrt(1 + slope * slope);
+            return {scale * (chord.axis.x - slope * chord.axis.y), scale * (chord.axis.y + slope * chord.axis.x)};
+        }
     };
 
-    /// How far segment i must reach beyond its end where segment j goes on, in units of the stroke's reach: what is
-    /// round there is shared by the two, each up to the bisector; an end of its own it rounds off alone.
-    float share_at_joint(std::size_t i, std::size_t j) const {
-        if (j >= segments_.size()) return 1;
-        const Segment &a = segments_[i].line, &b = segments_[j].line;
-        const float along = a.axis.x * b.axis.x + a.axis.y * b.axis.y;  // cosine of the turn
-        return along > 0 && a.length > 0 && b.length > 0 ? std::sqrt((1 - std::min(along, 1.f)) / 2) : 1;
+    /// How far both must reach beyond the joint where the one goes on as the other, in units of the stroke's reach: what
+    /// is round there is shared by the two, each up to the bisector; an end of its own a piece rounds off alone.
+    static float share_at_joint(const Bow& a, const Bow& b) {
+        const Point out = a.direction(-a.steepness()), in = b.direction(b.steepness());
+        const float along = out.x * in.x + out.y * in.y;  // cosine of the turn
+        if (!(along > 0 && a.chord.length > 0 && b.chord.length > 0)) return 1;
+        const float slope = std::max(std::abs(a.steepness()), std::abs(b.steepness()));
+        return std::min(std::sqrt((1 - std::min(along, 1.f)) / 2) + slope, 1.f);
     }
 
-    void begin(Kind kind) { made_.parts.push_back({kind, made_.quads.size(), made_.quads.size()}); }
+    void begin(Kind kind) { made_.parts.push_back({kind, made_.marks.size(), made_.marks.size()}); }
 
-    /// Adds the quad, which touches no pixels but those that [from, to] reaches into.
-    void add(const Quad& quad, Point from, Point to) {
+    /// Adds the mark, which touches no pixels but those that [from, to] reaches into.
+    void add(const Mark& mark, Point from, Point to) {
         // fmin and fmax, for they lose what is not a number
         const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
         const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
                           static_cast<int>(std::ceil(within(to.x, size_.width))),
                           static_cast<int>(std::ceil(within(to.y, size_.height)))};
         if (bounds.empty()) return;
-        made_.quads.push_back(quad);
+        made_.marks.push_back(mark);
         made_.bounds.push_back(bounds);
-        made_.parts.back().end = made_.quads.size();
+        made_.parts.back().end = made_.marks.size();
         made_.parts.back().bounds = united(made_.parts.back().bounds, bounds);
     }
 
-    /// Adds the quad, which reaches `half` from its origin along either of its axes.
-    void add(Quad quad, Point half) {
-        const float across = std::abs(quad.axis.x), down = std::abs(quad.axis.y);
+    /// Adds the mark, which reaches `half` from its origin along either of its axes.
+    void add(Mark mark, Point half) {
+        const float across = std::abs(mark.axis.x), down = std::abs(mark.axis.y);
         const Point reach{across * half.x + down * half.y, down * half.x + across * half.y};
-        quad.half = half;
-        add(quad, {quad.origin.x - reach.x, quad.origin.y - reach.y},
-            {quad.origin.x + reach.x, quad.origin.y + reach.y});
+        mark.half = half;
+        add(mark, {mark.origin.x - reach.x, mark.origin.y - reach.y},
+            {mark.origin.x + reach.x, mark.origin.y + reach.y});
     }
 
     void add_shape(Point center, Point axis, Point half, float corner, const Color& color, float glow = 0) {
@@ -176,7 +193,7 @@ private:
         add({.origin = center,
              .axis = axis,
              .shape = {half.x - corner, half.y - corner, corner, 0},
-             .more = {0, glow},
+             .more = {glow > 0 ? 1 / glow : 0, glow > 0 ? 1.0f / 3 : 0},
              .tint = tint(color, opacity)},
             {half.x + beyond, half.y + beyond});
     }
@@ -186,20 +203,20 @@ private:
     Sketch& made_;
     // of the stroke in hand; kept for their memory
     std::vector<Stroke::Vertex> path_;
-    std::vector<StrokeSegment> segments_;
+    std::vector<Bow> bows_;
 };
 
 }  // namespace
 
-bool operator==(const Quad& a, const Quad& b) {
+bool operator==(const Mark& a, const Mark& b) {
     return a.origin.x == b.origin.x && a.origin.y == b.origin.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
-           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.more == b.more && a.tint == b.tint &&
-           a.image == b.image;
+           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.more == b.more && a.bow == b.bow &&
+           a.tint == b.tint && a.image == b.image;
 }
 
 void sketch(const DisplayList& list, Size size, GlyphAtlas& atlas, Sketch& made) {
     made.parts.clear();
-    made.quads.clear();
+    made.marks.clear();
     made.bounds.clear();
     made.images.clear();
     Sketcher sketcher(size, atlas, made);

@@ -11,15 +11,16 @@
 namespace doppel {
 
 /// What the fragment shader of a kind must know to draw one thing.
-struct Quad {
+struct Mark {
     Point origin;                        // of the thing's own axes, px
     Point axis{1, 0};                    // unit vector along the first of them
     Point half;                          // how far it reaches along them to either side, px; 0 where it does not turn
     std::array<float, 4> shape{};        // see the shader
     std::array<float, 4> more{};         // likewise
+    std::array<float, 2> bow{};          // likewise
     std::array<std::uint8_t, 4> tint{};  // sRGB and opacity
     const Picture* image = nullptr;      // one of Sketch::images
-    friend bool operator==(const Quad&, const Quad&);
+    friend bool operator==(const Mark&, const Mark&);
 };
 
 /// The fragment shaders. What is of kind `mask` is drawn twice: first it gathers how opaque the stroke is, then the
@@ -30,28 +31,28 @@ enum class Kind { shape, glyph, mask, image };
 struct Sketch {
     struct Part {
         Kind kind;
-        std::size_t begin = 0, end = 0;  // in quads and in bounds
+        std::size_t begin = 0, end = 0;  // in marks and in bounds
         Rect bounds{};                   // of them all
     };
     std::vector<Part> parts;
-    std::vector<Quad> quads;
-    std::vector<Rect> bounds;                            // the pixels that each quad touches, within the picture
+    std::vector<Mark> marks;
+    std::vector<Rect> bounds;                            // the pixels that each mark touches, within the picture
     std::vector<std::shared_ptr<const Picture>> images;  // kept, so that none can take the place of another in memory
 };
 
-/// Calls visit(part) for rectangles, none overlapping, that together hold what the quad touches of its bounds: one, or
+/// Calls visit(part) for rectangles, none overlapping, that together hold what the mark touches of its bounds: one, or
 /// bands if it is long and slants.
 template <class Visit>
-void for_each_band(const Quad& quad, const Rect& bounds, const Visit& visit) {
-    const float across = std::abs(quad.axis.x), down = std::abs(quad.axis.y);
-    const int thick = 16 + 4 * static_cast<int>(std::min(quad.half.y, 1000.f));
+void for_each_band(const Mark& mark, const Rect& bounds, const Visit& visit) {
+    const float across = std::abs(mark.axis.x), down = std::abs(mark.axis.y);
+    const int thick = 16 + 4 * static_cast<int>(std::min(mark.half.y, 1000.f));
     const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
-    if (shorter < 3 * thick || !(quad.half.x > 2 * quad.half.y) || std::min(across, down) < 0.05f) return visit(bounds);
+    if (shorter < 3 * thick || !(mark.half.x > 2 * mark.half.y) || std::min(across, down) < 0.05f) return visit(bounds);
     // cut along the axis that it follows more; a hair of room for rounding
     const bool steep = down > across;
-    const float slope = steep ? quad.axis.x / quad.axis.y : quad.axis.y / quad.axis.x;
-    const float margin = quad.half.y / std::max(across, down) + 0.05f;
-    const float middle = steep ? quad.origin.x : quad.origin.y, start = steep ? quad.origin.y : quad.origin.x;
+    const float slope = steep ? mark.axis.x / mark.axis.y : mark.axis.y / mark.axis.x;
+    const float margin = mark.half.y / std::max(across, down) + 0.05f;
+    const float middle = steep ? mark.origin.x : mark.origin.y, start = steep ? mark.origin.y : mark.origin.x;
     const int end = steep ? bounds.bottom : bounds.right;
     for (int a = steep ? bounds.top : bounds.left; a < end; a += thick) {
         const int b = std::min(a + thick, end);
@@ -65,7 +66,7 @@ void for_each_band(const Quad& quad, const Rect& bounds, const Visit& visit) {
 }
 
 /// Makes `made` the sketch of `list`; what it held goes, but for its memory. An item without ink adds a part without
-/// quads, or none.
+/// marks, or none.
 void sketch(const DisplayList& list, Size size, GlyphAtlas& atlas, Sketch& made);
 
 }  // namespace doppel
