@@ -164,6 +164,11 @@ TEST(Program, ExitsWith4WhereNothingCanBeWritten) {
     EXPECT_EQ(in_place.code, 4);
     EXPECT_NE(in_place.err.find("butterfly.csv is a folder"), std::string::npos) << in_place.err;
     EXPECT_FALSE(fs::exists(folder / "out/butterfly/butterfly.mp4"));
+
+    // where nobody may write, root neither
+    const auto closed = doppel(folder, with({"render", "butterfly", "-o", "/proc"}, tiny));
+    EXPECT_EQ(closed.code, 4);
+    EXPECT_EQ(closed.err.rfind("doppel: /proc/butterfly: the folder cannot be made: ", 0), 0u) << closed.err;
 }
 
 TEST(Program, ExitsWith4OnAFullDiskAndLeavesNothing) {

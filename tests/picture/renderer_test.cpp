@@ -36,9 +36,13 @@ private:
 
     void grow(Stroke& stroke) {
         Point at = stroke.vertices.empty() ? point() : stroke.vertices.back().at;
+        const bool bends = chance(0.5f);
         for (int i = 0; i < 20; ++i) {
-            at = {at.x + between(-6, 8), at.y + between(-6, 6)};
+            const Point step = bends ? Point{between(-60, 80), between(-60, 60)} : Point{between(-6, 8), between(-6, 6)};
+            at = {at.x + step.x, at.y + step.y};
             stroke.vertices.push_back({at, between(0, 1), between(0, 1)});
+            if (bends && chance(0.8f)) stroke.vertices.back().bend = between(-3, 3);
+            stroke.vertices.back().joint = chance(0.3f);
         }
     }
 
