@@ -95,7 +95,8 @@ bool Composer::swing_as_one(const PendulumPanel& panel) const {
     const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
         return a.kind == b.kind && a.from == b.from && a.to == b.to;
     };
-    return std::ranges::equal(seen(0).bobs, seen(1).bobs, same_bob) && std::ranges::equal(lines(0), lines(1), same_line);
+    return std::ranges::equal(seen(0).bobs, seen(1).bobs, same_bob) &&
+           std::ranges::equal(lines(0), lines(1), same_line);
 }
 
 /// Rods, then the pivot and the bobs, each on a rim that sets it off. Where two share a panel all of each has its hue.

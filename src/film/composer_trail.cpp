@@ -7,8 +7,8 @@
 namespace doppel {
 namespace {
 
-// What fades would have to be drawn anew at every sample. Instead the points of a trail fade in groups, each by steps of
-// 3 % of the light, and hardly ever two at once.
+// What fades would have to be drawn anew at every sample. Instead the points of a trail fade in groups, each by steps
+// of 3 % of the light, and hardly ever two at once.
 constexpr long group = 24;      // samples
 constexpr double steps = 32;    // from full light to none
 constexpr double fading = 1.6;  // the light is this power of the freshness
@@ -67,10 +67,8 @@ void Composer::settle(Trail& trail) const {
     for (std::size_t i = begin; i < trail.size(); ++i) {
         // light falls with time: evenly, in short
         const double part = (trail[i].time - trail[begin].time) / scene_.preset.video.trail_s;
-        path.push_back({.at = trail[i].at,
-                        .alpha = static_cast<float>(part),
-                        .bend = trail[i].bend,
-                        .joint = trail[i].joint});
+        path.push_back(
+            {.at = trail[i].at, .alpha = static_cast<float>(part), .bend = trail[i].bend, .joint = trail[i].joint});
     }
     std::size_t kept = begin;
     for (std::size_t i = 0; i < path.size(); ++kept) {
@@ -118,12 +116,12 @@ void Composer::compose_trail(std::size_t side, const Area& area, std::optional<P
         }
         if (point.group != last_group) until = faded_until(point.group);
         last_group = point.group;
-        const double freshness = std::clamp(1 - (until - point.time) / trail_s, 0.0, 1.0), square = freshness * freshness;
+        const double freshness = std::clamp(1 - (until - point.time) / trail_s, 0.0, 1.0);
         constexpr double thinnest = 0.55;
         stroke.vertices.push_back({.at = point.at,
                                    .alpha = static_cast<float>(std::pow(freshness, fading)),
                                    .width = static_cast<float>(thinnest + (1 - thinnest) * freshness),
-                                   .glow = static_cast<float>(square * square),
+                                   .glow = static_cast<float>(std::pow(freshness, 4)),
                                    .bend = point.bend,
                                    .joint = point.joint});
     };

@@ -27,8 +27,8 @@ void remove_folders(const std::vector<fs::path>& folders) {
     for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) fs::remove(*folder, ignored);
 }
 
-/// Makes what is missing of the way to `folder`, and returns what it made, outermost first: other runs may make the same
-/// folders meanwhile.
+/// Makes what is missing of the way to `folder`, and returns what it made, outermost first: other runs may make the
+/// same folders meanwhile.
 std::vector<fs::path> make_folders(const fs::path& folder) {
     std::vector<fs::path> made;
     fs::path way;

@@ -50,7 +50,7 @@ struct Stroke {
         float alpha = 1;  // times color.a
         float width = 1;  // times Stroke::width
         float glow = 1;   // times Stroke::glow
-        float bend = 0;      // px that the way to the next vertex rises to its left, along a parabola; right up to 1/16 of it
+        float bend = 0;   // px that the way to the next vertex swerves to the right, along a parabola; up to 1/16 of it
         bool joint = false;  // drawn as a vertex, even where the path could go on as well without it
     };
     std::vector<Vertex> vertices;

@@ -133,7 +133,8 @@ void Painter::add(const Mark& mark, const Rect& bounds, const std::vector<Rect>&
         // a fan, two triangles at a time
         for (std::size_t i = 2; i < outline_.size(); i += 2)
             for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
-                vertices_.push_back({outline_[corner], mark.origin, mark.axis, mark.shape, mark.more, mark.bow, mark.tint});
+                vertices_.push_back(
+                    {outline_[corner], mark.origin, mark.axis, mark.shape, mark.more, mark.bow, mark.tint});
     }
 }
 

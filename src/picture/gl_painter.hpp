@@ -60,7 +60,7 @@ private:
     std::vector<Loaded> images_;
     std::vector<Vertex> vertices_;
     std::vector<Point> outline_, clipped_;  // of what is added
-    std::vector<Run> runs_;  // kept for their memory; those in use come first
+    std::vector<Run> runs_;                 // kept for their memory; those in use come first
     std::size_t used_runs_ = 0;
 };
 

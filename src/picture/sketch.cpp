@@ -32,8 +32,8 @@ public:
 
     void operator()(const Capsule& capsule) {
         if (!(capsule.radius > 0)) return;
-        const Segment s(capsule.from, capsule.to);
-        add_shape(s.center, s.axis, {s.length / 2 + capsule.radius, capsule.radius}, capsule.radius, capsule.color,
+        const Chord s(capsule.from, capsule.to);
+        add_shape(s.middle(), s.axis, {s.length / 2 + capsule.radius, capsule.radius}, capsule.radius, capsule.color,
                   std::max(capsule.glow, 0.f));
     }
 
@@ -67,6 +67,7 @@ public:
             if (!(bow.from.joint && bow.to.joint && bow.chord.length == 0)) bows_.push_back(bow);
             i = piece.last;
         }
+        const auto color = tint(stroke.color);
         for (std::size_t i = 0; i < bows_.size(); ++i) {
             const auto& [from, to, bend, s] = bows_[i];
             if (!(from.alpha > 0 || to.alpha > 0)) continue;
@@ -77,13 +78,14 @@ public:
                 s.length / 2 + edge / 2 +
                 reach * std::max(i > 0 ? share_at_joint(bows_[i - 1], bows_[i]) : 1,
                                  i + 1 < bows_.size() ? share_at_joint(bows_[i], bows_[i + 1]) : 1);
-            add({.origin = {s.center.x - s.axis.y * bend / 2, s.center.y + s.axis.x * bend / 2},
+            const Point middle = s.middle();
+            add({.origin = {middle.x - s.axis.y * bend / 2, middle.y + s.axis.x * bend / 2},
                  .axis = s.axis,
                  .shape = {s.length / 2, (from.width + to.width) / 4, alpha, (to.alpha - from.alpha) * per_px},
                  .more = {(to.width - from.width) / 2 * per_px, (from.glow + to.glow) / 2,
                           (to.glow - from.glow) * per_px, half_length},
                  .bow = {bend / 2, 4 * bend * per_px * per_px},
-                 .tint = tint(stroke.color)},
+                 .tint = color},
                 {half_length, reach + std::abs(bend) / 2});
         }
     }
@@ -126,31 +128,23 @@ public:
     }
 
 private:
-    struct Segment {
-        Point center, axis{1, 0};
-        float length;
-        Segment(Point from, Point to) : center{(from.x + to.x) / 2, (from.y + to.y) / 2} {
-            const Point along{to.x - from.x, to.y - from.y};
-            length = std::sqrt(along.x * along.x + along.y * along.y);
-            if (length > 0) axis = {along.x / length, along.y / length};
-        }
-    };
-
     /// A piece of a stroke.
     struct Bow {
         Stroke::Vertex from, to;
         float bend;  // px
-        Segment chord{from.at, to.at};
+        Chord chord{from.at, to.at};
 
-        float steepness() const { return chord.length > 0 ? 4 * bend / chord.length : 0; }  // at its start; at its end -
+        float steepness() const {
+            return chord.length > 0 ? 4 * bend / chord.length : 0;
+        }  // at its start; at its end -
         Point direction(float slope) const {
             const float scale = 1 / std::sqrt(1 + slope * slope);
             return {scale * (chord.axis.x - slope * chord.axis.y), scale * (chord.axis.y + slope * chord.axis.x)};
         }
     };
 
-    /// How far both must reach beyond the joint where the one goes on as the other, in units of the stroke's reach: what
-    /// is round there is shared by the two, each up to the bisector; an end of its own a piece rounds off alone.
+    /// How far both must reach beyond the joint where the one goes on as the other, in units of the stroke's reach:
+    /// what is round there is shared by the two, each up to the bisector; an end of its own a piece rounds off alone.
     static float share_at_joint(const Bow& a, const Bow& b) {
         const Point out = a.direction(-a.steepness()), in = b.direction(b.steepness());
         const float along = out.x * in.x + out.y * in.y;  // cosine of the turn

@@ -2,12 +2,26 @@
 
 #include "picture/display_list.hpp"
 
+#include <cmath>
 #include <cstddef>
 
 namespace doppel {
 
-/// A part of a stroke that is drawn at once: from vertex `first` to vertex `last` along a parabola that rises `bend` px
-/// to the left of the straight line between them. Opacity, width and glow vary linearly along that line.
+/// The straight line between two points.
+struct Chord {
+    Point from, to, axis{1, 0};  // axis: unit vector along it
+    float length;                // px
+
+    Chord(Point start, Point end) : from(start), to(end) {
+        const Point along{to.x - from.x, to.y - from.y};
+        length = std::sqrt(along.x * along.x + along.y * along.y);
+        if (length > 0) axis = {along.x / length, along.y / length};
+    }
+    Point middle() const { return {(from.x + to.x) / 2, (from.y + to.y) / 2}; }
+};
+
+/// A part of a stroke that is drawn at once: from vertex `first` to vertex `last` along a parabola that swerves `bend`
+/// px to the right of the straight line between them. Opacity, width and glow vary linearly along that line.
 struct StrokePiece {
     std::size_t first, last;
     float bend = 0;

@@ -1,7 +1,7 @@
 // What goes wrong around a run: disks, signals, neighbours, files that change. With the real program.
 #include "cli/sandbox.hpp"
-#include "output/png.hpp"
 #include "output/decoded.hpp"
+#include "output/png.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -57,7 +57,8 @@ pid_t start_endless(const fs::path& folder, const std::string& format) {
 
 TEST(Faults, AFullDiskIsToldAndLeavesNothing) {
     const auto folder = fresh_folder();
-    if (!can_mount(folder)) GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4OnAFullDiskAndLeavesNothing stands in";
+    if (!can_mount(folder))
+        GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4OnAFullDiskAndLeavesNothing stands in";
     // a disk of so many pages, or so few files, that the run stops at another place each time; then one where it fits
     const std::string script = R"sh(set -u; mkdir -p out
         for room in size=4k size=12k size=32k nr_inodes=2 nr_inodes=4 nr_inodes=5 size=16m; do
@@ -94,7 +95,8 @@ TEST(Faults, AFullDiskIsToldAndLeavesNothing) {
 
 TEST(Faults, AReadOnlyTargetIsTold) {
     const auto folder = fresh_folder();
-    if (!can_mount(folder)) GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4WhereNothingCanBeWritten stands in";
+    if (!can_mount(folder))
+        GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4WhereNothingCanBeWritten stands in";
     const auto result = shell_with_mounts(folder, R"sh(mkdir -p out && mount -t tmpfs none out && mkdir out/butterfly &&
         mount -o remount,ro out && "$DOPPEL" simulate butterfly --progress none)sh");
     EXPECT_EQ(result.code, 4);

@@ -38,7 +38,8 @@ private:
         Point at = stroke.vertices.empty() ? point() : stroke.vertices.back().at;
         const bool bends = chance(0.5f);
         for (int i = 0; i < 20; ++i) {
-            const Point step = bends ? Point{between(-60, 80), between(-60, 60)} : Point{between(-6, 8), between(-6, 6)};
+            const Point step =
+                bends ? Point{between(-60, 80), between(-60, 60)} : Point{between(-6, 8), between(-6, 6)};
             at = {at.x + step.x, at.y + step.y};
             stroke.vertices.push_back({at, between(0, 1), between(0, 1)});
             if (bends && chance(0.8f)) stroke.vertices.back().bend = between(-3, 3);

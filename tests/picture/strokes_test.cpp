@@ -106,9 +106,9 @@ TEST(Stroke, FollowsACircleInFewPieces) {
     }
 }
 
-TEST(Stroke, BendsToTheLeftAsFarAsItSays) {
+TEST(Stroke, BendsToTheRightAsFarAsItSays) {
     Stroke arc{.vertices = {{{20, 60}}, {{140, 60}}}, .width = 4, .color = white};
-    arc.vertices[0].bend = 7;  // y points down
+    arc.vertices[0].bend = 7;
     const Picture picture = drawn({arc});
     for (int x = 24; x < 136; ++x) {
         const double share = (x + 0.5 - 20) / 120, middle = 60 + 4 * 7 * share * (1 - share);
