@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -78,6 +79,31 @@ private:
     const Sketch& sketch_;
     std::vector<std::pair<std::size_t, std::size_t>> places_;
 };
+
+/// Calls visit(part) for rectangles, none overlapping, that together hold what the mark touches of its bounds: one, or
+/// bands if it is long and slants.
+template <class Visit>
+void for_each_band(const Mark& mark, const Rect& bounds, const Visit& visit) {
+    const float across = std::abs(mark.axis.x), down = std::abs(mark.axis.y);
+    const int thick = 16 + 4 * static_cast<int>(std::min(mark.half.y, 1000.f));
+    const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
+    if (shorter < 3 * thick || !(mark.half.x > 2 * mark.half.y) || std::min(across, down) < 0.05f) return visit(bounds);
+    // cut along the axis that it follows more; a hair of room for rounding
+    const bool steep = down > across;
+    const float slope = steep ? mark.axis.x / mark.axis.y : mark.axis.y / mark.axis.x;
+    const float margin = mark.half.y / std::max(across, down) + 0.05f;
+    const float middle = steep ? mark.origin.x : mark.origin.y, start = steep ? mark.origin.y : mark.origin.x;
+    const int end = steep ? bounds.bottom : bounds.right;
+    for (int a = steep ? bounds.top : bounds.left; a < end; a += thick) {
+        const int b = std::min(a + thick, end);
+        const float at_a = middle + slope * (static_cast<float>(a) - start);
+        const float at_b = middle + slope * (static_cast<float>(b) - start);
+        const int low = static_cast<int>(std::floor(std::min(at_a, at_b) - margin));
+        const int high = static_cast<int>(std::ceil(std::max(at_a, at_b) + margin));
+        const Rect band = common(bounds, steep ? Rect{low, a, high, b} : Rect{a, low, b, high});
+        if (!band.empty()) visit(band);
+    }
+}
 
 /// Strokes: their marks may come in any order, and more than once, without a change to the picture.
 template <class Add>

@@ -77,7 +77,7 @@ private:
             case 4:
                 return Image{a.x, a.y, a.x + between(0, 120), a.y + between(0, 120), pixels()};
             case 5:
-                // long and slanting: drawn in bands where the damage cuts it
+                // long and slanting: damaged in bands, and cut where they end
                 return Capsule{{between(-900, 0), a.y}, {between(320, 1200), b.y}, between(0.3f, 8), color(), glow};
             default: {
                 const Weight weight = chance(0.5f) ? Weight::bold : Weight::regular;
