@@ -33,9 +33,9 @@ bool same(const fs::path& expected_path, const fs::path& actual_path, const fs::
     const auto name = actual_path.stem().string() + ".diff.png";
     PartFiles parts(out / "compare", name);
     write_png(parts.file(name), difference_picture(expected, actual));
-    parts.publish();
+    const auto files = parts.publish();
     fmt::print("{}: differs from {}: {}; expected, actual and difference ×16: {}\n", actual_path.string(),
-               expected_path.string(), verdict.why, (parts.folder() / name).string());
+               expected_path.string(), verdict.why, files.front().string());
     return false;
 }
 

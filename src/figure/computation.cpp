@@ -24,7 +24,7 @@ std::string duration_words(double seconds) {
 
 }  // namespace
 
-Computation::Computation(const FigurePreset& figure, const PartHeader& header, std::filesystem::path record,
+Computation::Computation(const FigurePreset& figure, const PartHeader& header, std::optional<FilePlace> record,
                          int threads, ComputationReport report)
     : figure_(figure),
       header_(header),
@@ -39,16 +39,16 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header, s
 }
 
 void Computation::take_record() {
-    if (!std::filesystem::exists(record_)) return;
-    auto part = read_part_file(record_);
+    if (!record_ || !std::filesystem::exists(record_->path)) return;
+    auto part = read_part_file(record_->path);
     if (part.header != header_) {
-        report_.note(fmt::format("{} belongs to another preset or version; starting anew", record_.string()));
+        report_.note(fmt::format("{} belongs to another preset or version; starting anew", record_->path.string()));
         return;
     }
     known_ = std::move(part.trials);
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.work->units(trial);
-    report_.note(fmt::format("goes on from {}: {:.0f} % is done", record_.string(), percent_done()));
+    report_.note(fmt::format("goes on from {}: {:.0f} % is done", record_->path.string(), percent_done()));
 }
 
 /// Runs of trials that are not known, cut to what is best computed at once. Where they are many, some from all over the
@@ -92,7 +92,7 @@ Error Computation::with_record(const Error& fault) {
     if (!writer_) return fault;
     writer_->flush();
     return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command goes on from there",
-                                      fault.what(), percent_done(), record_.string())};
+                                      fault.what(), percent_done(), record_->path.string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
@@ -107,8 +107,8 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
     ++groups_done_;
     const double time = now();
     const bool pays = time - start_s_ > record_after_s && groups_done_ < groups_.size();
-    if (!writer_ && pays && !record_.empty()) {
-        writer_.emplace(record_, header_, known_);
+    if (!writer_ && pays && record_) {
+        writer_.emplace(*record_, header_, known_);
     } else if (writer_) {
         for (std::size_t trial = group.first; trial < group.second; ++trial) writer_->add(trial, known_[trial]);
         if (time - flushed_s_ > flush_every_s) {

@@ -25,9 +25,9 @@ struct ComputationReport {
 /// file, once that pays. Destroyed before it is complete, it leaves that file.
 class Computation {
 public:
-    /// `record` = the file, or "" for none; one that is there is read where it fits, and its trials are known.
-    /// `threads` is for the words.
-    Computation(const FigurePreset& figure, const PartHeader& header, std::filesystem::path record, int threads,
+    /// `record` = the file, where there is to be one; one that is there is read where it fits, and its trials
+    /// are known. `threads` is for the words.
+    Computation(const FigurePreset& figure, const PartHeader& header, std::optional<FilePlace> record, int threads,
                 ComputationReport report);
 
     std::size_t groups() const { return groups_.size(); }
@@ -37,7 +37,7 @@ public:
     KnownTrials take() { return std::move(known_); }
 
     const PartHeader& header() const { return header_; }
-    const std::filesystem::path& record() const { return record_; }
+    const std::optional<FilePlace>& record() const { return record_; }
     double computed_units() const { return computed_units_; }  // not read
     double cpu_s() const { return cpu_s_; }                    // of the threads while they computed
     double start_s() const { return start_s_; }                // of the first group, by CLOCK_MONOTONIC
@@ -54,7 +54,7 @@ private:
 
     const FigurePreset& figure_;
     PartHeader header_;
-    std::filesystem::path record_;
+    std::optional<FilePlace> record_;
     int threads_;
     ComputationReport report_;
     std::vector<Group> groups_;

@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-void write_figure_manifest(const std::filesystem::path& path, const FigurePreset& figure, const KnownTrials& trials,
+void write_figure_manifest(PartFiles& parts, const FigurePreset& figure, const KnownTrials& trials,
                            const FigureRecord& record) {
     Json findings = Json::object();
     for (const auto& finding : figure.work->findings(trials))
@@ -29,9 +29,8 @@ void write_figure_manifest(const std::filesystem::path& path, const FigurePreset
          {{"compute_wall_s", record.compute_wall_s},
           {"compute_cpu_s", record.compute_cpu_s},
           {"draw_cpu_s", record.draw_cpu_s}}},
-        {"files", files_json(record.files)},
     };
-    write_json(path, manifest);
+    write_manifest(parts, figure.name + ".json", std::move(manifest));
 }
 
 }  // namespace doppel

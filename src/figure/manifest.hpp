@@ -11,11 +11,10 @@ struct FigureRecord {
     double compute_wall_s = 0, compute_cpu_s = 0;  // other figures may have been computed meanwhile
     double draw_cpu_s = 0;                         // picture and table
     std::string gl;
-    RunFiles files;
 };
 
-/// Throws Error (exit 4).
-void write_figure_manifest(const std::filesystem::path& path, const FigurePreset& figure, const KnownTrials& trials,
+/// NAME.json. Throws Error (exit 4).
+void write_figure_manifest(PartFiles& parts, const FigurePreset& figure, const KnownTrials& trials,
                            const FigureRecord& record);
 
 }  // namespace doppel

@@ -81,8 +81,7 @@ PartFile read_part_file(const std::filesystem::path& path) {
     return part;
 }
 
-PartWriter::PartWriter(const std::filesystem::path& path, const PartHeader& header, const KnownTrials& known)
-    : file_(path.string() + ".part") {
+PartWriter::PartWriter(const FilePlace& place, const PartHeader& header, const KnownTrials& known) : file_(part_of(place)) {
     const Json json{{"file", mark},
                     {"figure", header.figure},
                     {"version", header.version},
@@ -95,9 +94,7 @@ PartWriter::PartWriter(const std::filesystem::path& path, const PartHeader& head
     for (std::size_t trial = 0; trial < known.size(); ++trial)
         if (!known[trial].empty()) add(trial, known[trial]);
     flush();
-    std::error_code error;
-    std::filesystem::rename(file_.path(), path, error);
-    if (error) throw io_failed("{}: {}", path.string(), error.message());
+    rename_file(part_of(place), place);
 }
 
 void PartWriter::add(std::size_t trial, const TrialNumbers& numbers) {

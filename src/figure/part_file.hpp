@@ -42,7 +42,7 @@ PartFile read_part_file(const std::filesystem::path& path);
 class PartWriter {
 public:
     /// Begins the file with what is known; one that is there is replaced when that is written.
-    PartWriter(const std::filesystem::path& path, const PartHeader& header, const KnownTrials& known);
+    PartWriter(const FilePlace& place, const PartHeader& header, const KnownTrials& known);
 
     void add(std::size_t trial, const TrialNumbers& numbers);
     /// All so far can be read by others.

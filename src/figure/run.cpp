@@ -106,7 +106,7 @@ DisplayList compose_figure(const FigurePreset& figure, const KnownTrials& trials
 }
 
 KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atomic<bool>& stop) {
-    Computation computation(figure, header_of(figure), "", jobs,
+    Computation computation(figure, header_of(figure), std::nullopt, jobs,
                             {[](const FigureProgress&) {}, [](const std::string&) {}});
     share_out(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, stop); });
     return computation.take();
@@ -127,31 +127,27 @@ public:
 
     RunResult print(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials, FigureRecord facts,
                     PartFiles& files) {
-        const auto& folder = files.folder();
-        RunResult result;
-        facts.jobs = jobs_;
-        const auto add = [&](const std::string& name) {
-            facts.files.emplace_back(name, files.file(name));
-            result.files.push_back(folder / name);
-            return facts.files.back().second;
-        };
         if (options_.shard) {
-            PartWriter(add(shard_name(header, "shard")), header, trials).close();
-            files.publish();
-            return result;
+            PartWriter(files.file(shard_name(header, "shard")), header, trials).close();
+            return {.files = files.publish()};
         }
-        const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-        auto& renderer = renderer_for(figure.picture_size());
-        write_png(add(figure.name + ".png"), renderer.draw(compose_figure(figure, trials)));
-        facts.gl = renderer.description();
-        Csv table(add(figure.name + ".csv"), figure.work->columns());
-        figure.work->write_rows(trials, table);
-        table.finish();
-        facts.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
-        write_figure_manifest(files.file(figure.name + ".json"), figure, trials, facts);
-        result.files.push_back(folder / (figure.name + ".json"));
-        files.publish();
-        return result;
+        facts.jobs = jobs_;
+        const auto picture = figure.name + ".png", rows = figure.name + ".csv";
+        const auto finish = [&] {
+            const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+            auto& renderer = renderer_for(figure.picture_size());
+            write_png(files.file(picture), renderer.draw(compose_figure(figure, trials)));
+            files.finished(picture);
+            facts.gl = renderer.description();
+            Csv table(files.file(rows), figure.work->columns());
+            figure.work->write_rows(trials, table);
+            table.finish();
+            files.finished(rows);
+            facts.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+            write_figure_manifest(files, figure, trials, facts);
+            return files.publish();
+        };
+        return {.files = files.keeping_finished(finish)};
     }
 
 private:
@@ -170,15 +166,19 @@ private:
 /// The computation of every figure, and the threads at work on them.
 class Workshop {
 public:
+    /// `files` of each figure: where the record of its trials goes.
     Workshop(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
-             const std::atomic<bool>& stop, const FigureReport& report)
+             const std::vector<std::unique_ptr<PartFiles>>& files, const std::atomic<bool>& stop,
+             const FigureReport& report)
         : stop_(stop) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const auto& figure = figures[k];
             const auto header =
                 options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
+            const auto record = shard_name(header, "resume");
+            files[k]->note_part(record);
             computations_.push_back(std::make_unique<Computation>(
-                figure, header, options.out / figure.name / shard_name(header, "resume"), jobs,
+                figure, header, FilePlace(files[k]->folder(), record), jobs,
                 ComputationReport{[&report, k](const FigureProgress& p) { report.progress(k, p); },
                                   [&report, k](const std::string& s) { report.note(k, s); }}));
             auto& groups = figure.work->measures_time() ? timed_groups_ : groups_;
@@ -250,7 +250,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     std::vector<std::unique_ptr<PartFiles>> files;  // now: a folder that cannot be made is told at once
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name, run));
-    Workshop workshop(figures, options, jobs, stop, report);
+    Workshop workshop(figures, options, jobs, files, stop, report);
     if (!figures.empty()) press.warm_up(figures.front());
     while (const auto k = workshop.next()) {
         auto& computation = workshop.computation(*k);
@@ -258,8 +258,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         const double start = computation.start_s() > 0 ? computation.start_s() : seconds_of(CLOCK_MONOTONIC);
         facts.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         auto result = press.print(figures[*k], computation.header(), computation.take(), facts, *files[*k]);
-        std::error_code ignored;
-        fs::remove(computation.record(), ignored);
+        files[*k]->folder().remove_file(computation.record()->name);
         result.samples = std::lround(computation.computed_units());
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         report.done(*k, result);

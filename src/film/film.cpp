@@ -77,16 +77,16 @@ Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunR
     const int jobs = run_threads(options.jobs);
     const auto& video = scene.preset.video;
     if (video.format == "png") {
-        const auto folder = parts.directory("frames");
-        record.files.emplace_back("frames", folder);
-        sink_ = make_png_sink(folder, [this](long k) { return fmt::format("{:06}.png", first_number_ + k); }, jobs,
-                              {.with_alpha = video.transparent, .metadata = metadata_of(scene.preset)});
+        film_name_ = "frames";
+        const Folder& folder = parts.directory(film_name_);
+        const auto place_of = [this, &folder](long k) {
+            return FilePlace(folder, fmt::format("{:06}.png", first_number_ + k));
+        };
+        sink_ = make_png_sink(place_of, jobs, {.with_alpha = video.transparent, .metadata = metadata_of(scene.preset)});
     } else {
         const auto file = video_options(scene, jobs);
-        const auto name = scene.preset.name + extension(file.format);
-        const auto path = parts.file(name);
-        record.files.emplace_back(name, path);
-        sink_ = make_video_sink(path, file);
+        film_name_ = scene.preset.name + extension(file.format);
+        sink_ = make_video_sink(parts.file(film_name_), file);
         record.libav = libav_description();
     }
     auto backdrop = composer_.backdrop();
@@ -161,14 +161,15 @@ void Film::shoot(RunRecord& record) {
     if (is_last) take_card(schedule_.end, true, record);
 }
 
-void Film::finish(RunRecord& record) {
+void Film::finish() {
     sink_->finish();
+    parts_.finished(film_name_);
     const auto& preset = scene_.preset;
     const auto write = [&](const std::string& ending, const Picture& picture) {
         const auto name = preset.name + ending;
-        const auto path = parts_.file(name);
-        write_png(path, picture, {.with_alpha = preset.video.transparent, .metadata = metadata_of(preset)});
-        record.files.emplace_back(name, path);
+        write_png(parts_.file(name), picture,
+                  {.with_alpha = preset.video.transparent, .metadata = metadata_of(preset)});
+        parts_.finished(name);
     };
     if (poster_) write(".poster.png", *poster_);
     if (!sheet_.empty())

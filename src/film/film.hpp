@@ -19,7 +19,7 @@ namespace doppel {
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
 class Film {
 public:
-    /// For the samples options.first … options.last − 1. Adds its files to `parts` and to the record.
+    /// For the samples options.first … options.last − 1. Adds its files to `parts`.
     Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record);
 
     /// Every sample, from 0 on.
@@ -31,8 +31,8 @@ public:
     /// The shot added last becomes a frame; before the first of all comes the title, after the last the end.
     void shoot(RunRecord& record);
 
-    /// Writes what was kept.
-    void finish(RunRecord& record);
+    /// The film is whole; writes what was kept.
+    void finish();
 
 private:
     const Picture& take(const DisplayList& list, RunRecord& record);
@@ -44,6 +44,7 @@ private:
     Schedule schedule_;
     Composer composer_;
     PartFiles& parts_;
+    std::string film_name_;               // of the video, or the folder of pictures
     long sample_ = 0;                     // added last
     std::atomic<long> first_number_ = 0;  // of the first picture; compressor threads ask
     std::unique_ptr<Sink> sink_;

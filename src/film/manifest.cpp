@@ -37,7 +37,7 @@ Json side_json(const Scene& scene, const Side& side, const Effort& effort, doubl
 
 }  // namespace
 
-void write_manifest(const std::filesystem::path& path, const Scene& scene, const RunRecord& record) {
+void write_manifest(PartFiles& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
     Json manifest = {
         {"doppel", program_json()},
         {"preset", scene.preset.name},
@@ -58,10 +58,9 @@ void write_manifest(const std::filesystem::path& path, const Scene& scene, const
             {"draw", record.draw_cpu_s},
             {"convert", record.write_cpu_s},
             {"encode_and_rest", record.encode_cpu_s}}}}},
-        {"files", files_json(record.files)},
     };
     if (!record.failure.empty()) manifest["failed"] = record.failure;
-    write_json(path, manifest);
+    write_manifest(parts, name, std::move(manifest));
 }
 
 }  // namespace doppel

@@ -3,7 +3,6 @@
 #include "scene/manifest_json.hpp"
 #include "scene/scene.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -26,10 +25,9 @@ struct RunRecord {
     double largest_distance = 0;
     Effort effort_a, effort_b;
     std::string failure;  // what ended the run, where something did
-    RunFiles files;
 };
 
-/// Writes the manifest to `path`; hashes the files. Throws Error (exit 4).
-void write_manifest(const std::filesystem::path& path, const Scene& scene, const RunRecord& record);
+/// Writes the manifest `name`; hashes the files that are finished. Throws Error (exit 4).
+void write_manifest(PartFiles& parts, const std::string& name, const Scene& scene, const RunRecord& record);
 
 }  // namespace doppel

@@ -29,12 +29,6 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     return name + ".failed" + ending;
 }
 
-/// A failed run's files from before are no news beside a whole one.
-void remove_failed(const std::filesystem::path& folder, const std::string& name, const char* ending) {
-    std::error_code ignored;
-    std::filesystem::remove(folder / failed_name(name, ending), ignored);
-}
-
 /// Keeps the samples before the break-down, under a name that says so, with a manifest; throws the error that tells
 /// where they are, and which step would have held.
 [[noreturn]] void keep_failed(const Scene& scene, const BreakDown& fault, RunRecord& record, PartFiles& parts,
@@ -46,11 +40,10 @@ void remove_failed(const std::filesystem::path& folder, const std::string& name,
     record.last_sample = fault.sample - 1;
     const auto csv = failed_name(name, ".csv"), manifest = failed_name(name, ".json");
     parts.keep_only(name + ".csv", csv);
-    std::erase_if(record.files, [&](const auto& file) { return file.first != name + ".csv"; });
-    record.files.front().first = csv;
-    write_manifest(parts.file(manifest), scene, record);
-    parts.publish();
-    throw method_failed("{}; the samples before are in {}", record.failure, (parts.folder() / csv).string());
+    parts.finished(csv);
+    write_manifest(parts, manifest, scene, record);
+    const auto files = parts.publish();
+    throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());
 }
 
 }  // namespace
@@ -77,8 +70,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     range.first = first, range.last = last;
     if (options.pictures) film.emplace(scene, range, parts, record);
     const auto csv_name = scene.preset.name + ".csv";
-    record.files.emplace_back(csv_name, parts.file(csv_name));
-    PairTable table(record.files.back().second, scene);
+    PairTable table(parts.file(csv_name), scene);
 
     Simulation simulation(scene, last, options.pictures, stop);
     const auto take_efforts = [&] { std::tie(record.effort_a, record.effort_b) = simulation.efforts(); };
@@ -90,6 +82,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         } catch (const BreakDown& fault) {
             take_efforts();
             table.finish();
+            film.reset();  // its threads write into what goes now
             keep_failed(scene, fault, record, parts, stop);
         }
         const auto& moment = shot.moment;
@@ -105,23 +98,23 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         report({++done, total});
     }
     take_efforts();
-    table.finish();
-    if (film) film->finish(record);
-
-    record.simulate_cpu_s = simulation.cpu_s();
-    record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
-    record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
-    record.encode_cpu_s = std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
-    const auto manifest = scene.preset.name + ".json";
-    write_manifest(parts.file(manifest), scene, record);
-    if (stop) throw Error(ExitCode::interrupted, "interrupted");
-    parts.publish();
-    for (const char* ending : {".csv", ".json"}) remove_failed(parts.folder(), scene.preset.name, ending);
-
-    RunResult result{.files = {}, .frames = record.frames, .samples = last - first, .wall_s = record.wall_s};
-    for (const auto& file : record.files) result.files.push_back(parts.folder() / file.first);
-    result.files.push_back(parts.folder() / manifest);
-    return result;
+    const auto finish = [&] {
+        table.finish();
+        parts.finished(csv_name);
+        if (film) film->finish();
+        record.simulate_cpu_s = simulation.cpu_s();
+        record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+        record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
+        record.encode_cpu_s =
+            std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
+        // a failed run's files from before are no news beside a whole one
+        for (const char* ending : {".csv", ".json"}) parts.remove(failed_name(scene.preset.name, ending));
+        write_manifest(parts, scene.preset.name + ".json", scene, record);
+        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        return parts.publish();
+    };
+    auto files = parts.keeping_finished(finish);
+    return {.files = std::move(files), .frames = record.frames, .samples = last - first, .wall_s = record.wall_s};
 }
 
 }  // namespace doppel

@@ -31,8 +31,7 @@ std::vector<std::string> columns(const Scene& scene) {
 
 }  // namespace
 
-PairTable::PairTable(const std::filesystem::path& path, const Scene& scene)
-    : scene_(scene), csv_(path, columns(scene)) {}
+PairTable::PairTable(const FilePlace& place, const Scene& scene) : scene_(scene), csv_(place, columns(scene)) {}
 
 void PairTable::add(const Moment& moment, double start_distance) {
     csv_.add(moment.sample);

@@ -3,14 +3,12 @@
 #include "output/csv.hpp"
 #include "scene/scene.hpp"
 
-#include <filesystem>
-
 namespace doppel {
 
 /// The table of a pair, a row a sample; the same columns for every model. Throws Error (exit 4), as Csv does.
 class PairTable {
 public:
-    PairTable(const std::filesystem::path& path, const Scene& scene);
+    PairTable(const FilePlace& place, const Scene& scene);
 
     /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers.
     void add(const Moment& moment, double start_distance);

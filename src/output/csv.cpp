@@ -10,8 +10,7 @@
 
 namespace doppel {
 
-Csv::Csv(const std::filesystem::path& path, std::vector<std::string> columns)
-    : file_(path), columns_(std::move(columns)) {
+Csv::Csv(const FilePlace& place, std::vector<std::string> columns) : file_(place), columns_(std::move(columns)) {
     for (const std::string& name : columns_) add(name);
     end_row();
     row_ = 0;

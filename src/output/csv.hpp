@@ -2,7 +2,6 @@
 
 #include "output/output_file.hpp"
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,7 +13,7 @@ namespace doppel {
 class Csv {
 public:
     /// Opens the file and writes the header. Throws Error (exit 4), as do all that write.
-    Csv(const std::filesystem::path& path, std::vector<std::string> columns);
+    Csv(const FilePlace& place, std::vector<std::string> columns);
 
     void add(long value);
     /// Throws Error (exit 3) where the value is not finite: a method that broke down has no place in a table.

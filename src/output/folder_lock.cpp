@@ -8,89 +8,110 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
-#include <string>
-#include <system_error>
-#include <vector>
+#include <charconv>
+#include <csignal>
+#include <string_view>
 
 namespace doppel {
 namespace {
 
-namespace fs = std::filesystem;
+constexpr std::string_view head = "doppel run, process ";  // PID on HOST
 
-std::string reason(int error) {
-    return std::generic_category().message(error);
+std::string host() {
+    char name[256] = "";
+    gethostname(name, sizeof name - 1);
+    return name;
 }
 
-/// The lines of a lock file: the process, then the names.
-std::vector<std::string> lines_of(const fs::path& path) {
-    std::vector<std::string> lines;
-    std::ifstream file(path);
-    for (std::string line; std::getline(file, line);) lines.push_back(line);
-    return lines;
+std::string first_line() {
+    return fmt::format("{}{} on {}", head, getpid(), host());
 }
 
-/// Whether the open file is still the one of that name: its run removes it while another waits to open it.
-bool is_current(int file, const fs::path& path) {
-    struct stat open {
-    }, named{};
-    return fstat(file, &open) == 0 && stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
-           open.st_ino == named.st_ino;
-}
-
-/// The parts that a killed run had written down; whatever else its file says.
-void remove_left(const fs::path& lock) {
-    for (const auto& line : lines_of(lock)) {
-        const fs::path name = line;
-        if (name != name.filename() || name.extension() != ".part") continue;
-        const auto part = lock.parent_path() / name;
-        std::error_code error;
-        fs::remove_all(part, error);
-        if (error) throw io_failed("{}: a stale part cannot be removed: {}", part.string(), error.message());
-    }
-}
-
-[[noreturn]] void refuse(const fs::path& path) {
-    const auto lines = lines_of(path);
-    throw io_failed("{}: another run{} is writing there; wait for it, or give another folder with --out",
-                    path.parent_path().string(), lines.empty() ? "" : fmt::format(", process {},", lines.front()));
+/// Whether the process that a lock file's first line names is surely gone: it was of this machine.
+bool is_gone(std::string_view line) {
+    pid_t process = 0;
+    const char* const end = line.data() + line.size();
+    const auto [rest, fault] = std::from_chars(line.data() + head.size(), end, process);
+    return fault == std::errc() && process > 0 && std::string_view(rest, end) == " on " + host() &&
+           kill(process, 0) != 0 && errno == ESRCH;
 }
 
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder, const std::string& run) : path_(folder / fmt::format(".{}.lock", run)) {
+FolderLock::FolderLock(const Folder& folder, const std::string& run)
+    : folder_(folder), name_(fmt::format(".{}.lock", run)) {
+    take();
+    if (!left_.empty()) left_.erase(left_.begin());  // its process
+}
+
+/// Opens, locks and reads the file, and makes sure that it is still the one of its name: its run removes it while
+/// another waits to open it.
+void FolderLock::take() {
+    const auto path = folder_.path() / name_;
     for (;;) {
-        file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-        if (file_ < 0) throw io_failed("{}: cannot be written to: {}", folder.string(), reason(errno));
-        const int fault = flock(file_, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
-        // some network file systems know no locks: there two runs at once are on their own
-        const bool held = fault == 0 || fault == ENOLCK || fault == EOPNOTSUPP || fault == ENOSYS;
-        if (held && is_current(file_, path_)) break;
-        close(file_);
-        file_ = -1;
-        if (fault == EWOULDBLOCK) refuse(path_);
-        if (!held) throw io_failed("{}: cannot be locked: {}", path_.string(), reason(fault));
+        constexpr int flags = O_RDWR | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+        file_ = Descriptor(openat(folder_.descriptor(), name_.c_str(), flags | O_CREAT | O_EXCL, 0666));
+        const bool is_new = bool(file_);
+        if (!is_new && errno == EEXIST) file_ = Descriptor(openat(folder_.descriptor(), name_.c_str(), flags));
+        if (!file_ && errno == ENOENT && folder_.entry(".").names > 0) continue;  // it went meanwhile
+        if (!file_ && errno == ELOOP)
+            throw io_failed("{} is a symbolic link; Doppel follows none there", path.string());
+        if (!file_) throw cannot(folder_.path(), "written to");
+        struct stat status {};
+        if (fstat(file_.number(), &status) != 0) throw cannot(path, "read");
+        if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
+            throw io_failed("{} is no lock file of Doppel's; remove it", path.string());
+        const int fault = flock(file_.number(), LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+        if (fault == EINTR) continue;
+        const bool knows_no_locks = fault == ENOLCK || fault == EOPNOTSUPP || fault == ENOSYS;
+        if (fault != 0 && fault != EWOULDBLOCK && !knows_no_locks) throw cannot(path, "locked", fault);
+        if (fault == 0 && folder_.entry(name_).inode != status.st_ino) continue;
+        read_notes();
+        // "process 123", without its host
+        const auto process = left_.empty() ? "" : left_.front().substr(head.find("process"));
+        const auto holder = process.empty() ? "" : fmt::format(", {},", process.substr(0, process.find(" on ")));
+        if (fault == EWOULDBLOCK)
+            throw io_failed("{}: another run{} is writing there; wait for it, or give another folder with --out",
+                            folder_.path().string(), holder);
+        if (knows_no_locks && !is_new && (left_.empty() || !is_gone(left_.front())))
+            throw io_failed(
+                "{}: another run{} may be writing there: the file system has no locks ({}), so nobody can tell; remove "
+                "{} if there is none, or give another folder with --out",
+                folder_.path().string(), holder, std::generic_category().message(fault), name_);
+        return;
     }
-    try {
-        remove_left(path_);
-        if (ftruncate(file_, 0) != 0) throw io_failed("{}: cannot be written: {}", path_.string(), reason(errno));
-        note(std::to_string(getpid()));
-    } catch (...) {
-        close(file_);
-        throw;
-    }
+}
+
+void FolderLock::read_notes() {
+    left_.clear();
+    std::string text;
+    char block[4096];
+    for (ssize_t n = 0; (n = pread(file_.number(), block, sizeof block, static_cast<off_t>(text.size()))) > 0;)
+        text.append(block, static_cast<std::size_t>(n));
+    if (!text.empty() && !std::string_view(text).starts_with(std::string_view(head).substr(0, text.size())))
+        throw io_failed("{} is no lock file of Doppel's; remove it", (folder_.path() / name_).string());
+    // a last line without an end was being written
+    for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
+        left_.push_back(text.substr(at, end - at));
 }
 
 FolderLock::~FolderLock() {
-    unlink(path_.c_str());  // before the lock goes: it can be nobody else's
-    close(file_);
+    // before the lock goes: it can be nobody else's
+    if (!leaves_) unlinkat(folder_.descriptor(), name_.c_str(), 0);
 }
 
-void FolderLock::note(const std::string& part) {
-    const auto text = part + "\n";
-    const auto written = write(file_, text.data(), text.size());
+void FolderLock::begin() {
+    if (ftruncate(file_.number(), 0) != 0) throw cannot(folder_.path() / name_, "written");
+    left_.clear();
+    note(first_line());
+}
+
+void FolderLock::note(const std::string& line, bool synced) {
+    const auto text = line + "\n";
+    const auto written = write(file_.number(), text.data(), text.size());
     if (written != static_cast<ssize_t>(text.size()))
-        throw io_failed("{}: cannot be written: {}", path_.string(), reason(written < 0 ? errno : ENOSPC));
+        throw cannot(folder_.path() / name_, "written", written < 0 ? errno : ENOSPC);
+    if (synced && fsync(file_.number()) != 0 && errno != EINVAL) throw cannot(folder_.path() / name_, "written");
 }
 
 }  // namespace doppel

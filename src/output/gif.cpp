@@ -33,10 +33,8 @@ std::string comment_and_end(const Metadata& metadata) {
 
 class GifSink final : public Sink {
 public:
-    GifSink(const std::filesystem::path& path, const VideoOptions& options)
-        : options_(options),
-          encoder_(path, encoding_of(options)),
-          spool_(std::filesystem::path(path) += ".spool", Samples::rgba) {}
+    GifSink(const FilePlace& place, const VideoOptions& options)
+        : options_(options), encoder_(place, encoding_of(options)), spool_(place, Samples::rgba) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
         SampledAreas changes = spare_.take();
@@ -111,8 +109,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Sink> make_gif_sink(const std::filesystem::path& path, const VideoOptions& options) {
-    return std::make_unique<GifSink>(path, options);
+std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options) {
+    return std::make_unique<GifSink>(place, options);
 }
 
 }  // namespace doppel

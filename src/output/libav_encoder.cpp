@@ -26,13 +26,13 @@ Libav<T> owned(T* thing) {
     return Libav<T>(thing);
 }
 
-Libav<AVFormatContext> open_format(const std::string& path, const char* container) {
-    // libav prints unless told not to; and takes what is before a colon for a protocol unless one is named
+Libav<AVFormatContext> open_format(const char* container) {
+    // libav prints unless told not to
     av_log_set_level(AV_LOG_QUIET);
     // and SVT-AV1, which asks the environment alone
     setenv("SVT_LOG", "0", 0);
     AVFormatContext* format = nullptr;
-    avformat_alloc_output_context2(&format, nullptr, container, ("file:" + path).c_str());
+    avformat_alloc_output_context2(&format, nullptr, container, "film");
     return owned(format);
 }
 
@@ -68,13 +68,14 @@ const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID cod
                     others.empty() ? "none" : fmt::format("{}", fmt::join(others, ", ")));
 }
 
-Encoder::Encoder(const std::filesystem::path& path, Encoding encoding)
-    : path_(path.string()),
+Encoder::Encoder(const FilePlace& place, Encoding encoding)
+    : path_(place.path.string()),
       encoding_(std::move(encoding)),
-      format_(open_format(path_, encoding_.container)),
+      file_(place),
+      format_(open_format(encoding_.container)),
       packet_(owned(av_packet_alloc())) {
     for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
-    check(avio_open(&format_->pb, format_->url, AVIO_FLAG_WRITE), "cannot be opened");
+    file_.attach(*format_);
     open_frame();
 }
 
@@ -173,9 +174,7 @@ void Encoder::finish(std::string_view ending, int replaced) {
         check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -replaced, SEEK_CUR), 0)), "cannot seek");
         avio_write(format_->pb, reinterpret_cast<const unsigned char*>(ending.data()), static_cast<int>(ending.size()));
     }
-    avio_flush(format_->pb);
-    check(format_->pb->error, "cannot be written");
-    check(avio_closep(&format_->pb), "cannot be closed");
+    check(file_.close(), "cannot be written");
 }
 
 void Encoder::check(int result, std::string_view what) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "output/libav_file.hpp"
 #include "output/metadata.hpp"
 #include "picture/picture.hpp"
 
@@ -8,7 +9,6 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,10 +18,7 @@ namespace doppel {
 
 /// Frees what libav allocated.
 struct LibavFree {
-    void operator()(AVFormatContext* format) const {
-        avio_closep(&format->pb);
-        avformat_free_context(format);
-    }
+    void operator()(AVFormatContext* format) const { avformat_free_context(format); }
     void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
     void operator()(AVFrame* frame) const { av_frame_free(&frame); }
     void operator()(AVPacket* packet) const { av_packet_free(&packet); }
@@ -51,7 +48,7 @@ class Encoder {
 public:
     /// Opens the file. The encoder itself is opened with the first frame: SVT-AV1 waits for ever where it is closed
     /// before it had one.
-    Encoder(const std::filesystem::path& path, Encoding encoding);
+    Encoder(const FilePlace& place, Encoding encoding);
 
     /// The picture as it is now: its planes can be written to.
     AVFrame& frame();
@@ -73,6 +70,7 @@ private:
 
     const std::string path_;
     Encoding encoding_;
+    LibavFile file_;
     Libav<AVFormatContext> format_;
     Libav<AVCodecContext> codec_;
     Libav<AVFrame> frame_;

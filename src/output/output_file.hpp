@@ -1,5 +1,7 @@
 #pragma once
 
+#include "output/folder.hpp"
+
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,7 +14,7 @@ namespace doppel {
 class OutputFile {
 public:
     /// Opens it, empty.
-    explicit OutputFile(std::filesystem::path path);
+    explicit OutputFile(const FilePlace& place);
 
     void write(std::string_view bytes);
     /// What was written so far can be read by others.

@@ -3,28 +3,24 @@
 #include "numeric/error.hpp"
 
 #include <fcntl.h>
+#include <unistd.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <system_error>
+#include <utility>
 
 namespace doppel {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path with_suffix(fs::path path, const char* suffix) {
-    return path += suffix;
-}
-
-void remove_quietly(const fs::path& path) {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-}
+using Kind = Entry::Kind;
 
 /// Only those that are empty.
 void remove_folders(const std::vector<fs::path>& folders) {
-    std::error_code ignored;
-    for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) fs::remove(*folder, ignored);
+    for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) rmdir(folder->c_str());
 }
 
 /// Makes what is missing of the way to `folder`, and returns what it made, outermost first: other runs may make the
@@ -47,99 +43,254 @@ std::vector<fs::path> make_folders(const fs::path& folder) {
     return made;
 }
 
-void move_to(const fs::path& from, const fs::path& to) {
-    std::error_code error;
-    fs::rename(from, to, error);
-    if (error) throw io_failed("{}: cannot be renamed to {}: {}", from.string(), to.string(), error.message());
-}
-
-/// Puts the folder `from` in the place of the folder `to`, whose files never mix with the new ones; what stays of those
-/// has the name `from` or `aside`.
-void replace_folder(const fs::path& from, const fs::path& to, const fs::path& aside) {
-    // at once, where the file system can: whoever is killed then leaves the one or the other
-    if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return remove_quietly(from);
-    remove_quietly(aside);
-    move_to(to, aside);
+/// The folder that the runs of one preset share: links lead to the folder it is in, none to itself.
+Folder open_last(const fs::path& folder, const std::vector<fs::path>& made) {
     try {
-        move_to(from, to);
+        if (!folder.has_filename() || folder.filename() == "." || folder.filename() == "..") return Folder::at(folder);
+        const auto parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+        if (fs::is_symlink(folder))
+            throw io_failed("{} is a symbolic link; Doppel follows none there", folder.string());
+        return Folder::at(parent).folder(folder.filename(), folder);
     } catch (...) {
-        std::error_code ignored;
-        fs::rename(aside, to, ignored);
+        remove_folders(made);
         throw;
     }
-    remove_quietly(aside);
 }
 
-/// Where an older folder stands while a new one takes its place.
-fs::path aside_of(const fs::path& target) {
-    return with_suffix(target, ".old.part");
+/// "000000.png": a picture of a sequence.
+bool is_numbered_picture(const std::string& name) {
+    return name.ends_with(".png") && name.size() > 4 &&
+           std::all_of(name.begin(), name.end() - 4, [](unsigned char c) { return std::isdigit(c); });
+}
+
+Error not_ours(const fs::path& path) {
+    return io_failed("{} was not written by Doppel, as far as it knows; move it, or give another folder with --out",
+                     path.string());
+}
+
+void remove_quietly(const Folder& folder, const std::string& name) {
+    try {
+        remove_entry(folder, name);
+    } catch (const Error&) {
+        // somebody put something there; it stays
+    }
 }
 
 }  // namespace
 
-PartFiles::PartFiles(fs::path folder, const std::string& run)
-    : folder_(std::move(folder)), made_(make_folders(folder_)) {
+PartFiles::PartFiles(const fs::path& folder, const std::string& run)
+    : made_(make_folders(folder)), folder_(open_last(folder, made_)) {
     try {
         lock_.emplace(folder_, run);
+        recover();
+        written_ = written_files(folder_);
     } catch (...) {
+        lock_.reset();
         remove_folders(made_);
         throw;
     }
 }
 
 PartFiles::~PartFiles() {
-    for (const Part& part : parts_) remove_quietly(part.written);
+    for (const Part& part : parts_)
+        if (!keeps_finished_ || !part.finished) remove_quietly(folder_, part_name(part.name));
     lock_.reset();
     remove_folders(made_);
 }
 
-fs::path PartFiles::file(const std::string& name) {
-    if (fs::is_directory(folder_ / name))
-        throw io_failed("{} is a folder; Doppel would write a file there", (folder_ / name).string());
-    return add_part(name);
+/// Ends what a killed run had begun, and removes what it left.
+void PartFiles::recover() {
+    const auto notes = read_notes(lock_->left());
+    const auto& publication = notes.publication;
+    lock_->leave();  // for another try, where this fails
+    if (publication.state == Publication::State::publish) {
+        written_ = written_files(folder_);
+        for (const auto& step : publication.steps)
+            if (is_waiting(folder_, step))
+                refuse_strangers(step.name, folder_.entry(part_name(step.name)).kind == Kind::folder);
+        put_in_place(folder_, publication);
+    }
+    if (publication.state == Publication::State::withdraw) take_back(folder_, publication);
+    clear_away(folder_, publication);
+    for (const auto& name : notes.parts) {
+        remove_entry(folder_, part_name(name));
+        remove_entry(folder_, aside_name(name));
+    }
+    lock_->begin();
+    lock_->leave(false);
 }
 
-fs::path PartFiles::directory(const std::string& name) {
-    const fs::path target = folder_ / name;
-    if (fs::exists(target) && !fs::is_directory(target))
-        throw io_failed("{} is a file; Doppel would make a folder there", target.string());
-    fs::path part = add_part(name);
-    lock_->note(aside_of(target).filename().string());
-    std::error_code error;
-    if (!fs::create_directory(part, error))
-        throw io_failed("{}: the folder cannot be made: {}", part.string(), error.message());
-    return part;
+void PartFiles::refuse_strangers(const std::string& name, bool is_folder) const {
+    const auto path = folder_.path() / name;
+    switch (folder_.entry(name).kind) {
+        case Kind::none:
+            return;
+        case Kind::link:
+            throw io_failed("{} is a symbolic link; Doppel follows none there", path.string());
+        case Kind::other:
+            throw io_failed("{} is neither a file nor a folder; remove it", path.string());
+        case Kind::file:
+            if (is_folder) throw io_failed("{} is a file; Doppel would make a folder there", path.string());
+            if (!is_written(folder_, name, written_)) throw not_ours(path);
+            // what nobody may rename (chattr +i) is told before work starts; a file that is only read-only can be
+            if (faccessat(folder_.descriptor(), name.c_str(), W_OK, 0) != 0 && errno == EPERM)
+                throw cannot(path, "replaced");
+            return;
+        case Kind::folder:
+            break;
+    }
+    if (!is_folder) throw io_failed("{} is a folder; Doppel would write a file there", path.string());
+    const Folder inside = folder_.folder(name);
+    for (const auto& file : inside.names()) {
+        const bool ours =
+            inside.entry(file).kind == Kind::file &&
+            (written_.contains(name + "/" + file) || (is_numbered_picture(file) && is_written(inside, file, written_)));
+        if (!ours) throw not_ours(path / file);
+    }
 }
 
-fs::path PartFiles::add_part(const std::string& name) {
-    const fs::path target = folder_ / name;
-    fs::path part = with_suffix(target, ".part");
-    std::error_code error;
-    fs::remove_all(part, error);
-    if (error) throw io_failed("{}: a stale part cannot be removed: {}", part.string(), error.message());
-    lock_->note(part.filename().string());
-    parts_.push_back({target, part});
-    return part;
+PartFiles::Part& PartFiles::add_part(const std::string& name, bool is_folder) {
+    refuse_strangers(name, is_folder);
+    const auto part = part_name(name);
+    for (const auto& taken : {part, aside_name(name)})
+        if (folder_.entry(taken).kind != Kind::none) throw not_ours(folder_.path() / taken);
+    note_part(name);
+    return parts_.emplace_back(Part{name, nullptr});
 }
 
-void PartFiles::keep_only(const std::string& name, const std::string& new_name) {
+FilePlace PartFiles::file(const std::string& name) {
+    add_part(name, false);
+    return {folder_, part_name(name)};
+}
+
+const Folder& PartFiles::directory(const std::string& name) {
+    Part& part = add_part(name, true);
+    folder_.make_folder(part_name(name));
+    part.contents = std::make_unique<Folder>(folder_.folder(part_name(name)));
+    return *part.contents;
+}
+
+void PartFiles::note_part(const std::string& name) {
+    lock_->note("part " + name);
+}
+
+void PartFiles::remove(const std::string& name) {
+    if (folder_.entry(name).kind == Kind::file && is_written(folder_, name, written_)) removed_.push_back(name);
+}
+
+void PartFiles::finished(const std::string& name) {
+    for (Part& part : parts_) part.finished = part.finished || part.name == name;
+}
+
+std::vector<fs::path> PartFiles::keeping_finished(const std::function<std::vector<fs::path>()>& last) {
+    try {
+        return last();
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::interrupted) throw;
+        throw Error(error.code(), error.what() + keep());
+    } catch (const std::exception& error) {
+        throw io_failed("{}{}", error.what(), keep());
+    }
+}
+
+/// What is finished stays; the words that say so.
+std::string PartFiles::keep() {
+    std::string names;
+    for (const Part& part : parts_)
+        if (part.finished) names += (names.empty() ? "" : ", ") + (folder_.path() / part_name(part.name)).string();
+    if (names.empty()) return "";
+    keeps_finished_ = true;
+    lock_->leave();
+    return "; what is finished stays until the next run: " + names;
+}
+
+FilePlace PartFiles::keep_only(const std::string& name, const std::string& new_name) {
+    refuse_strangers(new_name, false);
+    note_part(new_name);
     std::erase_if(parts_, [&](const Part& part) {
-        if (part.target == folder_ / name) return false;
-        remove_quietly(part.written);
+        if (part.name == name) return false;
+        remove_quietly(folder_, part_name(part.name));
         return true;
     });
-    for (Part& part : parts_) part.target = folder_ / new_name;
+    folder_.rename(part_name(name), part_name(new_name));
+    for (Part& part : parts_) part.name = new_name;
+    return {folder_, part_name(new_name)};
 }
 
-void PartFiles::publish() {
-    for (Part& part : parts_) {
-        if (fs::is_directory(part.written) && fs::is_directory(part.target))
-            replace_folder(part.written, part.target, aside_of(part.target));
-        else
-            move_to(part.written, part.target);
-        part.written = part.target;
+std::vector<std::pair<std::string, FilePlace>> PartFiles::finished_files() const {
+    std::vector<std::pair<std::string, FilePlace>> files;
+    for (const Part& part : parts_) {
+        if (!part.finished) continue;
+        if (!part.contents) files.emplace_back(part.name, FilePlace(folder_, part_name(part.name)));
+        for (const auto& name : part.contents ? part.contents->names() : std::vector<std::string>())
+            files.emplace_back(part.name + "/" + name, FilePlace(*part.contents, name));
+    }
+    return files;
+}
+
+WrittenFiles PartFiles::earlier_files() const {
+    WrittenFiles earlier;
+    for (const auto& [name, about] : written_) {
+        const auto slash = name.find('/');
+        const auto first = name.substr(0, slash);
+        const auto is_first = [&](const std::string& other) { return other == first; };
+        if (std::ranges::any_of(parts_, is_first, &Part::name) || std::ranges::any_of(removed_, is_first)) continue;
+        const auto kind = folder_.entry(first).kind;
+        const bool stands =
+            slash == std::string::npos
+                ? kind == Kind::file
+                : kind == Kind::folder && folder_.folder(first).entry(name.substr(slash + 1)).kind == Kind::file;
+        if (stands) earlier.emplace(name, about);
+    }
+    return earlier;
+}
+
+/// What is to be published, on the disk.
+Publication PartFiles::publication() {
+    Publication publication{.state = Publication::State::publish};
+    for (const Part& part : parts_) {
+        const FilePlace place{folder_, part_name(part.name)};
+        refuse_strangers(part.name, part.contents != nullptr);
+        const Entry entry = folder_.entry(place.name);
+        if (entry.kind == Kind::none) throw cannot(place.path, "published", ENOENT);
+        if (part.contents)
+            part.contents->sync(true);
+        else if (const auto file = open_file(place); fsync(file.number()) != 0 && errno != EINVAL)
+            throw cannot(place.path, "written");
+        publication.steps.push_back({part.name, entry.inode});
+    }
+    publication.removed = removed_;
+    return publication;
+}
+
+std::vector<fs::path> PartFiles::publish() {
+    std::vector<fs::path> files;
+    for (const Part& part : parts_) files.push_back(folder_.path() / part.name);
+    const auto published = publication();
+    for (const auto& line : journal_of(published)) lock_->note(line);
+    folder_.sync();
+    try {
+        lock_->note("publish", true);
+        put_in_place(folder_, published);
+    } catch (...) {
+        // where this fails too, all stays as it stands for the next run to sort
+        auto parts = std::exchange(parts_, {});
+        lock_->leave();
+        lock_->note("withdraw", true);
+        take_back(folder_, published);
+        lock_->note("withdrawn", true);
+        lock_->leave(false);
+        parts_ = std::move(parts);
+        throw;
     }
     parts_.clear();
+    removed_.clear();
+    try {
+        clear_away(folder_, published);
+    } catch (const Error&) {
+        lock_->leave();  // somebody put something there: the next run says so
+    }
+    return files;
 }
 
 }  // namespace doppel

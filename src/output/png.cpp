@@ -114,9 +114,9 @@ Rect all_of(Size size) {
 constexpr std::size_t header_bytes = 8 + 25;
 
 /// `bytes` are the picture's as samples_of() has them.
-void write_samples(const std::filesystem::path& path, Size size, const std::uint8_t* bytes, const PngOptions& options,
+void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
                    const std::string& text_chunks) {
-    OutputFile output(path);
+    OutputFile output(place);
     struct Target {
         OutputFile& output;
         const std::string& text_chunks;
@@ -135,22 +135,21 @@ void write_samples(const std::filesystem::path& path, Size size, const std::uint
     };
     const int channels = options.with_alpha ? 4 : 3;
     if (!stbi_write_png_to_func(write, &target, size.width, size.height, channels, bytes, channels * size.width))
-        throw io_failed("{}: a picture of {}x{} px cannot be compressed", path.string(), size.width, size.height);
+        throw io_failed("{}: a picture of {}x{} px cannot be compressed", place.path.string(), size.width, size.height);
     if (target.error) std::rethrow_exception(target.error);
     output.close();
 }
 
 class PngSink final : public Sink {
 public:
-    PngSink(const std::filesystem::path& folder, std::function<std::string(long)> name_of, int jobs, PngOptions options)
-        : folder_(folder),
-          name_of_(std::move(name_of)),
+    PngSink(std::function<FilePlace(long)> place_of, int jobs, PngOptions options)
+        : place_of_(std::move(place_of)),
           options_(std::move(options)),
           text_chunks_(png_text_chunks(options_.metadata)),
           writers_(std::max(jobs, 1), std::size_t(std::max(jobs, 1)), [this](Job& job) { write(job); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& /*changed*/) override {
-        Job job{folder_ / name_of_(taken_++), picture.size, spare_.take()};
+        Job job{place_of_(taken_++), picture.size, spare_.take()};
         const Rect all = all_of(picture.size);
         const Samples samples = samples_of(options_);
         convert(picture, all, samples, job.bytes.make_room(byte_count(samples, all)));
@@ -161,18 +160,17 @@ public:
 
 private:
     struct Job {
-        std::filesystem::path path;
+        FilePlace place;
         Size size;
         Buffer bytes;
     };
 
     void write(Job& job) {
-        write_samples(job.path, job.size, job.bytes.data(), options_, text_chunks_);
+        write_samples(job.place, job.size, job.bytes.data(), options_, text_chunks_);
         spare_.give_back(std::move(job.bytes));
     }
 
-    const std::filesystem::path folder_;
-    const std::function<std::string(long)> name_of_;
+    const std::function<FilePlace(long)> place_of_;
     const PngOptions options_;
     const std::string text_chunks_;
     long taken_ = 0;
@@ -182,16 +180,15 @@ private:
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, const Picture& picture, const PngOptions& options) {
+void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options) {
     const Rect all = all_of(picture.size);
     Buffer bytes;
     convert(picture, all, samples_of(options), bytes.make_room(byte_count(samples_of(options), all)));
-    write_samples(path, picture.size, bytes.data(), options, png_text_chunks(options.metadata));
+    write_samples(place, picture.size, bytes.data(), options, png_text_chunks(options.metadata));
 }
 
-std::unique_ptr<Sink> make_png_sink(const std::filesystem::path& folder, std::function<std::string(long)> name_of,
-                                    int jobs, PngOptions options) {
-    return std::make_unique<PngSink>(folder, std::move(name_of), jobs, std::move(options));
+std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int jobs, PngOptions options) {
+    return std::make_unique<PngSink>(std::move(place_of), jobs, std::move(options));
 }
 
 }  // namespace doppel

@@ -8,10 +8,8 @@ extern "C" {
 }
 
 #include <array>
-#include <cerrno>
 #include <cstdio>
 #include <memory>
-#include <system_error>
 
 namespace doppel {
 namespace {
@@ -43,19 +41,18 @@ private:
 
 }  // namespace
 
-std::string sha256_of_file(const std::filesystem::path& path) {
+std::string sha256_of_file(const FilePlace& place) {
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
-    const auto cannot_read = [&] {
-        return io_failed("{}: cannot be read: {}", path.string(), std::generic_category().message(errno));
-    };
-    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
-    if (!file) throw cannot_read();
+    Descriptor opened = open_file(place);
+    const std::unique_ptr<std::FILE, Close> file(fdopen(opened.number(), "rb"));
+    if (!file) throw cannot(place.path, "read");
+    opened.release();  // closed with the stream
     Hash hash;
     std::array<std::uint8_t, std::size_t{1} << 16> block;
     while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) hash.add(block.data(), n);
-    if (std::ferror(file.get())) throw cannot_read();
+    if (std::ferror(file.get())) throw cannot(place.path, "read");
     return hash.digits();
 }
 

@@ -26,20 +26,16 @@ void Spool::Free::operator()(libdeflate_decompressor* decompressor) const {
     libdeflate_free_decompressor(decompressor);
 }
 
-Spool::Spool(std::filesystem::path path, Samples samples)
-    : path_(std::move(path)),
+Spool::Spool(const FilePlace& film, Samples samples)
+    : path_(film.path),
       samples_(samples),
-      file_(std::fopen(path_.c_str(), "w+b")),
       compressor_(libdeflate_alloc_compressor(1)),
       decompressor_(libdeflate_alloc_decompressor()) {
     if (!compressor_ || !decompressor_) throw std::bad_alloc();
+    Descriptor file = create_unnamed_file(film);
+    file_.reset(fdopen(file.number(), "w+b"));
     if (!file_) fail("cannot be opened");
-}
-
-Spool::~Spool() {
-    if (!file_) return;
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
+    file.release();  // closed with the stream
 }
 
 void Spool::write(const SampledAreas& frame) {
@@ -84,7 +80,7 @@ std::size_t Spool::bytes_of(const SampledAreas& frame) const {
 }
 
 void Spool::fail(const char* what) const {
-    throw io_failed("{}: {}: {}", path_.string(), what, std::generic_category().message(errno));
+    throw io_failed("{}: its frames on the disk: {}: {}", path_.string(), what, std::generic_category().message(errno));
 }
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "output/folder.hpp"
 #include "output/samples.hpp"
 
 #include <cstdio>
@@ -11,14 +12,12 @@ struct libdeflate_decompressor;
 
 namespace doppel {
 
-/// A film's frames on the disk between two passes over them, as what changed in each, compressed. The file goes when
-/// the spool does. All throw Error (exit 4) with the path and the reason.
+/// A film's frames on the disk between two passes over them, as what changed in each, compressed. The file has no name
+/// and goes with the spool. All throw Error (exit 4) with the path and the reason.
 class Spool {
 public:
-    Spool(std::filesystem::path path, Samples samples);
-    ~Spool();
-    Spool(const Spool&) = delete;
-    Spool& operator=(const Spool&) = delete;
+    /// On the file system where the file `film` is.
+    Spool(const FilePlace& film, Samples samples);
 
     void write(const SampledAreas& frame);
     /// No write follows; the next read gives the first frame.

@@ -16,8 +16,8 @@ namespace {
 /// 1080p frame would add a copy of 0.2 ms: as much as it takes to convert a tenth of one.)
 class VideoSink final : public Sink {
 public:
-    VideoSink(const std::filesystem::path& path, const VideoOptions& options)
-        : samples_(samples_of(options)), encoder_(path, encoding_of(options)) {}
+    VideoSink(const FilePlace& place, const VideoOptions& options)
+        : samples_(samples_of(options)), encoder_(place, encoding_of(options)) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
         SampledAreas changes = spare_.take();
@@ -55,10 +55,10 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& path, const VideoOptions& options) {
+std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options) {
     check_options(options);
-    if (options.format == VideoFormat::gif) return make_gif_sink(path, options);
-    return std::make_unique<VideoSink>(path, options);
+    if (options.format == VideoFormat::gif) return make_gif_sink(place, options);
+    return std::make_unique<VideoSink>(place, options);
 }
 
 void check_video(const VideoOptions& options) {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "output/folder.hpp"
 #include "output/metadata.hpp"
 #include "output/sink.hpp"
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -33,13 +33,13 @@ struct VideoOptions {
 /// webm  VP9 or AV1. The container counts milliseconds: frames start within 0.5 ms of their time.
 /// gif   One palette of 255 colours for all frames, no dithering, so that what rests keeps still; plays for ever. Times
 ///       count 1/100 s: each frame starts within 0.005 s of its time, the whole lasts what it should. What was taken
-///       waits in PATH.spool until finish(), as the palette needs to know all of it.
+///       waits on the disk until finish(), as the palette needs to know all of it.
 /// apng  Every pixel and every time as given; plays for ever.
 /// mp4 and webm are BT.709 (limited range), converted and tagged, at a constant rate. Alpha is not premultiplied.
 /// take() converts what changed; a thread of the sink's encodes, fed through a queue of a few frames.
 /// Throws Error: exit 2 for what the format cannot have, exit 4 where libav has no encoder for it (those present are
 /// listed) or writing fails.
-std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& path, const VideoOptions& options);
+std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options);
 
 /// Throws what make_video_sink() would, but for the file.
 void check_video(const VideoOptions& options);

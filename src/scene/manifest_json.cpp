@@ -6,21 +6,13 @@
 
 #include <toml++/toml.h>
 
-#include <algorithm>
 #include <sstream>
 
 namespace doppel {
 namespace {
 
-/// A file of the run, or every file of a folder.
-void add_files(Json& files, const std::string& name, const std::filesystem::path& path) {
-    if (!std::filesystem::is_directory(path)) {
-        files[name] = {{"bytes", std::filesystem::file_size(path)}, {"sha256", sha256_of_file(path)}};
-        return;
-    }
-    std::vector<std::filesystem::path> entries(std::filesystem::directory_iterator{path}, {});
-    std::sort(entries.begin(), entries.end());
-    for (const auto& entry : entries) add_files(files, name + "/" + entry.filename().string(), entry);
+Json file_json(std::uintmax_t bytes, const std::string& sha256) {
+    return {{"bytes", bytes}, {"sha256", sha256}};
 }
 
 }  // namespace
@@ -35,16 +27,17 @@ Json program_json() {
     return {{"version", version()}, {"revision", revision()}};
 }
 
-Json files_json(const RunFiles& files) {
-    Json json = Json::object();
-    for (const auto& [name, where] : files) add_files(json, name, where);
-    return json;
-}
-
-void write_json(const std::filesystem::path& path, const Json& json) {
-    OutputFile file(path);
-    file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    file.close();
+void write_manifest(PartFiles& parts, const std::string& name, Json manifest) {
+    const auto place = parts.file(name);
+    auto& files = manifest["files"] = Json::object();
+    for (const auto& [file, where] : parts.finished_files())
+        files[file] = file_json(where.folder->entry(where.name).bytes, sha256_of_file(where));
+    for (const auto& [file, about] : parts.earlier_files())
+        if (file != name) manifest["earlier_files"][file] = file_json(about.bytes, about.sha256);
+    OutputFile output(place);
+    output.write(manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    output.close();
+    parts.finished(name);
 }
 
 }  // namespace doppel

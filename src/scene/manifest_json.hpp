@@ -1,11 +1,10 @@
 #pragma once
 
+#include "output/part_files.hpp"
+
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace doppel {
 
@@ -13,18 +12,13 @@ namespace doppel {
 
 using Json = nlohmann::ordered_json;
 
-/// Files of a run: name, and where its bytes are now; a folder stands for all in it.
-using RunFiles = std::vector<std::pair<std::string, std::filesystem::path>>;
-
 Json json_of_toml(const std::string& toml);
 
 /// Version and revision.
 Json program_json();
 
-/// Size and SHA-256 of each file. Throws Error (exit 4).
-Json files_json(const RunFiles& files);
-
-/// Throws Error (exit 4).
-void write_json(const std::filesystem::path& path, const Json& json);
+/// Adds the files of the run, those that are finished, and those of earlier runs that stay, with size and SHA-256; then
+/// writes the manifest as the last of them, "NAME.json". Throws Error (exit 4).
+void write_manifest(PartFiles& parts, const std::string& name, Json manifest);
 
 }  // namespace doppel

@@ -55,7 +55,7 @@ pid_t start_endless(const fs::path& folder, const std::string& format) {
     return child;
 }
 
-TEST(Faults, AFullDiskIsToldAndLeavesNothing) {
+TEST(Faults, AFullDiskIsToldAndLeavesNothingButFinishedPartsItNames) {
     const auto folder = fresh_folder();
     if (!can_mount(folder))
         GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4OnAFullDiskAndLeavesNothing stands in";
@@ -64,7 +64,12 @@ TEST(Faults, AFullDiskIsToldAndLeavesNothing) {
         for room in size=4k size=12k size=32k nr_inodes=2 nr_inodes=4 nr_inodes=5 size=16m; do
             mount -t tmpfs -o $room none out || exit 77
             "$DOPPEL" $COMMAND 2>message >/dev/null; code=$?
-            echo "$room $code $(find out -mindepth 1 | wc -l) $(wc -l <message) $(cut -c1-16 message)"
+            for file in $(find out -type f ! -name .run.lock); do
+                case $file in *.part) grep -qF "$file" message || echo "$file";; *) echo "$file";; esac
+            done >unnamed
+            kept=$(grep -c "what is finished stays until the next run: out/" message)
+            [ "$kept" = 0 ] && find out -mindepth 1 >>unnamed
+            echo "$room $code $kept $(wc -l <unnamed) $(wc -l <message) $(cut -c1-16 message)"
             umount out
         done)sh";
     for (const std::string command :
@@ -79,16 +84,17 @@ TEST(Faults, AFullDiskIsToldAndLeavesNothing) {
         ASSERT_EQ(result.code, 0) << result.err << result.out;
         std::istringstream lines(result.out);
         int refused = 0;
-        std::string room, code, files, messages, message;
-        while (lines >> room >> code >> files >> messages && std::getline(lines, message)) {
+        std::string room, code, kept, unnamed, messages, message;
+        while (lines >> room >> code >> kept >> unnamed >> messages && std::getline(lines, message)) {
             if (code == "0") continue;
             ++refused;
             EXPECT_EQ(code, "4") << command << ", " << room;
-            EXPECT_EQ(files, "0") << command << ", " << room;
+            EXPECT_EQ(unnamed, "0") << command << ", " << room;
             EXPECT_EQ(messages, "1") << command << ", " << room;
             EXPECT_EQ(message.rfind(" doppel: out/", 0), 0u) << command << ", " << room << ": " << message;
         }
         EXPECT_EQ(room + code, "size=16m0") << command;
+        EXPECT_EQ(kept, "0") << command;
         EXPECT_GE(refused, 3) << command;
     }
 }
@@ -177,6 +183,48 @@ TEST(Faults, OldFramesStayWhereTheNewRunFails) {
     EXPECT_EQ(full.code, 4) << full.err;
     EXPECT_EQ(contents(), before);
     expect_whole(folder / "out", "png");
+}
+
+TEST(Faults, WhatIsNotDoppelsIsLeftAloneBeforeWorkStarts) {
+    struct Case {
+        std::string made, named, format;
+    };
+    const std::vector<Case> cases{
+        {"ln -s ../../thesis out/butterfly/.run.lock", "out/butterfly/.run.lock is a symbolic link", "mp4"},
+        {"ln -s ../../thesis out/butterfly/butterfly.mp4", "out/butterfly/butterfly.mp4 is a symbolic link", "mp4"},
+        {"ln -s ../../thesis out/butterfly/butterfly.gif.part", "out/butterfly/butterfly.gif.part", "gif"},
+        {"ln -s ../elsewhere out/butterfly/frames", "out/butterfly/frames is a symbolic link", "png"},
+        {"mkdir out/butterfly/frames; cp thesis out/butterfly/frames/notes.txt", "out/butterfly/frames/notes.txt",
+         "png"},
+        {"cp thesis out/butterfly/butterfly.csv", "out/butterfly/butterfly.csv was not written by Doppel", "mp4"},
+        {"rmdir out/butterfly; ln -s ../elsewhere out/butterfly", "out/butterfly is a symbolic link", "mp4"},
+    };
+    for (const auto& [made, named, format] : cases) {
+        const auto folder = fresh_folder();
+        shell(folder, "echo years of work >thesis; mkdir -p out/butterfly elsewhere; " + made);
+        const auto before = listing(folder);
+        const auto result = doppel(folder, film(format, endless));
+        EXPECT_EQ(result.code, 4) << made;
+        EXPECT_TRUE(one_line(result.err) && result.err.find(named) != std::string::npos) << result.err;
+        EXPECT_EQ(listing(folder), before) << made;
+        EXPECT_EQ(bytes_of(folder / "thesis"), "years of work\n") << made;
+    }
+}
+
+TEST(Faults, FilesOfAnotherFormatStayDoppelsOwn) {
+    const auto folder = fresh_folder();
+    for (const std::string format : {"png", "mp4", "png"}) {
+        const auto result = doppel(folder, film(format, quick));
+        EXPECT_EQ(result.code, 0) << result.err;
+    }
+    EXPECT_EQ(doppel(folder, with({"simulate", "butterfly", "--progress", "none"}, quick)).code, 0);
+    const auto manifest = nlohmann::json::parse(bytes_of(folder / "out/butterfly/butterfly.json"));
+    EXPECT_EQ(manifest["files"].size(), 1u);
+    EXPECT_EQ(manifest["earlier_files"].size(), 14u);  // the film and 13 pictures
+    EXPECT_EQ(doppel(folder, film("mp4", quick)).code, 0);
+    auto expected = whole_run("png");
+    expected.merge(whole_run("mp4"));
+    EXPECT_EQ(listing(folder / "out"), expected);
 }
 
 TEST(Faults, ASecondRunIsRefusedWhileTheFirstIsWriting) {

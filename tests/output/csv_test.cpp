@@ -79,11 +79,11 @@ TEST(Csv, RowsHaveTheCellsOfTheHeader) {
 }
 
 TEST(Csv, AFullDiskIsAnErrorWithItsReason) {
-    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"},
-                 [] { Csv("/dev/full", {"x"}).finish(); });
-    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [] {
-        Csv csv("/dev/full", {"x"});
+    const std::filesystem::path full = "/dev/full", none = "/none/x.csv";
+    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [&] { Csv(full, {"x"}).finish(); });
+    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [&] {
+        Csv csv(full, {"x"});
         for (long k = 0; k < 100'000; ++k) csv.add(k), csv.end_row();
     });
-    expect_error(ExitCode::io_failed, {"none/x.csv", "No such file"}, [] { Csv("/none/x.csv", {"x"}); });
+    expect_error(ExitCode::io_failed, {"none/x.csv", "No such file"}, [&] { Csv(none, {"x"}); });
 }

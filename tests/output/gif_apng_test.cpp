@@ -170,10 +170,11 @@ TEST(Apng, FramesTimesAndWordsAreExact) {
     EXPECT_EQ(video.metadata.at("software"), "doppel 1");
 }
 
-TEST(Spool, GivesBackWhatWasWrittenAndGoes) {
-    const auto path = fresh_folder() / "x.spool";
+TEST(Spool, GivesBackWhatWasWrittenAndHasNoName) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "x.gif.spool", "somebody's");
     {
-        Spool spool(path, Samples::rgba);
+        Spool spool(folder / "x.gif", Samples::rgba);
         SampledAreas frame;
         for (unsigned k = 0; k < 6; ++k) {
             convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, Samples::rgba, frame);
@@ -190,8 +191,10 @@ TEST(Spool, GivesBackWhatWasWrittenAndGoes) {
             for (const Rect& area : frame.areas) bytes += byte_count(Samples::rgba, area);
             EXPECT_TRUE(std::equal(frame.bytes.data(), frame.bytes.data() + bytes, expected.bytes.data()));
         }
-        expect_error(ExitCode::io_failed, {"x.spool", "cannot be read"}, [&] { spool.read(frame); });
+        expect_error(ExitCode::io_failed, {"x.gif", "cannot be read"}, [&] { spool.read(frame); });
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
     }
-    EXPECT_FALSE(fs::exists(path));
-    expect_error(ExitCode::io_failed, {"/none/x.spool", "No such file"}, [] { Spool("/none/x.spool", Samples::rgb); });
+    EXPECT_EQ(bytes_of(folder / "x.gif.spool"), "somebody's");
+    const fs::path none = "/none/x.gif";
+    expect_error(ExitCode::io_failed, {"/none/x.gif", "No such file"}, [&] { Spool(none, Samples::rgb); });
 }

@@ -1,7 +1,9 @@
 #include "output/part_files.hpp"
 
 #include "output/fixtures.hpp"
+#include "output/png.hpp"
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,6 +31,21 @@ using Names = std::set<std::string>;
 
 const std::string lock = ".run.lock";
 
+void write_part(PartFiles& files, const std::string& name, const std::string& bytes) {
+    write_bytes(files.file(name).path, bytes);
+}
+
+void write_picture(PartFiles& files, const std::string& name) {
+    write_bytes(files.directory("frames").path() / name, "picture");
+}
+
+/// A manifest that names the files; `folder` holds something of each name.
+void write_record(const fs::path& folder, const std::vector<std::string>& names) {
+    std::string files;
+    for (const auto& name : names) files += fmt::format(R"({}"{}": {{}})", files.empty() ? "" : ", ", name);
+    write_bytes(folder / "record.json", R"({"doppel": {}, "files": {)" + files + "}}");
+}
+
 /// Runs `action` in a process of its own, until it raises SIGKILL.
 void killed(const std::function<void()>& action) {
     const pid_t child = fork();
@@ -46,11 +63,12 @@ void killed(const std::function<void()>& action) {
 TEST(PartFiles, AppearTogetherWhenPublished) {
     const auto out = fresh_folder();
     PartFiles files(out / "a/b");
-    write_bytes(files.file("x.csv"), "table");
-    write_bytes(files.file("x.mp4"), "video");
-    write_bytes(files.directory("frames") / "0.png", "picture");
+    write_part(files, "x.csv", "table");
+    write_part(files, "x.mp4", "video");
+    write_picture(files, "0.png");
     EXPECT_EQ(listing(out / "a/b"), (Names{lock, "x.csv.part", "x.mp4.part", "frames.part", "frames.part/0.png"}));
-    files.publish();
+    const auto folder = out / "a/b";
+    EXPECT_EQ(files.publish(), (std::vector<fs::path>{folder / "x.csv", folder / "x.mp4", folder / "frames"}));
     EXPECT_EQ(listing(out / "a/b"), (Names{lock, "x.csv", "x.mp4", "frames", "frames/0.png"}));
     EXPECT_EQ(bytes_of(out / "a/b/x.csv"), "table");
 }
@@ -60,8 +78,8 @@ TEST(PartFiles, DestroyedUnpublishedLeaveNothing) {
     fs::create_directory(out / "a");
     {
         PartFiles files(out / "a/b/c");
-        write_bytes(files.file("x.csv"), "table");
-        write_bytes(files.directory("frames") / "0.png", "picture");
+        write_part(files, "x.csv", "table");
+        write_picture(files, "0.png");
         files.file("never written");
     }
     EXPECT_EQ(listing(out), Names{"a"});  // which was there before
@@ -101,39 +119,40 @@ TEST(PartFiles, RunsThatStartTogetherShareTheFoldersTheyMake) {
     }
 }
 
-TEST(PartFiles, OlderFilesStayUntilPublishedAndStalePartsGo) {
+TEST(PartFiles, OlderFilesStayUntilPublished) {
     const auto out = fresh_folder();
     write_bytes(out / "x.csv", "old");
-    write_bytes(out / "x.csv.part", "stale");
+    write_record(out, {"x.csv"});
     {
         PartFiles files(out);
-        EXPECT_FALSE(fs::exists(files.file("x.csv")));
+        EXPECT_FALSE(fs::exists(files.file("x.csv").path));
     }
     EXPECT_EQ(bytes_of(out / "x.csv"), "old");
     PartFiles files(out);
-    write_bytes(files.file("x.csv"), "new");
+    write_part(files, "x.csv", "new");
     files.publish();
     EXPECT_EQ(bytes_of(out / "x.csv"), "new");
-    EXPECT_EQ(listing(out), (Names{lock, "x.csv"}));
+    EXPECT_EQ(listing(out), (Names{lock, "x.csv", "record.json"}));
 }
 
 TEST(PartFiles, AFolderIsReplacedAsAWhole) {
     const auto out = fresh_folder();
     fs::create_directories(out / "frames");
-    fs::create_directories(out / "frames.part");
-    write_bytes(out / "frames/old.png", "old");
-    write_bytes(out / "frames.part/stale.png", "stale");
+    write_bytes(out / "frames/000000.png", "old");
+    write_bytes(out / "frames/000001.png", "old");
+    write_record(out, {"frames/000000.png", "frames/000001.png"});
     PartFiles files(out);
-    write_bytes(files.directory("frames") / "new.png", "new");
+    write_picture(files, "000000.png");
     files.publish();
-    EXPECT_EQ(listing(out), (Names{lock, "frames", "frames/new.png"}));
+    EXPECT_EQ(listing(out), (Names{lock, "frames", "frames/000000.png", "record.json"}));
+    EXPECT_EQ(bytes_of(out / "frames/000000.png"), "picture");
 }
 
 TEST(PartFiles, OneThatCannotBePublishedTakesTheOthersWithIt) {
     const auto out = fresh_folder();
     {
         PartFiles files(out / "a");
-        write_bytes(files.file("x.csv"), "table");
+        write_part(files, "x.csv", "table");
         files.file("x.mp4");  // asked for, never written
         expect_error(ExitCode::io_failed, {"x.mp4.part", "No such file"}, [&] { files.publish(); });
     }
@@ -153,6 +172,111 @@ TEST(PartFiles, WhatIsInTheWayIsNamed) {
     EXPECT_EQ(listing(out), (Names{"x", "x/x.csv", "file"}));
 }
 
+TEST(PartFiles, LinksAndPipesBelowTheFolderAreNeverFollowed) {
+    const auto out = fresh_folder();
+    write_bytes(out / "thesis", "years of work");
+    for (const std::string name : {".run.lock", "x.csv", "x.csv.part", "frames", "frames.part"})
+        for (const std::string kind : {"symbolic link", "hard link", "pipe"}) {
+            const auto folder = out / "x";
+            fs::remove_all(folder);
+            fs::create_directory(folder);
+            if (kind == "symbolic link") fs::create_symlink("../thesis", folder / name);
+            if (kind == "hard link") fs::create_hard_link(out / "thesis", folder / name);
+            if (kind == "pipe") mkfifo((folder / name).c_str(), 0600);
+            expect_error(ExitCode::io_failed, {(folder / name).string()}, [&] {
+                PartFiles files(folder);
+                files.file("x.csv");
+                files.directory("frames");
+            });
+            EXPECT_EQ(listing(folder), Names{name}) << kind;
+            EXPECT_EQ(bytes_of(out / "thesis"), "years of work") << name << ", " << kind;
+        }
+    fs::create_directory(out / "elsewhere");
+    fs::create_directory_symlink("elsewhere", out / "link");
+    expect_error(ExitCode::io_failed, {"link is a symbolic link"}, [&] { PartFiles(out / "link"); });
+    PartFiles(out / "link/x").file("x.csv");  // the way there is the person's
+    EXPECT_EQ(listing(out / "elsewhere"), Names{});
+}
+
+TEST(PartFiles, WhatIsNotDoppelsIsNeverReplaced) {
+    const auto out = fresh_folder();
+    fs::create_directory(out / "frames");
+    write_bytes(out / "x.csv", "my table");
+    write_bytes(out / "frames/000000.png", "ours");
+    write_bytes(out / "frames/notes.txt", "mine");
+    write_record(out, {"frames/000000.png"});
+    PartFiles files(out);
+    expect_error(ExitCode::io_failed, {(out / "x.csv").string(), "not written by Doppel"},
+                 [&] { files.file("x.csv"); });
+    expect_error(ExitCode::io_failed, {(out / "frames/notes.txt").string(), "not written by Doppel"},
+                 [&] { files.directory("frames"); });
+    fs::remove(out / "frames/notes.txt");
+    fs::create_directory(out / "frames/000001.png");
+    expect_error(ExitCode::io_failed, {(out / "frames/000001.png").string()}, [&] { files.directory("frames"); });
+    fs::remove(out / "frames/000001.png");
+    // that comes while the run is on
+    write_picture(files, "000000.png");
+    write_part(files, "x.mp4", "video");
+    write_bytes(out / "x.mp4", "my video");
+    expect_error(ExitCode::io_failed, {(out / "x.mp4").string()}, [&] { files.publish(); });
+    EXPECT_EQ(bytes_of(out / "x.mp4"), "my video");
+    EXPECT_EQ(bytes_of(out / "frames/000000.png"), "ours");
+}
+
+TEST(PartFiles, KnowsWhatDoppelMadeByItsContentToo) {
+    const auto out = fresh_folder();
+    fs::create_directory(out / "frames");
+    write_png(out / "frames/000000.png", noise({4, 4}, 1));
+    write_png(out / "x.png", noise({4, 4}, 1));
+    write_bytes(out / "x.csv", "sample,time_s,a_theta1_rad\r\n");
+    PartFiles files(out);
+    files.file("x.png");
+    files.file("x.csv");
+    files.directory("frames");
+    write_bytes(out / "y.png", bytes_of(out / "x.png").substr(0, 33));  // without the words
+    expect_error(ExitCode::io_failed, {"y.png"}, [&] { files.file("y.png"); });
+}
+
+TEST(PartFiles, FilesOfEarlierRunsStayKnown) {
+    const auto out = fresh_folder();
+    fs::create_directory(out / "frames");
+    write_bytes(out / "frames/000000.png", "picture");
+    write_bytes(out / "x.mp4", "video");
+    write_bytes(out / "x.csv", "table");
+    write_record(out, {"frames/000000.png", "x.mp4", "x.csv", "gone.png", "frames/000001.png"});
+    PartFiles files(out);
+    files.file("x.csv");
+    std::set<std::string> earlier;
+    for (const auto& [name, about] : files.earlier_files()) earlier.insert(name);
+    EXPECT_EQ(earlier, (Names{"frames/000000.png", "x.mp4"}));
+}
+
+TEST(PartFiles, WhatIsFinishedStaysWhereALaterStepFails) {
+    const auto out = fresh_folder();
+    {
+        PartFiles files(out);
+        write_part(files, "x.mp4", "video");
+        files.finished("x.mp4");
+        write_part(files, "x.csv", "half a tab");
+        expect_error(ExitCode::io_failed, {"no more room; what is finished stays", (out / "x.mp4.part").string()}, [&] {
+            files.keeping_finished([]() -> std::vector<fs::path> { throw std::runtime_error("no more room"); });
+        });
+    }
+    EXPECT_EQ(listing(out), (Names{lock, "x.mp4.part"}));
+    fs::copy_file(out / "x.mp4.part", out / "rescued.mp4");
+    { PartFiles files(out); }
+    EXPECT_EQ(listing(out), Names{"rescued.mp4"});
+    {
+        PartFiles files(out);
+        write_part(files, "x.mp4", "video");
+        files.finished("x.mp4");
+        expect_error(ExitCode::interrupted, {"stop"}, [&] {
+            files.keeping_finished([]() -> std::vector<fs::path> { throw Error(ExitCode::interrupted, "stop"); });
+        });
+    }
+    EXPECT_EQ(listing(out), Names{"rescued.mp4"});
+}
+
 TEST(PartFiles, HoldTheFolderForOneRunAtATime) {
     const auto out = fresh_folder();
     const auto pid = std::to_string(getpid());
@@ -162,7 +286,7 @@ TEST(PartFiles, HoldTheFolderForOneRunAtATime) {
                      [&] { PartFiles(out / "a"); });
         PartFiles shard(out / "a", "shard-1-of-2");  // of another name
         EXPECT_EQ(listing(out / "a"), (Names{lock, ".shard-1-of-2.lock"}));
-        write_bytes(files.file("x.csv"), "table");
+        write_part(files, "x.csv", "sample,time_s,");
         files.publish();
     }
     EXPECT_EQ(listing(out), (Names{"a", "a/x.csv"}));
@@ -174,8 +298,8 @@ TEST(PartFiles, WhatAKilledRunLeftGoesWithTheNext) {
     write_bytes(out / "notes.part", "somebody's");
     killed([&] {
         PartFiles files(out);
-        write_bytes(files.file("x.mp4"), "video");
-        write_bytes(files.directory("frames") / "0.png", "picture");
+        write_part(files, "x.mp4", "video");
+        write_picture(files, "0.png");
         fs::create_directory(out / "frames.old.part");  // as where it is killed while publishing
         raise(SIGKILL);
     });
@@ -195,7 +319,27 @@ TEST(PartFiles, AStaleListRemovesNothingButParts) {
     fs::create_directory(out / "a");
     write_bytes(out / "x.part", "");
     write_bytes(out / "a/x.csv", "");
-    write_bytes(out / "a" / lock, "1\n../x.part\nx.csv\n.\n..\n\n.part\n/\n" + (out / "x.part").string() + "\n");
-    { PartFiles files(out / "a"); }
-    EXPECT_EQ(listing(out), (Names{"a", "a/x.csv", "x.part"}));
+    std::string notes = "doppel run, process 1 on nowhere\n";
+    for (const auto& name :
+         {std::string("../x"), std::string("."), std::string(".."), std::string(), (out / "x").string()})
+        notes += "part " + name + "\nremove " + name + "\nplace 7 " + name + "\n";
+    for (const auto& [lines, publishes] :
+         {std::pair(notes + "part x.csv\n", "publish\n"), {notes, "withdraw\n"}, {notes, ""}}) {
+        write_bytes(out / "a" / lock, lines + publishes);
+        { PartFiles files(out / "a"); }
+        EXPECT_EQ(listing(out), (Names{"a", "a/x.csv", "x.part"}));
+    }
+}
+
+TEST(PartFiles, ALockFileOfSomebodyElseStays) {
+    const auto out = fresh_folder();
+    for (const std::string text : {"1234\nx.csv.part\n", "my own lock", "doppel ran here"}) {
+        write_bytes(out / lock, text);
+        expect_error(ExitCode::io_failed, {(out / lock).string(), "no lock file of Doppel's"},
+                     [&] { PartFiles files(out); });
+        EXPECT_EQ(bytes_of(out / lock), text);
+    }
+    write_bytes(out / lock, "doppel ru");  // killed while it wrote its first line
+    { PartFiles files(out); }
+    EXPECT_EQ(listing(out), Names{});
 }

@@ -11,6 +11,17 @@
 using namespace doppel;
 using namespace doppel::test;
 
+namespace {
+
+const std::filesystem::path full_disk = "/dev/full";
+
+/// "0.png", "1.png", … in the folder.
+std::function<FilePlace(long)> numbered_in(const std::filesystem::path& folder) {
+    return [folder](long k) { return folder / fmt::format("{}.png", k); };
+}
+
+}  // namespace
+
 TEST(Png, RoundTripIsBitExact) {
     const auto folder = fresh_folder();
     for (const Size size : {Size{1, 1}, Size{3, 5}, Size{322, 178}, Size{1280, 720}}) {
@@ -36,7 +47,7 @@ TEST(Png, KeepsAlphaWhereAskedTo) {
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = static_cast<std::uint8_t>(3 * i);
     write_png(folder / "x.png", picture, {.with_alpha = true});
     EXPECT_EQ(read_png(folder / "x.png").rgba, picture.rgba);
-    const auto sink = make_png_sink(folder, [](long k) { return fmt::format("{}.png", k); }, 2, {.with_alpha = true});
+    const auto sink = make_png_sink(numbered_in(folder), 2, {.with_alpha = true});
     sink->take(picture, whole(picture.size));
     sink->finish();
     EXPECT_EQ(read_png(folder / "0.png").rgba, picture.rgba);
@@ -56,7 +67,7 @@ TEST(Png, WordsCanBeReadBack) {
     };
     write_png(folder / "x.png", picture, {.metadata = words});
     check_words(folder / "x.png");
-    const auto sink = make_png_sink(folder, [](long k) { return fmt::format("{}.png", k); }, 2, {.metadata = words});
+    const auto sink = make_png_sink(numbered_in(folder), 2, {.metadata = words});
     for (int k = 0; k < 3; ++k) sink->take(picture, whole(picture.size));
     sink->finish();
     check_words(folder / "2.png");
@@ -69,7 +80,7 @@ TEST(Png, SizesMayChangeFromPictureToPicture) {
         const Picture picture = noise(size, 5);
         write_png(folder / "x.png", picture);
         ASSERT_EQ(read_png(folder / "x.png").rgba, picture.rgba) << size.width;
-        expect_error(ExitCode::io_failed, {"/dev/full"}, [&] { write_png("/dev/full", picture); });
+        expect_error(ExitCode::io_failed, {"/dev/full"}, [&] { write_png(full_disk, picture); });
     }
 }
 
@@ -94,7 +105,7 @@ TEST(Png, ErrorsNameThePathAndTheReason) {
     expect_error(ExitCode::io_failed, {"half.png"}, [&] { read_png(folder / "half.png"); });
 
     const Picture picture = noise({64, 64}, 6);
-    expect_error(ExitCode::io_failed, {"/dev/full", "No space left"}, [&] { write_png("/dev/full", picture); });
+    expect_error(ExitCode::io_failed, {"/dev/full", "No space left"}, [&] { write_png(full_disk, picture); });
     expect_error(ExitCode::io_failed, {"none/x.png", "No such file"},
                  [&] { write_png(folder / "none/x.png", picture); });
 }
@@ -102,8 +113,7 @@ TEST(Png, ErrorsNameThePathAndTheReason) {
 TEST(PngSink, WritesEveryPictureUnderItsName) {
     const auto folder = fresh_folder();
     const Size size{64, 36};
-    const auto sink = make_png_sink(
-        folder, [](long k) { return fmt::format("{:06}.png", k + 7); }, 3);
+    const auto sink = make_png_sink([&](long k) { return folder / fmt::format("{:06}.png", k + 7); }, 3);
     for (unsigned k = 0; k < 40; ++k) sink->take(noise(size, k), whole(size));
     sink->finish();
     for (unsigned k = 0; k < 40; ++k)
@@ -113,14 +123,13 @@ TEST(PngSink, WritesEveryPictureUnderItsName) {
 
 TEST(PngSink, ThrowsTheFirstErrorFromTakeAndFromFinish) {
     const Size size{64, 36};
-    const auto name_of = [](long k) { return fmt::format("{}.png", k); };
-    const auto sink = make_png_sink(fresh_folder() / "none", name_of, 2);
+    const auto sink = make_png_sink(numbered_in(fresh_folder() / "none"), 2);
     expect_error(ExitCode::io_failed, {".png", "No such file"}, [&] {
         for (unsigned k = 0; k < 1000; ++k) sink->take(noise(size, k), whole(size));
     });
     expect_error(ExitCode::io_failed, {".png", "No such file"}, [&] { sink->finish(); });
 
-    const auto late = make_png_sink(fresh_folder() / "none", name_of, 2);
+    const auto late = make_png_sink(numbered_in(fresh_folder() / "none"), 2);
     late->take(noise(size, 0), whole(size));
     expect_error(ExitCode::io_failed, {"0.png"}, [&] { late->finish(); });
 }
@@ -128,8 +137,7 @@ TEST(PngSink, ThrowsTheFirstErrorFromTakeAndFromFinish) {
 TEST(PngSink, DestroyedUnfinishedStopsAtOnce) {
     const Size size{1920, 1080};
     const Picture picture = noise(size, 8);
-    auto sink = make_png_sink(
-        fresh_folder(), [](long k) { return fmt::format("{}.png", k); }, 2);
+    auto sink = make_png_sink(numbered_in(fresh_folder()), 2);
     for (int k = 0; k < 5; ++k) sink->take(picture, whole(size));
     const auto start = std::chrono::steady_clock::now();
     sink.reset();

@@ -1,0 +1,171 @@
+#include "output/folder.hpp"
+
+#include "numeric/error.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int as_folder = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
+
+Entry entry_of(const struct stat& status) {
+    using Kind = Entry::Kind;
+    const auto kind = S_ISREG(status.st_mode)   ? Kind::file
+                      : S_ISDIR(status.st_mode) ? Kind::folder
+                      : S_ISLNK(status.st_mode) ? Kind::link
+                                                : Kind::other;
+    return {kind, status.st_ino, status.st_nlink, static_cast<std::uintmax_t>(status.st_size)};
+}
+
+}  // namespace
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+    if (this != &other) {
+        if (number_ >= 0) close(number_);
+        number_ = other.release();
+    }
+    return *this;
+}
+
+Descriptor::~Descriptor() {
+    if (number_ >= 0) close(number_);
+}
+
+int Descriptor::release() {
+    return std::exchange(number_, -1);
+}
+
+Folder::Folder(fs::path path, Descriptor descriptor) : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
+
+Folder Folder::at(const fs::path& path) {
+    Descriptor opened(open(path.c_str(), as_folder));
+    if (!opened) throw cannot(path, "opened");
+    return {path, std::move(opened)};
+}
+
+Folder Folder::folder(const std::string& name, const fs::path& shown) const {
+    const auto path = shown.empty() ? path_ / name : shown;
+    Descriptor opened(openat(descriptor(), name.c_str(), as_folder | O_NOFOLLOW));
+    if (!opened) throw cannot(path, "opened");
+    return {path, std::move(opened)};
+}
+
+Entry Folder::entry(const std::string& name) const {
+    struct stat status {};
+    if (fstatat(descriptor(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return {};
+    return entry_of(status);
+}
+
+std::vector<std::string> Folder::names() const {
+    struct Close {
+        void operator()(DIR* stream) const { closedir(stream); }
+    };
+    Descriptor again(openat(descriptor(), ".", as_folder));
+    const std::unique_ptr<DIR, Close> stream(again ? fdopendir(again.number()) : nullptr);
+    if (!stream) throw cannot(path_, "read");
+    again.release();  // the stream's now
+    std::vector<std::string> names;
+    while (const dirent* entry = readdir(stream.get()))
+        if (const std::string_view name = entry->d_name; name != "." && name != "..") names.emplace_back(name);
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+void Folder::make_folder(const std::string& name) const {
+    if (mkdirat(descriptor(), name.c_str(), 0777) != 0) throw cannot(path_ / name, "made");
+}
+
+void Folder::rename(const std::string& from, const std::string& to) const {
+    rename_file({*this, from}, {*this, to});
+}
+
+bool Folder::exchange(const std::string& one, const std::string& other) const {
+    if (renameat2(descriptor(), one.c_str(), descriptor(), other.c_str(), RENAME_EXCHANGE) == 0) return true;
+    if (errno == EINVAL || errno == ENOSYS || errno == EOPNOTSUPP) return false;
+    throw cannot(path_ / one, "renamed to " + other);
+}
+
+void Folder::remove_file(const std::string& name) const {
+    if (unlinkat(descriptor(), name.c_str(), 0) != 0 && errno != ENOENT) throw cannot(path_ / name, "removed");
+}
+
+void Folder::remove_folder(const std::string& name) const {
+    const Folder inside = folder(name);
+    for (const auto& file : inside.names())
+        if (inside.entry(file).kind == Entry::Kind::file) inside.remove_file(file);
+    if (unlinkat(descriptor(), name.c_str(), AT_REMOVEDIR) != 0) throw cannot(path_ / name, "removed");
+}
+
+void Folder::sync(bool contents) const {
+    // some file systems have nothing to sync, and say so
+    const auto failed = [](int result) { return result != 0 && errno != EINVAL && errno != ENOSYS && errno != EROFS; };
+    if ((contents && failed(syncfs(descriptor()))) || failed(fsync(descriptor()))) throw cannot(path_, "written");
+}
+
+void rename_file(const FilePlace& from, const FilePlace& to) {
+    const auto folder = [](const FilePlace& place) { return place.folder ? place.folder->descriptor() : AT_FDCWD; };
+    const auto name = [](const FilePlace& place) { return place.folder ? place.name : place.path.string(); };
+    if (renameat(folder(from), name(from).c_str(), folder(to), name(to).c_str()) != 0)
+        throw cannot(from.path, "renamed to " + to.path.filename().string());
+}
+
+FilePlace part_of(const FilePlace& place) {
+    return place.folder ? FilePlace(*place.folder, place.name + ".part") : FilePlace(place.path.string() + ".part");
+}
+
+Descriptor create_file(const FilePlace& place) {
+    Descriptor file(place.folder ? openat(place.folder->descriptor(), place.name.c_str(),
+                                          O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)
+                                 : open(place.path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    if (!file) throw cannot(place.path, "written");
+    return file;
+}
+
+Descriptor create_unnamed_file(const FilePlace& place) {
+    constexpr int unnamed = O_RDWR | O_TMPFILE | O_CLOEXEC;
+    const auto parent = place.path.has_parent_path() ? place.path.parent_path() : fs::path(".");
+    Descriptor file(place.folder ? openat(place.folder->descriptor(), ".", unnamed, 0600)
+                                 : open(parent.c_str(), unnamed, 0600));
+    if (file) return file;
+    if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) throw cannot(place.path, "written");
+    // a file system that knows none: it has a name for a moment
+    const auto name = place.path.filename().string() + ".spool";
+    const Folder folder = place.folder ? place.folder->folder(".") : Folder::at(parent);
+    file = create_file({folder, name});
+    folder.remove_file(name);
+    return file;
+}
+
+Descriptor open_file(const FilePlace& place) {
+    // a pipe that nobody writes to would let the opening wait
+    Descriptor file(place.folder ? openat(place.folder->descriptor(), place.name.c_str(),
+                                          O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)
+                                 : open(place.path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file) throw cannot(place.path, "read");
+    struct stat status {};
+    if (fstat(file.number(), &status) != 0) throw cannot(place.path, "read");
+    if (place.folder && !S_ISREG(status.st_mode)) throw io_failed("{} is not a regular file", place.path.string());
+    return file;
+}
+
+Error cannot(const fs::path& path, std::string_view what) {
+    return cannot(path, what, errno);
+}
+
+Error cannot(const fs::path& path, std::string_view what, int reason) {
+    return io_failed("{}: cannot be {}: {}", path.string(), what, std::generic_category().message(reason));
+}
+
+}  // namespace doppel

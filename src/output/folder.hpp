@@ -1,0 +1,102 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace doppel {
+
+class Error;
+
+/// An open file or folder of the system's, closed with its owner.
+class Descriptor {
+public:
+    explicit Descriptor(int number = -1) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
+    Descriptor& operator=(Descriptor&& other) noexcept;
+    ~Descriptor();
+
+    int number() const { return number_; }
+    explicit operator bool() const { return number_ >= 0; }
+    /// The caller closes it from now on.
+    int release();
+
+private:
+    int number_;
+};
+
+/// What has a name in a folder.
+struct Entry {
+    enum class Kind { none, file, folder, link, other } kind = Kind::none;  // other: a pipe, socket or device
+    ino_t inode = 0;
+    nlink_t names = 0;  // hard links to it
+    std::uintmax_t bytes = 0;
+};
+
+/// A folder, opened once: what is done in it stays in it, whatever takes its path meanwhile, and no symbolic link in it
+/// is followed. All but the queries throw Error (exit 4) with the path and the system's reason.
+class Folder {
+public:
+    /// `path` as the person gave it: links on the way are followed.
+    static Folder at(const std::filesystem::path& path);
+    /// The folder `name` in this one, which is no link; messages have it as `shown`, where that is given.
+    Folder folder(const std::string& name, const std::filesystem::path& shown = {}) const;
+
+    const std::filesystem::path& path() const { return path_; }  // for messages
+    int descriptor() const { return descriptor_.number(); }
+
+    Entry entry(const std::string& name) const;
+    /// All names but "." and "..", sorted.
+    std::vector<std::string> names() const;
+
+    void make_folder(const std::string& name) const;
+    /// As rename(2) has it: an older file `to` is replaced.
+    void rename(const std::string& from, const std::string& to) const;
+    /// Both stand, each in the place of the other. False where the file system knows no such thing.
+    bool exchange(const std::string& one, const std::string& other) const;
+    /// Nothing where it is not there.
+    void remove_file(const std::string& name) const;
+    /// The folder `name` and the files in it; folders in it are not touched, and then it stays and this throws.
+    void remove_folder(const std::string& name) const;
+    /// Which names there are has reached the disk; so has all in files in this file system where `contents`.
+    void sync(bool contents = false) const;
+
+private:
+    Folder(std::filesystem::path path, Descriptor descriptor);
+
+    std::filesystem::path path_;
+    Descriptor descriptor_;
+};
+
+/// Where a file is: in an open folder, or at a path as the person gave it.
+struct FilePlace {
+    FilePlace(std::filesystem::path where) : path(std::move(where)) {}  // NOLINT: a path is a place
+    FilePlace(const Folder& in, const std::string& as) : folder(&in), name(as), path(in.path() / as) {}
+
+    const Folder* folder = nullptr;  // which outlives the place
+    std::string name;
+    std::filesystem::path path;  // for messages, where there is a folder
+};
+
+/// Gives the file another name, where an older one is replaced. Throws Error (exit 4).
+void rename_file(const FilePlace& from, const FilePlace& to);
+/// "NAME.part" beside it.
+FilePlace part_of(const FilePlace& place);
+
+/// A new file to write to and to read, empty. In a folder nothing may have its name. Throws Error (exit 4).
+Descriptor create_file(const FilePlace& place);
+/// A file without a name, to write to and to read, on the file system where `place` is: it is gone when it is closed.
+/// Throws Error (exit 4).
+Descriptor create_unnamed_file(const FilePlace& place);
+/// A file to read; in a folder only a regular one, and no link. Throws Error (exit 4).
+Descriptor open_file(const FilePlace& place);
+
+/// "PATH: cannot be WHAT: the system's reason", exit 4, by errno or the given number.
+Error cannot(const std::filesystem::path& path, std::string_view what);
+Error cannot(const std::filesystem::path& path, std::string_view what, int reason);
+
+}  // namespace doppel

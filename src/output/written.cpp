@@ -1,0 +1,77 @@
+#include "output/written.hpp"
+
+#include "numeric/error.hpp"
+
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace doppel {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The first bytes of a file, `most` of them; none where it cannot be read.
+std::string head_of(const Folder& folder, const std::string& name, std::size_t most) {
+    std::string bytes;
+    try {
+        const Descriptor file = open_file({folder, name});
+        bytes.resize(std::min<std::size_t>(most, folder.entry(name).bytes));
+        most = bytes.size();
+        std::size_t got = 0;
+        for (ssize_t n = 1; n > 0 && got < most; got += static_cast<std::size_t>(std::max<ssize_t>(n, 0)))
+            n = read(file.number(), bytes.data() + got, most - got);
+        bytes.resize(got);
+    } catch (const Error&) {
+        bytes.clear();
+    }
+    return bytes;
+}
+
+/// A manifest of Doppel's; null where the file is none.
+Json manifest_of(const Folder& folder, const std::string& name) {
+    constexpr std::size_t most_bytes = 64 << 20;  // some 400 000 frames
+    if (!name.ends_with(".json") || folder.entry(name).kind != Entry::Kind::file) return nullptr;
+    if (folder.entry(name).bytes > most_bytes) return nullptr;
+    auto json = Json::parse(head_of(folder, name, most_bytes), nullptr, false);
+    const auto has = [&](const char* key) { return json.is_object() && json.contains(key) && json[key].is_object(); };
+    if (!has("doppel") || !has("files")) return nullptr;
+    return json;
+}
+
+void add_files(WrittenFiles& written, const Json& files) {
+    for (const auto& [name, about] : files.items())
+        if (about.is_object()) written[name] = {about.value("bytes", std::uintmax_t{0}), about.value("sha256", "")};
+}
+
+}  // namespace
+
+WrittenFiles written_files(const Folder& folder) {
+    WrittenFiles written;
+    for (const auto& name : folder.names()) {
+        const auto manifest = manifest_of(folder, name);
+        if (manifest.is_null()) continue;
+        try {
+            add_files(written, manifest["files"]);
+            if (const auto earlier = manifest.find("earlier_files"); earlier != manifest.end())
+                add_files(written, *earlier);
+        } catch (const Json::exception&) {
+            // somebody changed it: what it says further is not believed
+        }
+    }
+    return written;
+}
+
+bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written, const std::string& within) {
+    if (written.contains(within + name)) return true;
+    if (name.ends_with(".json")) return !manifest_of(folder, name).is_null();
+    constexpr std::string_view png = "\x89PNG\r\n\x1a\n", maker{"Software\0Doppel", 15};
+    const auto head = head_of(folder, name, 4096);
+    if (head.starts_with(png)) return head.find(maker) != std::string::npos;
+    return head.starts_with("sample,time_s,") || head.starts_with(R"({"file":"doppel trials")");
+}
+
+}  // namespace doppel

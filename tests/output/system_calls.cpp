@@ -1,0 +1,72 @@
+// Stands before the C library's functions of these names, in this program alone.
+#include "output/system_calls.hpp"
+
+#include <dlfcn.h>
+#include <sys/types.h>
+
+#include <cerrno>
+#include <cstdarg>
+
+namespace {
+
+doppel::test::CallWatch watch;
+
+template <class Function>
+Function* next(const char* name) {
+    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+/// Whether the call is to fail; errno says how.
+bool fails(const char* name) {
+    if (!watch) return false;
+    errno = watch(name);
+    return errno != 0;
+}
+
+}  // namespace
+
+void doppel::test::watch_calls(CallWatch wanted) {
+    watch = std::move(wanted);
+}
+
+extern "C" {
+
+int openat(int folder, const char* name, int flags, ...) {
+    va_list rest;
+    va_start(rest, flags);
+    const auto mode = va_arg(rest, unsigned);
+    va_end(rest);
+    return fails("openat") ? -1 : next<int(int, const char*, int, ...)>("openat")(folder, name, flags, mode);
+}
+int mkdirat(int folder, const char* name, mode_t mode) noexcept {
+    return fails("mkdirat") ? -1 : next<int(int, const char*, mode_t)>("mkdirat")(folder, name, mode);
+}
+int renameat(int from, const char* old_name, int to, const char* name) noexcept {
+    if (fails("renameat")) return -1;
+    return next<int(int, const char*, int, const char*)>("renameat")(from, old_name, to, name);
+}
+int renameat2(int from, const char* old_name, int to, const char* name, unsigned flags) noexcept {
+    if (fails("renameat2")) return -1;
+    return next<int(int, const char*, int, const char*, unsigned)>("renameat2")(from, old_name, to, name, flags);
+}
+int unlinkat(int folder, const char* name, int flags) noexcept {
+    return fails("unlinkat") ? -1 : next<int(int, const char*, int)>("unlinkat")(folder, name, flags);
+}
+int ftruncate(int file, off_t size) noexcept {
+    return fails("ftruncate") ? -1 : next<int(int, off_t)>("ftruncate")(file, size);
+}
+int flock(int file, int operation) noexcept {
+    return fails("flock") ? -1 : next<int(int, int)>("flock")(file, operation);
+}
+int fsync(int file) {
+    if (fails("fsync")) return -1;
+    return watch ? 0 : next<int(int)>("fsync")(file);
+}
+int syncfs(int file) noexcept {
+    if (fails("syncfs")) return -1;
+    return watch ? 0 : next<int(int)>("syncfs")(file);
+}
+ssize_t write(int file, const void* bytes, size_t count) {
+    return fails("write") ? -1 : next<ssize_t(int, const void*, size_t)>("write")(file, bytes, count);
+}
+}
