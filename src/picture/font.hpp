@@ -26,4 +26,8 @@ struct TextLine {
 /// Text is UTF-8; each byte that is not becomes U+FFFD.
 TextLine lay_out(std::string_view text, float size, Weight weight);
 
+/// The first character of `text` that would be drawn as a hollow box, or not at all: one that the font lacks, or a
+/// control character. Empty where there is none.
+std::string_view lacking_character(std::string_view text);
+
 }  // namespace doppel

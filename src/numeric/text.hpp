@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace doppel {
+
+// Words from outside: titles, names, paths. UTF-8.
+
+/// Takes the next character off the front of `text`, which is not empty: one byte, and U+FFFD, where it is not
+/// well-formed.
+char32_t next_character(std::string_view& text);
+
+/// Whether all of it is well-formed.
+bool is_utf8(std::string_view text);
+
+/// A character that a terminal may obey rather than show: control characters of ASCII and of Latin-1, line and
+/// paragraph separators, and marks that turn the direction of writing.
+bool is_control(char32_t character);
+
+/// The text as one line that any terminal can show: a space for every control character, U+FFFD for every byte that is
+/// not well-formed.
+std::string on_one_line(std::string_view text);
+
+}  // namespace doppel
