@@ -44,6 +44,7 @@ public:
                 throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
             curve.label = curve.column;
             entry.read_text("label", curve.label);
+            entry.demand_drawable("label", curve.label);
             curve.pair = reader.pair({&entry});
             entry.finish();
         }

@@ -47,15 +47,16 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     FigurePreset figure;
     figure.name = figure.title = source.name;
     TomlReader top(&document.root, "", document.path, document.texts);
-    top.read_text("title", figure.title);
-    top.read_text("subtitle", figure.subtitle);
-    top.read_text("erratum", figure.erratum);
+    top.read_drawn_title(figure.title);
+    top.read_drawn("subtitle", figure.subtitle);
+    top.read_drawn("erratum", figure.erratum);
     if (const auto captions = top.read_texts("captions")) figure.captions = *captions;
+    for (const auto& caption : figure.captions) top.demand_drawable("captions", caption);
 
     auto scene = document.table(top, "scene");
     figure.kind = read_kind(scene);
     if (figure.kind == pair_kind)
-        throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.name);
+        throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");
     FigureReader reader{source.name, document, top, scene, chart, peers};
     for (const auto& kind : figure_kinds())

@@ -75,7 +75,14 @@ WorkProblems read_scene(TomlReader& table) {
     std::string name;
     table.read_text("scene", name);
     if (table.has("problems")) throw table.fault("problems", "cannot stand beside \"scene\", which is one of its own");
-    const auto source = find_preset(name);
+    const auto source = [&] {
+        try {
+            return find_preset(name);
+        } catch (const Error& fault) {
+            throw table.fault("scene", "cannot be taken: {}", fault.what());
+        }
+    }();
+    table.demand_drawable("scene", source.name);
     if (is_figure(source)) throw table.fault("scene", "must name a film; \"{}\" is a figure", name);
     auto film = read_preset(source);
     if (table.has("duration_s")) table.read_positive_ratio("duration_s", film.duration_s);

@@ -6,6 +6,8 @@
 #include "scene/video_spec.hpp"
 
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <variant>
@@ -97,12 +99,18 @@ struct PresetText {
     std::string name;  // "butterfly"
     std::string path;  // "presets/butterfly.toml": what errors name
     std::string text;
+    std::string call;  // what finds it again: a name or a path
 };
 
+/// Bytes of a preset's name. File systems take 255 of a file's; the rest is for endings, of which
+/// ".100000-of-100000.HASH.resume.part" would be the longest.
+inline constexpr std::size_t longest_preset_name = 255 - 64;
+
 /// Finds a preset: a path (anything with a slash or ending in .toml), or a name in presets/ or presets/figures/ here,
-/// or built into the program. Throws Error (exit 2) that names the nearest preset, or says what is in place of the
-/// file.
-PresetText find_preset(const std::string& name_or_path);
+/// or built into the program. A path may be that of a pipe where `stop` is given, which ends the waiting for it. Throws
+/// Error: exit 2 that names the nearest preset, or says what is in place of the file or wrong with its name; exit 4
+/// where it cannot be read; exit 130 soon after `stop` is set.
+PresetText find_preset(const std::string& name_or_path, const std::atomic<bool>* stop = nullptr);
 
 /// All presets that are built in, by name.
 std::vector<PresetText> builtin_presets();

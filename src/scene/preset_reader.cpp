@@ -141,11 +141,11 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     Preset preset;
     preset.name = preset.title = source.name;
     TomlReader top(&document.root, "", document.path, document.texts);
-    top.read_text("title", preset.title);
+    top.read_drawn_title(preset.title);
 
     auto scene = document.table(top, "scene");
     if (read_kind(scene) != pair_kind)
-        throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.name);
+        throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     read_clock(scene, preset);
     scene.finish();
     read_sides(document, {&top}, preset);

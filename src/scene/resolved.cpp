@@ -3,12 +3,21 @@
 #include "integrate/methods.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace doppel {
 
 std::string toml_text(const std::string& text) {
-    return nlohmann::json(text).dump();
+    std::string quoted = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            quoted += {'\\', c};
+        else if (byte < 0x20 || byte == 0x7f)  // TOML allows them escaped alone; JSON's writers leave U+007F as it is
+            quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(byte));
+        else
+            quoted += c;
+    }
+    return quoted + '"';
 }
 
 std::string toml_ratio(const Rational& value) {

@@ -116,6 +116,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
 
 void read_particle(TomlReader& entry, ParticleSpec& particle) {
     if (particle.name.empty()) throw entry.fault("name", "is missing; constraints and forces call a particle by it");
+    entry.demand_drawable("name", particle.name);
     entry.read_positive("mass_kg", particle.mass_kg);
     entry.read_pair("position_m", particle.position_m);
     entry.read_pair("velocity_m_per_s", particle.velocity_m_per_s);

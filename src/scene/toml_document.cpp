@@ -1,17 +1,90 @@
 #include "scene/toml_document.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 namespace doppel {
 namespace {
 
+constexpr int most_parts = 8;  // of a key; Doppel's own have three at most
+
+/// Past the string that begins at `at`, or to where it breaks off.
+std::size_t past_string(std::string_view text, std::size_t at) {
+    const char quote = text[at];
+    const std::string triple(3, quote);
+    const bool has_lines = text.substr(at, 3) == triple;
+    const std::string_view end = has_lines ? triple : std::string_view(triple).substr(0, 1);
+    for (at += end.size(); at < text.size(); ++at) {
+        if (quote == '"' && text[at] == '\\') {
+            ++at;
+        } else if (text.substr(at, end.size()) == end) {
+            at += end.size();
+            for (int i = 0; i < 2 && has_lines && at < text.size() && text[at] == quote; ++i) ++at;  // its own last two
+            return at;
+        } else if (!has_lines && text[at] == '\n') {
+            return at;
+        }
+    }
+    return text.size();
+}
+
+/// Every part of a key makes a table, and taking thousands of them down, one inside the other, would overflow the
+/// stack, whether the rest is TOML or not: so deep keys are found before the text is parsed.
+void bound_keys(std::string_view text, const std::string& path) {
+    const auto in_key = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == ' ' || c == '\t' ||
+               static_cast<unsigned char>(c) >= 0x80;
+    };
+    int dots = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const char c = text[at];
+        if (c == '"' || c == '\'') {
+            at = past_string(text, at);
+            continue;
+        }
+        if (c == '#') {
+            at = std::min(text.find('\n', at), text.size());
+            continue;
+        }
+        if (c == '.')
+            ++dots;
+        else if (!in_key(c))
+            dots = 0;
+        if (dots == most_parts) {
+            const auto before = text.substr(0, at);
+            throw bad_input("{}:{}:{}: a key may have {} parts; this one has more", path,
+                            1 + std::count(before.begin(), before.end(), '\n'), at - before.rfind('\n'), most_parts);
+        }
+        ++at;
+    }
+}
+
 toml::table parse(const std::string& text, const std::string& path, TomlTexts& texts) {
     try {
         texts[path] = text;
+        bound_keys(text, path);
         return toml::parse(text, path);
     } catch (const toml::parse_error& fault) {
         const auto at = fault.source().begin;
         throw bad_input("{}:{}:{}: {}", path, at.line, at.column, fault.description());
+    }
+}
+
+/// A table that knows which option gave it.
+toml::table table_of(const std::string& origin) {
+    return toml::parse("", origin);
+}
+
+/// The value of `change`, in a table of its own.
+toml::table given_by(const Override& change, TomlTexts& texts) {
+    auto& text = texts[change.origin] = "value = " + change.value;
+    bound_keys(text, change.origin);
+    try {
+        return toml::parse(text, change.origin);
+    } catch (const toml::parse_error& fault) {
+        throw bad_input("{}: \"{}\" is no TOML value ({}); strings want quotes: '{}=\"{}\"'", change.origin,
+                        change.value, fault.description(), change.key, change.value);
     }
 }
 
@@ -22,19 +95,12 @@ void apply(toml::table& root, const Override& change, TomlTexts& texts) {
     std::string key = change.key;
     for (; dot != std::string::npos; dot = key.find('.')) {
         const auto head = key.substr(0, dot);
-        if (!table->contains(head)) table->insert(head, toml::table{});
+        if (!table->contains(head)) table->insert(head, table_of(change.origin));
         table = table->get_as<toml::table>(head);
         if (!table) throw bad_input("{}: \"{}\" is no table", change.origin, head);
         key = key.substr(dot + 1);
     }
-    toml::table given;
-    try {
-        auto& text = texts[change.origin] = "value = " + change.value;
-        given = toml::parse(text, change.origin);
-    } catch (const toml::parse_error& fault) {
-        throw bad_input("{}: \"{}\" is no TOML value ({}); strings want quotes: '{}=\"{}\"'", change.origin,
-                        change.value, fault.description(), change.key, change.value);
-    }
+    auto given = given_by(change, texts);
     if (given.size() != 1) throw bad_input("{}: \"{}\" is more than one value", change.origin, change.value);
     // moved, not copied: a copy would forget where it comes from
     std::move(*given.get("value")).visit([&]<class Node>(Node&& node) {
@@ -45,11 +111,16 @@ void apply(toml::table& root, const Override& change, TomlTexts& texts) {
 
 void apply(toml::table& root, const std::vector<Override>& overrides, TomlTexts& texts) {
     for (std::size_t i = 0; i < overrides.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j)
-            if (overrides[i].key == overrides[j].key)
-                throw bad_input("{} is given twice: {} and {}", overrides[i].key, overrides[j].origin,
-                                overrides[i].origin);
-        apply(root, overrides[i], texts);
+        const auto& change = overrides[i];
+        for (std::size_t j = 0; j < i; ++j) {
+            const auto& before = overrides[j];
+            if (change.key == before.key)
+                throw bad_input("{} is given twice: {} and {}", change.key, before.origin, change.origin);
+            if (before.key.starts_with(change.key + "."))
+                throw bad_input("{}: would drop {}, which was given before it; give the table first", change.origin,
+                                before.origin);
+        }
+        apply(root, change, texts);
     }
 }
 
@@ -57,7 +128,10 @@ void apply(toml::table& root, const std::vector<Override>& overrides, TomlTexts&
 
 TomlDocument parse_document(const PresetText& source, const std::vector<Override>& overrides) {
     TomlDocument document{.path = source.path, .root = {}, .texts = {}};
-    document.root = parse(source.text, source.path, document.texts);
+    // no part of the text: the parser would not count it as a column
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    const bool is_marked = source.text.starts_with(byte_order_mark);
+    document.root = parse(source.text.substr(is_marked ? byte_order_mark.size() : 0), source.path, document.texts);
     apply(document.root, overrides, document.texts);
     return document;
 }
@@ -68,6 +142,8 @@ Override parse_set(const std::string& argument) {
     if (equals == std::string::npos || key.empty() || key.starts_with('.') || key.ends_with('.') ||
         key.find("..") != std::string::npos)
         throw bad_input("--set wants table.key=VALUE; it is \"{}\"", argument);
+    if (const auto parts = 1 + std::count(key.begin(), key.end(), '.'); parts > most_parts)
+        throw bad_input("--set wants a key of at most {} parts; this one has {}", most_parts, parts);
     return {key, argument.substr(equals + 1), "--set " + key};
 }
 

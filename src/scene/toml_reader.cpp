@@ -1,5 +1,7 @@
 #include "scene/toml_reader.hpp"
 
+#include "numeric/text.hpp"
+#include "picture/font.hpp"
 #include "scene/nearest.hpp"
 
 #include <algorithm>
@@ -61,6 +63,19 @@ std::string listed(std::span<const std::string_view> choices) {
     return text;
 }
 
+/// What keeps a text from being drawn; nothing where the font has all of its letters.
+std::optional<std::string> not_drawable(std::string_view text) {
+    const auto lacking = lacking_character(text);
+    if (lacking.empty()) return std::nullopt;
+    auto rest = lacking;
+    const auto character = next_character(rest);
+    const auto number = fmt::format("U+{:04X}", static_cast<unsigned>(character));
+    if (is_control(character)) return fmt::format("holds the control character {}, which cannot be drawn", number);
+    return fmt::format(
+        "holds \"{}\" ({}), which the built-in font lacks; it has Latin and Greek letters and signs of mathematics",
+        lacking, number);
+}
+
 /// The number that stands in `text` at a line and column (counted in characters, from 1), without its underscores.
 std::string literal_at(std::string_view text, const toml::source_position& at) {
     for (toml::source_index line = 1; line < at.line; ++line) text.remove_prefix(text.find('\n') + 1);
@@ -111,6 +126,23 @@ void TomlReader::read_text(std::string_view key, std::string& into) {
     into = node->as_string()->get();
 }
 
+void TomlReader::demand_drawable(std::string_view key, std::string_view text) const {
+    if (const auto fault = not_drawable(text)) throw this->fault(key, "{}", *fault);
+}
+
+void TomlReader::read_drawn(std::string_view key, std::string& into) {
+    read_text(key, into);
+    demand_drawable(key, into);
+}
+
+void TomlReader::read_drawn_title(std::string& into) {
+    constexpr std::string_view key = "title";
+    if (!has(key))
+        if (const auto fault = not_drawable(into))
+            throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
+    read_drawn(key, into);
+}
+
 void TomlReader::read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices) {
     const auto* node = find(key);
     if (!node) return;
@@ -134,7 +166,14 @@ Quad TomlReader::exact(std::string_view key, std::string_view element, const tom
     if (const auto* whole = node.as_integer()) return Quad(whole->get());
     const auto& origin = node.source().path;
     const auto text = texts_->find(origin ? *origin : path_);
-    return text == texts_->end() ? Quad(rounded) : parse_quad(literal_at(text->second, node.source().begin)) + 0;
+    if (text == texts_->end()) return Quad(rounded);
+    const Quad value = parse_quad(literal_at(text->second, node.source().begin)) + 0;
+    // the literal found must be the number that was read, or its place was mistaken
+    constexpr double rounding = 1e-15, least = 1e-322;
+    if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))
+        throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", place(key), subject(key),
+                        rounded);
+    return value;
 }
 
 void TomlReader::read_number(std::string_view key, Quad& into) {

@@ -34,6 +34,12 @@ public:
 
     bool has(std::string_view key);
     void read_text(std::string_view key, std::string& into);
+    /// Text that pictures show: of letters that the font has.
+    void read_drawn(std::string_view key, std::string& into);
+    /// `title`; the name that stands in `into` where it is absent is drawn as well.
+    void read_drawn_title(std::string& into);
+    /// Throws where the font lacks a letter of `text`, the value of `key`.
+    void demand_drawable(std::string_view key, std::string_view text) const;
     void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices);
     /// A choice by name, for an enumeration in the order of its names.
     template <class Choice, std::size_t N>

@@ -31,6 +31,19 @@ TEST(FigurePreset, EveryBuiltInOneReadsAndHasATitle) {
         EXPECT_TRUE(names.contains(name)) << name;
 }
 
+TEST(FigurePreset, DrawsOnlyLettersThatTheFontHas) {
+    const std::string scene = "\n[scene]\nkind = \"curves\"\n[[curve]]\ncolumn = \"one\"\n";
+    const auto refusal = [](const std::string& text) { return error_of([&] { figure_from(text); }).second; };
+    const std::string lacks = " holds \"双\" (U+53CC), which the built-in font lacks; ";
+    for (const std::string key : {"title", "subtitle", "erratum"}) {
+        const auto message = refusal(key + " = \"双\"" + scene);
+        EXPECT_EQ(message.rfind("presets/x.toml:1:1: " + key + lacks, 0), 0u) << message;
+    }
+    EXPECT_EQ(refusal("captions = [\"a\", \"双\"]" + scene).rfind("presets/x.toml:1:1: captions" + lacks, 0), 0u);
+    EXPECT_EQ(refusal(scene + "label = \"双\"").rfind("presets/x.toml:6:1: [[curve]] 1 label" + lacks, 0), 0u);
+    EXPECT_EQ(refusal(scene), "nothing was thrown");
+}
+
 TEST(FigurePreset, OfTheStudyStatesItsErratum) {
     for (const auto& preset : builtin_figures())
         if (preset.name.starts_with("fig")) {

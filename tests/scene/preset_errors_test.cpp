@@ -168,9 +168,20 @@ TEST(Overrides, NameTheOptionInPlaceOfALine) {
               R"(--set system.lenght_m: [system] has no "lenght_m"; did you mean "length_m"?)");
     EXPECT_EQ(fault({"nonsense"}), R"(--set wants table.key=VALUE; it is "nonsense")");
     EXPECT_EQ(fault({"video.crf=1", "video.crf=2"}), "video.crf is given twice: --set video.crf and --set video.crf");
+    EXPECT_EQ(fault({"foo.bar=3"}),
+              R"(--set foo.bar: a preset has no "foo"; it has a, b, scene, system, title, video)");
+    EXPECT_EQ(fault({"video.foo.bar=3"}).rfind(R"(--set video.foo.bar: [video] has no "foo"; )", 0), 0u);
+    EXPECT_EQ(fault({"system.links=3", "system={}"}),
+              "--set system: would drop --set system.links, which was given before it; give the table first");
     EXPECT_EQ(fault({"title.x=1"}), R"(--set title.x: "title" is no table)");
     EXPECT_NE(fault({"video.theme=dark"}).find("strings want quotes: 'video.theme=\"dark\"'"), std::string::npos);
     EXPECT_EQ(fault({"video.crf=1\nx=2"}), "--set video.crf: \"1\nx=2\" is more than one value");
+}
+
+TEST(Overrides, OfAWholeTableComesBeforeThoseOfItsKeys) {
+    const auto scene = scene_of("butterfly", {"b={}", "system={}", "system.links=3", "b.angle_deg=[1, 2, 3]"});
+    EXPECT_EQ(scene.preset.a.links(), 3u);
+    EXPECT_EQ(scene.preset.b.angle_deg, (std::vector<Quad>{1, 2, 3}));
 }
 
 TEST(Overrides, GoOnTopOfThePreset) {
@@ -180,6 +191,14 @@ TEST(Overrides, GoOnTopOfThePreset) {
     EXPECT_EQ(scene.preset.b.angle_deg, (std::vector<Quad>{80, 70}));
     EXPECT_EQ(scene.preset.a.angle_deg, (std::vector<Quad>{90, 90}));
     EXPECT_EQ(scene.samples, 240);
+}
+
+TEST(FindPreset, AFigureOrAFilmIsAdvisedByWhatFindsIt) {
+    const auto message = [](const PresetText& source) { return error_of([&] { read_preset(source); }).second; };
+    EXPECT_EQ(message(find_preset("fig6")),
+              "presets/figures/fig6.toml: this is a figure, not a film; draw it with: doppel figure fig6");
+    const auto path = std::string(DOPPEL_SOURCE_DIR) + "/presets/figures/fig6.toml";
+    EXPECT_EQ(message(find_preset(path)), path + ": this is a figure, not a film; draw it with: doppel figure " + path);
 }
 
 TEST(FindPreset, NamesTheNearestOrWhatIsInItsPlace) {

@@ -1,0 +1,187 @@
+// What a preset is made of before it means anything: its file, its name, its bytes.
+#include "output/fixtures.hpp"
+#include "scene/manifest_json.hpp"
+#include "scene/resolved.hpp"
+#include "scene/support.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::fresh_folder;
+using test::write_bytes;
+
+Preset read(const std::string& text, const std::vector<std::string>& arguments = {}) {
+    return read_preset({"x", "x.toml", text, "x.toml"}, sets(arguments));
+}
+
+std::string refusal(const std::string& text, const std::vector<std::string>& arguments = {}) {
+    const auto [code, message] = error_of([&] { read(text, arguments); });
+    EXPECT_EQ(code, ExitCode::bad_input) << message;
+    return message;
+}
+
+std::string utf8_of(char32_t c) {
+    const auto byte = [](char32_t bits) { return static_cast<char>(bits); };
+    if (c < 0x80) return {byte(c)};
+    if (c < 0x800) return {byte(0xc0 | c >> 6), byte(0x80 | (c & 0x3f))};
+    if (c < 0x10000) return {byte(0xe0 | c >> 12), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
+    return {byte(0xf0 | c >> 18), byte(0x80 | (c >> 12 & 0x3f)), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
+}
+
+TEST(PresetText, EveryCharacterComesBackFromTheResolvedPreset) {
+    // in blocks, and each control character by itself
+    std::vector<std::string> texts;
+    for (char32_t c = 0; c < 0xa0; ++c) texts.push_back("a" + utf8_of(c) + "b");
+    for (char32_t c = 0; c <= 0x10ffff; ++c) {
+        if (c % 0x1000 == 0) texts.emplace_back();
+        if (c < 0xd800 || c > 0xdfff) texts.back() += utf8_of(c);
+    }
+    for (const auto& text : texts) {
+        const auto json = json_of_toml("title = " + toml_text(text));
+        ASSERT_EQ(json["title"].get<std::string>(), text);
+    }
+}
+
+TEST(PresetText, ANameThatWouldLeadElsewhereIsRefused) {
+    const auto folder = fresh_folder();
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"..", "leads out of it"},
+        {".", "leads out of it"},
+        {"a\nb", "holds the control character U+000A"},
+        {"a\x7f", "holds the control character U+007F"},
+        {"a\xc2\x9b", "holds the control character U+009B"},
+        {"a\xe2\x80\xae", "holds the control character U+202E"},
+        {"a\xff", "is not UTF-8"},
+        {std::string(longest_preset_name + 1, 'n'), "has 192 bytes; 191 are the most that leave room for endings"}};
+    for (const auto& [name, words] : cases) {
+        const auto path = folder / (name + ".toml");
+        write_bytes(path, "");
+        const auto [code, message] = error_of([&] { find_preset(path.string()); });
+        EXPECT_EQ(code, ExitCode::bad_input) << words;
+        EXPECT_NE(message.find(words), std::string::npos) << message;
+    }
+    for (const auto& name : {std::string("..a"), std::string(".a"), std::string("90° λ"), std::string("a b"),
+                             std::string(longest_preset_name, 'n')}) {
+        write_bytes(folder / (name + ".toml"), "");
+        EXPECT_EQ(find_preset((folder / (name + ".toml")).string()).name, name);
+    }
+}
+
+TEST(PresetText, ComesFromAFileOrAPipeOfAFewMegabytes) {
+    const auto folder = fresh_folder();
+    const std::atomic<bool> stop = false;
+    EXPECT_EQ(error_of([&] { find_preset("/dev/zero", &stop); }).second,
+              "/dev/zero is not a file; a preset is a TOML file");
+    write_bytes(folder / "long.toml", std::string((std::size_t{8} << 20) + 1, '\n'));
+    EXPECT_EQ(error_of([&] { find_preset((folder / "long.toml").string()); }).second,
+              (folder / "long.toml").string() + " has more than 8 MB; a preset is a TOML file of a few lines");
+
+    const auto pipe = folder / "pipe.toml";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(error_of([&] { find_preset(pipe.string()); }).second,
+              pipe.string() + " is not a file; a preset is a TOML file");
+    std::jthread writer([&] {
+        std::ofstream out(pipe);
+        out << "title = \"one\"\n" << std::flush;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        out << "# and more\n";
+    });
+    EXPECT_EQ(find_preset(pipe.string(), &stop).text, "title = \"one\"\n# and more\n");
+    writer.join();
+    writer = std::jthread([&] {
+        const int file = open(pipe.c_str(), O_WRONLY);
+        const std::string portion(std::size_t{1} << 16, ' ');
+        while (write(file, portion.data(), portion.size()) > 0) {
+        }
+        close(file);
+    });
+    signal(SIGPIPE, SIG_IGN);
+    EXPECT_EQ(error_of([&] { find_preset(pipe.string(), &stop); }).first, ExitCode::bad_input);
+}
+
+TEST(PresetText, APipeThatNobodyWritesToEndsWhenAsked) {
+    const auto pipe = fresh_folder() / "pipe.toml";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    std::atomic<bool> stop = false;
+    const std::jthread ask([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        stop = true;
+    });
+    EXPECT_EQ(error_of([&] { find_preset(pipe.string(), &stop); }).first, ExitCode::interrupted);
+}
+
+TEST(PresetText, AByteOrderMarkIsNoColumn) {
+    const auto preset = read("\xEF\xBB\xBFsystem.angle_deg = [90.5, 45.25]\n");
+    EXPECT_EQ(preset.a.angle_deg, (std::vector<Quad>{Quad(181) / 2, Quad(181) / 4}));
+    EXPECT_EQ(refusal("\xEF\xBB\xBFtitel = 1\n"), "x.toml:1:1: a preset has no \"titel\"; did you mean \"title\"?");
+}
+
+TEST(PresetText, NumbersAreFoundWhateverStandsBeforeThem) {
+    for (const char* text :
+         {"title = \"é€²\"\nsystem = {angle_deg = [90.5, 45.25]}\n", "system = {angle_deg = [90.5, 45.25]}\r\n",
+          "# é\r\n\r\nsystem.angle_deg = [90.5,\r\n\t45.25]",
+          "title = '''aé€''' # 😀\n\nsystem.\"angle_deg\" = [9_0.5, 4_5.25e0]"}) {
+        EXPECT_EQ(read(text).a.angle_deg, (std::vector<Quad>{Quad(181) / 2, Quad(181) / 4})) << text;
+    }
+}
+
+std::string repeated(const std::string& text, std::size_t count) {
+    std::string all;
+    for (std::size_t i = 0; i < count; ++i) all += text;
+    return all;
+}
+
+TEST(PresetText, ADeepKeyIsRefusedBeforeItMakesTables) {
+    constexpr std::size_t deep = 200'000;
+    const std::string message = "a key may have 8 parts; this one has more";
+    for (const auto& text :
+         {repeated("a.", deep) + "a = 1", "[" + repeated("a.", deep) + "a]", "[[" + repeated("a.", deep) + "a]]",
+          "x = {" + repeated("a . ", deep) + "a = 1}", repeated("\"=\".", deep) + "a = 1",
+          repeated("'#'.", deep) + "a = 1", "x = [{\"y\" = \"\"\"\n\\\"\"\"\"\"\", " + repeated("1.", deep) + "1 = 1}]",
+          "x = {y = '''\n'''''," + repeated("a.", deep) + "a = 1}",
+          "x = \"\\\"\" # '\n" + repeated("a.", deep) + "a = 1\n!!!"})
+        EXPECT_NE(refusal(text).find(message), std::string::npos) << text.substr(0, 40) << "\n" << refusal(text);
+    EXPECT_EQ(refusal("\n  a.b.c.d.e.f.g.h.i = 1"), "x.toml:2:18: " + message);
+    EXPECT_NE(refusal("", {"x={" + repeated("a.", deep) + "a = 1}"}).find(message), std::string::npos);
+    EXPECT_EQ(error_of([&] { parse_set(repeated("a.", deep) + "a=1"); }).second,
+              "--set wants a key of at most 8 parts; this one has 200001");
+}
+
+TEST(PresetText, DotsThatAreNoKeyMayBeMany) {
+    const auto decimals = "system.angle_deg = [" + repeated("1.5, ", 9) + "2.5]\nsystem.links = 10\n";
+    EXPECT_EQ(read(decimals).a.angle_deg.back(), Quad(5) / 2);
+    EXPECT_EQ(read("title = \"..........\" # ..........\n#..........").title, "..........");
+    EXPECT_EQ(read("title = '..........'").title, "..........");
+    EXPECT_EQ(read("title = \"\"\"\\\n..........\"\"\"").title, "..........");
+}
+
+TEST(PresetText, WhatIsDrawnHasLettersOfTheFont) {
+    const std::string lacks =
+        "holds \"双\" (U+53CC), which the built-in font lacks; it has Latin and Greek letters and signs of mathematics";
+    EXPECT_EQ(refusal("\ntitle = \"a 双\""), "x.toml:2:1: title " + lacks);
+    EXPECT_EQ(refusal("title = \"a\\u007fb\""),
+              "x.toml:1:1: title holds the control character U+007F, which cannot be drawn");
+    EXPECT_EQ(refusal("[[system.particle]]\nname = \"双\""), "x.toml:2:1: [[system.particle]] 1 name " + lacks);
+    const auto named = [](const std::string& text) { return read_preset({"双", "双.toml", text, "双.toml"}).title; };
+    EXPECT_EQ(error_of([&] { named(""); }).second,
+              "双.toml: title is missing, and the preset's name in its place " + lacks);
+    EXPECT_EQ(named("title = \"two\""), "two");
+    for (const auto* title : {"90°, λ = ½ · √2 – “Ω”", "", "Ελληνικά, Łódź, ∂²x/∂t² ≤ ∞"})
+        EXPECT_EQ(read(fmt::format("title = \"{}\"", title)).title, title);
+}
+
+}  // namespace
+}  // namespace doppel
