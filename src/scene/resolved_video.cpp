@@ -45,9 +45,9 @@ std::string format_toml(const VideoSpec& video) {
     auto text = fmt::format("format = \"{}\"\n", video.format);
     if (!video.codec.empty()) text += fmt::format("codec = \"{}\"\n", video.codec);
     if (video.format == "mp4" || video.format == "webm")
-        text += fmt::format("pixel_format = \"{}\"\n", video.pixel_format);
+        text += fmt::format("pixel_format = \"{}\"\npreset = \"{}\"\ncrf = {}\n", video.pixel_format, video.preset,
+                            video.crf);
     if (video.transparent) text += "transparent = true\n";
-    text += fmt::format("preset = \"{}\"\ncrf = {}\n", video.preset, video.crf);
     if (video.poster_s) text += fmt::format("poster_s = {}\n", toml_ratio(*video.poster_s));
     if (video.contact_sheet)
         text += fmt::format("contact_sheet = [{}, {}]\n", (*video.contact_sheet)[0], (*video.contact_sheet)[1]);

@@ -32,12 +32,18 @@ void check_size(const TomlReader& table, const VideoSpec& video) {
 
 void read_format(TomlReader& table, VideoSpec& video) {
     table.read_choice("format", video.format, video_formats);
-    table.read_choice("codec", video.codec, webm_codecs);
-    if (!video.codec.empty() && video.format != "webm")
-        throw table.fault("codec", "is a choice of webm; the format is \"{}\"", video.format);
-    table.read_choice("pixel_format", video.pixel_format, pixel_formats);
-    if (table.has("pixel_format") && !is_encoded(video))
-        throw table.fault("pixel_format", "is of mp4 and webm; the format is \"{}\"", video.format);
+    const bool encoded = is_encoded(video);
+    // true where the key counts; a format from the command line drops what the preset's file says for another
+    const auto takes = [&](std::string_view key, bool serves, std::string_view what) {
+        if (!table.has(key) || serves) return serves;
+        if (table.from_command_line("format") && !table.from_command_line(key)) return false;
+        throw table.fault(key, "is {}; the format is \"{}\"", what, video.format);
+    };
+    if (takes("codec", video.format == "webm", "a choice of webm"))
+        table.read_choice("codec", video.codec, webm_codecs);
+    constexpr std::string_view of_encoded = "of mp4 and webm";
+    if (takes("pixel_format", encoded, of_encoded))
+        table.read_choice("pixel_format", video.pixel_format, pixel_formats);
     table.read_truth("transparent", video.transparent);
     const bool has_alpha = video.format == "png" || video.format == "apng" ||
                            (video.format == "webm" && video.codec != "av1" && video.pixel_format == "yuv420p");
@@ -45,8 +51,8 @@ void read_format(TomlReader& table, VideoSpec& video) {
         throw table.fault("transparent",
                           "takes a format with opacity: png, apng, or webm (VP9, yuv420p); the format is \"{}\"",
                           video.format);
-    table.read_choice("preset", video.preset, encoder_presets);
-    table.read_whole("crf", video.crf, 0, video.format == "webm" ? 63 : 51);
+    if (takes("preset", encoded, of_encoded)) table.read_choice("preset", video.preset, encoder_presets);
+    if (takes("crf", encoded, of_encoded)) table.read_whole("crf", video.crf, 0, video.format == "webm" ? 63 : 51);
 }
 
 /// When what is shown, and what is kept besides.

@@ -46,6 +46,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"codec = \"av1\"", R"([video] codec is a choice of webm; the format is "mp4")"},
         Case{"pixel_format = \"yuv444p\"\nformat = \"gif\"",
              R"([video] pixel_format is of mp4 and webm; the format is "gif")"},
+        Case{"crf = 20\nformat = \"png\"", R"([video] crf is of mp4 and webm; the format is "png")"},
+        Case{"preset = \"slow\"\nformat = \"apng\"", R"([video] preset is of mp4 and webm; the format is "apng")"},
         Case{
             "transparent = true",
             R"([video] transparent takes a format with opacity: png, apng, or webm (VP9, yuv420p); the format is "mp4")"},
@@ -76,6 +78,34 @@ TEST(VideoErrors, LayoutsSayWhichSystemsTheyTake) {
         message("two-methods", {"video.layout=\"ensemble\""}),
         "--set video.layout: [video] layout \"ensemble\" takes sides that differ in their numbers alone, not in how "
         "they are stepped");
+}
+
+TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
+    const auto read = [](const std::vector<std::string>& arguments) {
+        const char* text =
+            "[video]\nformat = \"webm\"\ncodec = \"av1\"\npixel_format = \"yuv420p10\"\ncrf = 60\npreset = \"slow\"";
+        return read_preset({"x", "x.toml", text}, sets(arguments)).video;
+    };
+    for (const char* format : {"gif", "apng", "png"}) {
+        const auto set = fmt::format("video.format=\"{}\"", format);
+        const auto video = read({set});
+        EXPECT_EQ(video.format, format);
+        EXPECT_EQ(video.codec, "");
+        EXPECT_EQ(video.pixel_format, "yuv420p");
+        EXPECT_EQ(video.crf, VideoSpec{}.crf);
+        EXPECT_EQ(video.preset, VideoSpec{}.preset);
+        // but not what is asked for beside it
+        for (const char* key :
+             {"video.crf=20", "video.preset=\"slow\"", "video.pixel_format=\"yuv444p\"", "video.codec=\"vp9\""}) {
+            const auto [code, message] = error_of([&] { read({set, key}); });
+            EXPECT_EQ(code, ExitCode::bad_input) << key;
+            EXPECT_EQ(message.rfind("--set video.", 0), 0u) << message;
+            EXPECT_NE(message.find(fmt::format("the format is \"{}\"", format)), std::string::npos) << message;
+        }
+    }
+    EXPECT_EQ(error_of([&] { read({"video.crf=20"}); }).second, "nothing was thrown");
+    EXPECT_EQ(error_of([&] { read({"video.format=\"mp4\""}); }).second,
+              "x.toml:5:1: [video] crf must be from 0 to 51; it is 60");
 }
 
 TEST(VideoErrors, GifsGetARateThatTheyCanShow) {
