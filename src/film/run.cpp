@@ -46,7 +46,30 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());
 }
 
+/// The samples that are asked for: first … last − 1; every `stride`th is reported, `total` in all.
+struct SampleRange {
+    long first, last, stride, total;
+};
+
+/// Throws Error (exit 2) where the scene has no such samples, or none of them is a frame.
+SampleRange range_of(const Scene& scene, const RunOptions& options) {
+    const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
+    if (first < 0 || first >= last || last > scene.samples + 1)
+        throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
+                        scene.preset.name, scene.samples, scene.samples + 1);
+    const long stride = options.pictures ? scene.samples_per_frame : 1;
+    const long total = (last - 1) / stride - (first - 1 + stride) / stride + 1;
+    if (options.pictures && total < 1)
+        throw bad_input("--frames {}:{}: no frame of {} falls into it; every {}th sample is one", first, last,
+                        scene.preset.name, stride);
+    return {first, last, stride, total};
+}
+
 }  // namespace
+
+void check_range(const Scene& scene, const RunOptions& options) {
+    range_of(scene, options);
+}
 
 int run_threads(int jobs) {
     return jobs > 0 ? jobs : 2 * static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -55,14 +78,7 @@ int run_threads(int jobs) {
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-    const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
-    if (first < 0 || first >= last || last > scene.samples + 1)
-        throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
-                        scene.preset.name, scene.samples, scene.samples + 1);
-    const long stride = options.pictures ? scene.samples_per_frame : 1;
-    const long total = (last - 1) / stride - (first - 1 + stride) / stride + 1;
-    if (options.pictures && total < 1)
-        throw bad_input("--frames {}:{}: no frame falls into it; every {}th sample is one", first, last, stride);
+    const auto [first, last, stride, total] = range_of(scene, options);
     RunRecord record{.first_sample = first, .last_sample = last - 1};
     PartFiles parts(options.out / scene.preset.name);
     std::optional<Film> film;

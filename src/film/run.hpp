@@ -38,6 +38,9 @@ struct RunResult {
     double wall_s = 0;
 };
 
+/// Throws Error (exit 2) where the scene has none of the samples, or of the frames, that `options` ask for.
+void check_range(const Scene& scene, const RunOptions& options);
+
 /// Simulates, draws and writes; the three overlap through bounded queues. Files appear complete or not at all.
 /// Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,

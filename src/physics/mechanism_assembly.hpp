@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -73,11 +75,14 @@ std::string name_of(std::size_t index, const Constraint<Scalar>& constraint) {
     return fmt::format("constraint {} ({})", index + 1, words);
 }
 
-/// "force 2 (spring 1–fixed)"
+/// "force 2 (spring 1–fixed)": the second of those that a preset lists, for gravity, which is there by itself, is not
+/// counted.
 template <class Scalar>
-std::string name_of(std::size_t index, const Force<Scalar>& force) {
-    const auto words = std::visit([](const auto& part) { return words_for(part); }, force);
-    return fmt::format("force {} ({})", index + 1, words);
+std::string name_of(const std::vector<Force<Scalar>>& forces, std::size_t index) {
+    const auto is_listed = [](const auto& force) { return !std::holds_alternative<Gravity<Scalar>>(force); };
+    const auto before = std::count_if(forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(index), is_listed);
+    const auto words = std::visit([](const auto& part) { return words_for(part); }, forces[index]);
+    return fmt::format("force {} ({})", before + 1, words);
 }
 
 /// Whether an assembly can be built, and released as it says. Throws Error (exit 2) that names the part, the value and

@@ -217,11 +217,10 @@ void check_velocities(const Assembly<double>& assembly, const State<double, Eige
 
 void check(const Assembly<double>& assembly) {
     check_particles(assembly.particles);
-    const auto check_part = [&](std::size_t i, const auto& part) {
-        std::visit(PartCheck(name_of(i, part), assembly.particles), part);
-    };
-    for (std::size_t i = 0; i < assembly.constraints.size(); ++i) check_part(i, assembly.constraints[i]);
-    for (std::size_t i = 0; i < assembly.forces.size(); ++i) check_part(i, assembly.forces[i]);
+    for (std::size_t i = 0; i < assembly.constraints.size(); ++i)
+        std::visit(PartCheck(name_of(i, assembly.constraints[i]), assembly.particles), assembly.constraints[i]);
+    for (std::size_t i = 0; i < assembly.forces.size(); ++i)
+        std::visit(PartCheck(name_of(assembly.forces, i), assembly.particles), assembly.forces[i]);
 
     const auto start = Mechanism<double>::start(assembly);
     const State<double, Eigen::Dynamic> q = start.head(start.size() / 2);

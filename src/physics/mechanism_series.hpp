@@ -40,7 +40,7 @@ public:
           ahead_(gradients_) {
         for (int k = 0; k < order + 2; ++k) inverse_.push_back(Scalar(1) / Scalar(std::max(k, 1)));
         for (std::size_t i = 0; i < model_.forces_.size(); ++i)
-            std::visit([&](const auto& force) { take_in(force, name_of(i, model_.forces_[i])); }, model_.forces_[i]);
+            std::visit([&](const auto& force) { take_in(force, name_of(model_.forces_, i)); }, model_.forces_[i]);
         for (Eigen::Index row = 0; row < model_.set_.rows(); ++row) {
             const auto& constraint = model_.set_[model_.set_.owner(row)];
             if (const auto* rod = std::get_if<Rod<Scalar>>(&constraint)) take_in(*rod, row);

@@ -194,7 +194,7 @@ TEST(MechanismSeries, NamesASpringWhoseEndsMeet) {
     EXPECT_EQ(said_of(parts, 0.1), "nothing");  // it is 5 N/m in any direction
     parts.forces.push_back(Spring<double>{one, P(1, 1), 5, 1});
     EXPECT_EQ(said_of(parts, 0.1),
-              "force 3 (spring 1–fixed): its ends have met, where it has no direction; start so that they do not");
+              "force 2 (spring 1–fixed): its ends have met, where it has no direction; start so that they do not");
 }
 
 }  // namespace
