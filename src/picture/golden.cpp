@@ -17,16 +17,20 @@ constexpr double most_differing = 0.08;    // of all pixels
 constexpr int tile = 32;                   // px
 constexpr double most_tile_mean = 0.25;    // /255
 constexpr double most_signed_mean = 0.03;  // /255
-constexpr int channels = 3;                // opacity is not compared: pictures are opaque
+constexpr int colours = 3, channels = 4;   // the last is opacity
 
-/// Mean absolute difference over the tile whose corner is (left, top).
+/// Mean absolute difference over the tile whose corner is (left, top): of the colours, or of the opacity, which differs
+/// by itself.
 double tile_mean(const Picture& expected, const Picture& actual, int left, int top) {
     const int right = std::min(left + tile, expected.size.width), bottom = std::min(top + tile, expected.size.height);
-    long sum = 0;
+    std::array<long, channels> sums{};
     for (int y = top; y < bottom; ++y)
         for (int x = left; x < right; ++x)
-            for (int c = 0; c < channels; ++c) sum += std::abs(expected.at(x, y)[c] - actual.at(x, y)[c]);
-    return static_cast<double>(sum) / (channels * (right - left) * (bottom - top));
+            for (int c = 0; c < channels; ++c)
+                sums[static_cast<std::size_t>(c)] += std::abs(expected.at(x, y)[c] - actual.at(x, y)[c]);
+    const double pixels = (right - left) * (bottom - top);
+    return std::max(static_cast<double>(sums[0] + sums[1] + sums[2]) / (colours * pixels),
+                    static_cast<double>(sums[3]) / pixels);
 }
 
 }  // namespace
@@ -73,8 +77,8 @@ GoldenVerdict compare_golden(const Picture& expected, const Picture& actual) {
                      most_tile_mean));
     for (std::size_t c = 0; c < channels; ++c)
         rule(std::abs(verdict.mean[c]) <= most_signed_mean,
-             fmt::format("{} is {:+.3f}/255 off on average, {} is allowed", std::array{"red", "green", "blue"}[c],
-                         verdict.mean[c], most_signed_mean));
+             fmt::format("{} is {:+.3f}/255 off on average, {} is allowed",
+                         std::array{"red", "green", "blue", "opacity"}[c], verdict.mean[c], most_signed_mean));
     return verdict;
 }
 
@@ -84,11 +88,13 @@ Picture difference_picture(const Picture& expected, const Picture& actual) {
     Picture all({3 * width, height});
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            for (int c = 0; c < channels; ++c) {
+            const int opacity = std::abs(actual.at(x, y)[3] - expected.at(x, y)[3]);
+            for (int c = 0; c < colours; ++c) {
                 const int e = expected.at(x, y)[c], a = actual.at(x, y)[c];
                 all.at(x, y)[c] = static_cast<std::uint8_t>(e);
                 all.at(x + width, y)[c] = static_cast<std::uint8_t>(a);
-                all.at(x + 2 * width, y)[c] = static_cast<std::uint8_t>(std::min(255, gain * std::abs(a - e)));
+                all.at(x + 2 * width, y)[c] =
+                    static_cast<std::uint8_t>(std::min(255, gain * std::max(std::abs(a - e), opacity)));
             }
             for (int part = 0; part < 3; ++part) all.at(x + part * width, y)[3] = 255;
         }

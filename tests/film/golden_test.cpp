@@ -114,6 +114,27 @@ TEST(GoldenPolicy, RejectsOneGlaringPixel) {
     expect_rejected(picture);
 }
 
+TEST(GoldenPolicy, RejectsAnotherOpacity) {
+    // all of it by a level; half of a disc's; a pixel's
+    const auto mutated = [](int left, int right, int top, int bottom, int by) {
+        auto picture = sample_frame();
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x)
+                picture.at(x, y)[3] = static_cast<std::uint8_t>(picture.at(x, y)[3] - by);
+        return picture;
+    };
+    const auto expect_named = [](const Picture& picture, const char* words) {
+        const auto verdict = compare_golden(sample_frame(), picture);
+        EXPECT_FALSE(verdict.passes);
+        EXPECT_NE(verdict.why.find(words), std::string::npos) << verdict.why;
+    };
+    expect_named(mutated(0, 480, 0, 270, 1), "opacity is -1.000/255 off on average");
+    expect_named(mutated(200, 203, 100, 103, 60), "9 pixels differ by more than 3/255");
+    expect_named(mutated(3, 4, 3, 4, 255), "a pixel differs by 255/255");
+    // a level in a third of a tile's pixels, which none of the other rules sees
+    expect_named(mutated(32, 64, 32, 43, 1), "tile differs by 0.34/255");
+}
+
 TEST(GoldenPolicy, RejectsOtherEdges) {
     // what switching multisampling on or off does: edges that are a mean of their neighbours
     const auto& frame = sample_frame();
@@ -138,6 +159,10 @@ TEST(GoldenPolicy, DifferencePictureShowsAllThree) {
     EXPECT_EQ(shown.size, (Size{1440, 270}));
     EXPECT_EQ(shown.at(960 + 7, 9)[1], 80);
     EXPECT_EQ(shown.at(960 + 8, 9)[1], 0);
+    actual = sample_frame();
+    actual.at(7, 9)[3] = static_cast<std::uint8_t>(actual.at(7, 9)[3] - 5);
+    const auto grey = difference_picture(sample_frame(), actual);
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(grey.at(960 + 7, 9)[c], 80);
 }
 
 }  // namespace
