@@ -1,14 +1,22 @@
 #include "cli/commands.hpp"
+#include "cli/print.hpp"
 #include "numeric/error.hpp"
+#include "numeric/text.hpp"
 #include "scene/nearest.hpp"
 #include "scene/version.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -23,11 +31,30 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
         meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
+/// An empty argument is mostly a variable that a script did not set: taken for "not given" it would mean everything.
+void refuse_empty_arguments(const std::vector<std::string>& words) {
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const auto& word = words[i];
+        const bool of_option = words[i - 1].starts_with('-');
+        if (word.empty())
+            throw doppel::bad_input("{} is empty; leave it out, or give a value",
+                                    of_option ? words[i - 1] : fmt::format("argument {}", i));
+        if (word.starts_with("--") && word.find('=') == word.size() - 1)
+            throw doppel::bad_input("{} is empty; leave it out, or give a value", word.substr(0, word.size() - 1));
+    }
+}
+
+/// A standard stream that is closed would be the next file that is opened, and progress go into the film. What stands
+/// in for it can be neither read nor written, so that this is noticed.
+void fill_standard_streams() {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream)
+            throw doppel::io_failed("/dev/null cannot be opened in place of a closed standard stream");
+}
+
 /// One line, whatever the message quotes; throws nothing where nobody reads it.
-int failed(doppel::ExitCode code, std::string message) {
-    std::replace_if(
-        message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-    std::fprintf(stderr, "doppel: %s\n", message.c_str());
+int failed(doppel::ExitCode code, std::string_view message) {
+    std::fprintf(stderr, "doppel: %s\n", doppel::on_one_line(message).c_str());
     return static_cast<int>(code);
 }
 
@@ -36,6 +63,11 @@ int failed(doppel::ExitCode code, std::string message) {
 int main(int argc, char** argv) {
     using doppel::ExitCode;
     try {
+        fill_standard_streams();
+        std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
+        const std::vector<std::string> words(argv, argv + argc);
+        refuse_empty_arguments(words);
+
         CLI::App app("Doppel films chaotic pendulums in pairs, a hair apart, and charts how they part.", "doppel");
         app.set_version_flag("--version", fmt::format("doppel {} ({})", doppel::version(), doppel::revision()));
         app.footer(
@@ -52,11 +84,16 @@ int main(int argc, char** argv) {
         doppel::add_list(app);
         doppel::add_show(app);
         doppel::add_check(app);
-        if (argc > 1 && argv[1][0] != '-') refuse_unknown_command(app, argv[1]);
+        if (words.size() > 1 && !words[1].starts_with('-')) refuse_unknown_command(app, words[1]);
         try {
             app.parse(argc, argv);
         } catch (const CLI::ParseError& fault) {
-            if (fault.get_exit_code() == 0) return app.exit(fault);
+            if (fault.get_exit_code() == 0) {
+                std::ostringstream help;
+                app.exit(fault, help);
+                doppel::write_out(help.str());
+                return 0;
+            }
             return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", fault.what()));
         }
         return exit_code;

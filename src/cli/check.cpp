@@ -1,16 +1,19 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/options.hpp"
+#include "cli/print.hpp"
 #include "figure/computation.hpp"
 #include "film/schedule.hpp"
+#include "numeric/clock.hpp"
 #include "numeric/share_out.hpp"
+#include "numeric/time_limit.hpp"
 #include "scene/choice.hpp"
 #include "scene/outlook.hpp"
 #include "scene/wording.hpp"
 
 #include <fmt/format.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -30,28 +33,65 @@ std::string format_words(const VideoSpec& video) {
     return fmt::format("{} {}, crf {}, {}", codec, video.preset, video.crf, video.pixel_format);
 }
 
-/// What a look at the first samples tells of the whole run.
+/// What a look at the beginning of a run tells of all of it.
 struct Estimate {
     double seconds = 0;  // to simulate
-    long steps_a = 0, steps_b = 0;
+    double steps = 0;
+    bool at_least = false;  // where the look was too brief
 };
 
-Estimate estimated_simulation(const Scene& scene) {
-    using Clock = std::chrono::steady_clock;
-    PairRun pair(scene);
-    const std::atomic<bool> never = false;
-    pair.next(never);
-    const auto start = Clock::now();
-    long samples = 0;
-    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    while (samples < scene.samples && elapsed() < 0.05) {
-        pair.next(never);
-        ++samples;
+/// Makes the samples of one side brief, a few steps each, as one of the scene's may hold any number of them. The
+/// number of brief ones in one of the scene's.
+double make_brief(Scene& scene, Side& side) {
+    constexpr long few_steps = 250;
+    constexpr double brief_s = 0.01, most_parts = 1e12;
+    auto& motion = side.motion;
+    const bool adaptive = side.method.adaptive;
+    const auto steps = std::min(few_steps, motion.steps_per_sample);
+    const double parts = adaptive ? std::clamp(std::ceil(motion.sample_interval.value() / brief_s), 1.0, most_parts)
+                                  : static_cast<double>(motion.steps_per_sample) / static_cast<double>(steps);
+    const auto brief =
+        adaptive ? quotient(motion.sample_interval, {std::llround(parts), 1}) : product(side.step, {steps, 1});
+    if (!brief) return 1;
+    motion.sample_interval = *brief;
+    if (!adaptive) motion.steps_per_sample = steps;
+    scene.preset.sample_hz = quotient({1, 1}, *brief).value_or(scene.preset.sample_hz);
+    return parts;
+}
+
+Estimate estimated_side(Scene scene, Side Scene::*which, char name, const std::atomic<bool>& stop) {
+    constexpr double look_s = 0.025, patience_s = 1;
+    auto& side = scene.*which;
+    const double whole_samples = static_cast<double>(scene.samples);
+    const double steps = whole_samples * static_cast<double>(side.motion.steps_per_sample);
+    const double samples = whole_samples * make_brief(scene, side);
+    SideRun run(scene, side, name);
+    const TimeLimit limit(patience_s, stop);
+    double start = seconds_of(CLOCK_MONOTONIC), elapsed = 0, done = 0;
+    try {
+        run.next(limit.reached());
+        start = seconds_of(CLOCK_MONOTONIC);
+        for (; done < samples && elapsed < look_s; ++done) {
+            run.next(limit.reached());
+            elapsed = seconds_of(CLOCK_MONOTONIC) - start;
+        }
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::interrupted || stop) throw;
+        elapsed = seconds_of(CLOCK_MONOTONIC) - start;
     }
-    if (samples == 0) return {};
-    const double share = static_cast<double>(scene.samples) / static_cast<double>(samples);
-    const auto whole = [&](const Effort& effort) { return std::lround(static_cast<double>(effort.steps) * share); };
-    return {elapsed() * share, whole(pair.effort_a()), whole(pair.effort_b())};
+    const double share = samples / std::max(done, 1.0);
+    return {elapsed * share, side.method.adaptive ? static_cast<double>(run.effort().steps) * share : steps, done < 1};
+}
+
+Estimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop) {
+    const auto a = estimated_side(scene, &Scene::a, 'a', stop), b = estimated_side(scene, &Scene::b, 'b', stop);
+    return {a.seconds + b.seconds, a.steps + b.steps, a.at_least || b.at_least};
+}
+
+/// "1 800 000", whatever the number.
+std::string counted(double number) {
+    constexpr double most = 1e18;
+    return number < most ? grouped(std::llround(number)) : scientific(number);
 }
 
 /// Drawing and encoding, s; measured on two cores, in ms a megapixel.
@@ -72,15 +112,16 @@ double estimated_pictures(const Scene& scene) {
 void print_side(const char* name, const Side& side) {
     const auto steps = side.method.adaptive ? std::string("its own steps")
                                             : fmt::format("{} steps a sample", grouped(side.motion.steps_per_sample));
-    fmt::print("  {}      {}, {}, {}, {}\n         {}: {}\n", name, name_of(side.motion.model), side.method.title,
-               pace_words(side), steps, name_of(side.motion.model), side.why);
+    print_line("  {}      {}, {}, {}, {}", name, name_of(side.motion.model), side.method.title, pace_words(side),
+               steps);
+    print_line("         {}: {}", name_of(side.motion.model), side.why);
 }
 
 /// What to expect of a side: how far it errs, and how far any run of its precision could be right.
 void print_outlook(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
     const auto seen = outlook(scene, side, stop);
     const auto unit = side.has_angles ? "rad" : "of its size";
-    const auto say = [](const std::string& words) { fmt::print("         {}\n", words); };
+    const auto say = [](const std::string& words) { print_line("         {}", words); };
     if (side.choice && side.choice->horizon < scene.samples)
         say(fmt::format("errs by less than {} {} up to {:.3g} s; beyond, rounding forbids it",
                         scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon)));
@@ -118,43 +159,45 @@ void print_rivals(const Scene& scene, const SideSpec& spec, const Side& side, co
         } catch (const Error& fault) {
             if (fault.code() != ExitCode::bad_input) throw;
         }
-        fmt::print("         {} the accuracy {}\n", title, words);
+        print_line("         {} the accuracy {}", title, words);
     }
 }
 
 void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     const auto& video = scene.preset.video;
-    fmt::print("{}: {}\n", scene.preset.name, scene.preset.title);
-    const auto estimate = estimated_simulation(scene);
+    print_line("{}: {}", scene.preset.name, scene.preset.title);
+    const auto estimate = estimated_simulation(scene, stop);
     constexpr double patience = 2;  // s, for runs that only inform
     for (const auto* side : {&scene.a, &scene.b}) {
         const bool is_a = side == &scene.a;
         print_side(is_a ? "a" : "b", *side);
-        if (estimate.seconds < patience) print_outlook(scene, *side, stop);
+        if (!estimate.at_least && estimate.seconds < patience) print_outlook(scene, *side, stop);
         if (side->choice) print_rivals(scene, is_a ? scene.preset.a : scene.preset.b, *side, stop);
     }
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
-    fmt::print("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all\n", scene.preset.duration_s.value(),
-               scene.samples, scene.preset.sample_hz.text(), adaptive ? "about " : "",
-               grouped(estimate.steps_a + estimate.steps_b));
-    fmt::print("  video  {} frames of {}×{} at {} frames/s, {}\n", grouped(frames_of(scene)), video.size.width,
-               video.size.height, scene.fps.text(),
-               format_words(video));
-    const double pictures = estimated_pictures(scene);
-    fmt::print("  takes  about {:.2g} s to simulate, {:.2g} s to render\n", estimate.seconds,
-               std::max(estimate.seconds, pictures));
+    print_line("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all", scene.preset.duration_s.value(),
+               scene.samples, scene.preset.sample_hz.text(),
+               !adaptive           ? ""
+               : estimate.at_least ? "more than "
+                                   : "about ",
+               counted(estimate.steps));
+    print_line("  video  {} frames of {}×{} at {} frames/s, {}", grouped(frames_of(scene)), video.size.width,
+               video.size.height, scene.fps.text(), format_words(video));
+    print_line("  takes  {} {:.2g} s to simulate, {:.2g} s to render", estimate.at_least ? "more than" : "about",
+               estimate.seconds, std::max(estimate.seconds, estimated_pictures(scene)));
 }
 
-void print_figure(const FigurePreset& figure) {
+void print_figure(const FigurePreset& figure, const std::atomic<bool>& stop) {
     double units = 0;
     for (std::size_t trial = 0; trial < figure.work->trials(); ++trial) units += figure.work->units(trial);
     const auto size = figure.picture_size();
-    fmt::print("{}: {}\n  kind   {}: {} {} in {} trials\n", figure.name, figure.title, figure.kind,
-               grouped(std::lround(units)), figure.work->unit(), grouped(static_cast<long>(figure.work->trials())));
-    fmt::print("  chart  {}×{} px, {}\n", size.width, size.height, figure.chart.theme);
+    print_line("{}: {}", figure.name, figure.title);
+    print_line("  kind   {}: {} {} in {} trials", figure.kind, grouped(std::lround(units)), figure.work->unit(),
+               grouped(static_cast<long>(figure.work->trials())));
+    print_line("  chart  {}×{} px, {}", size.width, size.height, figure.chart.theme);
     const int threads = figure.work->measures_time() ? 1 : cores();
-    const auto estimate = estimated_computation(figure, threads);
-    fmt::print("  takes  {} {:.2g} s on {} thread{}, {} {}/s\n", estimate.at_least ? "more than" : "about",
+    const auto estimate = estimated_computation(figure, threads, stop);
+    print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
                estimate.seconds, threads, threads == 1 ? "" : "s", roughly(units / estimate.seconds),
                figure.work->unit());
 }
@@ -174,9 +217,9 @@ void add_check(CLI::App& app) {
     command.callback([options] {
         const auto& stop = watch_interrupts();
         for (const auto& name : options->presets) {
-            const auto preset = find_preset(name);
+            const auto preset = find_preset(name, &stop);
             if (is_figure(preset))
-                print_figure(read_figure(preset, overrides_of(*options)));
+                print_figure(read_figure(preset, overrides_of(*options)), stop);
             else
                 print_scene(make_scene(read_preset(preset, overrides_of(*options)), stop), stop);
         }

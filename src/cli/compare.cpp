@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/print.hpp"
 #include "numeric/error.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"
@@ -9,6 +10,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 
 namespace doppel {
@@ -20,21 +22,40 @@ struct CompareOptions {
     std::string expected, actual, out = "out";
 };
 
+fs::path folder_in(const fs::path& out) {
+    return out / "compare";
+}
+
+/// Of the picture of that name.
+std::string difference_name(const fs::path& actual) {
+    return actual.stem().string() + ".diff.png";
+}
+
+/// What an earlier comparison left is no news beside a picture that passes.
+void remove_difference(const fs::path& folder, const std::string& name) {
+    if (!fs::is_directory(folder)) return;
+    const auto pictures = Folder::at(folder);
+    if (pictures.entry(name).kind == Entry::Kind::file && is_written(pictures, name, {})) pictures.remove_file(name);
+}
+
 /// True if they pass; else says why and writes the difference picture.
 bool same(const fs::path& expected_path, const fs::path& actual_path, const fs::path& out) {
     const auto expected = read_png(expected_path), actual = read_png(actual_path);
     if (expected.size != actual.size) {
-        fmt::print("{}: differs from {}: {}×{} px, expected {}×{}\n", actual_path.string(), expected_path.string(),
+        print_line("{}: differs from {}: {}×{} px, expected {}×{}", actual_path.string(), expected_path.string(),
                    actual.size.width, actual.size.height, expected.size.width, expected.size.height);
         return false;
     }
     const auto verdict = compare_golden(expected, actual);
-    if (verdict.passes) return true;
-    const auto name = actual_path.stem().string() + ".diff.png";
-    PartFiles parts(out / "compare", name);
+    const auto name = difference_name(actual_path);
+    if (verdict.passes) {
+        remove_difference(folder_in(out), name);
+        return true;
+    }
+    PartFiles parts(folder_in(out), name);
     write_png(parts.file(name), difference_picture(expected, actual));
     const auto files = parts.publish();
-    fmt::print("{}: differs from {}: {}; expected, actual and difference ×16: {}\n", actual_path.string(),
+    print_line("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path.string(),
                expected_path.string(), verdict.why, files.front().string());
     return false;
 }
@@ -46,20 +67,33 @@ std::set<std::string> png_names(const fs::path& folder) {
     return names;
 }
 
+/// Every picture that either folder has. One that cannot be compared does not keep the others from it; it is the error
+/// at the end.
 bool same_folders(const fs::path& expected, const fs::path& actual, const fs::path& out) {
     const auto wanted = png_names(expected), found = png_names(actual);
     if (wanted.empty()) throw bad_input("{}: there is no PNG to compare with", expected.string());
-    long differing = 0;
-    const auto lacking = [&](const std::set<std::string>& from, const std::string& name, const fs::path& folder) {
-        if (from.contains(name)) return false;
-        fmt::print("{}: missing\n", (folder / name).string());
-        ++differing;
-        return true;
-    };
-    for (const auto& name : wanted)
-        if (!lacking(found, name, actual)) differing += !same(expected / name, actual / name, out);
-    for (const auto& name : found) lacking(wanted, name, expected);
-    fmt::print("{} of {} pictures differ\n", differing, wanted.size());
+    auto names = wanted;
+    names.insert(found.begin(), found.end());
+    long differing = 0, failed = 0;
+    std::optional<Error> first_fault;
+    for (const auto& name : names) {
+        if (!wanted.contains(name) || !found.contains(name)) {
+            print_line("{}: missing", ((wanted.contains(name) ? actual : expected) / name).string());
+            ++differing;
+            continue;
+        }
+        try {
+            differing += !same(expected / name, actual / name, out);
+        } catch (const Error& fault) {
+            print_line("{}", fault.what());
+            ++failed;
+            if (!first_fault) first_fault = fault;
+        }
+    }
+    print_line("{} of {} pictures differ", differing, names.size());
+    if (first_fault)
+        throw Error(first_fault->code(), fmt::format("{} of {} pictures could not be compared; the first: {}", failed,
+                                                     names.size(), first_fault->what()));
     return differing == 0;
 }
 

@@ -34,7 +34,7 @@ std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
     std::vector<PresetText> chosen;
     for (const auto& name : options.presets) {
         if (name != "all") {
-            chosen.push_back(find_preset(name));
+            chosen.push_back(find_preset(name, &watch_interrupts()));
             continue;
         }
         for (const auto& preset : builtin_presets())
@@ -94,6 +94,7 @@ void make_figures(const FigureCommandOptions& options) {
         },
         [&](std::size_t k, const std::string& sentence) { reports(k, [&](auto& r) { r.note(sentence); }); },
         [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
+    outlive_readers();
     try {
         run_figures(figures, {options.out, options.jobs, shard_of(options), options.merge, gl_named(options.gl)},
                     watch_interrupts(), report);

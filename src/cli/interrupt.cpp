@@ -20,10 +20,11 @@ const std::atomic<bool>& watch_interrupts() {
     // the terminal closes; nohup's wish to go on counts
     struct sigaction before {};
     if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
-    // a file over the size limit, or progress that nobody reads, is an error to report, not a reason to die
-    std::signal(SIGXFSZ, SIG_IGN);
-    std::signal(SIGPIPE, SIG_IGN);
     return interrupted;
+}
+
+void outlive_readers() {
+    std::signal(SIGPIPE, SIG_IGN);
 }
 
 }  // namespace doppel

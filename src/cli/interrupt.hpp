@@ -8,4 +8,7 @@ namespace doppel {
 /// it at once.
 const std::atomic<bool>& watch_interrupts();
 
+/// From now on, whoever reads the progress may go away, and the work goes on.
+void outlive_readers();
+
 }  // namespace doppel

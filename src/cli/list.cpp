@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/print.hpp"
 #include "figure/preset.hpp"
 #include "integrate/methods.hpp"
 #include "scene/preset.hpp"
@@ -20,18 +21,18 @@ void list_presets(bool figures) {
         lines.emplace_back(preset.name, figures ? read_figure(preset).title : read_preset(preset).title);
         width = std::max(width, preset.name.size());
     }
-    for (const auto& [name, title] : lines) fmt::print("{:<{}}  {}\n", name, width, title);
+    for (const auto& [name, title] : lines) print_line("{:<{}}  {}", name, width, title);
 }
 
 /// A table: value of `integrator`, order, step or tolerance, models, properties.
 void list_methods() {
-    fmt::print("{:<20} {:>5}  {:<10} {:<32} {}\n", "integrator", "order", "goes by", "models", "properties");
+    print_line("{:<20} {:>5}  {:<10} {:<32} {}", "integrator", "order", "goes by", "models", "properties");
     for (const auto& method : methods()) {
         std::vector<std::string_view> models;
         if (method.angles) models.emplace_back("angles");
         if (method.constraints) models.emplace_back("constraints");
         if (method.mechanism) models.emplace_back("mechanism");
-        fmt::print("{:<20} {:>5}  {:<10} {:<32} {}: {}\n", method.name,
+        print_line("{:<20} {:>5}  {:<10} {:<32} {}: {}", method.name,
                    method.order == 0 ? "any" : fmt::format("{}", method.order),
                    method.adaptive ? "tolerance" : "step_s", fmt::format("{}", fmt::join(models, ", ")), method.title,
                    method.properties);
@@ -49,7 +50,8 @@ void add_list(CLI::App& app) {
     command.callback([what] {
         if (*what == "methods") return list_methods();
         list_presets(false);
-        fmt::print("\nfigures, for doppel figure:\n");
+        print_line("");
+        print_line("figures, for doppel figure:");
         list_presets(true);
     });
 }

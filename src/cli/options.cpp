@@ -68,7 +68,7 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     const auto& stop = watch_interrupts();
     std::vector<Scene> scenes;
     for (const auto& name : options.presets) {
-        scenes.push_back(make_scene(read_preset(find_preset(name), overrides), stop));
+        scenes.push_back(make_scene(read_preset(find_preset(name, &stop), overrides), stop));
         for (std::size_t i = 0; i + 1 < scenes.size(); ++i)
             if (scenes[i].preset.name == scenes.back().preset.name)
                 throw bad_input("{} and {} would both be written to {}/", options.presets[i], name,
@@ -80,6 +80,8 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options) {
     const auto& stop = watch_interrupts();
     const auto style = progress_style(options.progress);
+    outlive_readers();
+    for (const auto& scene : scenes) check_range(scene, run_options);
     for (const auto& scene : scenes) {
         ProgressReport report(style, scene.preset.name, run_options.pictures ? "frames" : "samples");
         try {

@@ -1,5 +1,8 @@
 #include "cli/progress.hpp"
 
+#include "cli/print.hpp"
+#include "numeric/text.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -65,11 +68,13 @@ void ProgressReport::operator()(const Progress& progress) {
     const double left = static_cast<double>(progress.total - progress.done) / rate;
     const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
     if (style_ == ProgressStyle::json) {
-        const nlohmann::ordered_json line = {{"event", "progress"},   {"preset", name_},         {"unit", unit_},
-                                             {"done", progress.done}, {"total", progress.total}, {"per_second", rate},
-                                             {"seconds_left", left}};
-        say(stdout, "{}\n", line.dump());
-        std::fflush(stdout);
+        tell({{"event", "progress"},
+              {"preset", name_},
+              {"unit", unit_},
+              {"done", progress.done},
+              {"total", progress.total},
+              {"per_second", rate},
+              {"seconds_left", left}});
     } else if (style_ == ProgressStyle::bar) {
         say(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
             progress.done, progress.total, unit_, rate, unit_, duration(left));
@@ -83,12 +88,17 @@ void ProgressReport::operator()(const Progress& progress) {
 void ProgressReport::note(const std::string& sentence) {
     if (style_ == ProgressStyle::none) return;
     clear();
-    if (style_ == ProgressStyle::json) {
-        say(stdout, "{}\n", nlohmann::ordered_json{{"event", "note"}, {"preset", name_}, {"text", sentence}}.dump());
-        std::fflush(stdout);
-    } else {
-        say(stderr, "{}: {}\n", name_, sentence);
-    }
+    if (style_ == ProgressStyle::json)
+        tell({{"event", "note"}, {"preset", name_}, {"text", sentence}});
+    else
+        say(stderr, "{}: {}\n", name_, on_one_line(sentence));
+}
+
+void ProgressReport::tell(const nlohmann::ordered_json& event) {
+    const auto fault =
+        try_write_out(event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    const bool left = fault == std::errc::broken_pipe;  // of their own accord
+    if (fault && !left) unheard_ = fault;
 }
 
 void ProgressReport::clear() {
@@ -103,7 +113,8 @@ void ProgressReport::done(const RunResult& result) {
         nlohmann::ordered_json line = {
             {"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
         for (const auto& file : result.files) line["files"].push_back(file.string());
-        say(stdout, "{}\n", line.dump());
+        tell(line);
+        if (unheard_) throw unwritten(unheard_);
         return;
     }
     constexpr long few = 10;  // whose rate says nothing

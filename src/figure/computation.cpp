@@ -1,12 +1,11 @@
 #include "figure/computation.hpp"
 
 #include "numeric/clock.hpp"
+#include "numeric/time_limit.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 namespace doppel {
 namespace {
@@ -127,12 +126,11 @@ void Computation::tell_estimate(double time) {
                              figure_.work->unit(), roughly(rate), threads_, duration_words(left / rate)));
 }
 
-ComputationEstimate estimated_computation(const FigurePreset& figure, int threads) {
+ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
     constexpr double allowed_s = 1;
     const auto& work = *figure.work;
     const std::size_t trials = work.trials(), together = work.together();
     double total = 0, done = 0;
-    std::atomic<bool> stop = false;
     const double before = now();
     for (std::size_t trial = 0; trial < trials; ++trial) {
         total += work.units(trial);
@@ -141,26 +139,22 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
         if (work.units(trial) == 0) work.compute(trial, {&numbers, 1}, stop);
     }
     const double start = now();
-    const std::jthread watch([&](const std::stop_token& quit) {
-        while (!quit.stop_requested() && now() - start < allowed_s)
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        stop = true;
-    });
+    const TimeLimit limit(allowed_s, stop);
     // from all over the work, for trials differ: steps of the golden section meet no pattern
     constexpr double golden = 0.6180339887498949;
     const std::size_t groups = (trials + together - 1) / together;
     try {
         double place = 0.5;
-        for (std::size_t i = 0; i < groups && !stop; ++i, place += golden - std::floor(place + golden)) {
+        for (std::size_t i = 0; i < groups && !limit.reached(); ++i, place += golden - std::floor(place + golden)) {
             const auto first =
                 static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(groups)) * together;
             if (work.units(first) == 0) continue;
             std::vector<TrialNumbers> numbers(std::min(together, trials - first));
-            work.compute(first, numbers, stop);
+            work.compute(first, numbers, limit.reached());
             for (std::size_t k = 0; k < numbers.size(); ++k) done += work.units(first + k);
         }
     } catch (const Error& fault) {
-        if (fault.code() != ExitCode::interrupted) throw;
+        if (fault.code() != ExitCode::interrupted || stop) throw;
     }
     const double cpu_s = start - before + (now() - start) * (done > 0 ? total / done : static_cast<double>(groups));
     const double shared = std::min(static_cast<double>(threads), static_cast<double>(groups));

@@ -66,11 +66,12 @@ private:
     double done_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };
 
-/// What computing a figure takes, from some of its trials.
+/// What computing a figure takes, from some of its trials. Throws what a trial throws; exit 130 soon after `stop` is
+/// set.
 struct ComputationEstimate {
     double seconds;  // on as many threads
     bool at_least;   // where not even one trial was done in the time allowed
 };
-ComputationEstimate estimated_computation(const FigurePreset& figure, int threads);
+ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop);
 
 }  // namespace doppel

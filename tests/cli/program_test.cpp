@@ -1,5 +1,5 @@
 #include "cli/process.hpp"
-#include "output/png.hpp"
+#include "scene/preset.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -21,6 +21,7 @@ using test::left_nothing;
 using test::start;
 using test::wait_for;
 using test::with;
+using test::write_bytes;
 
 const std::vector<std::string> tiny{"--set", "scene.duration_s=0.1", "--size", "160x90", "--progress", "none"};
 
@@ -113,6 +114,10 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"render", "butterfly", "--format", "avi"}, "--format"},
         {{"render", "butterfly", "--quality", "best", "--set", "video.crf=3"},
          "video.crf is given twice: --set video.crf and --quality best"},
+        {{"render", "butterfly", "--format", "gif", "--quality", "best"},
+         "--quality best: [video] preset is of mp4 and webm; the format is \"gif\""},
+        {{"render", "butterfly", "--format", "png", "--set", "video.crf=3"},
+         "--set video.crf: [video] crf is of mp4 and webm; the format is \"png\""},
         {{"render", "butterfly", "butterfly"}, "butterfly and butterfly would both be written to butterfly/"},
         {{"render", "butterfly", "--set", "system.mass_kg=[1, 0]"},
          "--set system.mass_kg: [system] mass_kg[1] must be > 0; it is 0"},
@@ -128,6 +133,83 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         EXPECT_EQ(result.out, "");
     }
     EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Program, SamplesThatALaterPresetLacksAreToldBeforeTheFirstRuns) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "long.toml", "[scene]\nduration_s = 2\n");
+    write_bytes(folder / "short.toml", "[scene]\nduration_s = 1\n");
+    write_bytes(folder / "rare.toml", "[scene]\nduration_s = 2\n[video]\nfps = 1\n");
+    const auto result = doppel(folder, {"render", "long.toml", "short.toml", "--frames", "130:140"});
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(result.err, "doppel: --frames 130:140: short has the samples 0 to 120; A:B must have 0 ≤ A < B ≤ 121\n");
+    const auto between = doppel(folder, {"render", "long.toml", "rare.toml", "--frames", "130:140"});
+    EXPECT_EQ(between.code, 2);
+    EXPECT_EQ(between.err, "doppel: --frames 130:140: no frame of rare falls into it; every 120th sample is one\n");
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Program, TheLongestNameLeavesRoomForEveryEnding) {
+    const auto folder = fresh_folder();
+    const std::string name(longest_preset_name, 'n');
+    write_bytes(folder / (name + ".toml"), "title = \"long\"\n[scene]\nduration_s = 0.1\n");
+    const auto film = [&](const std::string& format) {
+        return std::vector<std::string>{"render",     name + ".toml",
+                                        "--format",   format,
+                                        "--size",     "64x64",
+                                        "--progress", "none",
+                                        "--set",      "video.poster_s=0.1",
+                                        "--set",      "video.contact_sheet=[2, 2]"};
+    };
+    for (const char* format : {"mp4", "gif", "png"}) {
+        const auto result = doppel(folder, film(format));
+        EXPECT_EQ(result.code, 0) << result.err;
+    }
+    const auto failed = doppel(
+        folder, {"simulate", name + ".toml", "--set", "system.step_s=\"1/3\"", "--set", "scene.sample_hz=3", "--set",
+                 "scene.duration_s=3000", "--set", "system.model=\"constraints\"", "--progress", "none"});
+    EXPECT_EQ(failed.code, 3) << failed.err;
+    write_bytes(folder / (name + ".toml"), "title = \"long\"\n[scene]\nkind = \"sweep\"\nduration_s = 0.1\n");
+    for (const auto& shard : {std::vector<std::string>{"--shard", "100000/100000"}, {}}) {
+        const auto result = doppel(folder, with({"figure", name + ".toml", "--progress", "none"}, shard));
+        EXPECT_EQ(result.code, 0) << result.err;
+    }
+}
+
+TEST(Program, ADistanceBeyondDoubleNamesTheScene) {
+    const auto folder = fresh_folder();
+    const auto result = doppel(folder, {"simulate", "butterfly", "--set", "system.length_m=1e300", "--set",
+                                        "scene.duration_s=0.1", "--progress", "none"});
+    EXPECT_EQ(result.code, 3);
+    EXPECT_EQ(
+        result.err,
+        "doppel: butterfly: the distance of the two sides at t = 0 s is inf: what they differ in has squares beyond "
+        "the range of double\n");
+    EXPECT_TRUE(left_nothing(folder));
+}
+
+TEST(Program, ACheckEndsHoweverManyStepsThereAre) {
+    const auto folder = fresh_folder();
+    const auto check = [&](const std::vector<std::string>& sets, const char* words) {
+        std::vector<std::string> line{"check", "butterfly"};
+        for (const auto& set : sets) line.insert(line.end(), {"--set", set});
+        const auto start = std::chrono::steady_clock::now();
+        const auto result = doppel(folder, line);
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_NE(result.out.find(words), std::string::npos) << result.out;
+        // measured 0.1 s, and 2.1 s where not even a brief sample is done
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    };
+    check({"system.step_s=\"1/1200000000000\""}, "72 000 000 000 000 steps in all");
+    check({"scene.sample_hz=\"1/100000\"", "scene.duration_s=100000"}, "6 000 000 000 steps in all");
+    check({"system.integrator=\"taylor\"", "scene.sample_hz=\"1/100000\"", "scene.duration_s=100000"}, "about ");
+    check({"system.integrator=\"taylor\"", "system.omega_deg_per_s=1e13"}, "more than ");
+
+    const auto child = start(folder, {"check", "butterfly", "--set", "system.integrator=\"taylor\"", "--set",
+                                      "system.omega_deg_per_s=1e13"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    kill(child, SIGINT);
+    EXPECT_EQ(wait_for(child), 130);
 }
 
 TEST(Program, ExitsWith3WhereTheMethodFails) {
@@ -225,32 +307,6 @@ TEST(Program, ReportsProgressForPeopleAndPrograms) {
     const auto plain = doppel(folder, {"render", "butterfly", "--size", "160x90", "--set", "scene.duration_s=1"});
     EXPECT_NE(plain.err.find("butterfly: 121 frames in "), std::string::npos) << plain.err;
     EXPECT_EQ(plain.err.find('\r'), std::string::npos) << "no bar where there is no terminal";
-}
-
-TEST(Compare, PassesDiffersAndShowsTheDifference) {
-    const auto folder = fresh_folder();
-    const auto frames = with({"render", "calm", "--format", "png", "--frames", "0:3"}, tiny);
-    ASSERT_EQ(doppel(folder, with(frames, {"-o", "one"})).code, 0);
-    ASSERT_EQ(doppel(folder, with(frames, {"-o", "two"})).code, 0);
-    const auto same = doppel(folder, {"compare", "one/calm/frames", "two/calm/frames"});
-    EXPECT_EQ(same.code, 0) << same.out;
-    EXPECT_EQ(same.out, "0 of 3 pictures differ\n");
-
-    auto picture = read_png(folder / "two/calm/frames/000001.png");
-    for (int i = 0; i < 40; ++i) picture.at(10 + i, 20)[0] ^= 64;
-    write_png(folder / "two/calm/frames/000001.png", picture);
-    fs::remove(folder / "two/calm/frames/000002.png");
-    const auto differs = doppel(folder, {"compare", "one/calm/frames", "two/calm/frames"});
-    EXPECT_EQ(differs.code, 1);
-    EXPECT_NE(differs.out.find("000001.png: differs from"), std::string::npos) << differs.out;
-    EXPECT_NE(differs.out.find("40 pixels differ by more than 3/255, 4 may"), std::string::npos) << differs.out;
-    EXPECT_NE(differs.out.find("two/calm/frames/000002.png: missing"), std::string::npos);
-    EXPECT_TRUE(fs::exists(folder / "out/compare/000001.diff.png"));
-    EXPECT_EQ(doppel(folder, {"compare", "one/calm/frames/000000.png", "two/calm/frames/000000.png"}).code, 0);
-    EXPECT_EQ(doppel(folder, {"compare", "one/calm/frames", "two/calm/frames/000000.png"}).code, 2);
-
-    std::ofstream(folder / "broken.png") << "no picture";
-    EXPECT_EQ(doppel(folder, {"compare", "broken.png", "two/calm/frames/000000.png"}).code, 4);
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "numeric/error.hpp"
+#include "numeric/text.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace doppel {
+
+/// Writes to standard output, at once; tells why it could not.
+std::error_code try_write_out(std::string_view text);
+
+/// What such a failure is to the program: exit 4.
+Error unwritten(const std::error_code& why);
+
+/// As try_write_out(); throws that Error.
+void write_out(std::string_view text);
+
+/// One line of it, for people: whatever it quotes, it is shown and not obeyed.
+template <class... Args>
+void print_line(fmt::format_string<Args...> format, Args&&... args) {
+    write_out(on_one_line(fmt::format(format, std::forward<Args>(args)...)) + "\n");
+}
+
+}  // namespace doppel

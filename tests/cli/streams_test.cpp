@@ -1,0 +1,182 @@
+// What goes to and comes from the terminal, pipes and closed descriptors. With the real program.
+#include "cli/sandbox.hpp"
+
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+
+#include <csignal>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+const std::string quick = " --set 'system.integrator=\"taylor\"' --set scene.duration_s=0.1 ";
+
+TEST(Streams, WhatCannotBePrintedIsExit4) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(
+        shell(folder, "\"$DOPPEL\" render calm --format png --size 64x64 --frames 0:2 -o one --progress none").code, 0);
+    ASSERT_EQ(
+        shell(folder, "\"$DOPPEL\" render triple --format png --size 64x64 --frames 0:2 -o two --progress none").code,
+        0);
+    for (const std::string command :
+         {"show butterfly", "list", "list methods", "check calm", "check fig6", "--help", "render --help", "--version",
+          "compare one/calm/frames one/calm/frames", "compare one/calm/frames two/triple/frames"}) {
+        for (const auto& [to, why] :
+             {std::pair(">/dev/full", "No space left on device"), std::pair(">&-", "Bad file descriptor")}) {
+            const auto result = shell(folder, "\"$DOPPEL\" " + command + " " + to);
+            EXPECT_EQ(result.code, 4) << command << to;
+            EXPECT_EQ(result.err, fmt::format("doppel: standard output cannot be written: {}\n", why)) << command << to;
+        }
+    }
+}
+
+TEST(Streams, JsonThatCannotBeWrittenIsToldWhenTheWorkIsDone) {
+    const auto folder = fresh_folder();
+    for (const auto& command : {"simulate butterfly" + quick, std::string("figure fig6 --size 160x90")}) {
+        const bool is_figure = command.starts_with("figure");
+        const auto csv = folder / "out" / (is_figure ? "fig6/fig6.csv" : "butterfly/butterfly.csv");
+        const auto full = shell(folder, "\"$DOPPEL\" " + command + " --progress json >/dev/full");
+        EXPECT_EQ(full.code, 4) << full.err;
+        EXPECT_EQ(full.err, "doppel: standard output cannot be written: No space left on device\n");
+        EXPECT_TRUE(fs::exists(csv)) << command;
+        fs::remove_all(folder / "out");
+        // who stops reading has heard enough
+        const auto left = shell(folder, "(\"$DOPPEL\" " + command + " --progress json; echo $? >code) | true");
+        EXPECT_EQ(bytes_of(folder / "code"), "0\n") << left.err;
+        EXPECT_TRUE(fs::exists(csv)) << command;
+    }
+}
+
+TEST(Streams, JsonSaysAnyPath) {
+    const auto folder = fresh_folder();
+    const auto result =
+        shell(folder, "\"$DOPPEL\" simulate butterfly" + quick + "--progress json -o \"$(printf 'a\\377b')\"");
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(nlohmann::json::parse(result.out)["files"][0],
+              "a\xef\xbf\xbd"
+              "b/butterfly/butterfly.csv");
+}
+
+TEST(Streams, ClosedOnesAreNotTakenForTheFilm) {
+    const auto folder = fresh_folder();
+    const auto run = [&](const std::string& streams) {
+        // a progress line every 5 s of a run that would not end before
+        const auto result = shell(folder, "\"$DOPPEL\" simulate butterfly --set scene.duration_s=0.1 " + streams);
+        EXPECT_EQ(result.code, 0) << streams;
+        const auto csv = bytes_of(folder / "out/butterfly/butterfly.csv");
+        fs::remove_all(folder / "out");
+        return csv;
+    };
+    const auto whole = run(">/dev/null 2>&1");
+    for (const auto* streams : {"<&- >&- 2>&-", "<&-", ">&-", "2>&-", ">&- 2>&-"})
+        EXPECT_EQ(run(streams), whole) << streams;
+    // where the files of the run get their numbers
+    const auto child =
+        start(folder, {"simulate", "butterfly", "--set", "scene.duration_s=100000", "--progress", "plain"}, [] {
+            for (const int stream : {0, 1, 2}) close(stream);
+        });
+    const auto link = [&](int number) {
+        std::error_code ignored;
+        return fs::read_symlink(fmt::format("/proc/{}/fd/{}", child, number), ignored).string();
+    };
+    EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/butterfly.csv.part"); }));
+    for (const int stream : {0, 1, 2}) EXPECT_EQ(link(stream), "/dev/null") << stream;
+    kill(child, SIGKILL);
+    wait_for(child);
+}
+
+TEST(Streams, AnEmptyArgumentIsNotTakenForNone) {
+    const auto folder = fresh_folder();
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+        {{"render", "butterfly", "--size", ""}, "--size is empty"},
+        {{"render", "butterfly", "--size="}, "--size is empty"},
+        {{"render", "butterfly", "--frames", ""}, "--frames is empty"},
+        {{"render", "butterfly", "--format", ""}, "--format is empty"},
+        {{"render", "butterfly", "--quality", ""}, "--quality is empty"},
+        {{"render", "butterfly", "--gl", ""}, "--gl is empty"},
+        {{"render", "butterfly", "-o", ""}, "-o is empty"},
+        {{"render", "butterfly", "--out="}, "--out is empty"},
+        {{"render", "butterfly", "--set", ""}, "--set is empty"},
+        {{"render", "butterfly", "-j", ""}, "-j is empty"},
+        {{"render", "butterfly", "--progress", ""}, "--progress is empty"},
+        {{"figure", "fig6", "--shard", ""}, "--shard is empty"},
+        {{"figure", "fig6", "--shard="}, "--shard is empty"},
+        {{"figure", "fig6", "--scale", ""}, "--scale is empty"},
+        {{"render", ""}, "argument 2 is empty"},
+        {{"render", "butterfly", ""}, "argument 3 is empty"},
+        {{""}, "argument 1 is empty"},
+    };
+    for (const auto& [arguments, words] : cases) {
+        const auto result = doppel(folder, arguments);
+        EXPECT_EQ(result.code, 2) << words;
+        EXPECT_EQ(result.err, fmt::format("doppel: {}; leave it out, or give a value\n", words));
+    }
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Streams, APresetsWordsAreShownAndNotObeyed) {
+    const auto folder = fresh_folder();
+    const auto clean = [](const std::string& text) {
+        for (const char c : text)
+            if (c != '\n' && (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)) return false;
+        return text.find("\xc2\x9b") == std::string::npos;
+    };
+    // refused where they would be drawn; quoted in a message all the same
+    const std::string evil = "\\u001b]0;owned\\u0007\\u009b31m\\u202e";
+    write_bytes(folder / "film.toml", "title = \"" + evil + "\"\n");
+    write_bytes(folder / "figure.toml", "title = \"" + evil + "\"\n[scene]\nkind = \"sweep\"\n");
+    write_bytes(folder / "key.toml", "\"" + evil + "\" = 1\n");
+    write_bytes(folder / "choice.toml", "[system]\nmodel = \"" + evil + "\"\n");
+    write_bytes(folder / "parts.toml",
+                "[[system.force]]\nkind = \"spring\"\nname = \"" + evil + "\"\nfrom = \"" + evil + "\"\nto = [0, 1]\n");
+    for (const char* preset : {"film.toml", "figure.toml", "key.toml", "choice.toml", "parts.toml"}) {
+        const auto result = doppel(folder, {"check", preset});
+        EXPECT_EQ(result.code, 2) << preset << result.out;
+        EXPECT_TRUE(one_line(result.err)) << result.err;
+        EXPECT_TRUE(clean(result.err)) << result.err;
+    }
+    // on a terminal, not in a file
+    write_bytes(folder / "raw.toml", "# \x1b[31mred\n");
+    EXPECT_EQ(doppel(folder, {"show", "raw.toml"}).out, "# \x1b[31mred\n");
+    const auto terminal = shell(folder, "script -qec '\"$DOPPEL\" show raw.toml' /dev/null | tr -d '\\r'");
+    if (terminal.code == 0) {
+        EXPECT_EQ(terminal.out, "#  [31mred\n");
+    }
+}
+
+TEST(Streams, APipeAsPresetIsReadAndDoesNotSwallowCtrlC) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(mkfifo((folder / "pipe.toml").c_str(), 0600), 0);
+    const auto text = fs::path(DOPPEL_SOURCE_DIR) / "presets/calm.toml";
+    const auto result = shell(folder, "cat " + text.string() + " >pipe.toml & \"$DOPPEL\" simulate pipe.toml" + quick);
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_TRUE(fs::exists(folder / "out/pipe/pipe.csv"));
+    EXPECT_EQ(shell(folder, "cat " + text.string() + " | \"$DOPPEL\" check /dev/stdin").code, 0);
+
+    write_bytes(folder / "work.toml", "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"pipe.toml\"\n");
+    for (const auto& command : std::vector<std::vector<std::string>>{{"render", "pipe.toml"},
+                                                                     {"simulate", "pipe.toml"},
+                                                                     {"check", "pipe.toml"},
+                                                                     {"show", "pipe.toml"},
+                                                                     {"figure", "pipe.toml"}}) {
+        const auto child = start(folder, command);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        kill(child, SIGINT);
+        EXPECT_EQ(wait_at_most(child, 2), 130) << command[0];
+        EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n") << command[0];
+    }
+    const auto inside = doppel(folder, {"figure", "work.toml"});
+    EXPECT_EQ(inside.code, 2);
+    EXPECT_EQ(
+        inside.err,
+        "doppel: work.toml:4:1: [work_precision] scene cannot be taken: pipe.toml is not a file; a preset is a TOML "
+        "file\n");
+    write_bytes(folder / "work.toml", "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"/dev/zero\"\n");
+    EXPECT_EQ(doppel(folder, {"check", "work.toml"}).code, 2);
+}
+
+}  // namespace
+}  // namespace doppel
