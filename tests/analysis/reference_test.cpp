@@ -19,18 +19,36 @@ MotionSpec chain(std::vector<double> angle_deg) {
     return spec;
 }
 
-TEST(Reference, OfTwoEquationsThatAgree) {
-    const auto reference = reference_end(chain({150, 90}), {5, 1}, 1e-26, never);
-    EXPECT_LT(reference.disagreement, 1e-28);  // measured 8e-33
-    ASSERT_EQ(reference.end.size(), 2u);
-    // a method of another family, in double
-    auto spec = chain({150, 90});
-    spec.method = "dop853";
-    spec.tolerance = parse_quad("1e-14");
-    spec.sample_interval = {5, 1};
+/// How far apart two angles are, rad, up to whole turns: from sines in quad, so that no turn costs a digit.
+double apart(const Quad& one, const Quad& other) {
+    return std::abs(static_cast<double>(Quad(2 * sin(Quad((one - other) / 2)))));
+}
+
+/// The end of a motion by another method or equations than those of the reference, in quad.
+Bobs<Quad> end_by(MotionSpec spec, const char* method, const char* tolerance, const Rational& seconds) {
+    spec.method = method;
+    spec.precision = Precision::in_quad;
+    spec.tolerance = parse_quad(tolerance);
+    spec.sample_interval = seconds;
     const auto motion = make_motion(spec);
     motion->advance(never);
-    EXPECT_LT(angle_error(motion->observe().bobs, reference.end), 1e-10);  // measured 4e-13
+    return motion->observe().exact;
+}
+
+TEST(Reference, OfTwoEquationsThatAgree) {
+    const auto spec = chain({150, 90});
+    const auto reference = reference_end(spec, {5, 1}, 1e-26, never);
+    EXPECT_LT(reference.disagreement, 2e-30);  // measured 4e-32 in θ1, 3e-31 in θ2
+    ASSERT_EQ(reference.end.size(), 2u);
+    // the lower rod turns over: as particles its angle ends a whole turn away
+    EXPECT_GT(std::abs(static_cast<double>(reference.end[1].theta)), 2 * pi);
+    auto rods = spec;
+    rods.model = Model::constraints;
+    const auto particles = end_by(rods, "taylor", "1e-32", {5, 1}), other = end_by(spec, "dop853", "1e-22", {5, 1});
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_LT(apart(reference.end[i].theta, particles[i].theta), 2e-30) << i;  // measured 4e-32, 3.2e-31
+        EXPECT_LT(apart(reference.end[i].theta, other[i].theta), 3e-21) << i;      // measured 1.5e-22, 4.3e-22
+    }
 }
 
 TEST(Reference, OfOneLinkAfterItsPeriod) {
@@ -47,7 +65,8 @@ TEST(Reference, OfOneLinkAfterItsPeriod) {
     const Quad root = 2 * pi_of<Quad>() / a;
     spec.chain->gravity = root * root;
     const auto reference = reference_end(spec, {1, 1}, 1e-26, never);
-    EXPECT_LT(static_cast<double>(abs(Quad(reference.end[0].theta - pi_of<Quad>() / 2))), 1e-29);  // measured 2e-33
+    EXPECT_LT(static_cast<double>(abs(Quad(reference.end[0].theta - pi_of<Quad>() / 2))), 3e-33);  // measured 4e-34
+    EXPECT_LT(static_cast<double>(abs(reference.end[0].omega)), 5e-32);                            // measured 6e-33
 }
 
 TEST(Reference, RefusesWhereTheTwoDisagree) {
@@ -68,7 +87,10 @@ TEST(Reference, OfAMechanismByTwoTolerances) {
     spec.parts->particles.push_back({1, Place<Quad>(1, 0), Place<Quad>(0, 1)});
     spec.parts->forces.emplace_back(Spring<Quad>{0, Place<Quad>(0, 0), 1, 0, 0});
     const auto reference = reference_end(spec, {2, 1}, 1e-26, never);
-    EXPECT_LT(static_cast<double>(abs(Quad(reference.end[0].x - cos(Quad(2))))), 1e-28);  // measured 1e-31
+    const Quad x = cos(Quad(2)), y = sin(Quad(2));
+    const auto& end = reference.end.at(0);
+    for (const Quad& error : {Quad(end.x - x), Quad(end.y - y), Quad(end.vx + y), Quad(end.vy - x)})
+        EXPECT_LT(static_cast<double>(abs(error)), 4e-34);  // measured 5e-35
 }
 
 TEST(Reference, StopsWhenAsked) {
