@@ -3,6 +3,7 @@
 #include "film/survey.hpp"
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
+#include "picture/font.hpp"
 #include "scene/resolved.hpp"
 
 #include <gtest/gtest.h>
@@ -44,6 +45,38 @@ TEST(Layouts, PortraitStacksPanelsOfOneScale) {
     EXPECT_EQ(layout.panels[0].px_per_m, layout.panels[1].px_per_m);
 }
 
+/// What a label covers, px: letters of DejaVu Sans rise 0.73 em above the baseline, tails fall 0.24 em below it.
+Area box_of(const Label& label) {
+    const float width = text_width(label.text, label.size, label.weight);
+    const float share = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
+    const float left = label.anchor.x - share * width;
+    return {left, label.anchor.y - 0.73f * label.size, left + width, label.anchor.y + 0.24f * label.size};
+}
+
+/// The words of the picture after the shots 0 … last.
+std::vector<Label> labels_of(const Scene& scene, long last) {
+    Composer composer(scene);
+    for_each_shot(scene, last, [&](const Shot& shot) { composer.add(shot); });
+    std::vector<Label> labels;
+    for (const auto& list : {composer.backdrop(), composer.frame()})
+        for (const auto& item : list)
+            if (const auto* label = std::get_if<Label>(&item); label && !label->text.empty()) labels.push_back(*label);
+    return labels;
+}
+
+void expect_room_for_words(const Scene& scene, const Layout& layout, const Area& picture, const std::string& what) {
+    const auto labels = labels_of(scene, 60);
+    ASSERT_GE(labels.size(), 4u) << what;  // title, subtitle, speed, clock
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        const auto box = box_of(labels[i]);
+        EXPECT_TRUE(picture.holds(box)) << what << ": " << labels[i].text;
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_FALSE(box.overlaps(box_of(labels[j]))) << what << ": " << labels[i].text << " | " << labels[j].text;
+        for (const auto& panel : layout.panels)
+            EXPECT_TRUE(panel.area.holds(box) || !panel.area.overlaps(box)) << what << ": " << labels[i].text;
+    }
+}
+
 TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
     const std::vector<std::string> all{"\"distance\"", "\"exponent\"", "\"energy\"", "\"rod-error\"", "\"rod-force\""};
     for (const auto* layout_name : {"side-by-side", "overlay", "phase", "portrait", "ensemble"})
@@ -54,7 +87,7 @@ TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
                 if (std::string(layout_name) == "portrait" && std::string(size) != "[1080, 1920]") continue;
                 const auto scene = scene_of(
                     "butterfly", {fmt::format("video.layout=\"{}\"", layout_name), fmt::format("video.size={}", size),
-                                  "video.panels=" + panels + "]", "scene.duration_s=1"});
+                                  "video.panels=" + panels + "]", "scene.duration_s=1", "b.angle_deg=[60, -90]"});
                 const auto layout = make_layout(scene);
                 const auto what = fmt::format("{} {} {}", layout_name, size, strips);
                 std::vector<Area> areas;
@@ -69,6 +102,7 @@ TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
                     for (std::size_t j = 0; j < i; ++j)
                         EXPECT_FALSE(areas[i].overlaps(areas[j])) << what << ' ' << i << ' ' << j;
                 }
+                expect_room_for_words(scene, layout, picture, what);
                 // the pendulums' circle stays inside its panel
                 for (const auto& panel : layout.panels) {
                     const float reach = layout.reach;
@@ -127,7 +161,7 @@ TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
     ASSERT_EQ(scene.crowd.size(), 5u);
     const auto degrees = [](const MotionSpec& spec) { return static_cast<double>(spec.chain->angle[0]) * 180 / pi; };
     for (std::size_t k = 0; k < 5; ++k)
-        EXPECT_NEAR(degrees(scene.crowd[k]), 120 + 0.025 * static_cast<double>(k), 1e-12);
+        EXPECT_NEAR(degrees(scene.crowd[k]), 120 + 0.025 * static_cast<double>(k), 1e-13);  // measured 1.4e-14
     // its ends are the pair, to the last bit
     for_each_shot(scene, 60, [](const Shot& shot) {
         EXPECT_EQ(shot.crowd.front().back().x, shot.moment.a.bobs.back().x) << shot.moment.sample;
@@ -146,7 +180,7 @@ TEST(Layouts, ExponentSoFarIsTheSlopeOfTheLogarithm) {
     Moment moment;
     moment.distance = 1e-4 * std::exp(0.7 * 10);
     moment.sample = 1200;
-    EXPECT_NEAR(*exponent_so_far(scene, moment, 1e-4), 0.7, 1e-14);
+    EXPECT_NEAR(*exponent_so_far(scene, moment, 1e-4), 0.7, 1e-15);  // measured 0
     EXPECT_FALSE(exponent_so_far(scene, moment, 0));
     moment.sample = 179;  // before a twentieth of 30 s
     EXPECT_FALSE(exponent_so_far(scene, moment, 1e-4));
