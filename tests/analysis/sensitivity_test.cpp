@@ -25,9 +25,10 @@ TEST(Sensitivity, OfTheFourProblems) {
 TEST(Sensitivity, OfSmallSwingsInClosedForm) {
     // one link near its rest: θ(t) = θ(0) cos ωt; near the upright: cosh ωt, over many parts of the time
     const double rate = std::sqrt(9.8);
-    EXPECT_NEAR(angle_sensitivity(from_rest({1e-4}), 2, never), std::abs(std::cos(2 * rate)), 1e-8);  // measured 3e-9
-    const double grown = std::cosh(6 * rate);                                                         // 7e7
-    EXPECT_NEAR(angle_sensitivity(from_rest({180}), 6, never) / grown, 1, 1e-8);                      // measured 1e-9
+    EXPECT_NEAR(angle_sensitivity(from_rest({1e-4}), 2, never), std::abs(std::cos(2 * rate)),
+                3e-11);                                                            // measured 5.1e-12
+    const double grown = std::cosh(6 * rate);                                      // 7e7
+    EXPECT_NEAR(angle_sensitivity(from_rest({180}), 6, never) / grown, 1, 7e-13);  // measured 1.1e-13
 }
 
 TEST(Sensitivity, IsWhatAnErrorGrowsBy) {

@@ -24,7 +24,7 @@ TEST(Spectrum, KeepsTheVolume) {
     for (const std::size_t links : {1, 2, 3, 4})
         for (const auto& sample : lyapunov_spectrum(uneven(links), {.duration_s = 10, .samples = 10}, never)) {
             ASSERT_EQ(sample.exponents.size(), 2 * links);
-            EXPECT_NEAR(sum_of(sample.exponents), 0, 1e-9) << links << " links";  // measured 1.2e-11
+            EXPECT_NEAR(sum_of(sample.exponents), 0, 7e-11) << links << " links";  // measured 1.2e-11
         }
 }
 
@@ -58,7 +58,7 @@ TEST(Spectrum, OfChaosComesInPairsAndTwoVanish) {
     EXPECT_NEAR(end.exponents[0], largest.value, 4 * largest.uncertainty);  // measured 0.012
     EXPECT_LT(std::abs(end.exponents[1]), 0.05);                            // measured 0.016
     EXPECT_LT(std::abs(end.exponents[2]), 0.05);                            // measured 0.016
-    EXPECT_LT(pair_mismatch(end), 0.01);                                    // measured 2e-4
+    EXPECT_LT(pair_mismatch(end), 0.002);                                   // measured 2e-4
     EXPECT_NEAR(pair_mismatch({1, {3, 2, -1.5, -2.75}}), 0.5, 1e-15);
 }
 
@@ -69,7 +69,7 @@ TEST(Spectrum, DoesNotDependOnHowOftenTheFrameIsSetUpright) {
     const auto often = lyapunov_spectrum(p, {.duration_s = 4, .samples = 64, .tolerance = 1e-12}, never).back();
     EXPECT_EQ(rarely.time_s, often.time_s);
     for (std::size_t i = 0; i < 6; ++i)
-        EXPECT_NEAR(rarely.exponents[i], often.exponents[i], 1e-10) << i;  // measured 1.4e-12
+        EXPECT_NEAR(rarely.exponents[i], often.exponents[i], 1e-11) << i;  // measured 1.4e-12
 }
 
 TEST(Spectrum, RefusesWhatMakesNoSenseAndStopsWhenTold) {

@@ -94,7 +94,7 @@ TEST(Drift, KeepsTheRodsThatAreKept) {
     const auto table = table_of(short_drift(200, {"drift.methods=[\"semi-implicit-euler\", \"rattle\", \"rattle6\"]"}));
     ASSERT_EQ(table.rows.size(), 5u * 13);
     // those that keep them come last: rattle, rattle6 and rk4 projected
-    for (std::size_t i = 2 * 13; i < table.rows.size(); ++i) EXPECT_LT(table.rows[i][5], 1e-14);  // measured 2e-16
+    for (std::size_t i = 2 * 13; i < table.rows.size(); ++i) EXPECT_LT(table.rows[i][5], 2e-15);  // measured 2e-16
     EXPECT_GT(table.rows[2 * 13 - 1][5], 0.05);  // measured 0.27: they do not keep themselves
     for (const auto& row : table.rows) {
         EXPECT_LT(row[4], 1);
@@ -136,7 +136,7 @@ TEST(Growth, IsWhatThePowerSays) {
         // another law before the last two decades leaves no trace
         for (const double t : times) errors.push_back(t < 99 ? 7 : std::pow(t, power));
         const auto growth = growth_of(times, errors, std::nan(""));
-        EXPECT_NEAR(growth.exponent, power, 1e-12);
+        EXPECT_NEAR(growth.exponent, power, 2e-15);  // measured 0
         EXPECT_EQ(growth.kind, expected);
         EXPECT_TRUE(std::isnan(growth.doubling_s));
     }
@@ -149,7 +149,7 @@ TEST(Growth, DoublesUntilItBreaksDown) {
     for (const double t : times) errors.push_back(t < 64 ? std::exp2(t / 5) : std::nan(""));
     const auto growth = growth_of(times, errors, 65);
     EXPECT_EQ(growth.kind, Growth::Kind::breakdown);
-    EXPECT_NEAR(growth.doubling_s, 5, 1e-12);
+    EXPECT_NEAR(growth.doubling_s, 5, 5e-15);  // measured 8.9e-16
     EXPECT_EQ(growth.broken_at_s, 65);
 }
 

@@ -62,7 +62,7 @@ TEST(Stability, OfEulerGrowsByOnePlusZSquaredAStep) {
         const double h = row[1], steps = 40 / h;
         const double grown = 0.5 * std::pow(1 + 9.8 * (2 - std::sqrt(2.0)) * h * h, steps) +
                              0.5 * std::pow(1 + 9.8 * (2 + std::sqrt(2.0)) * h * h, steps);
-        EXPECT_NEAR((row[4] + 1) / grown, 1, 1e-3) << h;  // measured 6e-5
+        EXPECT_NEAR((row[4] + 1) / grown, 1, 3e-4) << h;  // measured 6e-5
     }
 }
 
@@ -86,7 +86,7 @@ TEST(Stability, HasWholeStepsNearThoseAskedFor) {
                                                 "stability.columns=50", "stability.duration_s=1"});
     for (const auto& row : table_of(figure).rows) {
         const double steps = 1 / row[1];
-        EXPECT_NEAR(steps, std::round(steps), 1e-9);
+        EXPECT_NEAR(steps, std::round(steps), 3e-13);  // measured 5.7e-14
     }
     const auto table = table_of(figure);
     const double ratio = std::pow(500.0, 1 / 50.0);
@@ -178,9 +178,10 @@ TEST(ReleasedEnergy, IsThatAboveHanging) {
     const Pendulum<double> p{.mass = {2, 3}, .length = {0.5, 0.7}, .angle = {0.4, 2.0}, .rate = {1.5, -0.3}};
     const double bottom = -p.potential_range() / 2;
     EXPECT_NEAR(released_energy(p),
-                energy(bobs_of_angles(p, released_in_angles<double, Eigen::Dynamic>(p)), p.gravity) - bottom, 1e-13);
+                energy(bobs_of_angles(p, released_in_angles<double, Eigen::Dynamic>(p)), p.gravity) - bottom,
+                5e-14);  // measured 7.1e-15
     // with θ = 10⁻⁷ the level alone would leave two digits
-    EXPECT_NEAR(released_energy({.angle = {1e-7, 0}}) / (0.5 * 9.8 * 2e-14), 1, 1e-12);
+    EXPECT_NEAR(released_energy({.angle = {1e-7, 0}}) / (0.5 * 9.8 * 2e-14), 1, 5e-15);  // measured 1e-15
 }
 
 /// Steps, times and angles at which nothing is chaotic yet.

@@ -89,10 +89,14 @@ TEST(WorkPrecision, FallsByThePowerOfEachOrder) {
                                       "work_precision.methods=[\"euler\", \"semi-implicit-euler\", \"midpoint\", "
                                       "\"rk4\", \"gauss4\", \"gauss6\", \"rattle\", \"rattle6\"]",
                                       "work_precision.most_evaluations=60000", "work_precision.least_error=1e-11"}));
-    const std::map<std::string, double> orders{{"euler", 1},    {"semi-implicit-euler", 1},
-                                               {"midpoint", 2}, {"rk4", 4},
-                                               {"gauss4", 4},   {"gauss6", 6},
-                                               {"rattle", 2},   {"rattle6", 6}};
+    struct Order {
+        double is, within;
+    };
+    // measured within 9e-4, 6e-4, 1.7e-3, 0.025, 2e-4, 0.18, 1.1e-5, 0.02
+    const std::map<std::string, Order> orders{{"euler", {1, 5e-3}},    {"semi-implicit-euler", {1, 5e-3}},
+                                              {"midpoint", {2, 0.01}}, {"rk4", {4, 0.15}},
+                                              {"gauss4", {4, 1e-3}},   {"gauss6", {6, 0.3}},
+                                              {"rattle", {2, 1e-4}},   {"rattle6", {6, 0.15}}};
     std::map<std::string, std::vector<const Row*>> ladders;
     for (const auto& row : rows) ladders[row.cells.at("model") + " " + row.cells.at("method")].push_back(&row);
     for (const auto& [name, ladder] : ladders) {
@@ -100,7 +104,8 @@ TEST(WorkPrecision, FallsByThePowerOfEachOrder) {
         const auto &fine = *ladder.at(ladder.size() - 2), &coarse = *ladder.at(ladder.size() - 6);
         const double slope = std::log(coarse.number("angle_error_rad") / fine.number("angle_error_rad")) /
                              std::log(coarse.number("setting") / fine.number("setting"));
-        EXPECT_NEAR(slope, orders.at(ladder[0]->cells.at("method")), 0.3) << name;
+        const auto& order = orders.at(ladder[0]->cells.at("method"));
+        EXPECT_NEAR(slope, order.is, order.within) << name;
     }
     EXPECT_EQ(ladders.size(), 6u + 6);
 }
@@ -118,7 +123,7 @@ TEST(WorkPrecision, KnowsItsProblems) {
     EXPECT_NEAR(found.at("P3_sensitivity"), 320, 1);
     EXPECT_NEAR(found.at("P4_sensitivity"), 1040, 5);
     for (const auto* name : {"P1", "P3", "P4"}) {
-        EXPECT_LT(found.at(std::string(name) + "_reference_disagreement"), 1e-27) << name;  // measured 9e-31
+        EXPECT_LT(found.at(std::string(name) + "_reference_disagreement"), 5e-30) << name;  // measured 9e-31
         EXPECT_LT(found.at(std::string(name) + "_1e-12_cost"), 6000) << name;               // measured 4706
     }
     // what the study's own program errs by at its step
@@ -137,9 +142,9 @@ TEST(WorkPrecision, EndsAtTheFloor) {
         rows_of(second({"work_precision.models=[\"angles\"]", "work_precision.methods=[\"taylor\", \"dop853\"]"}));
     double least = 1;
     for (const auto& row : rows) least = std::fmin(least, row.number("angle_error_rad"));
-    EXPECT_LT(least, 3e-15);                               // measured 2e-16
+    EXPECT_LT(least, 7e-16);                               // measured 2e-16
     EXPECT_GT(rows.back().number("setting"), 0.99e-15);    // the finest that double can give
-    EXPECT_LT(rows.back().number("energy_error"), 1e-12);  // measured 2e-15
+    EXPECT_LT(rows.back().number("energy_error"), 3e-15);  // measured 5.1e-16
 }
 
 TEST(GoldenFigureWorkPrecision, IsAsItWas) {
@@ -225,7 +230,7 @@ TEST(WorkPrecision, TakesAMechanism) {
         EXPECT_EQ(row.cells.at("problem"), "springs");
         least = std::fmin(least, row.number("place_error"));
     }
-    EXPECT_LT(least, 1e-13);  // measured 2e-15
+    EXPECT_LT(least, 5e-16);  // measured 8.9e-17
 }
 
 TEST(WorkPrecision, ReadsBackWhatItSaysOfItself) {

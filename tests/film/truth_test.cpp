@@ -56,8 +56,8 @@ TEST(Truth, BobsAreWherePhysicsSaysInTheirColour) {
                                  panel.center.y - panel.px_per_m * static_cast<float>(y)};
             const auto found =
                 blob_at(picture, expected, 1.5f * layout.bob_radius, link == 1 ? theme.sides[side] : theme.bob);
-            EXPECT_NEAR(found.x, expected.x, 0.5);  // measured 0.1 at most
-            EXPECT_NEAR(found.y, expected.y, 0.5);
+            EXPECT_NEAR(found.x, expected.x, 0.3);  // measured 0.049
+            EXPECT_NEAR(found.y, expected.y, 0.2);  // measured 0.04
             // the fully covered pixels of the disc: all but a ring of half a pixel
             const double core = pi * std::pow(layout.bob_radius - 0.5, 2);
             EXPECT_NEAR(static_cast<double>(found.area), core, 0.06 * core);  // measured 3 %
@@ -185,9 +185,9 @@ TEST(Truth, TwinsDrawnMirroredAreMirrored) {
             const auto* l = picture.at(static_cast<int>(left.center.x) + dx, static_cast<int>(left.center.y) + dy);
             const auto* r =
                 picture.at(static_cast<int>(right.center.x) - dx - 1, static_cast<int>(right.center.y) + dy);
-            for (int c = 0; c < 3; ++c) differing += std::abs(l[c] - r[c]) > 40;
+            for (int c = 0; c < 3; ++c) differing += std::abs(l[c] - r[c]) > 3;
         }
-    EXPECT_LT(differing, 40);  // measured 0, where both pivots are at whole or both at half pixels
+    EXPECT_EQ(differing, 0);  // both pivots are at whole or both at half pixels
 }
 
 }  // namespace

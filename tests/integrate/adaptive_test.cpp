@@ -91,8 +91,8 @@ TEST(Tolerance, IsKeptInQuadByAnglesAndByRods) {
     const auto bobs = bobs_of_particles(p, rods);
     const auto same = bobs_of_angles(p, angles);
     for (std::size_t i = 0; i < 2; ++i) {
-        EXPECT_LT(std::abs(static_cast<double>(bobs[i].x - same[i].x)), 1e-21);
-        EXPECT_LT(std::abs(static_cast<double>(bobs[i].y - same[i].y)), 1e-21);
+        EXPECT_LT(std::abs(static_cast<double>(bobs[i].x - same[i].x)), 7e-24);  // measured 1.2e-24
+        EXPECT_LT(std::abs(static_cast<double>(bobs[i].y - same[i].y)), 3e-24);  // measured 4.4e-25
     }
 }
 
@@ -122,7 +122,8 @@ TYPED_TEST(Adaptively, TheClockNeitherDriftsNorCoarsens) {
     typename TypeParam::template Stepper<Model> at_once(model, Model::start(p), 1e-6);
     for (int i = 0; i < 120000; ++i) sampled.advance(1.0 / 120);
     at_once.advance(1000);
-    EXPECT_LT((sampled.state() - at_once.state()).norm(), 1e-12);  // measured 3e-15, 1.5e-13
+    const double most = TypeParam::method.order == 5 ? 2e-14 : 1e-12;  // measured 3e-15, 1.5e-13
+    EXPECT_LT((sampled.state() - at_once.state()).norm(), most);
 }
 
 TYPED_TEST(Adaptively, IsContinuousFromStepToStep) {
@@ -146,7 +147,7 @@ TYPED_TEST(Adaptively, ServesAModelSizedAtRunTime) {
     using Dynamic = AngleChain<double, Eigen::Dynamic>;
     const auto one = state_after<TypeParam, Fixed>(unequal(), 2, 1e-10);
     const auto other = state_after<TypeParam, Dynamic>(unequal(), 2, 1e-10);
-    EXPECT_LT((one - other).norm(), 1e-12);
+    EXPECT_LT((one - other).norm(), 2e-15);  // measured 0
 }
 
 TYPED_TEST(Adaptively, AgreesBetweenAnglesAndRods) {
@@ -154,7 +155,8 @@ TYPED_TEST(Adaptively, AgreesBetweenAnglesAndRods) {
     const auto rods = state_after<TypeParam, RodChain<double, 2>>(unequal(), 2, 1e-12);
     const auto bobs = bobs_of_particles(unequal(), rods);
     for (std::size_t i = 0; i < 2; ++i)
-        EXPECT_NEAR(std::remainder(bobs[i].theta - angles[static_cast<Eigen::Index>(i)], 2 * pi), 0, 1e-9);
+        EXPECT_NEAR(std::remainder(bobs[i].theta - angles[static_cast<Eigen::Index>(i)], 2 * pi), 0,
+                    2e-11);  // measured 3.3e-12
 }
 
 TYPED_TEST(Adaptively, StaysInEquilibrium) {
@@ -204,7 +206,7 @@ TYPED_TEST(Adaptively, FollowsTheClosedForm) {
     start << 1;
     typename TypeParam::template Stepper<BlowUp> stepper(model, start, 1e-12);
     stepper.advance(0.9);
-    EXPECT_NEAR(stepper.state()[0], 10, 1e-8);
+    EXPECT_NEAR(stepper.state()[0], 10, 2e-10);  // measured 3.3e-11
 }
 
 TYPED_TEST(Adaptively, RefusesATolerance) {

@@ -28,9 +28,9 @@ double measured_order(long steps) {
 }
 
 TEST(Gauss, HasItsOrder) {
-    EXPECT_NEAR((measured_order<Gauss4, DoublePendulum<Quad>>(64)), 4, 0.01);  // measured 4.001
-    EXPECT_NEAR((measured_order<Gauss6, DoublePendulum<Quad>>(64)), 6, 0.01);  // measured 6.007
-    EXPECT_NEAR((measured_order<Gauss6, AngleChain<Quad, 2>>(64)), 6, 0.01);   // measured 6.007
+    EXPECT_NEAR((measured_order<Gauss4, DoublePendulum<Quad>>(64)), 4, 0.005);  // measured 0.00088
+    EXPECT_NEAR((measured_order<Gauss6, DoublePendulum<Quad>>(64)), 6, 0.01);   // measured 6.007
+    EXPECT_NEAR((measured_order<Gauss6, AngleChain<Quad, 2>>(64)), 6, 0.01);    // measured 6.007
 }
 
 /// How far SᵀJS is from J, where S is the Jacobian of one step in canonical variables, by differences in Quad.
@@ -55,9 +55,9 @@ double symplecticity_error(const Quad& step) {
 
 TEST(Gauss, IsSymplectic) {
     const Quad step(0.1);
-    EXPECT_LT((symplecticity_error<Gauss4, DoublePendulum<Quad>>(step)), 1e-21);  // measured 2e-23
-    EXPECT_LT((symplecticity_error<Gauss6, DoublePendulum<Quad>>(step)), 1e-21);  // measured 2e-23
-    EXPECT_LT((symplecticity_error<Gauss6, AngleChain<Quad, 2>>(step)), 1e-21);   // measured 1e-23
+    EXPECT_LT((symplecticity_error<Gauss4, DoublePendulum<Quad>>(step)), 2e-22);  // measured 2e-23
+    EXPECT_LT((symplecticity_error<Gauss6, DoublePendulum<Quad>>(step)), 2e-22);  // measured 2e-23
+    EXPECT_LT((symplecticity_error<Gauss6, AngleChain<Quad, 2>>(step)), 2e-22);   // measured 2.7e-23
     EXPECT_GT((symplecticity_error<Rk4, DoublePendulum<Quad>>(step)), 1e-6);      // measured 3e-4
 }
 
@@ -75,8 +75,8 @@ double way_back(double step, long steps) {
 }
 
 TEST(Gauss, ReturnsWhenTimeIsReversed) {
-    EXPECT_LT(way_back<Gauss4>(0.02, 100), 1e-13);  // measured 1e-15
-    EXPECT_LT(way_back<Gauss6>(0.02, 100), 1e-13);  // measured 6e-16
+    EXPECT_LT(way_back<Gauss4>(0.02, 100), 5e-16);  // measured 8.3e-17
+    EXPECT_LT(way_back<Gauss6>(0.02, 100), 1e-15);  // measured 1.9e-16
     EXPECT_GT(way_back<Rk4>(0.02, 100), 1e-6);      // measured 5e-5
 }
 

@@ -45,13 +45,13 @@ double measured_order(int links, long steps) {
 }
 
 TEST(Rattle, HasItsOrder) {
-    EXPECT_NEAR((measured_order<Rattle, RodChain<Quad, 2>>(2, 128)), 2, 0.01);                // measured 2.0002
-    EXPECT_NEAR((measured_order<Rattle6, RodChain<Quad, 2>>(2, 128)), 6, 0.01);               // measured 5.999
-    EXPECT_NEAR((measured_order<Rattle6, RodChain<Quad, Eigen::Dynamic>>(3, 128)), 6, 0.01);  // measured 6.001
+    EXPECT_NEAR((measured_order<Rattle, RodChain<Quad, 2>>(2, 128)), 2, 0.002);                // measured 0.00021
+    EXPECT_NEAR((measured_order<Rattle6, RodChain<Quad, 2>>(2, 128)), 6, 0.01);                // measured 5.999
+    EXPECT_NEAR((measured_order<Rattle6, RodChain<Quad, Eigen::Dynamic>>(3, 128)), 6, 0.005);  // measured 0.00071
 }
 
 TEST(Rattle, KeepsItsOrderUnderFriction) {
-    EXPECT_NEAR((measured_order<Rattle, Dragged<Quad, 2>>(2, 128)), 2, 0.01);   // measured 2.0002
+    EXPECT_NEAR((measured_order<Rattle, Dragged<Quad, 2>>(2, 128)), 2, 0.001);  // measured 0.00016
     EXPECT_NEAR((measured_order<Rattle6, Dragged<Quad, 2>>(2, 128)), 6, 0.01);  // measured 5.999
 }
 
@@ -61,8 +61,8 @@ TEST(Rattle, ConvergesToTheMotionInAngles) {
     const auto bobs = bobs_of_particles<Quad>(
         p, after<Rattle6, RodChain<Quad, 2>>(p, RodChain<Quad, 2>::start(p), Quad(1) / Quad(1000), 500));
     const auto truth = after<Rk4, Angles>(p, Angles::start(p), Quad(1) / Quad(20000), 10000);
-    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[0].theta - truth[0]))), 1e-15);  // measured 4e-17
-    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[1].theta - truth[1]))), 1e-15);  // measured 4e-17
+    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[0].theta - truth[0]))), 2e-16);  // measured 4e-17
+    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[1].theta - truth[1]))), 2e-16);  // measured 4e-17
 }
 
 TEST(Rattle6, MeetsTheConditionsOfOrderSix) {
@@ -82,10 +82,11 @@ TEST(Rattle6, MeetsTheConditionsOfOrderSix) {
     }
     EXPECT_LT(std::abs(static_cast<double>(third)), 1e-33);  // measured 2e-34
     EXPECT_LT(std::abs(static_cast<double>(fifth)), 1e-33);  // measured 1e-34
-    EXPECT_LT(std::abs(static_cast<double>(mixed)), 1e-33);  // measured 4e-35
+    EXPECT_LT(std::abs(static_cast<double>(mixed)), 3e-34);  // measured 4e-35
     // Kahan & Li print 0.39216144400731413927925056 … 0.79854399093482996339895035
     EXPECT_LT(std::abs(static_cast<double>(Quad(gammas[0] - parse_quad("0.39216144400731413927925056")))), 1e-20);
-    EXPECT_LT(std::abs(static_cast<double>(Quad(middle - parse_quad("0.79854399093482996339895035")))), 1e-25);
+    EXPECT_LT(std::abs(static_cast<double>(Quad(middle - parse_quad("0.79854399093482996339895035")))),
+              2e-26);  // measured 3e-27
 }
 
 /// How far SᵀJS is from J, where S is the Jacobian of one step in (θ, p), by differences in Quad.
@@ -116,8 +117,8 @@ double symplecticity_error(const Quad& step) {
 
 TEST(Rattle, IsSymplectic) {
     const Quad step(0.05);
-    EXPECT_LT(symplecticity_error<Rattle>(step), 1e-21);   // measured 3e-23
-    EXPECT_LT(symplecticity_error<Rattle6>(step), 1e-21);  // measured 2e-23
+    EXPECT_LT(symplecticity_error<Rattle>(step), 2e-22);   // measured 3e-23
+    EXPECT_LT(symplecticity_error<Rattle6>(step), 2e-22);  // measured 2e-23
     EXPECT_GT(symplecticity_error<Rk4>(step), 1e-7);       // measured 5e-6
 }
 
@@ -135,8 +136,8 @@ double way_back(double step, long steps) {
 }
 
 TEST(Rattle, ReturnsWhenTimeIsReversed) {
-    EXPECT_LT(way_back<Rattle>(0.005, 400), 1e-12);  // measured 6e-15
-    EXPECT_LT(way_back<Rattle6>(0.02, 100), 1e-12);  // measured 2e-14
+    EXPECT_LT(way_back<Rattle>(0.005, 400), 5e-14);  // measured 6e-15
+    EXPECT_LT(way_back<Rattle6>(0.02, 100), 1e-13);  // measured 2e-14
     EXPECT_GT(way_back<Rk4>(0.02, 100), 1e-5);       // measured 9e-5
 }
 
@@ -219,8 +220,8 @@ TEST(Rattle, KeepsEnergyWithinAQuarterOfZSquared) {
     for (const double z : {0.1, 0.5, 1.5}) {
         Quad largest;
         const Quad least = least_energy(z, 2000, largest);
-        EXPECT_NEAR(static_cast<double>(least), 1 - z * z / 4, 1e-4 * z * z);  // measured equal to 6 digits
-        EXPECT_NEAR(static_cast<double>(largest), 1, 1e-9);
+        EXPECT_NEAR(static_cast<double>(least), 1 - z * z / 4, 2e-6 * z * z);  // measured 2.1e-7 of it
+        EXPECT_NEAR(static_cast<double>(largest), 1, 1e-15);                   // measured 0
     }
 }
 
@@ -240,7 +241,7 @@ TEST(Rattle, FeelsFriction) {
     Baumgarte<Model> model(p, 0);
     Rk4::Stepper<Baumgarte<Model>> other(model, start, 1e-4);
     other.advance(10'000);
-    EXPECT_LT(distance(end, other.state()), 1e-12);  // measured 3e-14
+    EXPECT_LT(distance(end, other.state()), 2e-13);  // measured 3e-14
     const auto lost =
         energy(bobs_of_particles<double>(p, start), p.gravity) - energy(bobs_of_particles<double>(p, end), p.gravity);
     EXPECT_GT(lost, 1);  // measured 4.6 J
@@ -270,7 +271,7 @@ TEST(Rattle, IsTheSameForAnyNumberOfLinks) {
     const auto fixed = after<Rattle6, RodChain<double, 3>>(p, RodChain<double, 3>::start(p), 0.01, 50);
     using Chain = RodChain<double, Eigen::Dynamic>;
     const auto dynamic = after<Rattle6, Chain>(p, Chain::start(p), 0.01, 50);
-    EXPECT_LT(distance<Chain::State>(fixed, dynamic), 1e-12);  // measured 0
+    EXPECT_LT(distance<Chain::State>(fixed, dynamic), 2e-15);  // measured 0
 }
 
 TEST(Rattle, HangsStill) {
@@ -287,13 +288,13 @@ TEST(Rattle, HangsStill) {
 TEST(Rattle, KeepsTheRodsOfALightFirstMass) {
     // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings like a bead on a string under the
     // weight of m2, at ω = √(2 m2 g / (l m1)), where steps are stable below 2 / ω
-    for (const double light : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    for (const auto& [light, most] : {std::pair{1e-3, 1e-5}, {1e-6, 3e-9}, {1e-9, 5e-13}, {1e-12, 2e-13}}) {
         auto p = released(30, 30);
         p.mass[0] = light;
         const double fastest = std::sqrt(2 * p.gravity / light);
         const auto errors = errors_of<Rattle>(p, 0.1 / fastest, 10'000);
         EXPECT_LT(errors.rod, 1e-15) << light;  // measured 2.2e-16 m
-        EXPECT_LT(errors.late, 1e-5) << light;  // measured 1.8e-6 J and less
+        EXPECT_LT(errors.late, most) << light;  // measured 1.8e-6, 3.2e-10, 9e-14, 3e-14 J
     }
     auto p = released(30, 31);
     p.mass[0] = 1e-9;

@@ -43,8 +43,8 @@ TEST(TaylorMechanism, ChainsMoveAsTheyDoInAngles) {
         const auto end = end_of<Taylor>(parts_of(p), Quad(1), Quad(1e-30));
         for (std::size_t i = 0; i < links; ++i) {
             const auto k = 2 * static_cast<Eigen::Index>(i);
-            EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[i].x - end[k]))), 1e-28);  // measured 4e-32
-            EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[i].y - end[k + 1]))), 1e-28);
+            EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[i].x - end[k]))), 3e-31);      // measured 4e-32
+            EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[i].y - end[k + 1]))), 5e-31);  // measured 7.3e-32
         }
     }
 }
@@ -70,7 +70,7 @@ TEST(TaylorMechanism, FollowsDop853) {
     const auto truth = end_of<Taylor>(parts.cast<Quad>(), Quad(3), Quad(1e-22));
     const auto expected = end_of<Dop853>(parts.cast<Quad>(), Quad(3), Quad(1e-18));
     EXPECT_GT(apart(truth, Mechanism<Quad>::start(parts.cast<Quad>())), 1);
-    EXPECT_LT(apart(truth, expected), 1e-15);  // measured 1.3e-17
+    EXPECT_LT(apart(truth, expected), 7e-17);  // measured 1.3e-17
     for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
         const Vector<Quad> end = end_of<Taylor>(parts, 3.0, tolerance).cast<Quad>();
         EXPECT_LT(apart(end, truth), 300 * tolerance) << tolerance;  // measured at most 86
@@ -89,7 +89,7 @@ TEST(TaylorMechanism, SpringSwingsAsTheCosineAndDecaysAsItShould) {
         const Quad t(7), beta = Quad(damping) / Quad(4), nu = sqrt(Quad(Quad(4) - beta * beta));
         const Quad expected =
             Quad(1) + Quad(0.25) * exp(Quad(-beta * t)) * (cos(Quad(nu * t)) + beta / nu * sin(Quad(nu * t)));
-        EXPECT_LT(std::abs(static_cast<double>(Quad(end[0] - expected))), 1e-28) << damping;  // measured 0
+        EXPECT_LT(std::abs(static_cast<double>(Quad(end[0] - expected))), 2e-33) << damping;  // measured 0
     }
 }
 
@@ -111,7 +111,7 @@ TEST(TaylorMechanism, OrbitClosesAfterKeplersPeriod) {
         const Quad period = Quad(2) * pi_of<Quad>() * sqrt(Quad(a * a * a / strength));
         for (const auto& parts : {about_a_place, about_each_other}) {
             const auto end = end_of<Taylor>(parts, period, Quad(1e-31));
-            EXPECT_LT(apart(end, Mechanism<Quad>::start(parts)), 1e-28) << e;  // measured 3e-32
+            EXPECT_LT(apart(end, Mechanism<Quad>::start(parts)), 2e-31) << e;  // measured 3e-32
         }
     }
 }
@@ -124,16 +124,17 @@ TEST(TaylorMechanism, KeepsEnergyAndRods) {
     Mechanism<Quad> model(exact);
     const auto start = model.start(exact), end = end_of<Taylor>(exact, Quad(1), Quad(1e-30));
     EXPECT_LT(std::abs(static_cast<double>(Quad(model.energy(end) - model.energy(start)))),
-              1e-27);  // J; measured 1.2e-32
-    EXPECT_LT(static_cast<double>(Quad(model.length_error(end) - model.length_error(start))), 1e-28);  // measured < 0
+              1e-31);  // J; measured 1.2e-32
+    const Quad moved = model.length_error(end) - model.length_error(start);
+    EXPECT_LT(std::abs(static_cast<double>(moved)), 3e-33);  // m; measured 4e-34, of the 2e-16 that doubles start with
 }
 
 TEST(TaylorMechanism, StaysOnTheConstraintsWhereTheModelSettles) {
     const auto parts = four_bars();
     using Settled = Projected<Mechanism<double>>;
     const auto end = end_of<Taylor, Settled>(parts, 5.0, 1e-12);
-    EXPECT_LT(Settled(parts).length_error(end), 1e-15);              // m; measured 4e-33
-    EXPECT_LT(apart(end, end_of<Taylor>(parts, 5.0, 1e-14)), 1e-9);  // measured 6e-13
+    EXPECT_LT(Settled(parts).length_error(end), 1e-15);               // m; measured 4e-33
+    EXPECT_LT(apart(end, end_of<Taylor>(parts, 5.0, 1e-14)), 3e-12);  // measured 6e-13
 }
 
 /// Two links of 1 m and 1 kg at rest, and the study's droplet a mile to their right.
@@ -157,7 +158,7 @@ TEST(TaylorMechanism, ADropletIsFeltAsItShouldBe) {
         const P r = P(1609, 0) - static_cast<double>(bob + 1) * P(sine, -cosine);
         const double across = 6.674e-11 * 3.4e-5 / std::pow(r.norm(), 3) * (r[0] * cosine + r[1] * sine);
         const double vx = static_cast<double>(Quad(with[4 + 2 * bob] - without[4 + 2 * bob]));
-        EXPECT_NEAR(vx / (across * cosine * t), 1, 1e-5);  // measured 7e-7: t²
+        EXPECT_NEAR(vx / (across * cosine * t), 1, 5e-6);  // measured 7e-7: t²
     }
 }
 
@@ -172,8 +173,8 @@ double droplet_distance(double seconds, const char* tolerance) {
 TEST(TaylorMechanism, ADropletTellsTwoPendulumsApartFarAboveTheTolerance) {
     const double fine = droplet_distance<Taylor>(0.5, "1e-28");
     EXPECT_GT(fine, 1e-22);                                                // m, m/s
-    EXPECT_NEAR(droplet_distance<Taylor>(0.5, "1e-26") / fine, 1, 1e-10);  // measured 4e-12
-    EXPECT_NEAR(droplet_distance<Dop853>(0.5, "1e-26") / fine, 1, 1e-9);   // measured 9e-12
+    EXPECT_NEAR(droplet_distance<Taylor>(0.5, "1e-26") / fine, 1, 2e-11);  // measured 4e-12
+    EXPECT_NEAR(droplet_distance<Dop853>(0.5, "1e-26") / fine, 1, 5e-11);  // measured 9e-12
 }
 
 // --- what it refuses
@@ -211,7 +212,7 @@ TEST(TaylorMechanism, PassesThroughTheMiddleOfASpring) {
     const Assembly<double> parts{
         .particles = {{1, P(1, 0), P(-9, 0)}}, .constraints = {}, .forces = {Spring<double>{one, P(0, 0), 1, 1}}};
     const double tau = 2 - std::asin(1 / 9.0), v = -9 * std::sqrt(1 - 1 / 81.0);
-    EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[0], std::cos(tau) + v * std::sin(tau) - 1, 1e-10);  // measured 5e-12
+    EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[0], std::cos(tau) + v * std::sin(tau) - 1, 3e-11);  // measured 5e-12
 }
 
 TEST(TaylorMechanism, SaysWhenTheMotionBlowsUp) {
@@ -233,10 +234,11 @@ TEST(TaylorMechanism, StaysInEquilibrium) {
 TEST(TaylorMechanism, FallsAndHangsFromRest) {
     // nothing but gravity; a spring let go where it is at rest, or where it has no length
     Assembly<double> parts{.particles = {{1, P(0, 0)}}, .constraints = {}, .forces = {Gravity<double>{}}};
-    EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[1], -0.5 * 9.8 * 4, 1e-13);
+    EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[1], -0.5 * 9.8 * 4, 1e-14);  // measured 0
     for (const double length : {0.0, 1.0}) {
         parts.forces = {Gravity<double>{}, Spring<double>{one, P(0, length), 4, length}};
-        EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[1], 9.8 / 4 * (std::cos(2 * 2.0) - 1), 1e-11) << length;
+        EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[1], 9.8 / 4 * (std::cos(2 * 2.0) - 1), 2e-12)
+            << length;  // measured 3.5e-13
     }
 }
 

@@ -85,18 +85,18 @@ template <class Scalar>
 using LongAngleChain = AngleChain<Scalar, Eigen::Dynamic>;
 
 TEST(Dual, GivesTheJacobianOfTheFlow) {
-    EXPECT_LT((jacobian_error<Euler, DoublePendulum, 4, double>(2)), 1e-13);     // measured 5e-15
-    EXPECT_LT((jacobian_error<Rk4, DoublePendulum, 4, double>(2)), 1e-13);       // measured 8e-15
-    EXPECT_LT((jacobian_error<Rk4, AngleChain2, 4, double>(2)), 1e-13);          // measured 6e-15
-    EXPECT_LT((jacobian_error<Midpoint, LongAngleChain, 6, double>(3)), 1e-12);  // measured 8e-15
-    EXPECT_LT((jacobian_error<Rk4, RodChain2, 8, double>(2)), 1e-12);            // measured 8e-15
-    EXPECT_LT((jacobian_error<Euler, RodChain3, 12, double>(3)), 1e-12);         // measured 4e-14
+    EXPECT_LT((jacobian_error<Euler, DoublePendulum, 4, double>(2)), 3e-14);     // measured 5e-15
+    EXPECT_LT((jacobian_error<Rk4, DoublePendulum, 4, double>(2)), 5e-14);       // measured 8e-15
+    EXPECT_LT((jacobian_error<Rk4, AngleChain2, 4, double>(2)), 5e-14);          // measured 6e-15
+    EXPECT_LT((jacobian_error<Midpoint, LongAngleChain, 6, double>(3)), 7e-14);  // measured 8e-15
+    EXPECT_LT((jacobian_error<Rk4, RodChain2, 8, double>(2)), 5e-14);            // measured 8e-15
+    EXPECT_LT((jacobian_error<Euler, RodChain3, 12, double>(3)), 3e-13);         // measured 4e-14
 }
 
 TEST(Dual, OfQuadHasTheDigitsOfQuad) {
     // what is left is the error of the differences
-    EXPECT_LT((jacobian_error<Rk4, DoublePendulum, 4, Quad>(2)), 1e-19);  // measured 5e-22
-    EXPECT_LT((jacobian_error<Rk4, RodChain2, 8, Quad>(2)), 1e-18);       // measured 7e-22
+    EXPECT_LT((jacobian_error<Rk4, DoublePendulum, 4, Quad>(2)), 3e-21);  // measured 5e-22
+    EXPECT_LT((jacobian_error<Rk4, RodChain2, 8, Quad>(2)), 5e-21);       // measured 7e-22
 }
 
 TEST(Dual, ObeysTheVariationalEquation) {
@@ -124,7 +124,7 @@ TEST(Dual, ObeysTheVariationalEquation) {
     double worst = 0;
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) worst = std::max(worst, std::abs(y[i].tangent[j] - jacobian(i, j)));
-    EXPECT_LT(worst, 1e-13);  // measured 3e-15
+    EXPECT_LT(worst, 2e-14);  // measured 3e-15
 }
 
 TEST(Dual, EnergyChangesWithTheStartAsAtTheStart) {
@@ -147,7 +147,7 @@ TEST(Dual, ParametersVaryToo) {
     for (auto& l : p.length) l.tangent[0] = l.value;
     const auto end = flow<DoublePendulum<D>, Rk4>(p, DoublePendulum<D>::start(p), 2000, D(5e-4));
     for (int i = 0; i < 2; ++i)
-        EXPECT_NEAR(end[i].tangent[0], -0.5 * end[2 + i].value, 1e-10);  // measured 4e-12, the error of the method
+        EXPECT_NEAR(end[i].tangent[0], -0.5 * end[2 + i].value, 2e-11);  // measured 4e-12, the error of the method
 }
 
 /// A random expression of three variables, in any scalar; the same for the same seed.
@@ -218,8 +218,8 @@ TEST(Dual, FollowsTheChainRule) {
         for (auto& value : x) value = std::uniform_real_distribution<double>(-2, 2)(random);
         const D f = expression<D>(seed, {D::variable(x[0], 0), D::variable(x[1], 1), D::variable(x[2], 2)});
         const std::array<Quad, 3> exact{Quad(x[0]), Quad(x[1]), Quad(x[2])};
-        ASSERT_NEAR(f.value, static_cast<double>(expression<Quad>(seed, exact)), 1e-12 * (1 + std::abs(f.value)))
-            << seed;
+        ASSERT_NEAR(f.value, static_cast<double>(expression<Quad>(seed, exact)), 5e-14 * (1 + std::abs(f.value)))
+            << seed;  // measured 6.4e-15 of it
         for (std::size_t j = 0; j < 3; ++j) {
             auto up = exact, down = exact;
             const Quad h(1e-10);
@@ -227,8 +227,8 @@ TEST(Dual, FollowsTheChainRule) {
             down[j] -= h;
             const Quad slope = (expression<Quad>(seed, up) - expression<Quad>(seed, down)) / (2 * h);
             ASSERT_NEAR(f.tangent[static_cast<Eigen::Index>(j)], static_cast<double>(slope),
-                        1e-11 * (1 + f.tangent.cwiseAbs().maxCoeff()))
-                << "expression " << seed << ", variable " << j;
+                        1e-14 * (1 + f.tangent.cwiseAbs().maxCoeff()))
+                << "expression " << seed << ", variable " << j;  // measured 1.8e-15 of it
         }
     }
 }
@@ -264,7 +264,7 @@ TEST(Dual, SolvesLinearSystems) {
         along[i] = x[i].tangent[0];
         for (int j = 0; j < 3; ++j) value(i, j) = a(i, j).value, slope(i, j) = a(i, j).tangent[0];
     }
-    EXPECT_LT((along + value.inverse() * slope * at).norm(), 1e-13);  // measured 4e-16
+    EXPECT_LT((along + value.inverse() * slope * at).norm(), 2e-15);  // measured 4e-16
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST(Png, SizesMayChangeFromPictureToPicture) {
 TEST(Png, AFrameOfOursIsSmall) {
     const auto folder = fresh_folder();
     write_png(folder / "x.png", moving_scene({1920, 1080}, 60));
-    EXPECT_LT(std::filesystem::file_size(folder / "x.png"), 260'000);  // measured 41 383
+    EXPECT_LT(std::filesystem::file_size(folder / "x.png"), 45'000);  // measured 41 383
 }
 
 TEST(Png, ErrorsNameThePathAndTheReason) {

@@ -100,12 +100,12 @@ TEST(MechanismSeries, OfAChainIsThatOfItsRods) {
         rods.expand(y);
         series.expand(mechanism.start(parts));
         EXPECT_DOUBLE_EQ(series.longest_step(), rods.longest_step());
-        for (int k = 0; k <= order; ++k) EXPECT_NEAR(series.size(k) / rods.size(k), 1, 1e-14) << k;  // measured 0
+        for (int k = 0; k <= order; ++k) EXPECT_NEAR(series.size(k) / rods.size(k), 1, 1e-15) << k;  // measured 0
         auto expected = y;
         State<Quad, Eigen::Dynamic> change(12);
         rods.move(Quad(0.05), expected);
         series.move(Quad(0.05), change);
-        EXPECT_LT(static_cast<double>(Quad((change - expected).cwiseAbs().maxCoeff())), 1e-32);  // measured 1e-35
+        EXPECT_LT(static_cast<double>(Quad((change - expected).cwiseAbs().maxCoeff())), 7e-35);  // measured 1e-35
     }
 }
 
@@ -143,7 +143,7 @@ TEST(MechanismSeries, CarriesDualNumbers) {
     };
     const double h = 1e-4, slope = (moved(5 + h) - moved(5 - h)) / (2 * h);
     using D = Dual<double, 1>;
-    EXPECT_NEAR(moved(D::variable(5, 0)).tangent[0], slope, 1e-10);
+    EXPECT_NEAR(moved(D::variable(5, 0)).tangent[0], slope, 5e-13);  // measured 7.1e-14
 }
 
 /// What a series says of the way from the start of a mechanism.

@@ -45,7 +45,7 @@ TEST(Mechanism, RodsInAChainMoveAsTheChainDoes) {
         RodChain<double, 2> chain(p);
         State<double, 8> expected;
         chain.rate(chain.start(p), expected);
-        EXPECT_LT((rate_at_start(parts) - expected).norm(), 1e-13 * expected.norm());  // measured 4e-14, absolute
+        EXPECT_LT((rate_at_start(parts) - expected).norm(), 5e-15 * expected.norm());  // measured 4e-14, absolute
     }
 }
 
@@ -58,7 +58,7 @@ TEST(Mechanism, RodAndAnchorMakeTheSimplePendulum) {
     const auto dydt = rate_at_start(parts);
     EXPECT_NEAR(dydt[4], 0, 1e-15);
     EXPECT_NEAR(dydt[5], 0, 1e-15);
-    EXPECT_NEAR(dydt[6], -9.8 * 0.6 * 0.8, 1e-14);
+    EXPECT_NEAR(dydt[6], -9.8 * 0.6 * 0.8, 2e-15);  // measured 0
     EXPECT_NEAR(dydt[7], -9.8 * 0.6 * 0.6, 1e-14);
     EXPECT_EQ(Mechanism<double>(parts).length_error(Mechanism<double>::start(parts)), 0);
 }
@@ -92,9 +92,9 @@ TEST(Mechanism, SpringSwingsAsTheCosine) {
     check(parts);
     Mechanism<double> model(parts);
     const auto y = after(model, parts, 3000, 1e-3);
-    EXPECT_NEAR(y[0], 1 + 0.25 * std::cos(2 * 3.0), 1e-11);  // measured 4e-13
-    EXPECT_NEAR(y[2], -0.5 * std::sin(2 * 3.0), 1e-11);
-    EXPECT_NEAR(model.energy(y), 0.5 * 8 * 0.25 * 0.25, 1e-12);
+    EXPECT_NEAR(y[0], 1 + 0.25 * std::cos(2 * 3.0), 3e-13);      // measured 5.5e-14
+    EXPECT_NEAR(y[2], -0.5 * std::sin(2 * 3.0), 2e-12);          // measured 3.8e-13
+    EXPECT_NEAR(model.energy(y), 0.5 * 8 * 0.25 * 0.25, 5e-15);  // measured 1e-15
     EXPECT_TRUE(parts.conserves_energy());
     EXPECT_FALSE(model.feels_velocity());
 }
@@ -110,8 +110,8 @@ TEST(Mechanism, DampedSpringDecaysAsItShould) {
     const auto y = after(model, parts, 2000, 1e-3);
     const double mu = 0.75, beta = 0.6 / (2 * mu), nu = std::sqrt(8 / mu - beta * beta), t = 2;
     const double expected = 1.25 + 0.25 * std::exp(-beta * t) * (std::cos(nu * t) + beta / nu * std::sin(nu * t));
-    EXPECT_NEAR((y.segment<2>(2) - y.segment<2>(0)).norm(), expected, 1e-11);  // measured 5e-13
-    EXPECT_NEAR((y.segment<2>(4) + 3 * y.segment<2>(6)).norm(), 0, 1e-13);     // momentum
+    EXPECT_NEAR((y.segment<2>(2) - y.segment<2>(0)).norm(), expected, 3e-12);  // measured 5e-13
+    EXPECT_NEAR((y.segment<2>(4) + 3 * y.segment<2>(6)).norm(), 0, 3e-15);     // momentum; measured 4.2e-16
     EXPECT_FALSE(parts.conserves_energy());
     EXPECT_TRUE(model.feels_velocity());
 }
@@ -127,12 +127,12 @@ TEST(Mechanism, AttractionKeepsACircularOrbit) {
     const auto start = model.start(parts);
     const long steps = 10000;
     const auto y = after(model, parts, steps, 2 * pi / omega / static_cast<double>(steps));
-    EXPECT_LT((y - start).norm(), 1e-11);  // measured 6e-14
-    EXPECT_NEAR(model.energy(y), -0.5 * G * m1 * m2 / d, 1e-12);
+    EXPECT_LT((y - start).norm(), 5e-13);                         // measured 6e-14
+    EXPECT_NEAR(model.energy(y), -0.5 * G * m1 * m2 / d, 1e-13);  // measured 1.6e-14
     const auto momentum = [&](const auto& s) {
         return m1 * (s[0] * s[5] - s[1] * s[4]) + m2 * (s[2] * s[7] - s[3] * s[6]);
     };
-    EXPECT_NEAR(momentum(y), momentum(start), 1e-12);
+    EXPECT_NEAR(momentum(y), momentum(start), 1e-13);  // measured 1.6e-14
 }
 
 /// A mass that falls, and 0.034 g a mile to its right, as in the study.
@@ -148,7 +148,7 @@ TEST(Mechanism, DropletIsFeltInQuadAndOnlyThere) {
     const auto dydt = rate_at_start(beside_a_droplet<Quad>());
     const Quad expected = parse_quad("6.674e-11") * parse_quad("3.4e-5") / (Quad(1609) * Quad(1609));
     EXPECT_NEAR(static_cast<double>(expected), 8.8e-22, 0.05e-22);
-    EXPECT_LT(static_cast<double>(abs(Quad(dydt[2] / expected - 1))), 1e-32);  // measured 0
+    EXPECT_LT(static_cast<double>(abs(Quad(dydt[2] / expected - 1))), 2e-33);  // measured 0
 
     // straight above it lightens the mass, but not in double
     auto above = beside_a_droplet<Quad>();
@@ -175,7 +175,7 @@ TEST(Mechanism, ForceIsTheSlopeOfTheEnergy) {
         down[i] -= h;
         const S slope = (model.energy(up) - model.energy(down)) / (S(2) * h);
         const S mass = parts.particles[static_cast<std::size_t>(i / 2)].mass;
-        EXPECT_LT(static_cast<double>(abs(S(mass * dydt[4 + i] + slope))), 1e-17);  // measured 1e-20
+        EXPECT_LT(static_cast<double>(abs(S(mass * dydt[4 + i] + slope))), 5e-20);  // measured 1e-20
     }
 }
 
@@ -203,8 +203,8 @@ TEST(Mechanism, GradientsAreThoseOfTheValues) {
         for (Eigen::Index row = 0; row < model.constraints(); ++row) {
             const S first = (up[row] - down[row]) / (S(2) * h);
             const S second = (up[row] - S(2) * here[row] + down[row]) / (h * h);
-            EXPECT_LT(static_cast<double>(abs(S(slip[row] - first))), 1e-24);   // measured 5e-26
-            EXPECT_LT(static_cast<double>(abs(S(bend[row] - second))), 1e-15);  // measured 4e-18
+            EXPECT_LT(static_cast<double>(abs(S(slip[row] - first))), 3e-25);   // measured 5e-26
+            EXPECT_LT(static_cast<double>(abs(S(bend[row] - second))), 3e-17);  // measured 4e-18
         }
     }
 }
@@ -227,7 +227,7 @@ TEST(Mechanism, SolvesForPullsAcrossTwoPlaces) {
         model.pull(q0, x, v);
         model.slip(q1, v, image);
         model.solve(q1, q0, image);
-        EXPECT_LT((image - x).norm(), 1e-13);  // measured 4e-16
+        EXPECT_LT((image - x).norm(), 2e-15);  // measured 4e-16
     }
 }
 
@@ -238,8 +238,8 @@ TEST(Mechanism, LoopKeepsClosedAndKeepsItsEnergy) {
     const double start = model.energy(model.start(parts));
     const auto y = after(model, parts, 100000, 1e-4);
     EXPECT_GT((y - model.start(parts)).norm(), 0.1);  // it has moved
-    EXPECT_NEAR(model.energy(y), start, 1e-8);        // measured 8e-10
-    EXPECT_LT(model.length_error(y), 1e-9);           // measured 2e-11
+    EXPECT_NEAR(model.energy(y), start, 5e-9);        // measured 8e-10
+    EXPECT_LT(model.length_error(y), 2e-10);          // measured 2e-11
 }
 
 TEST(Mechanism, CarriesDualNumbers) {
@@ -255,7 +255,7 @@ TEST(Mechanism, CarriesDualNumbers) {
         return S(after(model, changed, 100, S(1e-3))[2]);
     };
     const double h = 1e-4, slope = (end_of(5 + h) - end_of(5 - h)) / (2 * h);
-    EXPECT_NEAR(end_of(D::variable(5, 0)).tangent[0], slope, 1e-10);  // measured 5e-12
+    EXPECT_NEAR(end_of(D::variable(5, 0)).tangent[0], slope, 3e-11);  // measured 5e-12
 }
 
 TEST(Mechanism, StepsWithoutAllocating) {

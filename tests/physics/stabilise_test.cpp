@@ -50,7 +50,7 @@ TEST(Projected, KeepsRodsThatDriftWithoutIt) {
     const auto kept = errors_of<Rk4>(p, projected, 1e-3, 10'000);
     EXPECT_GT(drifting.rod, 1e-8);                  // measured 3.3e-8 m
     EXPECT_LT(kept.rod, 5e-16);                     // measured 2.2e-16 m
-    EXPECT_LT(kept.slip, 2e-14);                    // measured 1.3e-15 m²/s
+    EXPECT_LT(kept.slip, 7e-15);                    // measured 1.3e-15 m²/s
     EXPECT_LT(kept.energy, 3e-8);                   // measured 1.7e-8 J
     EXPECT_LT(kept.energy, 0.1 * drifting.energy);  // measured a factor 45
 }
@@ -125,13 +125,13 @@ TEST(Projected, HangsStill) {
 
 TEST(Projected, KeepsTheRodsOfALightFirstMass) {
     // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings at √(2 m2 g / (l m1))
-    for (const double light : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    for (const auto& [light, most] : {std::pair{1e-3, 2e-10}, {1e-6, 2e-13}, {1e-9, 3e-13}, {1e-12, 3e-13}}) {
         auto p = released(30, 30);
         p.mass[0] = light;
         Projected<Chain> model(p);
         const auto errors = errors_of<Rk4>(p, model, 0.1 / std::sqrt(2 * p.gravity / light), 10'000);
-        EXPECT_LT(errors.rod, 1e-15) << light;     // measured 2.2e-16 m
-        EXPECT_LT(errors.energy, 1e-10) << light;  // measured 3.3e-11 J and less
+        EXPECT_LT(errors.rod, 1e-15) << light;    // measured 2.2e-16 m
+        EXPECT_LT(errors.energy, most) << light;  // measured 3.3e-11, 2.1e-14, 3.9e-14, 5.0e-14 J
     }
 }
 
@@ -179,9 +179,9 @@ double growth(double z, long steps) {
 TEST(Baumgarte, IsStableBelowTheLimitOfTheMethod) {
     // C″ = −2α C′ − α² C has the double eigenvalue −α: |R(−α dt)| = 1 at 2 (Euler) and 2.785293563 (Runge–Kutta 4)
     EXPECT_LT(growth<Euler>(2 * 0.999, 8'000), 1e-2);          // measured 2e-3
-    EXPECT_GT(growth<Euler>(2 * 1.001, 2'000), 1e2);           // measured 2e5
-    EXPECT_LT(growth<Rk4>(2.785293563 * 0.999, 6'000), 1e-2);  // measured 2e-7
-    EXPECT_GT(growth<Rk4>(2.785293563 * 1.001, 800), 1e2);     // measured 6e4
+    EXPECT_GT(growth<Euler>(2 * 1.001, 2'000), 3e4);           // measured 2e5
+    EXPECT_LT(growth<Rk4>(2.785293563 * 0.999, 6'000), 1e-6);  // measured 2e-7
+    EXPECT_GT(growth<Rk4>(2.785293563 * 1.001, 800), 1e4);     // measured 6e4
 }
 
 TEST(Baumgarte, AddsNothingOnTheConstraints) {
@@ -195,7 +195,7 @@ TEST(Baumgarte, AddsNothingOnTheConstraints) {
     Chain::State expected, rate;
     bare.rate(y, expected);
     held.rate(y, rate);
-    EXPECT_LT((rate - expected).cwiseAbs().maxCoeff(), 1e-11);  // measured 1e-12, α² ε = 2e-12
+    EXPECT_LT((rate - expected).cwiseAbs().maxCoeff(), 5e-12);  // measured 1e-12, α² ε = 2e-12
 }
 
 TEST(Baumgarte, PullsBackAsItsEquationSays) {
@@ -216,7 +216,7 @@ TEST(Baumgarte, PullsBackAsItsEquationSays) {
     model.slip(q, a, second);
     model.curvature(q, v, bend);
     const Chain::Multipliers error = second + bend + 2 * alpha * slip + alpha * alpha * c;
-    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-12);  // measured 8e-16
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 5e-15);  // measured 8e-16
     EXPECT_GT(c.cwiseAbs().maxCoeff(), 1e-3);
 }
 
@@ -225,7 +225,7 @@ TEST(Baumgarte, HoldsRodsThatDriftWithoutIt) {
     Chain bare(p);
     Baumgarte<Chain> held(p, 10);
     const auto drifting = errors_of<Rk4>(p, bare, 1e-3, 10'000), stable = errors_of<Rk4>(p, held, 1e-3, 10'000);
-    EXPECT_LT(stable.rod, 0.1 * drifting.rod);  // measured 1.4e-10 m and 3.3e-8 m
+    EXPECT_LT(stable.rod, 0.03 * drifting.rod);  // measured 1.4e-10 m and 3.3e-8 m
 }
 
 }  // namespace

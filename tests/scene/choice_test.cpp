@@ -92,11 +92,10 @@ TEST(Choice, MeetsTheAccuracyAndEstimatesItOnFiftyScenesDrawnByLot) {
         ++reached;
         const double error = true_error(spec, side);
         EXPECT_LE(error, side.choice->accuracy) << drawing << ": " << side.method.name;
-        EXPECT_LE(error, 10 * side.choice->estimated_error) << drawing << ": " << side.method.name;
         most_optimistic = std::max(most_optimistic, error / side.choice->estimated_error);
     }
     EXPECT_EQ(reached, 50);
-    EXPECT_LT(most_optimistic, 3);  // measured 1.37
+    EXPECT_LT(most_optimistic, 1.4);  // as the README says; measured 1.37
 }
 
 TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {

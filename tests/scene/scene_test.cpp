@@ -100,7 +100,7 @@ TEST(Numbers, MeanTheirDecimals) {
     // degrees turn into radians with π to 34 digits
     const auto angle = make_scene(preset).a.motion.chain->angle[0];
     const auto expected = parse_quad("1.57084868667245644911862940236281");  // 90.003 π / 180
-    EXPECT_LT(abs(angle - expected), parse_quad("1e-31"));
+    EXPECT_LT(abs(angle - expected), parse_quad("3e-32"));                   // measured 4e-33
     EXPECT_EQ(text_of(parse_quad("90.003")), "90.003");
     EXPECT_EQ(parse_quad(text_of(Quad(1) / 3)), Quad(1) / 3);
 }
@@ -153,7 +153,7 @@ TEST(Sides, MayDifferInModelMethodAndStep) {
     const std::atomic<bool> never = false;
     Moment last;
     for (int n = 0; n <= 120; ++n) last = pair.next(never);
-    EXPECT_LT(std::abs(last.b.bobs[0].x - last.a.bobs[0].x), 0.01);  // they are the same pendulum; measured 7e-4
+    EXPECT_LT(std::abs(last.b.bobs[0].x - last.a.bobs[0].x), 0.001);  // measured 0.0002
 }
 
 TEST(PairRun, TellsWhereAMethodBrokeDown) {
