@@ -19,6 +19,10 @@ public:
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = claims()[first + i].measure(stop);
     }
 
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        return numbers.size() == claims()[trial].numbers && all_finite(numbers);
+    }
+
     std::vector<std::string> columns() const override { return {"claim", "measured", "verdict"}; }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {

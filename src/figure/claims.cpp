@@ -27,7 +27,9 @@ constexpr auto judge(bool holds) {
 }
 
 const Claim equations{
-    "equations", "The accelerations in angles are as printed (eqs. 5, 6)",
+    "equations",
+    "The accelerations in angles are as printed (eqs. 5, 6)",
+    1,
     [](const std::atomic<bool>& stop) {
         const auto start = side({120, 30}), rods = side({120, 30}, ModelChoice::constraints);
         return TrialNumbers{greatest(distances(exactly(start), exactly(rods), 240, stop))};
@@ -41,7 +43,9 @@ const Claim equations{
     always_misprinted};
 
 const Claim order_of_update{
-    "order_of_update", "Each step updates velocities first, then positions (eq. 7)",
+    "order_of_update",
+    "Each step updates velocities first, then positions (eq. 7)",
+    2,
     [](const std::atomic<bool>& stop) {
         return TrialNumbers{averages({angle_twins(20)}, {.method = "euler"}, stop)[0],
                             averages({angle_twins(20)}, {.method = "semi-implicit-euler"}, stop)[0]};
@@ -55,7 +59,9 @@ const Claim order_of_update{
     [](const TrialNumbers& n) { return judge(std::abs(n[1] - 2.205) < std::abs(n[0] - 2.205)); }};
 
 const Claim constraint_row{
-    "constraint_row", "The constraint and the first row of its Jacobian are as printed (eqs. 9, 10)",
+    "constraint_row",
+    "The constraint and the first row of its Jacobian are as printed (eqs. 9, 10)",
+    5,
     [](const std::atomic<bool>&) {
         // ½ (x² + y² − r²) by dual numbers at (3, 4)
         using Variable = Dual<double, 4>;
@@ -71,7 +77,9 @@ const Claim constraint_row{
     always_misprinted};
 
 const Claim positive_means_chaos{
-    "positive_means_chaos", "λ > 0, hence chaos",
+    "positive_means_chaos",
+    "λ > 0, hence chaos",
+    6,
     [](const std::atomic<bool>& stop) {
         const auto average = averages({angle_twins(0), angle_twins(20)}, {}, stop);
         const auto exponent = [&](int theta1_deg) {
@@ -92,7 +100,9 @@ const Claim positive_means_chaos{
     }};
 
 const Claim course_over_time{
-    "course_over_time", "The twins of figure 2 left part until ln(d/d₀) saturates near 11.5",
+    "course_over_time",
+    "The twins of figure 2 left part until ln(d/d₀) saturates near 11.5",
+    2,
     [](const std::atomic<bool>& stop) {
         const auto d = distances(side({90, 90}), side({parse_quad("90.003"), 90}), 3200, stop);
         double sum = 0;
@@ -105,7 +115,9 @@ const Claim course_over_time{
     [](const TrialNumbers& n) { return judge(std::abs(n[1] - 11.5) < 0.6); }};
 
 const Claim course_over_angle{
-    "course_over_angle", "Figure 2 right rises to 2.8 by 40° and 4 by 80°, falls to 3–4 near 108°, then stays at 8–10",
+    "course_over_angle",
+    "Figure 2 right rises to 2.8 by 40° and 4 by 80°, falls to 3–4 near 108°, then stays at 8–10",
+    4,
     [](const std::atomic<bool>& stop) {
         std::vector<SideTwins> twins{angle_twins(40), angle_twins(80), angle_twins(108)};
         for (int angle = 115; angle < 180; angle += 5) twins.push_back(angle_twins(angle));
@@ -124,7 +136,9 @@ const Claim course_over_angle{
     }};
 
 const Claim figure3_axis{
-    "figure3_axis", "Figures 3 left and 5 left share their scale",
+    "figure3_axis",
+    "Figures 3 left and 5 left share their scale",
+    1,
     [](const std::atomic<bool>& stop) {
         const auto found = averages({mass_twins(130, 0, 1), mass_twins(150, 0, 1), mass_twins(170, 0, 1)}, {}, stop);
         return TrialNumbers{(found[0] + found[1] + found[2]) / 3};
@@ -136,7 +150,9 @@ const Claim figure3_axis{
     always_misprinted};
 
 const Claim figure3_release{
-    "figure3_release", "Figures 3 and 5 right are released at θ₂ = 0",
+    "figure3_release",
+    "Figures 3 and 5 right are released at θ₂ = 0",
+    2,
     [](const std::atomic<bool>& stop) {
         const auto found = averages({mass_twins(90, 0, 0.5), mass_twins(90, 90, 0.5)}, {}, stop);
         return TrialNumbers{found[0], found[1]};
@@ -149,7 +165,9 @@ const Claim figure3_release{
     always_misprinted};
 
 const Claim figure6_release{
-    "figure6_release", "The lower curve of figure 6 is released at 30°",
+    "figure6_release",
+    "The lower curve of figure 6 is released at 30°",
+    2,
     [](const std::atomic<bool>& stop) {
         const auto parted = [&](int angle) {
             return greatest(distances(side({angle, 0}), side({angle, 0}, ModelChoice::constraints), 4500, stop));
@@ -162,7 +180,9 @@ const Claim figure6_release{
     [](const TrialNumbers& n) { return std::abs(n[0] - 0.633) < 0.01 ? Verdict::holds : Verdict::misprinted; }};
 
 const Claim floating_point{
-    "floating_point", "The two formulations part because of floating point and π",
+    "floating_point",
+    "The two formulations part because of floating point and π",
+    3,
     [](const std::atomic<bool>& stop) {
         const auto parted = [&](const Rational& step) {
             auto a = side({50, 0}), b = side({50, 0}, ModelChoice::constraints);
@@ -182,7 +202,9 @@ const Claim floating_point{
     [](const TrialNumbers& n) { return judge(n[1] > n[0] / 2); }};
 
 const Claim energy_gain{
-    "energy", "The energy rises until the simulation breaks down",
+    "energy",
+    "The energy rises until the simulation breaks down",
+    2,
     [](const std::atomic<bool>& stop) {
         const auto gain = [&](const SideSpec& spec) {
             const auto scene = make_scene({.name = "audit", .duration_s = {75, 1}, .a = spec, .b = spec});
@@ -211,7 +233,9 @@ TrialNumbers parted_by_droplet(int angle_deg, const std::atomic<bool>& stop) {
 }
 
 const Claim droplet_79{
-    "droplet_79", "A raindrop a mile away is felt at 79°/79° (figure 7)",
+    "droplet_79",
+    "A raindrop a mile away is felt at 79°/79° (figure 7)",
+    2,
     [](const std::atomic<bool>& stop) { return parted_by_droplet(79, stop); },
     [](const TrialNumbers& n) {
         return fmt::format(
@@ -222,7 +246,9 @@ const Claim droplet_79{
     [](const TrialNumbers& n) { return judge(n[1] > 0); }};
 
 const Claim droplet_90{
-    "droplet_90", "A raindrop a mile away is felt where the motion is chaotic",
+    "droplet_90",
+    "A raindrop a mile away is felt where the motion is chaotic",
+    2,
     [](const std::atomic<bool>& stop) { return parted_by_droplet(90, stop); },
     [](const TrialNumbers& n) {
         return n[1] > 0 ? fmt::format("in quad, from 90°/90°, the two are strangers after {:.0f} s", n[1])
@@ -231,7 +257,9 @@ const Claim droplet_90{
     [](const TrialNumbers& n) { return judge(n[1] > 0); }};
 
 const Claim three_links{
-    "three_links", "Figure 8 takes over an hour and a half, and more than three links are out of reach",
+    "three_links",
+    "Figure 8 takes over an hour and a half, and more than three links are out of reach",
+    2,
     [](const std::atomic<bool>& stop) {
         std::vector<SideTwins> twins;
         for (std::size_t i = 0; i < twins_block() / 2; ++i) {

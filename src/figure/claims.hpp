@@ -15,6 +15,7 @@ enum class Verdict { holds, fails, misprinted };
 struct Claim {
     std::string_view key;    // for the manifest
     std::string_view words;  // the claim, in short
+    std::size_t numbers;     // that it comes to
     TrialNumbers (*measure)(const std::atomic<bool>& stop);
     std::string (*found)(const TrialNumbers& numbers);  // in words
     Verdict (*verdict)(const TrialNumbers& numbers);    // by the numbers alone

@@ -38,16 +38,22 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header, s
 }
 
 void Computation::take_record() {
-    if (!record_ || !std::filesystem::exists(record_->path)) return;
+    std::error_code ignored;
+    if (!record_ || !std::filesystem::exists(std::filesystem::symlink_status(record_->path, ignored))) return;
     auto part = read_part_file(record_->path);
-    if (part.header != header_) {
-        report_.note(fmt::format("{} belongs to another preset or version; starting anew", record_->path.string()));
-        return;
-    }
-    known_ = std::move(part.trials);
+    if (part.header != header_)
+        throw io_failed("{} belongs to another preset or version; remove it, or give another folder with --out",
+                        record_->path.string());
+    part.take(*figure_.work, known_);
+    has_record_ = true;
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.work->units(trial);
-    report_.note(fmt::format("goes on from {}: {:.0f} % is done", record_->path.string(), percent_done()));
+    kept_units_ = done_units_;
+    report_.note(fmt::format(
+        "goes on from {}: {:.0f} % is done{}", record_->path.string(), percent(done_units_),
+        part.damaged_line == 0
+            ? ""
+            : fmt::format("; line {} is damaged, and what follows it is computed anew", part.damaged_line)));
 }
 
 /// Runs of trials that are not known, cut to what is best computed at once. Where they are many, some from all over the
@@ -80,6 +86,9 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
         const double cpu_start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
         std::vector<TrialNumbers> numbers(last - first);
         figure_.work->compute(first, numbers, stop);
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+            if (!figure_.work->fits(first + i, numbers[i]))
+                throw method_failed("{}: trial {} came to a number that is infinite or none", figure_.name, first + i);
         return keep(groups_[group], std::move(numbers), seconds_of(CLOCK_THREAD_CPUTIME_ID) - cpu_start);
     } catch (const Error& fault) {
         throw with_record(fault);
@@ -88,10 +97,10 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
 
 Error Computation::with_record(const Error& fault) {
     const std::lock_guard hold(mutex_);
-    if (!writer_) return fault;
-    writer_->flush();
+    if (!has_record_) return fault;
+    if (writer_) writer_->flush();
     return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command goes on from there",
-                                      fault.what(), percent_done(), record_->path.string())};
+                                      fault.what(), percent(kept_units_), record_->path.string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
@@ -105,19 +114,22 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
     cpu_s_ += cpu_s;
     ++groups_done_;
     const double time = now();
-    const bool pays = time - start_s_ > record_after_s && groups_done_ < groups_.size();
+    const bool is_last = groups_done_ == groups_.size();
+    const bool pays = time - start_s_ > record_after_s && !is_last;
     if (!writer_ && pays && record_) {
         writer_.emplace(*record_, header_, known_);
+        has_record_ = true;
     } else if (writer_) {
         for (std::size_t trial = group.first; trial < group.second; ++trial) writer_->add(trial, known_[trial]);
-        if (time - flushed_s_ > flush_every_s) {
+        if (is_last || time - flushed_s_ > flush_every_s) {
             writer_->flush();
             flushed_s_ = time;
         }
     }
+    if (writer_) kept_units_ = done_units_;
     if (groups_done_ == groups_ahead && groups_.size() >= many_groups) tell_estimate(time);
     report_.progress({done_units_, total_units_});
-    return groups_done_ == groups_.size();
+    return is_last;
 }
 
 void Computation::tell_estimate(double time) {

@@ -25,16 +25,19 @@ struct ComputationReport {
 /// file, once that pays. Destroyed before it is complete, it leaves that file.
 class Computation {
 public:
-    /// `record` = the file, where there is to be one; one that is there is read where it fits, and its trials
-    /// are known. `threads` is for the words.
+    /// `record` = the file, where there is to be one; where it is there its trials are known, up to the first
+    /// that is damaged. `threads` is for the words. Throws Error (exit 4) where the record is something else, which
+    /// stays.
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<FilePlace> record, int threads,
                 ComputationReport report);
 
     std::size_t groups() const { return groups_.size(); }
     /// One of the groups, each once; any thread. True for the one that was the last to be done: then all is known.
-    /// Throws Error: what a trial throws, with where the rest is kept.
+    /// Throws Error: what a trial throws, with where the rest is kept; exit 3 where its numbers cannot be.
     bool compute(std::size_t group, const std::atomic<bool>& stop);
     KnownTrials take() { return std::move(known_); }
+    /// The same fault, with how much is kept in the record, and where.
+    Error with_record(const Error& fault);
 
     const PartHeader& header() const { return header_; }
     const std::optional<FilePlace>& record() const { return record_; }
@@ -49,8 +52,7 @@ private:
     void find_groups();
     bool keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s);
     void tell_estimate(double time);
-    Error with_record(const Error& fault);
-    double percent_done() const { return total_units_ > 0 ? 100 * done_units_ / total_units_ : 100; }
+    double percent(double units) const { return total_units_ > 0 ? 100 * units / total_units_ : 100; }
 
     const FigurePreset& figure_;
     PartHeader header_;
@@ -61,9 +63,10 @@ private:
     std::mutex mutex_;  // of all below
     KnownTrials known_;
     std::optional<PartWriter> writer_;
+    bool has_record_ = false;
     std::size_t groups_done_ = 0;
     double start_s_ = 0, flushed_s_ = 0, cpu_s_ = 0;
-    double done_units_ = 0, total_units_ = 0, computed_units_ = 0;
+    double done_units_ = 0, kept_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };
 
 /// What computing a figure takes, from some of its trials. Throws what a trial throws; exit 130 soon after `stop` is

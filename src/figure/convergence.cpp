@@ -36,6 +36,7 @@ public:
         if (table.has("mark_step_s")) table.read_positive_ratio("mark_step_s", mark_step_.emplace());
         if (const auto names = table.read_texts("methods")) methods_ = *names;
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
+        check_distinct(table, "methods", methods_);
         for (const auto precision : {Precision::in_double, Precision::in_quad})
             for (const auto& name : methods_) add_ladder(table, name, precision);
         for (const auto& [begin, ladder] : ladders_) check_methods(table, make_scene(pair_of(begin)));
@@ -46,6 +47,12 @@ public:
 
     void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = part(first + i, stop);
+    }
+
+    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+        if (numbers.size() != 3 || !is_count(numbers[2])) return false;
+        const bool broke_down = std::isnan(numbers[0]) && std::isnan(numbers[1]);
+        return broke_down || all_finite(numbers);
     }
 
     std::vector<std::string> columns() const override { return {"method", "precision", "step_s", "distance", "steps"}; }
@@ -84,6 +91,15 @@ public:
             plot.rules.push_back({Rule::Way::vertical, mark_step_->value(), fmt::format("{} s", mark_step_->text())});
         figure.panels.push_back(std::move(plot));
         figure.captions.push_back(words(numbers));
+    }
+
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        if (std::any_of(numbers.begin(), numbers.end(), [](const auto& trial) { return trial[1] > 0; }))
+            return std::nullopt;
+        return fmt::format(
+            "the two sides never part, or every run broke down within {} s: there is no distance to "
+            "draw",
+            pair_.duration_s.value());
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

@@ -1,5 +1,6 @@
 #include "analysis/distance.hpp"
 #include "figure/kinds.hpp"
+#include "figure/pair_words.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 #include "scene/wording.hpp"
@@ -50,6 +51,10 @@ public:
         }
         for (const auto& curve : curves_) {
             samples_ = make_scene(curve.pair).samples;  // faults are told at once
+            if (quantity_ == "log_ratio" && released_alike(curve.pair.a, curve.pair.b))
+                throw table.fault("quantity",
+                                  "\"log_ratio\" takes sides that are released differently: there is no "
+                                  "ratio to a distance of 0");
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
                 throw table.fault("check_tolerance", "takes methods that go by a tolerance on both sides");
         }
@@ -70,6 +75,11 @@ public:
                 numbers[i][n] = quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(none);
             }
         }
+    }
+
+    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+        return numbers.size() == static_cast<std::size_t>(samples_) + 1 &&
+               (quantity_ == "distance" ? all_finite(numbers) : finite_or_none(numbers));
     }
 
     std::vector<std::string> columns() const override {
@@ -105,6 +115,13 @@ public:
             words += fmt::format("{}{} until {:.1f} s", i == 0 ? "" : ", ", curves_[i].label, agree_until(numbers, i));
         figure.captions.push_back(fmt::format("Converged: at tolerance {} the distances are the same within 1 %: {}.",
                                               scientific(static_cast<double>(*check_tolerance_)), words));
+    }
+
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        if (!logarithmic_) return std::nullopt;
+        for (const auto& trial : numbers.first(curves_.size()))
+            if (std::any_of(trial.begin(), trial.end(), [](double x) { return x > 0; })) return std::nullopt;
+        return "nothing is greater than 0, which a logarithmic axis cannot show; set curves.logarithmic = false";
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

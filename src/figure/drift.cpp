@@ -60,6 +60,8 @@ public:
                 throw table.fault("projected", "takes methods that step constraints; \"{}\" does not", name);
             runs_.push_back({name, Model::constraints, true});
         }
+        check_distinct(table, "methods", methods_);
+        check_distinct(table, "projected", projected_);
         table.finish();
     }
 
@@ -73,6 +75,11 @@ public:
             for (const auto* errors : {&run.energy_error, &run.length_error})
                 numbers[i].insert(numbers[i].end(), errors->begin(), errors->end());
         }
+    }
+
+    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+        return numbers.size() == points + 2 * spec_.times_s.size() && all_finite(numbers.first(broken)) &&
+               finite_or_none(numbers.subspan(broken));
     }
 
     std::vector<std::string> columns() const override {
@@ -109,6 +116,16 @@ public:
             figure.panels.push_back(std::move(plot));
             figure.captions.push_back(growth_caption(numbers, of_rods));
         }
+    }
+
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        for (const auto& trial : numbers)
+            for (const auto& errors : {energy(trial), rods(trial)})
+                if (std::any_of(errors.begin(), errors.end(), [](double x) { return x > 0; })) return std::nullopt;
+        return fmt::format(
+            "no method makes an error, or none came as far as {} s, the first point: more evaluations_per_s take it "
+            "further",
+            spec_.times_s.front());
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

@@ -50,6 +50,13 @@ public:
             numbers[i] = first + i < map_trials_ ? row(first + i, stop) : checks(first + i - map_trials_, stop);
     }
 
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        // a time, or infinity for no flip
+        const auto count = trial < map_trials_ ? static_cast<std::size_t>(columns_)
+                                               : static_cast<std::size_t>(2 * checks_of(trial - map_trials_));
+        return numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), [](double t) { return t >= 0; });
+    }
+
     std::vector<std::string> columns() const override { return {"theta1_deg", "theta2_deg", "flip_time_s"}; }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
@@ -155,12 +162,15 @@ private:
                      : numbers[static_cast<std::size_t>(rows_ - 1 - r)][static_cast<std::size_t>(columns_ - 1 - c)];
     }
 
+    /// How many releases the trial of checks follows.
+    int checks_of(std::size_t trial) const { return std::min(a_check, checked_ - static_cast<int>(trial) * a_check); }
+
     /// For some releases drawn by lot from those with the energy to flip: the map's time, and the reference's.
     TrialNumbers checks(std::size_t trial, const std::atomic<bool>& stop) const {
         std::mt19937_64 lot(trial);
         const auto drawn = [&] { return 360.0 * (static_cast<double>(lot() >> 11) * 0x1p-53) - 180; };
         TrialNumbers numbers;
-        const int count = std::min(a_check, checked_ - static_cast<int>(trial) * a_check);
+        const int count = checks_of(trial);
         while (static_cast<int>(numbers.size()) < 2 * count) {
             const auto p = released(drawn(), drawn());
             if (flip_is_forbidden(p)) continue;

@@ -2,6 +2,7 @@
 
 #include "scene/side_reader.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace doppel {
@@ -22,6 +23,12 @@ SideSpec FigureReader::release() {
     auto system = table("system");
     read_release(system, side);
     return side;
+}
+
+void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names) {
+    for (const auto& name : names)
+        if (std::count(names.begin(), names.end(), name) > 1)
+            throw table.fault(key, "must differ; \"{}\" is named more than once", name);
 }
 
 std::span<const FigureKind> figure_kinds() {

@@ -24,6 +24,9 @@ struct FigureReader {
     SideSpec release();
 };
 
+/// Throws Error (exit 2) where one of the names of a key is there twice.
+void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
+
 struct FigureKind {
     std::string_view name;  // of [scene] kind
     std::shared_ptr<const FigureWork> (*read)(FigureReader&);

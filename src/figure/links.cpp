@@ -44,6 +44,10 @@ public:
         }
     }
 
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        return numbers.size() == (trial == 0 ? 2 * chains() : 2) && all_finite(numbers);
+    }
+
     std::vector<std::string> columns() const override {
         return {"links", "exponent_per_s", "exponent_uncertainty_per_s", "angles_step_ns", "constraints_step_ns"};
     }

@@ -24,21 +24,38 @@ struct PartHeader {
 
 PartHeader header_of(const FigurePreset& figure, int shard = 1, int of = 1);
 
+/// "fig8.3-of-8.shard": the file of a part's numbers, for a merge.
+std::string shard_name(const PartHeader& header);
+/// "fig8.3-of-8.c0ffee123456.resume": the file that an interrupted run goes on from. Its name is that of this header
+/// alone: runs of other presets and versions have others.
+std::string resume_name(const PartHeader& header);
+/// The files in the folder that are named like it but are of other presets or versions.
+std::vector<std::filesystem::path> other_resumes(const std::filesystem::path& folder, const PartHeader& header);
+
 /// The trials whose numbers are known; others are empty.
 using KnownTrials = std::vector<TrialNumbers>;
 
 struct PartFile {
+    struct Trial {
+        std::size_t number;
+        TrialNumbers numbers;
+    };
     PartHeader header;
-    KnownTrials trials;  // all of the figure's; those in the file are not empty
+    std::vector<Trial> trials;     // a line each, up to the first that is damaged
+    std::size_t damaged_line = 0;  // that line, the header being 1: not as it was written; 0 = none
+
+    /// Moves the numbers to where they belong. A trial whose numbers cannot be its own (FigureWork::fits) is a damaged
+    /// line. `into` has room for all trials of the work, whose file this is.
+    void take(const FigureWork& work, KnownTrials& into);
 };
 
-/// Reads a file that PartWriter wrote; lines after the first that is not whole (the writer was killed) are left out.
-/// Every number is the one that was written, to the bit. Throws Error (exit 4) where it cannot be read or is something
-/// else.
+/// Reads a file that PartWriter wrote; a last line without an end (the writer was killed) is left out. Every number is
+/// the one that was written, to the bit: each line has a checksum. Throws Error (exit 4) where it cannot be read or is
+/// something else than such a file.
 PartFile read_part_file(const std::filesystem::path& path);
 
-/// Writes trials as they are done, so that a run can go on from there: a line of JSON, then a line a trial.
-/// Throws Error (exit 4).
+/// Writes trials as they are done, so that a run can go on from there: a line of JSON, then a line a trial, "TRIAL,
+/// NUMBERS;CHECKSUM". Throws Error (exit 4).
 class PartWriter {
 public:
     /// Begins the file with what is known; one that is there is replaced when that is written.
@@ -51,6 +68,7 @@ public:
 
 private:
     OutputFile file_;
+    std::string header_;
 };
 
 }  // namespace doppel

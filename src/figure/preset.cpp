@@ -5,6 +5,7 @@
 #include "scene/style_reader.hpp"
 #include "scene/video_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace doppel {
@@ -16,6 +17,11 @@ void read_chart(TomlReader& table, ChartSpec& chart) {
     table.read_positive("scale", chart.scale);
     constexpr double most = 8;
     if (chart.scale > most) throw table.fault("scale", "must be at most {}; it is {}", most, chart.scale);
+    constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL takes, which says so itself
+    const double width = chart.scale * chart.size.width, height = chart.scale * chart.size.height;
+    if (std::min(width, height) < smallest || std::max(width, height) > largest)
+        throw table.fault("scale", "must leave a picture of {} to {} px a side; {:g} times {}×{} px is {:g}×{:g}",
+                          smallest, largest, chart.scale, chart.size.width, chart.size.height, width, height);
     table.finish();
 }
 
@@ -61,6 +67,7 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     FigureReader reader{source.name, document, top, scene, chart, peers};
     for (const auto& kind : figure_kinds())
         if (kind.name == figure.kind) figure.work = kind.read(reader);
+    if (!top.has("subtitle")) figure.subtitle = figure.work->subtitle();
     scene.finish();
     read_chart(chart, figure.chart);
     top.finish();

@@ -18,7 +18,7 @@ struct ChartSpec {
 /// A figure as a preset file describes it: read, complete and checked, nothing computed yet.
 struct FigurePreset {
     std::string name;             // of the file, without folder and ending
-    std::string title, subtitle;  // the name where it is not given
+    std::string title, subtitle;  // where they are not given: the name; what the work says of itself
     std::vector<std::string> captions;
     std::string erratum;  // where the study's printed caption and the truth differ
     std::string kind;     // of [scene]

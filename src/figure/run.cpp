@@ -1,6 +1,7 @@
 #include "figure/run.hpp"
 
 #include "figure/manifest.hpp"
+#include "figure/merge.hpp"
 #include "numeric/clock.hpp"
 #include "numeric/error.hpp"
 #include "numeric/share_out.hpp"
@@ -19,74 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "3-of-8.shard"
-std::string shard_name(const PartHeader& header, std::string_view ending) {
-    return header.of == 1 ? fmt::format("{}.{}", header.figure, ending)
-                          : fmt::format("{}.{}-of-{}.{}", header.figure, header.shard, header.of, ending);
-}
-
-/// The files NAME.I-of-N.shard of a folder.
-std::vector<fs::path> shards_in(const fs::path& folder, const std::string& name) {
-    std::vector<fs::path> found;
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const auto file = entry.path().filename().string();
-        if (file.starts_with(name + ".") && file.ends_with(".shard")) found.push_back(entry.path());
-    }
-    std::sort(found.begin(), found.end());
-    return found;
-}
-
-void refuse_strangers(const fs::path& path, const PartHeader& found, const PartHeader& wanted) {
-    const auto refuse = [&](std::string_view what, const std::string& is, const std::string& ours) {
-        throw bad_input("{} was made with another {}: {}, not {}; compute it again with --shard {}/{}", path.string(),
-                        what, is, ours, found.shard, found.of);
-    };
-    const auto short_hash = [](const std::string& hash) { return hash.substr(0, 12); };
-    if (found.figure != wanted.figure) refuse("figure", found.figure, wanted.figure);
-    if (found.version != wanted.version) refuse("version", found.version, wanted.version);
-    if (found.revision != wanted.revision) refuse("revision", found.revision, wanted.revision);
-    if (found.preset != wanted.preset || found.trials != wanted.trials)
-        refuse("preset, or other --set", short_hash(found.preset), short_hash(wanted.preset));
-}
-
-/// The numbers of all shards, each of which must be there once and belong to this figure.
-KnownTrials merged(const FigurePreset& figure, const fs::path& folder) {
-    const auto files = shards_in(folder, figure.name);
-    if (files.empty())
-        throw bad_input("{} holds no part of {}; make them with: doppel figure {} --shard I/N", folder.string(),
-                        figure.name, figure.name);
-    KnownTrials all(figure.work->trials());
-    const auto wanted = header_of(figure);
-    int of = 0;
-    std::vector<bool> seen;
-    for (const auto& path : files) {
-        auto part = read_part_file(path);
-        refuse_strangers(path, part.header, wanted);
-        if (of == 0) {
-            of = part.header.of;
-            seen.resize(static_cast<std::size_t>(of));
-        }
-        if (part.header.of != of)
-            throw bad_input("{} is one of {} parts and {} one of {}; remove those that do not belong", path.string(),
-                            part.header.of, files.front().string(), of);
-        for (std::size_t trial = part.header.first(); trial < part.header.last(); ++trial) {
-            if (part.trials[trial].empty())
-                throw io_failed("{} is not whole: trial {} is missing; compute it again with --shard {}/{}",
-                                path.string(), trial, part.header.shard, of);
-            all[trial] = std::move(part.trials[trial]);
-        }
-        seen[static_cast<std::size_t>(part.header.shard) - 1] = true;
-    }
-    std::string missing;
-    for (int i = 1; i <= of; ++i)
-        if (!seen[static_cast<std::size_t>(i) - 1])
-            missing += fmt::format("{}{}/{}", missing.empty() ? "" : ", ", i, of);
-    if (!missing.empty()) throw bad_input("{}: missing parts: {}", folder.string(), missing);
-    return all;
-}
-
 Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
+    if (const auto why = figure.work->nothing_to_draw(trials)) throw method_failed("{}: {}", figure.name, *why);
     Figure page{.title = figure.title, .subtitle = figure.subtitle};
     figure.work->draw(trials, page);
     page.captions.insert(page.captions.begin(), figure.captions.begin(), figure.captions.end());
@@ -117,7 +52,8 @@ namespace {
 /// Draws and writes figures whose numbers are there; the renderer serves all pictures of one size.
 class Press {
 public:
-    Press(const FigureOptions& options, int jobs) : options_(options), jobs_(jobs) {}
+    Press(const FigureOptions& options, int jobs, const std::atomic<bool>& stop)
+        : options_(options), jobs_(jobs), stop_(stop) {}
 
     /// Makes the renderer for the first picture while others compute.
     void warm_up(const FigurePreset& figure) {
@@ -128,29 +64,39 @@ public:
     RunResult print(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials, FigureRecord facts,
                     PartFiles& files) {
         if (options_.shard) {
-            PartWriter(files.file(shard_name(header, "shard")), header, trials).close();
+            PartWriter(files.file(shard_name(header)), header, trials).close();
             return {.files = files.publish()};
         }
         facts.jobs = jobs_;
-        const auto picture = figure.name + ".png", rows = figure.name + ".csv";
+        const auto png = figure.name + ".png", csv = figure.name + ".csv";
         const auto finish = [&] {
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
             auto& renderer = renderer_for(figure.picture_size());
-            write_png(files.file(picture), renderer.draw(compose_figure(figure, trials)));
-            files.finished(picture);
+            const auto list = compose_figure(figure, trials);
+            check_stop();
+            const auto picture = renderer.draw(list);
+            check_stop();
+            write_png(files.file(png), picture);
+            files.finished(png);
             facts.gl = renderer.description();
-            Csv table(files.file(rows), figure.work->columns());
+            check_stop();
+            Csv table(files.file(csv), figure.work->columns());
             figure.work->write_rows(trials, table);
             table.finish();
-            files.finished(rows);
+            files.finished(csv);
             facts.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+            check_stop();
             write_figure_manifest(files, figure, trials, facts);
+            check_stop();
             return files.publish();
         };
         return {.files = files.keeping_finished(finish)};
     }
 
 private:
+    void check_stop() const {
+        if (stop_) throw Error(ExitCode::interrupted, "interrupted");
+    }
     Renderer& renderer_for(Size size) {
         if (!renderer_ || size_ != size) renderer_.emplace(size, DisplayList{}, options_.gl);
         size_ = size;
@@ -159,9 +105,14 @@ private:
 
     const FigureOptions& options_;
     int jobs_;
+    const std::atomic<bool>& stop_;
     std::optional<Renderer> renderer_;
     Size size_;
 };
+
+PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) {
+    return options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
+}
 
 /// The computation of every figure, and the threads at work on them.
 class Workshop {
@@ -173,12 +124,16 @@ public:
         : stop_(stop) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const auto& figure = figures[k];
-            const auto header =
-                options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
-            const auto record = shard_name(header, "resume");
+            const auto header = header_for(figure, options);
+            const auto& folder = files[k]->folder();
+            const auto record = resume_name(header);
+            if (const auto others = other_resumes(folder.path(), header);
+                !others.empty() && folder.entry(record).kind == Entry::Kind::none)
+                report.note(k, fmt::format("leaves {}{} alone, of another preset or version", others.front().string(),
+                                           others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
             files[k]->note_part(record);
             computations_.push_back(std::make_unique<Computation>(
-                figure, header, FilePlace(files[k]->folder(), record), jobs,
+                figure, header, FilePlace(folder, record), jobs,
                 ComputationReport{[&report, k](const FigureProgress& p) { report.progress(k, p); },
                                   [&report, k](const std::string& s) { report.note(k, s); }}));
             auto& groups = figure.work->measures_time() ? timed_groups_ : groups_;
@@ -235,11 +190,11 @@ private:
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report) {
     const int jobs = options.jobs > 0 ? options.jobs : cores();
-    Press press(options, jobs);
+    Press press(options, jobs, stop);
     if (options.merge) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
-            const auto trials = merged(figures[k], options.out / figures[k].name);
+            const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
             PartFiles files(options.out / figures[k].name);
             auto result = press.print(figures[k], header_of(figures[k]), trials, {}, files);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
@@ -257,7 +212,12 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         FigureRecord facts{.compute_cpu_s = computation.cpu_s()};
         const double start = computation.start_s() > 0 ? computation.start_s() : seconds_of(CLOCK_MONOTONIC);
         facts.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
-        auto result = press.print(figures[*k], computation.header(), computation.take(), facts, *files[*k]);
+        RunResult result;
+        try {
+            result = press.print(figures[*k], computation.header(), computation.take(), facts, *files[*k]);
+        } catch (const Error& fault) {
+            throw computation.with_record(fault);
+        }
         files[*k]->folder().remove_file(computation.record()->name);
         result.samples = std::lround(computation.computed_units());
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;

@@ -33,7 +33,8 @@ struct FigureReport {
 /// Makes figures. Their trials are shared out, figure after figure, among threads as these get free, while the caller's
 /// own thread draws and writes what is complete; so no core waits for the last trial of a figure. The numbers, and so
 /// the tables, are the same to the byte for any number of threads and any register width. A figure that takes more than
-/// some seconds keeps what it has in NAME.resume; after an interruption, or worse, the same command goes on from there.
+/// some seconds keeps what it has in a file (part_file.hpp, resume_name); after an interruption, or worse, the same
+/// command goes on from there.
 ///
 /// Files of a figure appear complete or not at all; those that are complete stay where a later one fails. Throws Error:
 /// exit 2 where parts are missing or belong to something else, exit 3, 4 or, soon after `stop` is set, 130.

@@ -41,6 +41,11 @@ public:
         }
     }
 
+    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+        return !numbers.empty() && is_count(numbers[0]) && numbers[0] <= spec_.crossings &&
+               numbers.size() == 1 + 3 * static_cast<std::size_t>(numbers[0]) && all_finite(numbers);
+    }
+
     std::vector<std::string> columns() const override {
         return {"energy_J", "orbit", "time_s", "theta2_rad", "p2_N_m_s"};
     }

@@ -38,6 +38,10 @@ public:
         }
     }
 
+    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+        return numbers.size() == samples() * (exponents() + 1) && all_finite(numbers);
+    }
+
     std::vector<std::string> columns() const override {
         std::vector<std::string> names{"time_s"};
         for (std::size_t i = 1; i <= exponents(); ++i) names.push_back(fmt::format("exponent{}_per_s", i));

@@ -26,6 +26,12 @@ public:
             numbers[i] = greatest_energy_errors(run_of(first + i), spec_.releases, stop);
     }
 
+    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+        // an error, or none for a blow-up
+        return numbers.size() == spec_.releases.size() &&
+               std::none_of(numbers.begin(), numbers.end(), [](double x) { return x < 0 || x > blow_up; });
+    }
+
     std::vector<std::string> columns() const override {
         return {"method", "step_s", "tolerance", std::string(spec_.parameter->name), "energy_error"};
     }

@@ -56,10 +56,9 @@ void read_methods(TomlReader& table, StabilitySpec& spec) {
             throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
         if (!serves(*method, spec.model_of(*method)))
             throw table.fault("methods", "must serve model = \"{}\"; \"{}\" does not", spec.model, name);
-        if (std::count(names.begin(), names.end(), name) > 1)
-            throw table.fault("methods", "must differ; \"{}\" is named more than once", name);
         spec.methods.push_back(method);
     }
+    check_distinct(table, "methods", names);
 }
 
 /// The range of the methods that go by a tolerance, or of those that do not.

@@ -2,6 +2,7 @@
 #include "analysis/exponent.hpp"
 #include "analysis/twins.hpp"
 #include "figure/kinds.hpp"
+#include "figure/pair_words.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
@@ -58,8 +59,10 @@ public:
             exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
         }
         table.finish();
-        for (const std::size_t end : {std::size_t{0}, trials_ - 1}) make_scene(twins(end));  // faults are told at once
-        run_ = fast_run();
+        const auto scene = make_scene(twins(0));
+        make_scene(twins(trials_ - 1));  // faults are told at once
+        run_ = fast_run(scene);
+        subtitle_ = words(scene);
     }
 
     std::size_t trials() const override { return trials_; }
@@ -68,6 +71,7 @@ public:
         return run_ ? twins_block() / (shares_twins() ? 1 : 2) - (shares_twins() ? 1 : 0) : 1;
     }
     std::string unit() const override { return "pairs"; }
+    std::string subtitle() const override { return subtitle_; }
 
     void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
         std::vector<double> averages(numbers.size());
@@ -88,6 +92,11 @@ public:
             const auto exponent = largest_exponent(scene.a.motion.chain->cast<double>(), exponent_spec_, stop);
             numbers[i].insert(numbers[i].end(), {exponent.value, exponent.uncertainty});
         }
+    }
+
+    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+        if (numbers.size() != (exponent_ ? 3 : 1) || std::isinf(numbers[0])) return false;
+        return all_finite(numbers.subspan(1));
     }
 
     std::vector<std::string> columns() const override {
@@ -124,18 +133,26 @@ public:
         figure.panels.push_back(std::move(plot));
     }
 
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        if (exponent_ || broken_down(numbers) < trials_) return std::nullopt;
+        return fmt::format(
+            "every one of the {} pairs broke down within {} s; take a finer step or tolerance, or a "
+            "shorter scene.duration_s",
+            trials_, pair_.duration_s.value());
+    }
+
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        double least = none, most = none, broken = 0, regular = 0;
+        double least = none, most = none, regular = 0;
         for (const auto& trial : numbers) {
-            if (std::isnan(trial[0])) ++broken;
             least = std::fmin(least, trial[0]);
             most = std::fmax(most, trial[0]);
             if (exponent_ && is_regular({trial[1], trial[2]})) ++regular;
         }
         all.push_back({"least_average_log_ratio", least});
         all.push_back({"greatest_average_log_ratio", most});
-        if (broken > 0) all.push_back({"trials_broken_down", broken});
+        if (const auto broken = broken_down(numbers); broken > 0)
+            all.push_back({"trials_broken_down", static_cast<double>(broken)});
         if (exponent_) all.push_back({"regular_trials", regular});
         return all;
     }
@@ -162,6 +179,11 @@ private:
             throw table.fault("step", "must divide the way from {} to {}; it is {}", text_of(from_), text_of(to_),
                               text_of(step_));
         trials_ = static_cast<std::size_t>(whole) + 1;
+        constexpr double most_degrees = 1e6;  // as of [system] angle_deg
+        for (const auto& [key, end] : {std::pair{"from", from_}, {"to", to_}, {"difference", Quad(to_ + difference_)}})
+            if (!parameter_->positive && abs(end) > most_degrees)
+                throw table.fault(key, "must keep all angles from -{0} to {0}°; one is {1}", most_degrees,
+                                  text_of(end));
         if (!parameter_->positive) return;
         if (from_ <= 0) throw table.fault("from", "must be > 0, as ratios are; it is {}", text_of(from_));
         if (from_ + difference_ <= 0)
@@ -171,6 +193,14 @@ private:
     Quad value(std::size_t trial) const { return from_ + step_ * Quad(static_cast<double>(trial)); }
     bool shares_twins() const { return difference_ == step_; }
 
+    /// Of twins that are released alike there is no ratio to their first distance.
+    std::size_t broken_down(std::span<const TrialNumbers> numbers) const {
+        const auto pair = twins(0);
+        if (released_alike(pair.a, pair.b)) return 0;
+        return static_cast<std::size_t>(
+            std::count_if(numbers.begin(), numbers.end(), [](const auto& trial) { return std::isnan(trial[0]); }));
+    }
+
     Preset twins(std::size_t trial) const {
         auto pair = pair_;
         parameter_->set(pair.a, value(trial));
@@ -179,8 +209,7 @@ private:
     }
 
     /// How all twins are stepped in lanes, where they can be: explicit methods of fixed step on plain chains in double.
-    std::optional<TwinRun> fast_run() const {
-        const auto scene = make_scene(twins(0));
+    std::optional<TwinRun> fast_run(const Scene& scene) const {
         TwinRun run{.sample_interval = 1 / pair_.sample_hz.value(), .samples = scene.samples};
         const auto take = [](const Side& side, TwinSide& into) {
             const auto& motion = side.motion;
@@ -191,6 +220,18 @@ private:
         };
         if (!take(scene.a, run.a) || !take(scene.b, run.b)) return std::nullopt;
         return run;
+    }
+
+    std::string words(Scene scene) const {
+        // what sets all twins apart is told by itself
+        parameter_->set(scene.preset.b, from_);
+        const auto apart = text_of(difference_ < 0 ? Quad(-difference_) : difference_);
+        if (parameter_->positive) {
+            std::string label(parameter_->label);
+            label.insert(label.find(" ratio") + 6, "s");
+            return pair_words(scene, {}, difference_ == 0 ? "" : fmt::format("{} apart by {}", label, apart));
+        }
+        return pair_words(scene, parameter_->links - 1, difference_ == 0 ? "" : fmt::format("twins {}° apart", apart));
     }
 
     /// One of the twins' averages by the sample loop of the films: any model, method and precision.
@@ -245,6 +286,7 @@ private:
     bool exponent_ = false;
     ExponentSpec exponent_spec_;
     std::optional<TwinRun> run_;
+    std::string subtitle_;
 };
 
 }  // namespace

@@ -3,7 +3,10 @@
 #include "output/csv.hpp"
 #include "picture/plot.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,6 +17,21 @@ namespace doppel {
 
 /// The numbers that one trial of a figure comes to, at least one; NaN where one could not be had.
 using TrialNumbers = std::vector<double>;
+
+/// Whether all are numbers, neither infinite nor NaN.
+inline bool all_finite(std::span<const double> numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
+/// Whether each is a number, or NaN where one could not be had.
+inline bool finite_or_none(std::span<const double> numbers) {
+    return std::none_of(numbers.begin(), numbers.end(), [](double x) { return std::isinf(x); });
+}
+
+/// Whether it is a number of things: whole, and small enough that a double knows it.
+inline bool is_count(double x) {
+    return x >= 0 && x <= 0x1p53 && x == std::floor(x);
+}
 
 /// What a figure has to say about itself beside its table: a key of the manifest.
 struct Finding {
@@ -40,13 +58,23 @@ public:
     /// is left to show, exit 130 soon after `stop` is set.
     virtual void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const = 0;
 
+    /// Whether the numbers can be those of the trial: as many as it has, and infinite or NaN only where they may be.
+    /// Those of a file are asked, and those just computed.
+    virtual bool fits(std::size_t trial, std::span<const double> numbers) const = 0;
+
     /// The table: its columns, and its rows from the numbers of all trials.
     virtual std::vector<std::string> columns() const = 0;
     virtual void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const = 0;
 
+    /// Why there is nothing to draw, as where every trial broke down; nothing where there is.
+    virtual std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> /*numbers*/) const { return {}; }
+
     /// The panels (or the page), and captions that hold numbers just found. Titles are there already.
     virtual void draw(std::span<const TrialNumbers> numbers, Figure& figure) const = 0;
     virtual std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const = 0;
+
+    /// What a picture says below its title where the preset has no subtitle: what moves, and how it is stepped.
+    virtual std::string subtitle() const { return {}; }
 
     /// Everything that the numbers depend on, as the preset's tables would say it (TOML).
     virtual std::string resolved() const = 0;

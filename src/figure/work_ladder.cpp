@@ -114,4 +114,12 @@ std::vector<Rung> rungs_of(const TrialNumbers& numbers) {
     return rungs;
 }
 
+bool is_ladder(std::span<const double> numbers) {
+    if (numbers.empty() || numbers.size() % Rung::numbers != 0) return false;
+    constexpr std::size_t first_count = 5;  // evaluations, then steps
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (i % Rung::numbers >= first_count && !std::isnan(numbers[i]) && !is_count(numbers[i])) return false;
+    return true;
+}
+
 }  // namespace doppel

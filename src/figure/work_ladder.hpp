@@ -52,5 +52,7 @@ std::vector<Rung> climb(const WorkProblem& problem, const Truth& truth, const Co
 
 TrialNumbers flattened(const std::vector<Rung>& rungs);
 std::vector<Rung> rungs_of(const TrialNumbers& numbers);
+/// Whether they are those of one rung or more.
+bool is_ladder(std::span<const double> numbers);
 
 }  // namespace doppel

@@ -61,6 +61,11 @@ public:
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = computed(first + i, stop);
     }
 
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        if (trial < problems_.all.size()) return numbers.size() == 2 && finite_or_none(numbers);
+        return is_ladder(numbers);
+    }
+
     std::vector<std::string> columns() const override {
         return {"problem",
                 "model",
@@ -156,6 +161,7 @@ private:
         for (const auto& name : methods_)
             if (!find_method(name))
                 throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
+        check_distinct(table, "methods", methods_);
         for (const auto model : models_)
             for (const auto& name : methods_) {
                 const auto& method = *find_method(name);

@@ -161,7 +161,9 @@ protected:
         kill(child_, SIGSTOP);
         std::this_thread::sleep_for(std::chrono::milliseconds(2050));
         kill(child_, SIGCONT);
-        ASSERT_TRUE(appears(record_of(folder_)));
+        for (int i = 0; i < 20'000 && (record_ = record_in(folder_)).empty(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        ASSERT_FALSE(record_.empty());
     }
 
     double cpu_s() const {
@@ -170,15 +172,22 @@ protected:
         if (clock_getcpuclockid(child_, &clock) != 0 || clock_gettime(clock, &time) != 0) return 1e9;
         return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
     }
-    static fs::path record_of(const fs::path& folder) { return folder / "out/flip-map/flip-map.resume"; }
+    /// "out/flip-map/flip-map.c0ffee123456.resume"; empty where there is none.
+    static std::string record_in(const fs::path& folder) {
+        std::error_code ignored;
+        for (const auto& entry : fs::directory_iterator(folder / "out/flip-map", ignored))
+            if (entry.path().extension() == ".resume") return fs::relative(entry.path(), folder).string();
+        return "";
+    }
 
     void expect_record_alone() const {
-        EXPECT_TRUE(fs::exists(record_of(folder_)));
+        EXPECT_TRUE(fs::exists(folder_ / record_));
         for (const char* file : {"flip-map.png", "flip-map.csv", "flip-map.json"})
             EXPECT_FALSE(fs::exists(folder_ / "out/flip-map" / file)) << file;
     }
 
     fs::path folder_;
+    std::string record_;
     pid_t child_ = -1;
 };
 
@@ -188,7 +197,7 @@ TEST_F(LongFigure, GoesOnAfterItWasKilled) {
     expect_record_alone();
     const auto again = doppel(folder_, with(long_map, {"--jobs", "2", "--progress", "plain"}));
     EXPECT_EQ(again.code, 0) << again.err;
-    EXPECT_TRUE(contains(again.err, "goes on from out/flip-map/flip-map.resume: ")) << again.err;
+    EXPECT_TRUE(contains(again.err, "goes on from " + record_ + ": ")) << again.err;
     EXPECT_FALSE(contains(again.err, ": 0 % is done")) << again.err;
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out/flip-map"), {}), 3) << "the record has gone";
 
@@ -202,12 +211,14 @@ TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
     EXPECT_EQ(wait_for(child_), 130);
     const auto said = bytes_of(folder_ / "stderr");
     EXPECT_TRUE(contains(said, "doppel: interrupted; ")) << said;
-    EXPECT_TRUE(contains(said, "kept in out/flip-map/flip-map.resume: the same command goes on")) << said;
+    EXPECT_TRUE(contains(said, "kept in " + record_ + ": the same command goes on")) << said;
     expect_record_alone();
-    // another preset does not
+    // another preset does not, and leaves it as it is
+    const auto bytes = bytes_of(folder_ / record_);
     const auto other = doppel(folder_, with(long_map, {"--set", "flip_map.duration_s=0.1", "--progress", "plain"}));
     EXPECT_EQ(other.code, 0) << other.err;
-    EXPECT_TRUE(contains(other.err, "belongs to another preset or version; starting anew")) << other.err;
+    EXPECT_TRUE(contains(other.err, "leaves " + record_ + " alone, of another preset or version")) << other.err;
+    EXPECT_EQ(bytes_of(folder_ / record_), bytes);
 }
 
 // Recipes of the README, as shells run them.

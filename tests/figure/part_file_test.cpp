@@ -2,12 +2,17 @@
 
 #include "figure/computation.hpp"
 #include "figure/support.hpp"
+#include "output/sha256.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 
 #include <bit>
 #include <fstream>
 #include <random>
+#include <set>
 
 namespace doppel {
 namespace {
@@ -32,6 +37,14 @@ void expect_same_bits(const TrialNumbers& a, const TrialNumbers& b) {
             << a[i] << " and " << b[i];
 }
 
+/// The trials of a file, each in its place.
+KnownTrials trials_in(const fs::path& path) {
+    const auto part = read_part_file(path);
+    KnownTrials trials(part.header.trials);
+    for (const auto& trial : part.trials) trials.at(trial.number) = trial.numbers;
+    return trials;
+}
+
 /// Numbers of all sizes and none at all.
 KnownTrials some_trials() {
     using Limits = std::numeric_limits<double>;
@@ -54,23 +67,24 @@ TEST(PartFile, KeepsEveryNumberToTheBit) {
     PartWriter writer(path, header, {});
     for (std::size_t i = trials.size(); i-- > 0;) writer.add(i, trials[i]);  // in any order
     writer.close();
-    const auto read = read_part_file(path);
-    EXPECT_EQ(read.header, header);
-    ASSERT_EQ(read.trials.size(), trials.size());
-    for (std::size_t i = 0; i < trials.size(); ++i) expect_same_bits(read.trials[i], trials[i]);
+    EXPECT_EQ(read_part_file(path).header, header);
+    EXPECT_EQ(read_part_file(path).damaged_line, 0u);
+    const auto read = trials_in(path);
+    ASSERT_EQ(read.size(), trials.size());
+    for (std::size_t i = 0; i < trials.size(); ++i) expect_same_bits(read[i], trials[i]);
 }
 
 TEST(PartFile, BeginsWithWhatIsKnownAndReplacesAnOlderOne) {
     const auto path = fresh_folder() / "some.resume";
     write_bytes(path, "something older");
     PartWriter writer(path, some_header(3), {{1.5}, {}, {2.5, none}});
-    const auto read = read_part_file(path);  // before it is closed
-    expect_same_bits(read.trials[0], {1.5});
-    EXPECT_TRUE(read.trials[1].empty());
-    expect_same_bits(read.trials[2], {2.5, none});
+    const auto read = trials_in(path);  // before it is closed
+    expect_same_bits(read[0], {1.5});
+    EXPECT_TRUE(read[1].empty());
+    expect_same_bits(read[2], {2.5, none});
     writer.add(1, {7});
     writer.flush();
-    expect_same_bits(read_part_file(path).trials[1], {7});
+    expect_same_bits(trials_in(path)[1], {7});
 }
 
 TEST(PartFile, LeavesOutALastLineCutAtAnyByte) {
@@ -85,14 +99,15 @@ TEST(PartFile, LeavesOutALastLineCutAtAnyByte) {
             expect_error(ExitCode::io_failed, {(folder / "cut").string()}, [&] { read_part_file(folder / "cut"); });
             continue;
         }
-        const auto read = read_part_file(folder / "cut");
+        EXPECT_EQ(read_part_file(folder / "cut").damaged_line, 0u) << "cut at " << cut;
+        const auto read = trials_in(folder / "cut");
         const auto whole = static_cast<std::size_t>(std::count(bytes.begin() + static_cast<long>(std::min(cut, header)),
                                                                bytes.begin() + static_cast<long>(cut), '\n'));
         for (std::size_t i = 0; i < trials.size(); ++i) {
             if (i < whole)
-                expect_same_bits(read.trials[i], trials[i]);
+                expect_same_bits(read[i], trials[i]);
             else
-                EXPECT_TRUE(read.trials[i].empty()) << "cut at " << cut;
+                EXPECT_TRUE(read[i].empty()) << "cut at " << cut;
         }
     }
 }
@@ -101,21 +116,90 @@ TEST(PartFile, StopsAtALineThatIsNone) {
     const auto path = fresh_folder() / "some.resume";
     PartWriter(path, some_header(9), {{1}, {2}}).close();
     const auto good = bytes_of(path);
+    const auto header = good.substr(0, good.find('\n'));
     for (const char* line :
-         {"x", "2,", "2,1e", "2,1,x", "2;1", "9,1", "-1,1", "2,1 ", ",1", "", "99999999999999999999,1"}) {
-        write_bytes(path, good + line + "\n3,4\n");
-        const auto read = read_part_file(path);
-        expect_same_bits(read.trials[0], {1});
-        expect_same_bits(read.trials[1], {2});
-        EXPECT_TRUE(read.trials[2].empty()) << line;
-        EXPECT_TRUE(read.trials[3].empty()) << line;
+         {"x", "2,", "2,1e", "2,1,x", "2;1", "-1,1", "2,1 ", ",1", "", "99999999999999999999,1", "2,1e999"}) {
+        // without a checksum, with that of another line, and with its own
+        const auto signed_line = fmt::format("{};{}", line, sha256_of_text(header + "\n" + line).substr(0, 16));
+        for (const auto& damaged : {std::string(line), line + good.substr(good.find(';'), 17), signed_line}) {
+            write_bytes(path, good + damaged + "\n" + good.substr(header.size() + 1));
+            const auto read = trials_in(path);
+            EXPECT_EQ(read_part_file(path).damaged_line, 4u) << damaged;
+            expect_same_bits(read[0], {1});
+            expect_same_bits(read[1], {2});
+            for (std::size_t i = 2; i < read.size(); ++i) EXPECT_TRUE(read[i].empty()) << damaged;
+        }
     }
+}
+
+TEST(PartFile, BelievesNoChangedByte) {
+    const auto path = fresh_folder() / "some.resume";
+    const KnownTrials trials{{1.25, -2e-300}, {none, 12345}, {infinite, 3}};
+    PartWriter(path, some_header(3), trials).close();
+    const auto bytes = bytes_of(path);
+    const auto header = bytes.find('\n') + 1;
+    for (std::size_t at = 0; at < bytes.size(); ++at)
+        for (const int change : {1, 2, 4, 8, 0x20, 0x80}) {
+            auto changed = bytes;
+            changed[at] = static_cast<char>(changed[at] ^ change);
+            write_bytes(path, changed);
+            const auto line = static_cast<std::size_t>(
+                std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+            try {
+                const auto part = read_part_file(path);
+                const bool last_end = at + 1 == bytes.size();  // as if the last line had been cut
+                EXPECT_EQ(part.damaged_line, last_end ? 0 : std::max<std::size_t>(line, 1) + 1) << at;
+                EXPECT_EQ(part.trials.size(), std::max<std::size_t>(line, 1) - 1) << at;
+                for (const auto& trial : part.trials) expect_same_bits(trial.numbers, trials[trial.number]);
+            } catch (const Error& fault) {
+                EXPECT_EQ(fault.code(), ExitCode::io_failed);
+                EXPECT_LT(at, header) << fault.what();
+            }
+        }
+}
+
+/// As editors and file systems do it.
+TEST(PartFile, BelievesNoOtherLineEnds) {
+    const auto path = fresh_folder() / "some.resume";
+    PartWriter(path, some_header(2), {{1}, {2}}).close();
+    auto bytes = bytes_of(path);
+    for (std::size_t at = 0; (at = bytes.find('\n', at)) != std::string::npos; at += 2) bytes.insert(at, "\r");
+    write_bytes(path, bytes);
+    EXPECT_EQ(read_part_file(path).damaged_line, 2u);
+}
+
+TEST(PartFile, ReadsRegularFilesAlone) {
+    const auto folder = fresh_folder();
+    PartWriter(folder / "whole", some_header(1), {{1}}).close();
+    fs::create_symlink(folder / "whole", folder / "link");
+    fs::create_symlink("/dev/zero", folder / "endless");
+    ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+    fs::create_directory(folder / "folder");
+    sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+    fmt::format_to_n(address.sun_path, sizeof address.sun_path - 1, "{}", (fs::relative(folder) / "socket").string());
+    const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
+    EXPECT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0) << address.sun_path;
+    for (const auto& [name, why] : std::vector<std::pair<const char*, const char*>>{{"link", "is a symbolic link"},
+                                                                                    {"endless", "is a symbolic link"},
+                                                                                    {"pipe", "is no regular file"},
+                                                                                    {"folder", "is no regular file"},
+                                                                                    {"socket", "; remove it"}})
+        expect_error(ExitCode::io_failed, {(folder / name).string(), why}, [&] { read_part_file(folder / name); });
+    close(listener);
+}
+
+TEST(PartFile, ReadsNoEndlessHeader) {
+    const auto path = fresh_folder() / "some.resume";
+    write_bytes(path, "");
+    fs::resize_file(path, std::uintmax_t{1} << 40);  // a hole: nothing on the disk
+    expect_error(ExitCode::io_failed, {path.string(), "is no file of trials"}, [&] { read_part_file(path); });
 }
 
 /// A header's JSON with one key changed.
 std::string with_key(const std::string& key, const std::string& value) {
     std::string text = "{\"file\":\"doppel trials\"";
-    for (const auto& [name, usual] : std::vector<std::pair<std::string, std::string>>{{"figure", "\"some\""},
+    for (const auto& [name, usual] : std::vector<std::pair<std::string, std::string>>{{"format", "2"},
+                                                                                      {"figure", "\"some\""},
                                                                                       {"version", "\"0.1.0\""},
                                                                                       {"revision", "\"abc\""},
                                                                                       {"preset_sha256", "\"cafe\""},
@@ -143,6 +227,9 @@ TEST(PartFile, RefusesWhatIsSomethingElse) {
                                           with_key("figure", "3"),
                                           with_key("trials", "\"many\""),
                                           with_key("trials", "null"),
+                                          with_key("format", "\"2\""),
+                                          with_key("format", "3"),
+                                          with_key("format", ""),
                                           with_key("preset_sha256", "")};
     for (const auto& other : others) {
         write_bytes(path, other);
@@ -161,7 +248,13 @@ TEST(PartFile, RefusesPartsThatCannotBe) {
                                                                                      {"shard", "0"},
                                                                                      {"shard", "2"},
                                                                                      {"shard", "-1"},
+                                                                                     {"shard", "1.5"},
+                                                                                     {"shard", "true"},
+                                                                                     {"of", "4294967297"},
+                                                                                     {"of", "100001"},
                                                                                      {"trials", "-1"},
+                                                                                     {"trials", "0"},
+                                                                                     {"trials", "1e300"},
                                                                                      {"trials", "1000000000000000"}}) {
         write_bytes(path, with_key(key, value));
         expect_error(ExitCode::io_failed, {path.string()}, [&] { read_part_file(path); });
@@ -264,7 +357,6 @@ TEST(Computation, NeedsNothingWhereARecordHasAll) {
 TEST(Computation, LeavesARecordOfSomethingElseAlone) {
     const auto record = fresh_folder() / "x.resume";
     const auto figure = small_sweep();
-    const auto expected = computed(figure);
     const KnownTrials wrong(10, {100});
     auto headers = std::vector<PartHeader>(6, header_of(figure));
     headers[0].preset = "cafe";
@@ -273,16 +365,63 @@ TEST(Computation, LeavesARecordOfSomethingElseAlone) {
     headers[3].figure = "other";
     headers[4].of = 2;
     headers[5].trials = 11;
+    std::set<std::string> names{resume_name(header_of(figure))};
     for (const auto& header : headers) {
         PartWriter(record, header, wrong).close();
-        const Resumed resumed(figure, header_of(figure), record);
-        EXPECT_EQ(resumed.trials, expected);
-        EXPECT_EQ(resumed.computed_units, 10);
-        EXPECT_TRUE(resumed.said.has(record.string() + " belongs to another preset or version; starting anew"));
+        const auto bytes = bytes_of(record);
+        expect_error(ExitCode::io_failed, {record.string() + " belongs to another preset or version"},
+                     [&] { Resumed(figure, header_of(figure), record); });
+        EXPECT_EQ(bytes_of(record), bytes);
+        // which is why each has a name of its own
+        EXPECT_TRUE(names.insert(resume_name(header)).second) << resume_name(header);
     }
     write_bytes(record, "my diary");
     expect_error(ExitCode::io_failed, {record.string()}, [&] { Resumed(figure, header_of(figure), record); });
     EXPECT_EQ(bytes_of(record), "my diary");
+}
+
+/// A kill at any moment, and a line that rotted: what is whole before is kept, all else is computed anew.
+TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
+    const auto record = fresh_folder() / "x.resume";
+    const auto figure = figure_of("fig2-right", {"sweep.to=3", "scene.duration_s=0.05"});
+    const auto expected = computed(figure);
+    PartWriter(record, header_of(figure), expected).close();
+    const auto bytes = bytes_of(record);
+    for (auto at = bytes.find('\n') + 1; at < bytes.size(); ++at) {
+        const auto lines_before = std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+        auto damaged = bytes;
+        damaged[at] = damaged[at] == '7' ? '3' : '7';
+        for (const auto& text : {bytes.substr(0, at), damaged}) {
+            write_bytes(record, text);
+            const Resumed resumed(figure, header_of(figure), record);
+            EXPECT_EQ(resumed.trials, expected) << at;
+            EXPECT_EQ(resumed.computed_units,
+                      static_cast<double>(expected.size() + 1) - static_cast<double>(lines_before))
+                << at;
+            const bool cut = text.size() < bytes.size() || at + 1 == bytes.size();
+            EXPECT_EQ(resumed.said.has("is damaged, and what follows it is computed anew"), !cut) << at;
+        }
+    }
+}
+
+/// Checksums tell what rots; numbers that cannot be are told by their kind.
+TEST(Computation, BelievesNoNumbersThatCannotBe) {
+    const auto record = fresh_folder() / "x.resume";
+    const auto figure = small_sweep();
+    const auto expected = computed(figure);
+    for (const auto& numbers : std::vector<TrialNumbers>{{1, 2}, {infinite}, {-infinite}}) {
+        auto known = expected;
+        known[4] = numbers;
+        PartWriter(record, header_of(figure), known).close();
+        const Resumed resumed(figure, header_of(figure), record);
+        EXPECT_EQ(resumed.trials, expected);
+        EXPECT_EQ(resumed.computed_units, 6);
+        EXPECT_TRUE(resumed.said.has("40 % is done; line 6 is damaged"));
+    }
+    // those of another part
+    auto header = header_of(figure, 2, 2);
+    PartWriter(record, header, expected).close();
+    EXPECT_EQ(Resumed(figure, header, record).computed_units, 5);
 }
 
 TEST(Computation, KeepsToItsPart) {
@@ -304,7 +443,7 @@ TEST(Computation, StopsSoonAndKeepsARecordFromBefore) {
     Computation computation(figure, header_of(figure), record, 1, said.report());
     const std::atomic<bool> stop = true;
     expect_error(ExitCode::interrupted, {"interrupted"}, [&] { computation.compute(0, stop); });
-    EXPECT_EQ(read_part_file(record).trials[3], TrialNumbers{1});
+    EXPECT_EQ(trials_in(record)[3], TrialNumbers{1});
     EXPECT_EQ(Resumed(figure, header_of(figure), record).computed_units, 9);
 }
 

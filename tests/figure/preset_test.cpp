@@ -92,6 +92,63 @@ TEST(FigurePreset, IsNoFilm) {
     EXPECT_NE(figure.second.find("doppel figure fig2-right"), std::string::npos) << figure.second;
 }
 
+TEST(FigurePreset, IsCalledAsItWasGiven) {
+    // a preset of one's own is no name that doppel knows
+    const auto film = error_of([] { read_figure({"base", "base.toml", ""}); });
+    EXPECT_NE(film.second.find("doppel render base.toml"), std::string::npos) << film.second;
+    const auto figure = error_of([] { read_preset({"x", "my/x.toml", "[scene]\nkind = \"audit\""}); });
+    EXPECT_NE(figure.second.find("doppel figure my/x.toml"), std::string::npos) << figure.second;
+}
+
+std::string subtitle_of(const std::string& preset, const std::vector<std::string>& arguments = {}) {
+    return figure_of(preset, arguments).subtitle;
+}
+
+TEST(FigurePreset, OfASweepSaysWhatItIs) {
+    for (const auto& [name, words] : std::vector<std::pair<const char*, const char*>>{
+             {"fig2-right", "two links in angles, θ₂ = 0, twins 0.003° apart; explicit Euler, 1/30 000 s"},
+             {"fig3-left", "two links in angles, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
+             {"fig3-right",
+              "two links in angles, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
+             {"fig4-right", "two particles on rods, θ₂ = 0, twins 0.003° apart; explicit Euler, 1/30 000 s"},
+             {"fig5-left", "two particles on rods, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
+             {"fig5-right",
+              "two particles on rods, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
+             {"fig8", "three particles on rods, θ₂ = θ₃ = 0, twins 0.003° apart; explicit Euler, 1/30 000 s"}})
+        EXPECT_EQ(subtitle_of(name), words) << name;
+}
+
+TEST(FigurePreset, OfASweepSaysWhatWasSet) {
+    for (const auto& [set, words] : std::vector<std::pair<std::string, std::string>>{
+             {"sweep.difference=0.25", "two links in angles, θ₂ = 0, twins 0.25° apart; explicit"},
+             {"sweep.difference=-0.25", ", twins 0.25° apart; explicit"},
+             {"sweep.difference=0", "two links in angles, θ₂ = 0; explicit Euler, 1/30 000 s"},
+             {"system.angle_deg=[0, 30.5]", "two links in angles, θ₂ = 30.5°, twins"},
+             {"system.omega_deg_per_s=[0, 5]", ", θ₂ = 0, ω = 0/5 °/s, twins"},
+             {"system.integrator=\"rk4\"", "; "},
+             {"system.step_s=\"1/1200\"", "; explicit Euler, 1/1 200 s"},
+             {"system.precision=\"quad\"", "; explicit Euler, 1/30 000 s, in quad"},
+             {"b.model=\"constraints\"", "two links, θ₂ = 0, twins 0.003° apart, angles against constraints; explicit"},
+             {"b.length_m=[1, 2]", ", l₂ = 1 m against l₂ = 2 m; explicit"},
+             {"b.integrator=\"rk4\"", "twins 0.003° apart, explicit Euler against "},
+             {"sweep.parameter=\"theta2_deg\"", "two links in angles, θ₁ = 0, twins 0.003° apart"},
+             {"subtitle=\"mine\"", "mine"}})
+        EXPECT_NE(subtitle_of("fig2-right", {set}).find(words), std::string::npos)
+            << set << ": " << subtitle_of("fig2-right", {set});
+    EXPECT_EQ(subtitle_of("fig2-right", {"subtitle=\"\""}), "");
+    EXPECT_EQ(subtitle_of("fig2-right", {"system.integrator=\"rk4\""}).find("Euler"), std::string::npos);
+    EXPECT_NE(subtitle_of("fig8", {"system.angle_deg=[0, 10, 20]"}).find("θ₂ = 10°, θ₃ = 20°"), std::string::npos);
+    EXPECT_NE(subtitle_of("fig3-right", {"system.angle_deg=[90, 45]"}).find("90°/45°"), std::string::npos);
+}
+
+TEST(FigurePreset, OfALogarithmOfRatiosTakesADistance) {
+    const auto [code, message] = error_of([] { figure_of("fig2-left", {"b.angle_deg=[90, 90]"}); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("[curves] quantity \"log_ratio\" takes sides that are released differently"),
+              std::string::npos)
+        << message;
+}
+
 struct Case {
     std::string kind;   // of [scene]
     std::string text;   // what follows, from line 3 on
@@ -179,6 +236,23 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Others, FigureErrors,
     testing::Values(
+        Case{"sweep",
+             "[chart]\nscale = 0.001",
+             ":4:1: [chart] scale",
+             {"16 to 16384 px a side; 0.001 times 1600×900 px"}},
+        Case{"sweep", "[chart]\nscale = 8\nsize = [4000, 900]", ":4:1: [chart] scale", {"is 32000×7200"}},
+        Case{"sweep", "[sweep]\nfrom = 2e6\nto = 2e6", ":4:1: [sweep] from", {"from -1000000 to 1000000°"}},
+        Case{"sweep", "[sweep]\ndifference = -1e300", ":4:1: [sweep] difference", {"from -1000000 to 1000000°"}},
+        Case{"convergence",
+             "[convergence]\nmethods = [\"rk4\", \"rk4\"]",
+             ":4:1: [convergence] methods",
+             {"must differ"}},
+        Case{"drift", "[drift]\nmethods = [\"rk4\", \"rk4\"]", ":4:1: [drift] methods", {"must differ; \"rk4\""}},
+        Case{"drift", "[drift]\nprojected = [\"rk4\", \"rk4\"]", ":4:1: [drift] projected", {"must differ"}},
+        Case{"work-precision",
+             "[work_precision]\nmethods = [\"rk4\", \"rk4\"]",
+             ":4:1: [work_precision] methods",
+             {"must differ"}},
         Case{"convergence", "[convergence]\nmethods = [\"magic\"]", ":4:1: [convergence] methods", {"\"magic\""}},
         Case{"convergence",
              "[convergence]\nmethods = [\"euler/dop853\"]",

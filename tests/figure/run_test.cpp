@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 
 namespace doppel {
 namespace {
@@ -145,6 +146,126 @@ TEST(FigureRun, FailsWhereAMethodBreaksDown) {
     EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
 }
 
+/// The second sentence of an error names what would be right.
+TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
+    const auto out = fresh_folder() / "out";
+    for (const char* method : {"euler", "rk4"}) {  // both in lanes
+        const auto figure = figure_of(
+            "fig2-right", {"sweep.from=60", "sweep.to=80", "sweep.step=5", "scene.sample_hz=1", "scene.duration_s=3000",
+                           "system.step_s=1", fmt::format("system.integrator=\"{}\"", method)});
+        expect_error(ExitCode::method_failed, {"fig2-right: every one of the 5 pairs broke down", "a finer step"},
+                     [&] { run_figure(figure, {.out = out}); });
+        EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+    }
+    // by the films' loop, and joined from parts
+    const auto alone =
+        figure_of("fig2-right", {"sweep.from=60", "sweep.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
+                                 "system.step_s=1", "system.model=\"mechanism\""});
+    expect_error(ExitCode::method_failed, {"every one of the 3 pairs broke down"},
+                 [&] { run_figure(alone, {.out = out}); });
+    for (int i = 1; i <= 2; ++i) run_figure(alone, {.out = out, .shard = Shard{i, 2}});
+    expect_error(ExitCode::method_failed, {"every one of the 3 pairs broke down"},
+                 [&] { run_figure(alone, {.out = out, .merge = true}); });
+    EXPECT_EQ(names_in(out / "fig2-right").size(), 2u);
+}
+
+TEST(FigureRun, DrawsASweepOfWhichSomeBreakDown) {
+    const auto out = fresh_folder();
+    const auto figure = figure_of("fig2-right", {"sweep.step=30", "scene.sample_hz=5", "scene.duration_s=6",
+                                                 "system.step_s=\"1/5\"", "chart.size=[320, 180]"});
+    run_figure(figure, {.out = out});
+    const auto broken = manifest_of(out, "fig2-right")["findings"]["trials_broken_down"].get<double>();
+    EXPECT_GT(broken, 0);
+    EXPECT_LT(broken, 7);
+}
+
+TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
+    const auto out = fresh_folder() / "out";
+    const auto twice_the_same = figure_of("fig6", {"scene.duration_s=0.5", "a.model=\"angles\"", "b.model=\"angles\"",
+                                                   "curves.logarithmic=true"}),
+               no_step = figure_of("why-they-part",
+                                   {"scene.duration_s=\"1/2\"", "b.model=\"angles\"", "convergence.methods=[\"rk4\"]",
+                                    "convergence.halvings=1", "convergence.quad_halvings=1"}),
+               at_rest = figure_of("drift", {"drift.duration_s=10", "drift.methods=[\"rk4\"]", "drift.projected=[]",
+                                             "system.angle_deg=[0, 0]"});
+    for (const auto* figure : {&twice_the_same, &no_step, &at_rest})
+        expect_error(ExitCode::method_failed, {figure->name + ": "}, [&] { run_figure(*figure, {.out = out}); });
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+}
+
+/// Between computing, drawing and writing, too.
+TEST(FigureRun, StopsBetweenItsStages) {
+    const auto out = fresh_folder() / "out";
+    std::atomic<bool> stop = false;
+    const FigureReport report{[&](std::size_t, const FigureProgress& p) { stop = p.done == p.total; },
+                              [](std::size_t, const std::string&) {}, [](std::size_t, const RunResult&) {}};
+    expect_error(ExitCode::interrupted, {"interrupted"},
+                 [&] { run_figures({small_sweep()}, {.out = out, .jobs = 1}, stop, report); });
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+    run_figure(small_sweep(), {.out = out, .shard = Shard{1, 1}});
+    stop = true;
+    expect_error(ExitCode::interrupted, {"interrupted"},
+                 [&] { run_figures({small_sweep()}, {.out = out, .merge = true}, stop, report); });
+    EXPECT_EQ(names_in(out / "fig2-right"), std::vector<std::string>{"fig2-right.shard"});
+}
+
+TEST(FigureRun, RefusesANameThatFilesCannotHave) {
+    const auto out = fresh_folder() / "out";
+    auto figure = small_sweep();
+    figure.name.assign(232, 'x');  // and .0123456789ab.resume.part
+    expect_error(ExitCode::bad_input, {figure.name + ": the preset's name is too long", "; 2 bytes less would do"},
+                 [&] { run_figure(figure, {.out = out}); });
+    EXPECT_FALSE(fs::exists(out));
+    figure.name.resize(230);
+    run_figure(figure, {.out = out});
+    EXPECT_TRUE(fs::exists(out / figure.name / (figure.name + ".csv")));
+}
+
+// Going on.
+
+TEST(Resume, OfAnotherRunStaysAsItIs) {
+    const auto out = fresh_folder();
+    const auto folder = out / "fig2-right";
+    fs::create_directory(folder);
+    const auto large = small_sweep({"sweep.step=0.5"});
+    const auto record = folder / resume_name(header_of(large)), other = folder / resume_name(header_of(large, 2, 3));
+    for (const auto& path : {record, other}) PartWriter(path, header_of(large), KnownTrials(19, {1})).close();
+    const auto bytes = bytes_of(record);
+    Said said;
+    run_figure(small_sweep(), {.out = out}, said);
+    EXPECT_TRUE(said.has("leaves " + record.string() + " alone, of another preset or version"));
+    EXPECT_EQ(said.notes.size(), 1u);  // nothing of the other part's
+    EXPECT_EQ(bytes_of(record), bytes);
+    EXPECT_EQ(bytes_of(folder / "fig2-right.csv"), table_text(small_sweep(), computed(small_sweep())));
+    EXPECT_EQ(names_in(folder).size(), 5u);
+    // its own is believed, and gone afterwards
+    run_figure(large, {.out = out}, said);
+    EXPECT_TRUE(said.has("goes on from " + record.string() + ": 100 % is done"));
+    EXPECT_FALSE(fs::exists(record));
+    EXPECT_TRUE(fs::exists(other));
+}
+
+TEST(Resume, ThatIsSomethingElseStaysAsItIs) {
+    const auto out = fresh_folder();
+    const auto folder = out / "fig2-right", record = folder / resume_name(header_of(small_sweep()));
+    fs::create_directory(folder);
+    write_bytes(out / "diary", "my diary");
+    const auto refused = [&] {
+        expect_error(ExitCode::io_failed, {record.string()}, [&] { run_figure(small_sweep(), {.out = out}); });
+        EXPECT_TRUE(fs::exists(fs::symlink_status(record)));
+        fs::remove(record);
+    };
+    fs::create_symlink(out / "diary", record);
+    refused();
+    EXPECT_EQ(bytes_of(out / "diary"), "my diary");
+    fs::create_symlink("/dev/null", record);
+    refused();
+    ASSERT_EQ(mkfifo(record.c_str(), 0600), 0);
+    refused();
+    fs::create_directory(record);
+    refused();
+}
+
 // Parts.
 
 class Merge : public testing::Test {
@@ -190,6 +311,53 @@ TEST_F(Merge, NamesThePartsThatAreMissing) {
     expect_refused(ExitCode::bad_input, {"missing", "2/3, 3/3"}, small_sweep());
     fs::remove(part(1));
     expect_refused(ExitCode::bad_input, {"holds no part of fig2-right", "--shard"}, small_sweep());
+}
+
+TEST_F(Merge, NamesTheFirstOfManyMissing) {
+    for (int i = 1; i <= 3; ++i) fs::remove(part(i));
+    run_figure(small_sweep(), {.out = out_, .shard = Shard{3, 100'000}});
+    const auto message = error_of([&] { run_figure(small_sweep(), {.out = out_, .merge = true}); }).second;
+    EXPECT_NE(message.find("missing parts: 1/100000, 2/100000, 4/100000, 5/100000, 6/100000 … 99999 in all"),
+              std::string::npos)
+        << message.substr(0, 1000);
+    EXPECT_LT(message.size(), folder_.string().size() + 150);
+}
+
+TEST_F(Merge, RefusesAPartThatIsThereTwice) {
+    const auto copy = folder_ / "fig2-right.1-of-3 (copy).shard";
+    fs::copy_file(part(1), copy);
+    expect_refused(ExitCode::bad_input, {part(1).string(), copy.string(), "both part 1/3"}, small_sweep());
+    fs::remove(copy);
+    fs::copy_file(part(1), part(2), fs::copy_options::overwrite_existing);
+    expect_refused(ExitCode::bad_input, {part(1).string(), part(2).string(), "both part 1/3"}, small_sweep());
+}
+
+TEST_F(Merge, BelievesNoChangedDigit) {
+    const auto bytes = bytes_of(part(2));
+    const auto header = bytes.find('\n') + 1, value = bytes.find(',', header) + 1, end = bytes.find(';', header);
+    const auto expect_damaged = [&](const std::string& changed, const std::string& why) {
+        write_bytes(part(2), changed);
+        expect_refused(ExitCode::io_failed, {part(2).string(), why, "--shard 2/3"}, small_sweep());
+    };
+    auto digit = bytes;
+    digit[value + 3] = digit[value + 3] == '4' ? '5' : '4';
+    expect_damaged(digit, "is damaged in line 2");
+    expect_damaged(std::string(bytes).replace(value, end - value, "nan"), "is damaged in line 2");
+    expect_damaged(std::string(bytes).replace(value - 1, end - value + 1, ""), "is damaged in line 2");
+    // lines of another part
+    expect_damaged(bytes + bytes_of(part(1)).substr(bytes_of(part(1)).find('\n') + 1), "is damaged in line 5");
+    // numbers that no trial has
+    PartWriter(part(2), header_of(small_sweep(), 2, 3), KnownTrials(10, {1, 2})).close();
+    expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged in line 2"}, small_sweep());
+}
+
+TEST_F(Merge, ReadsRegularFilesAlone) {
+    fs::rename(part(2), out_ / "elsewhere");
+    fs::create_symlink(out_ / "elsewhere", part(2));
+    expect_refused(ExitCode::io_failed, {part(2).string(), "symbolic link"}, small_sweep());
+    fs::remove(part(2));
+    ASSERT_EQ(mkfifo(part(2).c_str(), 0600), 0);
+    expect_refused(ExitCode::io_failed, {part(2).string(), "no regular file"}, small_sweep());
 }
 
 TEST_F(Merge, RefusesPartsOfAnotherPreset) {

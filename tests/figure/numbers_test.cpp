@@ -1,0 +1,117 @@
+#include "figure/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace {
+
+// Each kind of figure knows what its trials' numbers look like: those of a file that do not fit are not believed.
+
+constexpr double infinite = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
+
+struct Case {
+    const char* name;
+    std::vector<std::string> sets;
+    bool may_be_none;  // a number of the first trial
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+    *out << c.name;
+}
+
+class Numbers : public testing::TestWithParam<Case> {};
+
+TEST_P(Numbers, FitWhereTheyWereComputedAndNoneElse) {
+    const auto figure = figure_of(GetParam().name, GetParam().sets);
+    const auto& work = *figure.work;
+    const auto trials = computed(figure);
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        const auto& numbers = trials[i];
+        EXPECT_TRUE(work.fits(i, numbers)) << i;
+        EXPECT_FALSE(work.fits(i, {})) << i;
+        EXPECT_FALSE(work.fits(i, std::span(numbers).first(numbers.size() - 1))) << i;
+        auto more = numbers;
+        more.push_back(0.5);
+        EXPECT_FALSE(work.fits(i, more)) << i;
+    }
+    auto changed = trials[0];
+    changed.back() = none;
+    EXPECT_EQ(work.fits(0, changed), GetParam().may_be_none);
+    changed.back() = -infinite;
+    EXPECT_FALSE(work.fits(0, changed));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Figures, Numbers,
+    testing::Values(
+        Case{"fig2-right", {"sweep.step=60", "scene.duration_s=1"}, true},
+        Case{"fig2-right",
+             {"sweep.step=60", "scene.duration_s=1", "sweep.exponent=true", "sweep.exponent_duration_s=5"},
+             false},
+        // explicit Euler breaks down at once in some trials
+        Case{"fig2-right",
+             {"sweep.step=30", "scene.duration_s=6", "scene.sample_hz=5", "system.step_s=\"1/5\""},
+             true},
+        Case{"fig2-left", {"scene.duration_s=1"}, true}, Case{"fig6", {"scene.duration_s=1"}, false},
+        Case{"why-they-part",
+             {"scene.duration_s=0.5", "convergence.methods=[\"euler\", \"dop853\"]", "convergence.halvings=2",
+              "convergence.quad_halvings=1", "convergence.decades=2", "convergence.quad_decades=2"},
+             false},
+        Case{"lyapunov-spectrum", {"spectrum.duration_s=5", "spectrum.samples=4"}, false},
+        Case{"poincare", {"section.energy_J=[9.8]", "section.orbits=2", "section.crossings=5"}, false},
+        Case{"flip-map",
+             {"flip_map.columns=8", "flip_map.rows=8", "flip_map.duration_s=3", "flip_map.checked=15"},
+             false},
+        Case{"links", {"links.to=3", "links.duration_s=5"}, false},
+        Case{
+            "drift", {"drift.duration_s=20", "drift.methods=[\"rk4\", \"rattle\"]", "drift.projected=[\"rk4\"]"}, true},
+        Case{"drift", {"drift.duration_s=20", "drift.methods=[\"euler\"]", "drift.evaluations_per_s=20"}, true},
+        Case{"stability",
+             {"stability.rows=3", "stability.columns=3", "stability.duration_s=2",
+              "stability.methods=[\"rk4\", \"gauss4\", \"dop853\"]"},
+             true}),
+    [](const auto& parameter) {
+        std::string name = fmt::format("{}_{}", parameter.param.name, parameter.index);
+        std::replace(name.begin(), name.end(), '-', '_');
+        return name;
+    });
+
+TEST(NumbersOfWork, AreThoseOfWholeRungs) {
+    const auto figure = figure_of(
+        "speed-accuracy",
+        {"work_precision.problems=[\"P1\"]", "work_precision.models=[\"angles\"]", "work_precision.methods=[\"rk4\"]"});
+    const auto& work = *figure.work;
+    const TrialNumbers rung{1e-3, 1e-6, none, 0, 1e-4, 400, 100};
+    auto two = rung;
+    two.insert(two.end(), rung.begin(), rung.end());
+    EXPECT_TRUE(work.fits(1, rung));
+    EXPECT_TRUE(work.fits(1, two));
+    EXPECT_TRUE(work.fits(1, TrialNumbers(7, none)));
+    EXPECT_FALSE(work.fits(1, {}));
+    EXPECT_FALSE(work.fits(1, std::span(two).first(13)));
+    for (const double count : {-1.0, 0.5, 1e300, infinite}) {  // of steps
+        two.back() = count;
+        EXPECT_FALSE(work.fits(1, two)) << count;
+    }
+    EXPECT_TRUE(work.fits(0, TrialNumbers{3, 1e-20}));
+    EXPECT_FALSE(work.fits(0, TrialNumbers{3}));
+    EXPECT_FALSE(work.fits(0, TrialNumbers{3, infinite}));
+}
+
+TEST(NumbersOfAudit, AreAsManyAsTheClaimTakes) {
+    const auto figure = figure_of("audit");
+    const auto& work = *figure.work;
+    KnownTrials trials(work.trials());
+    for (std::size_t i = 0; i < work.trials(); ++i) {
+        std::size_t count = 1;
+        while (count < 10 && !work.fits(i, TrialNumbers(count, 1.0))) ++count;
+        ASSERT_LT(count, 10u);
+        EXPECT_FALSE(work.fits(i, TrialNumbers(count + 1, 1.0)));
+        EXPECT_FALSE(work.fits(i, TrialNumbers(count, none)));
+        trials[i].assign(count, 1);
+    }
+    EXPECT_FALSE(table_text(figure, trials).empty());  // they are enough to tell it: under ASan none is missing
+}
+
+}  // namespace
+}  // namespace doppel
