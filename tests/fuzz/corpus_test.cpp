@@ -1,4 +1,4 @@
-// What libFuzzer found, and 2000 seeded mutations of every preset, through the readers of every build.
+// What libFuzzer found, and seeded mutations of every preset and of some files, through the readers of every build.
 #include "figure/preset.hpp"
 #include "fuzz/mutation.hpp"
 #include "fuzz/reading.hpp"
@@ -19,12 +19,14 @@ namespace fs = std::filesystem;
 
 constexpr double patience = 1;  // s of CPU time for one input
 
+using Reader = std::string (*)(std::string_view);
+
 /// The refusal's message; a test failure where the readers crash, break their word or take too long.
-std::string read_watched(const std::string& input, const std::string& name) {
+std::string read_watched(const std::string& input, const std::string& name, Reader read = test::read_input) {
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     std::string message;
     try {
-        message = test::read_input(input);
+        message = read(input);
     } catch (const std::exception& fault) {
         ADD_FAILURE() << name << ": " << fault.what() << "\n--- input:\n" << input;
     }
@@ -40,6 +42,45 @@ TEST(Readers, KeepTheirWordOnTheCorpus) {
     }
     EXPECT_GE(inputs, 15);
 }
+
+/// A reader of files, and the folder of its seeds.
+struct Files {
+    const char* folder;
+    Reader read;
+    int mutations;  // of each seed
+};
+
+void PrintTo(const Files& files, std::ostream* out) {
+    *out << files.folder;
+}
+
+class ReadersOfFiles : public testing::TestWithParam<Files> {};
+
+TEST_P(ReadersOfFiles, KeepTheirWordOnTheCorpusAndItsMutations) {
+    const auto& [folder, read, mutations] = GetParam();
+    std::mt19937 random(2026);
+    read_watched("", "empty", read);
+    std::vector<fs::path> seeds;
+    for (const auto& file : fs::directory_iterator(fs::path(DOPPEL_SOURCE_DIR) / "tests/fuzz" / folder))
+        seeds.push_back(file.path());
+    std::sort(seeds.begin(), seeds.end());
+    EXPECT_GE(seeds.size(), 3u);
+    int accepted = 0, refused = 0;
+    for (const auto& seed : seeds) {
+        const auto bytes = test::bytes_of(seed);
+        accepted += read_watched(bytes, seed.filename().string(), read).empty();
+        for (int i = 0; i < mutations && !HasFailure(); ++i)
+            refused +=
+                !read_watched(test::damaged(bytes, random), fmt::format("{} {}", seed.string(), i), read).empty();
+    }
+    EXPECT_GE(accepted, 2);
+    EXPECT_GT(refused, mutations / 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ReadersOfFiles,
+                         testing::Values(Files{"sets", test::read_sets, 300}, Files{"parts", test::read_part, 60},
+                                         Files{"pictures", test::read_picture, 1000}),
+                         [](const auto& files) { return std::string(files.param.folder); });
 
 class Mutations : public testing::TestWithParam<PresetText> {};
 

@@ -147,6 +147,34 @@ void change_once(std::string& text, const std::vector<std::string>& tokens, std:
     }
 }
 
+void damage_once(std::string& bytes, std::mt19937& random) {
+    const auto at = below(bytes.size(), random), length = 1 + below(8, random);
+    switch (below(7, random)) {
+        case 0:
+            if (!bytes.empty()) bytes[at] ^= static_cast<char>(1u << below(8, random));
+            break;
+        case 1:
+            if (!bytes.empty()) bytes[at] = static_cast<char>(below(256, random));
+            break;
+        case 2:
+            if (!bytes.empty()) bytes[at] = static_cast<char>('0' + below(10, random));
+            break;
+        case 3:
+            bytes.erase(at, length);
+            break;
+        case 4:
+            bytes.insert(at, bytes.substr(at, length));
+            break;
+        case 5: {
+            const auto token = any_of(token_places(bytes + "x"), random);
+            bytes.replace(std::min(token.first, bytes.size()), token.length, any_of(extremes, random));
+            break;
+        }
+        default:
+            if (below(4, random) == 0) bytes.resize(at);
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> tokens_of(const std::vector<std::string>& texts) {
@@ -159,6 +187,11 @@ std::vector<std::string> tokens_of(const std::vector<std::string>& texts) {
 std::string mutated(std::string text, const std::vector<std::string>& tokens, std::mt19937& random) {
     for (std::size_t changes = 1 + below(4, random); changes > 0; --changes) change_once(text, tokens, random);
     return text;
+}
+
+std::string damaged(std::string bytes, std::mt19937& random) {
+    for (std::size_t changes = 1 + below(4, random); changes > 0; --changes) damage_once(bytes, random);
+    return bytes;
 }
 
 }  // namespace doppel::test

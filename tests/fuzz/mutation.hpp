@@ -13,4 +13,8 @@ std::vector<std::string> tokens_of(const std::vector<std::string>& texts);
 /// bytes flipped, the end cut off, comments "#--set KEY=VALUE" added. The same for the same `random`, on every machine.
 std::string mutated(std::string text, const std::vector<std::string>& tokens, std::mt19937& random);
 
+/// `bytes` changed in 1 to 4 places: bits flipped, digits and bytes changed, pieces dropped or doubled, the end cut
+/// off.
+std::string damaged(std::string bytes, std::mt19937& random);
+
 }  // namespace doppel::test

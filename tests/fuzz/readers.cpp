@@ -1,18 +1,20 @@
-// libFuzzer's program over the preset readers, with AddressSanitizer and UndefinedBehaviorSanitizer (clang):
+// libFuzzer's programs over what Doppel reads, with AddressSanitizer and UndefinedBehaviorSanitizer (clang):
 //
 //     cmake --preset fuzz && cmake --build --preset fuzz
 //     mkdir -p build/fuzz/found
-//     build/fuzz/tests/fuzz_readers -dict=tests/fuzz/toml.dict -max_len=4096 -timeout=2 -runs=100000 \
+//     build/fuzz/tests/fuzz_presets -dict=tests/fuzz/toml.dict -max_len=4096 -timeout=2 -runs=100000
 //         build/fuzz/found tests/fuzz/corpus presets
 //
-// What leads to new places goes to build/fuzz/found; an input that crashes is written to crash-*: once that is mended,
-// it belongs into tests/fuzz/corpus, which the suite reads in every build.
+// and so fuzz_sets (tests/fuzz/sets), fuzz_parts (tests/fuzz/parts) and fuzz_pictures (tests/fuzz/pictures), each with
+// a folder of its own for what it finds. What leads to new places goes to the first folder; an input that crashes is
+// written to crash-*: once that is mended, it belongs into the folder in tests/fuzz, which the suite reads in every
+// build.
 #include "fuzz/reading.hpp"
 
 #include <cstddef>
 #include <cstdint>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    doppel::test::read_input({reinterpret_cast<const char*>(data), size});  // an exception is a crash
+    doppel::test::DOPPEL_FUZZ_READ({reinterpret_cast<const char*>(data), size});  // an exception is a crash
     return 0;
 }

@@ -25,7 +25,7 @@ std::vector<Override> overrides_in(const std::string& text) {
 /// A place: "input.toml…", "--set KEY…", or the preset where things fail together ("input: side a: …").
 bool names_a_place(std::string_view message) {
     return message.starts_with("input.toml:") || message.starts_with(option) || message.starts_with("input: ") ||
-           message.find("and --set ") != std::string_view::npos;
+           message.find(" and --set ") != std::string_view::npos;
 }
 
 void expect_same(const std::string& resolved, const std::string& again) {
@@ -62,12 +62,11 @@ void read_all(const PresetText& source, const std::vector<Override>& overrides) 
     }
 }
 
-}  // namespace
-
-std::string read_input(std::string_view input) {
-    const PresetText source{"input", "input.toml", std::string(input)};
+/// Reads, and expects a refusal to be one of bad input that names a place.
+template <class Read>
+std::string refusal_of(const Read& read) {
     try {
-        read_all(source, overrides_in(source.text));
+        read();
         return {};
     } catch (const Error& fault) {
         const std::string message = fault.what();
@@ -75,6 +74,32 @@ std::string read_input(std::string_view input) {
         if (!names_a_place(message)) throw std::logic_error("names no place: " + message);
         return message;
     }
+}
+
+}  // namespace
+
+std::string read_input(std::string_view input) {
+    const PresetText source{"input", "input.toml", std::string(input)};
+    return refusal_of([&] { read_all(source, overrides_in(source.text)); });
+}
+
+std::string read_sets(std::string_view input) {
+    std::istringstream lines{std::string(input)};
+    PresetText source{"input", "input.toml", ""};
+    std::vector<std::string> arguments;
+    for (std::string line; std::getline(lines, line);) {
+        if (arguments.empty() && line.starts_with('#')) {
+            for (const auto& preset : builtin_presets())
+                if (preset.name == line.substr(1)) source.text = preset.text;
+        } else {
+            arguments.push_back(line);
+        }
+    }
+    return refusal_of([&] {
+        std::vector<Override> overrides;
+        for (const auto& argument : arguments) overrides.push_back(parse_set(argument));
+        read_all(source, overrides);
+    });
 }
 
 }  // namespace doppel::test

@@ -1,0 +1,148 @@
+#include "figure/run.hpp"
+#include "fuzz/reading.hpp"
+#include "numeric/error.hpp"
+#include "output/png.hpp"
+#include "output/sha256.hpp"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+namespace doppel::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file of these bytes while it lives.
+class File {
+public:
+    explicit File(std::string_view bytes)
+        : path_(fs::temp_directory_path() / fmt::format("doppel-reading-{}", getpid())) {
+        std::ofstream(path_, std::ios::binary) << bytes;
+    }
+    ~File() {
+        std::error_code ignored;
+        fs::remove(path_, ignored);
+    }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+/// Reads, and expects a refusal to be one of a file, which it names.
+template <class Read>
+std::string refusal_of(std::string_view bytes, const Read& read) {
+    const File file(bytes);
+    try {
+        read(file.path());
+        return {};
+    } catch (const Error& fault) {
+        const std::string message = fault.what();
+        if (fault.code() != ExitCode::io_failed) throw std::logic_error("not exit 4: " + message);
+        if (!message.starts_with(file.path().string())) throw std::logic_error("names no file: " + message);
+        return message;
+    }
+}
+
+/// A small figure of each kind.
+const std::map<std::string, FigurePreset>& figures() {
+    static const auto all = [] {
+        std::map<std::string, FigurePreset> made;
+        const std::vector<std::pair<const char*, std::vector<const char*>>> presets{
+            {"fig2-right", {"sweep.to=2", "scene.duration_s=0.1", "sweep.exponent=true"}},
+            {"fig3-right", {"sweep.to=0.03", "scene.duration_s=0.1"}},
+            {"fig2-left", {"scene.duration_s=0.05"}},
+            {"fig6", {"scene.duration_s=0.05", "curves.logarithmic=true"}},
+            {"why-they-part",
+             {"scene.duration_s=0.5", "convergence.methods=[\"euler\"]", "convergence.halvings=1",
+              "convergence.quad_halvings=1"}},
+            {"lyapunov-spectrum", {"spectrum.samples=2"}},
+            {"poincare", {"section.energy_J=[9.8]", "section.orbits=2", "section.crossings=3"}},
+            {"flip-map", {"flip_map.columns=3", "flip_map.rows=4", "flip_map.checked=3"}},
+            {"links", {"links.to=3"}},
+            {"drift", {"drift.duration_s=10", "drift.methods=[\"rk4\"]", "drift.points_per_decade=2"}},
+            {"stability", {"stability.rows=2", "stability.columns=2", "stability.methods=[\"rk4\", \"taylor\"]"}},
+            {"speed-accuracy",
+             {"work_precision.problems=[\"P1\"]", "work_precision.models=[\"angles\"]",
+              "work_precision.methods=[\"rk4\"]", "work_precision.repeats=2"}},
+            {"audit", {}}};
+        for (const auto& [name, arguments] : presets) {
+            std::vector<Override> overrides;
+            for (const auto* argument : arguments) overrides.push_back(parse_set(argument));
+            made.emplace(name, read_figure(find_preset(name), overrides));
+        }
+        return made;
+    }();
+    return all;
+}
+
+/// As many numbers 1 as fit each trial.
+KnownTrials plain_trials(const FigureWork& work) {
+    KnownTrials trials(work.trials());
+    for (std::size_t i = 0; i < trials.size(); ++i)
+        while (!work.fits(i, trials[i])) trials[i].push_back(1);
+    return trials;
+}
+
+/// Draws and writes the trials of the file in the company of others.
+void show(const FigurePreset& figure, PartFile& part) {
+    auto trials = plain_trials(*figure.work);
+    part.take(*figure.work, trials);
+    for (std::size_t i = 0; i < trials.size(); ++i)
+        if (!figure.work->fits(i, trials[i])) throw std::logic_error("numbers that do not fit were taken");
+    figure.work->findings(trials);
+    Csv table("/dev/null", figure.work->columns());
+    figure.work->write_rows(trials, table);
+    table.finish();
+    try {
+        compose_figure(figure, trials);
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::method_failed) throw;  // nothing to draw
+    }
+}
+
+/// Lines that end in ";?" with their checksums, as PartWriter makes them.
+std::string with_checksums(std::string_view input) {
+    std::istringstream lines{std::string(input)};
+    std::string header, text;
+    std::getline(lines, header);
+    text = header + (lines.eof() ? "" : "\n");
+    for (std::string line; std::getline(lines, line);) {
+        if (line.ends_with(";?")) {
+            line.pop_back();
+            line += sha256_of_text(header + "\n" + line.substr(0, line.size() - 1)).substr(0, 16);
+        }
+        text += line + (lines.eof() ? "" : "\n");
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string read_part(std::string_view input) {
+    return refusal_of(with_checksums(input), [](const fs::path& path) {
+        auto part = read_part_file(path);
+        const auto figure = figures().find(part.header.figure);
+        if (figure != figures().end() && part.header.trials == figure->second.work->trials())
+            show(figure->second, part);
+    });
+}
+
+std::string read_picture(std::string_view input) {
+    return refusal_of(input, [](const fs::path& path) {
+        const auto picture = read_png(path);
+        const auto& size = picture.size;
+        if (size.width < 1 || size.height < 1 ||
+            picture.rgba.size() != 4 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height))
+            throw std::logic_error("a picture of another size than its pixels");
+    });
+}
+
+}  // namespace doppel::test
