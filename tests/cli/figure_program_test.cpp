@@ -25,9 +25,9 @@ using test::with;
 const std::vector<std::string> small{"--set",  "sweep.to=9", "--set",      "scene.duration_s=0.5",
                                      "--size", "320x180",    "--progress", "none"};
 
-/// A map of some 2 s of one core.
+/// A map of some 2 to 10 s of one core.
 const std::vector<std::string> long_map{
-    "figure", "flip-map", "--set", "flip_map.columns=400", "--set", "flip_map.rows=400", "--set", "flip_map.checked=0",
+    "figure", "flip-map", "--set", "flip_map.columns=900", "--set", "flip_map.rows=900", "--set", "flip_map.checked=0",
     "--size", "320x320"};
 
 /// Waits for a file.
@@ -157,7 +157,7 @@ protected:
         folder_ = fresh_folder();
         child_ = start(folder_, with(long_map, {"--jobs", "1", "--progress", "none"}));
         // held up in the middle until it counts as long: 2 s
-        while (cpu_s() < 0.5) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        for (int i = 0; i < 60'000 && cpu_s() < 0.5; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         kill(child_, SIGSTOP);
         std::this_thread::sleep_for(std::chrono::milliseconds(2050));
         kill(child_, SIGCONT);
