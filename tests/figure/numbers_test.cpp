@@ -49,9 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
              {"sweep.step=60", "scene.duration_s=1", "sweep.exponent=true", "sweep.exponent_duration_s=5"},
              false},
         // explicit Euler breaks down at once in some trials
-        Case{"fig2-right",
-             {"sweep.step=30", "scene.duration_s=6", "scene.sample_hz=5", "system.step_s=\"1/5\""},
-             true},
+        Case{"fig2-right", {"sweep.step=30", "scene.duration_s=6", "scene.sample_hz=5", "system.step_s=\"1/5\""}, true},
         Case{"fig2-left", {"scene.duration_s=1"}, true}, Case{"fig6", {"scene.duration_s=1"}, false},
         Case{"why-they-part",
              {"scene.duration_s=0.5", "convergence.methods=[\"euler\", \"dop853\"]", "convergence.halvings=2",
