@@ -31,11 +31,13 @@ std::string difference_name(const fs::path& actual) {
     return actual.stem().string() + ".diff.png";
 }
 
-/// What an earlier comparison left is no news beside a picture that passes.
+constexpr const char* maker = "Doppel compare";  // of every difference picture
+
+/// What an earlier comparison left, and it alone, is no news beside a picture that passes.
 void remove_difference(const fs::path& folder, const std::string& name) {
     if (!fs::is_directory(folder)) return;
     const auto pictures = Folder::at(folder);
-    if (pictures.entry(name).kind == Entry::Kind::file && is_written(pictures, name, {})) pictures.remove_file(name);
+    if (maker_of_picture(pictures, name) == maker) pictures.remove_file(name);
 }
 
 /// True if they pass; else says why and writes the difference picture.
@@ -53,7 +55,7 @@ bool same(const fs::path& expected_path, const fs::path& actual_path, const fs::
         return true;
     }
     PartFiles parts(folder_in(out), name);
-    write_png(parts.file(name), difference_picture(expected, actual));
+    write_png(parts.file(name), difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
     const auto files = parts.publish();
     print_line("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path.string(),
                expected_path.string(), verdict.why, files.front().string());

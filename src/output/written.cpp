@@ -65,12 +65,23 @@ WrittenFiles written_files(const Folder& folder) {
     return written;
 }
 
+std::string maker_of_picture(const Folder& folder, const std::string& name) {
+    constexpr std::string_view png = "\x89PNG\r\n\x1a\n", key{"tEXtSoftware\0", 13};
+    const auto head = head_of(folder, name, 4096);
+    const auto at = head.find(key);
+    if (!head.starts_with(png) || at == std::string::npos || at < 4) return {};
+    // the chunk's length, big-endian, is before its type
+    std::size_t length = 0;
+    for (std::size_t i = at - 4; i < at; ++i) length = length << 8 | static_cast<unsigned char>(head[i]);
+    const auto start = at + key.size(), end = at + 4 + length;
+    return end >= start && end <= head.size() ? head.substr(start, end - start) : std::string();
+}
+
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written, const std::string& within) {
     if (written.contains(within + name)) return true;
     if (name.ends_with(".json")) return !manifest_of(folder, name).is_null();
-    constexpr std::string_view png = "\x89PNG\r\n\x1a\n", maker{"Software\0Doppel", 15};
-    const auto head = head_of(folder, name, 4096);
-    if (head.starts_with(png)) return head.find(maker) != std::string::npos;
+    if (maker_of_picture(folder, name).starts_with("Doppel")) return true;
+    const auto head = head_of(folder, name, 64);
     return head.starts_with("sample,time_s,") || head.starts_with(R"({"file":"doppel trials")");
 }
 

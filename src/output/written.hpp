@@ -19,6 +19,9 @@ struct WrittenFile {
 using WrittenFiles = std::map<std::string, WrittenFile>;
 WrittenFiles written_files(const Folder& folder);
 
+/// What a PNG in the folder says made it, its "Software": nothing where it says none, or is no PNG.
+std::string maker_of_picture(const Folder& folder, const std::string& name);
+
 /// Whether Doppel made the regular file `name` there: a manifest names it ("frames/" + name where `within` =
 /// "frames/"), or it says so itself (a PNG of Doppel's, a manifest, the table of a film, the trials of a figure).
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written,

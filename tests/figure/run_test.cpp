@@ -209,18 +209,6 @@ TEST(FigureRun, StopsBetweenItsStages) {
     EXPECT_EQ(names_in(out / "fig2-right"), std::vector<std::string>{"fig2-right.shard"});
 }
 
-TEST(FigureRun, RefusesANameThatFilesCannotHave) {
-    const auto out = fresh_folder() / "out";
-    auto figure = small_sweep();
-    figure.name.assign(232, 'x');  // and .0123456789ab.resume.part
-    expect_error(ExitCode::bad_input, {figure.name + ": the preset's name is too long", "; 2 bytes less would do"},
-                 [&] { run_figure(figure, {.out = out}); });
-    EXPECT_FALSE(fs::exists(out));
-    figure.name.resize(230);
-    run_figure(figure, {.out = out});
-    EXPECT_TRUE(fs::exists(out / figure.name / (figure.name + ".csv")));
-}
-
 // Going on.
 
 TEST(Resume, OfAnotherRunStaysAsItIs) {

@@ -98,7 +98,7 @@ void show(const FigurePreset& figure, PartFile& part) {
     for (std::size_t i = 0; i < trials.size(); ++i)
         if (!figure.work->fits(i, trials[i])) throw std::logic_error("numbers that do not fit were taken");
     figure.work->findings(trials);
-    Csv table("/dev/null", figure.work->columns());
+    Csv table(std::filesystem::path("/dev/null"), figure.work->columns());
     figure.work->write_rows(trials, table);
     table.finish();
     try {
