@@ -1,5 +1,6 @@
 #pragma once
 
+#include "numeric/lanes.hpp"
 #include "numeric/state.hpp"
 
 #include <limits>
@@ -46,7 +47,6 @@ struct FlipArc {
 
 private:
     static double size(double x) { return x < 0 ? -x : x; }
-    static double greater(double a, double b) { return a < b ? b : a; }
     static bool turns_back(const Point& from, const Point& to) {
         return from.theta * from.omega > 0 && to.theta * to.omega < 0;
     }

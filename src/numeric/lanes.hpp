@@ -130,7 +130,6 @@ struct Lanes {
         return r;
     }
 
-    [[gnu::always_inline]] friend Lanes greater(const Lanes& a, const Lanes& b) { return select(a < b, b, a); }
     [[gnu::always_inline]] friend Lanes lesser(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
 
     /// log2 a within 0.05 for a > 0, a straight line between powers of two; −1023 of zero.
@@ -203,6 +202,12 @@ inline constexpr bool is_lanes<Lanes<width, Build>> = true;
 template <class Scalar>
 [[gnu::always_inline]] inline const Scalar& select(bool mask, const Scalar& a, const Scalar& b) {
     return mask ? a : b;
+}
+
+/// The greater of two numbers, lane by lane of many; not a number where either is none.
+template <class Scalar>
+[[gnu::always_inline]] inline Scalar greater(const Scalar& a, const Scalar& b) {
+    return select(b <= a, a, select(a <= a, b, a));
 }
 
 }  // namespace doppel

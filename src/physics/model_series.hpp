@@ -1,5 +1,6 @@
 #pragma once
 
+#include "numeric/lanes.hpp"
 #include "physics/pendulum.hpp"
 
 #include <cmath>
@@ -34,11 +35,6 @@ double plain_value(const Scalar& x) {
         return plain_value(x.value);
     else
         return static_cast<double>(x);
-}
-
-/// The greater; not a number if either is none.
-inline double greater(double a, double b) {
-    return b > a || std::isnan(b) ? b : a;
 }
 
 /// Twice √(l/g) of a chain outstretched, s, about a third of its slowest swing.

@@ -142,5 +142,18 @@ TEST(Lanes, SelectDecidesLaneByLane) {
     EXPECT_EQ(chosen[3], 20);  // what is no number is not small
 }
 
+TEST(Lanes, TheGreaterIsNoNumberWhereEitherIsNone) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& [a, b, expected] :
+         {std::array{1.0, 2.0, 2.0}, {2.0, 1.0, 2.0}, {nan, 1.0, nan}, {1.0, nan, nan}}) {
+        EXPECT_EQ(bits(greater(a, b)), bits(expected));
+        Lanes<4> wide(5);
+        wide.set(2, a);
+        const auto all = greater(wide, Lanes<4>(b));
+        EXPECT_EQ(bits(all[2]), bits(expected));
+        EXPECT_EQ(std::isnan(all[1]), std::isnan(b));
+    }
+}
+
 }  // namespace
 }  // namespace doppel
