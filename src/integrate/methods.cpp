@@ -4,6 +4,7 @@
 #include "physics/angle_chain.hpp"
 #include "physics/mechanism.hpp"
 #include "physics/rod_chain.hpp"
+#include "physics/stabilise.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,8 @@ std::span<const MethodEntry> methods() {
         std::size_t n = 0;
         for_each_method([&]<class Which>() {
             entries[n++] = {Which::method, serves<Which, AngleChain<double, links>>,
-                            serves<Which, RodChain<double, links>>, serves<Which, Mechanism<double>>};
+                            serves<Which, RodChain<double, links>>, serves<Which, Mechanism<double>>,
+                            serves<Which, Projected<RodChain<double, links>>>};
         });
         return entries;
     }();

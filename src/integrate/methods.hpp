@@ -10,6 +10,7 @@ namespace doppel {
 /// A method with the models it can step.
 struct MethodEntry : Method {
     bool angles, constraints, mechanism;
+    bool stabilised;  // constraints that are held otherwise (physics/stabilise.hpp)
 };
 
 /// All of them, in the order of integrate/registry.hpp.

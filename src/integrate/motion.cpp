@@ -22,7 +22,12 @@ std::unique_ptr<Motion> made(const MotionSpec& spec) {
 }  // namespace
 
 std::unique_ptr<Motion> make_motion(const MotionSpec& spec) {
-    if (!find_method(spec.method)) throw bad_input("there is no method \"{}\"", spec.method);
+    const auto* method = find_method(spec.method);
+    if (!method) throw bad_input("there is no method \"{}\"", spec.method);
+    if (spec.stabilise != Stabilise::none && spec.model == Model::angles)
+        throw bad_input("in angles the rods keep their length by themselves; there is nothing to stabilise");
+    if (spec.stabilise != Stabilise::none && !method->stabilised)
+        throw bad_input("the method \"{}\" keeps the constraints itself; there is nothing to stabilise", spec.method);
     return spec.precision == Precision::in_double ? made<double>(spec) : made<Quad>(spec);
 }
 

@@ -44,14 +44,13 @@ Bobs<Scalar> bobs_of_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& s
     return bobs;
 }
 
-/// The bobs of a chain from its state as particles, without their angles, into `bobs`, which keeps its memory.
+/// The bobs of a chain from its state as particles, without their angles, into `bobs`, which keeps its memory. Further
+/// particles may follow those of the chain: the first half of the state are places, the second one velocities.
 template <class Scalar, int N>
 void place_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, Bobs<Scalar>& bobs) {
-    const auto n = static_cast<Eigen::Index>(p.links());
     bobs.resize(p.links());
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Index q = 2 * i, v = 2 * n + 2 * i;
-        const auto k = static_cast<std::size_t>(i);
+    for (std::size_t k = 0; k < p.links(); ++k) {
+        const Eigen::Index q = 2 * static_cast<Eigen::Index>(k), v = state.size() / 2 + q;
         bobs[k] = {p.mass[k], state[q], state[q + 1], state[v], state[v + 1]};
     }
 }

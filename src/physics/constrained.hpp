@@ -6,7 +6,8 @@
 
 namespace doppel {
 
-/// A first-order system y′ = f(y): what every method steps. rate() may use scratch space of the model: one model a thread.
+/// A first-order system y′ = f(y): what every method steps. rate() may use scratch space of the model: one model a
+/// thread.
 template <class M>
 concept System = requires(M model, const typename M::State& y, typename M::State& dydt) {
     typename M::Scalar;
@@ -25,6 +26,13 @@ concept Constrained = System<M> && requires(M model, const typename M::Half& q, 
     model.curvature(q, q, c);          // c ← J̇(q, v) v
     model.pull(q, lambda, v);          // v ← v + M⁻¹ Jᵀ(q) λ
     model.solve(q, q, c);              // c ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ c
+    model.rounding(q, c);              // c ← what C changes by where every coordinate is off by ε of the largest
+};
+
+/// The same, where nothing else holds the constraints (physics/stabilise.hpp).
+template <class M>
+concept Unstabilised = Constrained<M> && !requires {
+    M::is_stabilised;
 };
 
 }  // namespace doppel

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <variant>
 
@@ -46,9 +47,10 @@ End<To> cast_end(const End<Scalar>& end) {
 //     kind                 as presets name it
 //     rows                 how many conditions C(q) = 0 it sets
 //     value(q)             C
-//     gradient(q, emit)    calls emit(row, particle, ∂C_row/∂q_particle) for every particle it ties, always in the same
-//     order curvature(v)         J̇ v, the part of C″ that is there without any acceleration error(q)             how
-//     far the particles are from where it wants them, m cast<To>()           the same in another scalar
+//     gradient(q, emit)    calls emit(row, particle, ∂C_row/∂q_particle) for every particle it ties, in one order
+//     curvature(v)         J̇ v, the part of C″ that is there without any acceleration
+//     error(q)             how far the particles are from where it wants them, m
+//     cast<To>()           the same in another scalar
 
 /// A particle held at a fixed place p.
 ///     C = q − p
@@ -206,5 +208,23 @@ struct SlotCircle {
 /// Every kind of constraint there is. The list stands here and nowhere else.
 template <class Scalar>
 using Constraint = std::variant<Anchor<Scalar>, Rod<Scalar>, SlotLine<Scalar>, SlotCircle<Scalar>>;
+
+/// The rod that a constraint is or acts as, a circular slot's from its centre; none where it is straight.
+template <class Scalar>
+std::optional<Rod<Scalar>> rod_of(const Constraint<Scalar>& constraint) {
+    if (const auto* rod = std::get_if<Rod<Scalar>>(&constraint)) return *rod;
+    if (const auto* slot = std::get_if<SlotCircle<Scalar>>(&constraint)) return slot->rod();
+    return std::nullopt;
+}
+
+/// The fixed place that a constraint ties its particle to; none where it ties two particles.
+template <class Scalar>
+std::optional<Place<Scalar>> fixed_place_of(const Constraint<Scalar>& constraint) {
+    if (const auto* anchor = std::get_if<Anchor<Scalar>>(&constraint)) return anchor->place;
+    if (const auto* slot = std::get_if<SlotLine<Scalar>>(&constraint)) return slot->point;
+    const auto end = rod_of(constraint)->b;
+    if (const auto* place = std::get_if<Place<Scalar>>(&end)) return *place;
+    return std::nullopt;
+}
 
 }  // namespace doppel

@@ -9,8 +9,8 @@
 
 namespace doppel {
 
-/// A square matrix whose rows each begin at some column and whose columns begin likewise, factored within that
-/// envelope without interchanges: O(N) for a chain, O(N³) for a full one.
+/// A square matrix whose rows each begin at some column and whose columns begin likewise, kept and factored within that
+/// envelope without interchanges: O(N) in memory and time for a chain, O(N²) and O(N³) for a full one.
 ///
 /// For J M⁻¹ Jᵀ no interchange is needed, and without one the pivots have a meaning: pivot i is the squared length of
 /// what is left of gradient i beside the gradients before it. One that vanishes names the constraint that depends on
@@ -23,26 +23,26 @@ public:
     using Column = State<Scalar, Eigen::Dynamic>;
     using Index = Eigen::Index;
 
-    explicit ConstraintMatrix(Index rows = 0) : entries_(rows, rows), inverse_(rows), begin_(rows) {
-        entries_.setZero();
-        for (Index i = 0; i < rows; ++i) begin_[static_cast<std::size_t>(i)] = i;
+    /// Zeros. Only (i, j) and (j, i) with begin[i] ≤ j ≤ i may differ from zero.
+    explicit ConstraintMatrix(const std::vector<Index>& begin) {
+        Index entries = 0;
+        for (std::size_t i = 0; i < begin.size(); ++i) {
+            const Index row = static_cast<Index>(i);
+            envelope_.push_back({begin[i], entries - begin[i]});
+            entries += row - begin[i];
+        }
+        diagonal_ = inverse_ = Column::Zero(rows());
+        lower_ = upper_ = Column::Zero(entries);
     }
 
-    Index rows() const { return entries_.rows(); }
-
-    /// From now on (i, j) and (j, i) may differ from zero.
-    void widen(Index i, Index j) {
-        auto& begin = begin_[static_cast<std::size_t>(std::max(i, j))];
-        begin = std::min(begin, std::min(i, j));
-    }
+    Index rows() const { return static_cast<Index>(envelope_.size()); }
 
     void clear() {
-        for (Index i = 0; i < rows(); ++i) {
-            for (Index j = begin(i); j < i; ++j) entries_(i, j) = entries_(j, i) = Scalar(0);
-            entries_(i, i) = Scalar(0);
-        }
+        lower_.setZero();
+        upper_.setZero();
+        diagonal_.setZero();
     }
-    Scalar& operator()(Index i, Index j) { return entries_(i, j); }
+    Scalar& operator()(Index i, Index j) { return i == j ? diagonal_[i] : i > j ? lower(i, j) : upper(i, j); }
 
     /// Replaces the matrix by unit lower times upper. Returns the first row that depends on those before it so closely
     /// that no more than a quarter of the digits would be right (or that holds no number); rows() where there is none.
@@ -51,16 +51,16 @@ public:
         nearly_singular_ = false;
         turned_over_ = rows();
         for (Index i = 0; i < rows(); ++i) {
-            const Scalar whole = entries_(i, i);
+            const Scalar whole = diagonal_[i];
             for (Index j = begin(i); j < i; ++j) {
                 for (Index k = std::max(begin(i), begin(j)); k < j; ++k) {
-                    entries_(i, j) -= entries_(i, k) * entries_(k, j);
-                    entries_(j, i) -= entries_(j, k) * entries_(k, i);
+                    lower(i, j) -= lower(i, k) * upper(k, j);
+                    upper(j, i) -= lower(j, k) * upper(k, i);
                 }
-                entries_(i, j) *= inverse_[j];
+                lower(i, j) *= inverse_[j];
             }
-            for (Index k = begin(i); k < i; ++k) entries_(i, i) -= entries_(i, k) * entries_(k, i);
-            const Scalar& pivot = entries_(i, i);
+            for (Index k = begin(i); k < i; ++k) diagonal_[i] -= lower(i, k) * upper(k, i);
+            const Scalar& pivot = diagonal_[i];
             if (!(abs(pivot) > smallest_ * abs(whole))) return i;
             if (abs(pivot) * Scalar(20) < abs(whole)) nearly_singular_ = true;
             if (pivot < Scalar(0) && turned_over_ == rows()) turned_over_ = i;
@@ -78,23 +78,34 @@ public:
     /// x ← A⁻¹ x, after factor().
     void solve(Column& x) const {
         for (Index i = 0; i < rows(); ++i)
-            for (Index k = begin(i); k < i; ++k) x[i] -= entries_(i, k) * x[k];
+            for (Index k = begin(i); k < i; ++k) x[i] -= lower(i, k) * x[k];
         for (Index i = rows() - 1; i >= 0; --i) {
             x[i] *= inverse_[i];
-            for (Index k = begin(i); k < i; ++k) x[k] -= entries_(k, i) * x[i];
+            for (Index k = begin(i); k < i; ++k) x[k] -= upper(k, i) * x[i];
         }
     }
 
     /// c with row i = Σ_{j<i} c_j row j as nearly as can be, after factor() has come to row i.
     Column dependence(Index i) const {
-        Column c = entries_.row(i).head(i);
+        Column c = Column::Zero(i);
+        for (Index j = begin(i); j < i; ++j) c[j] = lower(i, j);
         for (Index j = i - 1; j > 0; --j)
-            for (Index k = begin(j); k < j; ++k) c[k] -= c[j] * entries_(j, k);
+            for (Index k = begin(j); k < j; ++k) c[k] -= c[j] * lower(j, k);
         return c;
     }
 
 private:
-    Index begin(Index i) const { return begin_[static_cast<std::size_t>(i)]; }
+    /// Where row i of the lower half and column i of the upper half begin, and what to add for their places in memory.
+    struct Envelope {
+        Index begin, offset;
+    };
+
+    Index begin(Index i) const { return envelope_[static_cast<std::size_t>(i)].begin; }
+    Index place(Index i, Index k) const { return envelope_[static_cast<std::size_t>(i)].offset + k; }
+    Scalar& lower(Index i, Index k) { return lower_[place(i, k)]; }
+    Scalar& upper(Index k, Index i) { return upper_[place(i, k)]; }
+    const Scalar& lower(Index i, Index k) const { return lower_[place(i, k)]; }
+    const Scalar& upper(Index k, Index i) const { return upper_[place(i, k)]; }
 
     /// ε^(3/4)
     static Scalar smallest() {
@@ -103,9 +114,9 @@ private:
         return half * sqrt(half);
     }
 
-    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> entries_;
-    Column inverse_;            // of the pivots
-    std::vector<Index> begin_;  // of row i and of column i
+    std::vector<Envelope> envelope_;
+    Column lower_, diagonal_, upper_;  // below the diagonal row by row, above it column by column
+    Column inverse_;                   // of the pivots
     Scalar smallest_ = smallest();
     bool nearly_singular_ = false;
     Index turned_over_ = 0;

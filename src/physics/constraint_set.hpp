@@ -3,7 +3,10 @@
 #include "physics/constraint.hpp"
 #include "physics/constraint_matrix.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <vector>
 
 namespace doppel {
@@ -30,9 +33,18 @@ public:
                     row += static_cast<Eigen::Index>(part.rows);
                 },
                 constraints_[c]);
+        std::vector<std::vector<std::size_t>> of_particle(static_cast<std::size_t>(q.size() / 2));
+        const auto neighbours = [&](std::size_t k) -> auto& {
+            return of_particle[static_cast<std::size_t>(blocks_[k].particle)];
+        };
+        for (std::size_t k = 0; k < blocks_.size(); ++k) neighbours(k).push_back(k);
         for (std::size_t k = 0; k < blocks_.size(); ++k)
-            for (std::size_t l = 0; l < blocks_.size(); ++l)
-                if (blocks_[k].particle == blocks_[l].particle) couples_.push_back({k, l});
+            for (const auto l : neighbours(k)) couples_.push_back({k, l});
+        for (const auto& constraint : constraints_) {
+            if (const auto place = fixed_place_of(constraint))
+                farthest_fixed_ = std::max(farthest_fixed_, Scalar(place->cwiseAbs().maxCoeff()));
+            if (const auto rod = rod_of(constraint)) longest_rod_ = std::max(longest_rod_, rod->length);
+        }
     }
 
     Eigen::Index rows() const { return static_cast<Eigen::Index>(owner_.size()); }
@@ -44,9 +56,14 @@ public:
 
     /// A J M⁻¹ Jᵀ of zeros, wide enough for what couple() puts into it.
     ConstraintMatrix<Scalar> blank_matrix() const {
-        ConstraintMatrix<Scalar> matrix(rows());
-        for (const auto& [first, second] : couples_) matrix.widen(blocks_[first].row, blocks_[second].row);
-        return matrix;
+        std::vector<Eigen::Index> begin(static_cast<std::size_t>(rows()));
+        std::iota(begin.begin(), begin.end(), 0);
+        for (const auto& [first, second] : couples_) {
+            const auto [low, high] = std::minmax({blocks_[first].row, blocks_[second].row});
+            auto& of_high = begin[static_cast<std::size_t>(high)];
+            of_high = std::min(of_high, low);
+        }
+        return ConstraintMatrix<Scalar>(begin);
     }
     Gradients blank_gradients() const { return Gradients(blocks_.size(), Place<Scalar>(Scalar(0), Scalar(0))); }
 
@@ -71,6 +88,20 @@ public:
             if (!(error <= worst)) worst = error;  // not a number counts as worst
         }
         return worst;
+    }
+
+    /// The longest rod or radius, m; 0 where all constraints are straight.
+    const Scalar& longest_rod() const { return longest_rod_; }
+
+    /// c ← ε |q| Σ_j |J_ij|, with the largest coordinate that there is, of particles and fixed places
+    template <class Vector>
+    void rounding(const Gradients& gradients, const Vector& q, Column& c) const {
+        using std::abs;
+        c.setZero();
+        for (std::size_t k = 0; k < blocks_.size(); ++k)
+            c[blocks_[k].row] += abs(gradients[k][0]) + abs(gradients[k][1]);
+        c *=
+            Scalar(std::numeric_limits<Scalar>::epsilon()) * std::max(farthest_fixed_, Scalar(q.cwiseAbs().maxCoeff()));
     }
 
     /// gradients ← J(q)
@@ -155,6 +186,7 @@ private:
     std::vector<std::size_t> owner_;
     std::vector<Block> blocks_;
     std::vector<Couple> couples_;
+    Scalar farthest_fixed_ = Scalar(0), longest_rod_ = Scalar(0);  // m
 };
 
 }  // namespace doppel

@@ -17,8 +17,10 @@ struct Dependence {
     std::vector<std::size_t> others;
 };
 
-/// Exit 3: what the dependence means for a motion that has come to these places, (x1, y1, x2, y2 …) in m.
-Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places);
+/// Exit 3: what the dependence means for a motion that has come to these places, (x1, y1, x2, y2 …) in m, and is off
+/// the constraints by a fraction `off` of the longest rod.
+Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,
+                             double off);
 
 template <class Scalar>
 class MechanismSeries;
@@ -90,6 +92,12 @@ struct Mechanism {
 
     /// c ← C(q)
     void violation(const Half& q, Multipliers& c) const { set_.value(q, c); }
+
+    /// c ← ε |q| Σ_j |J_ij|
+    void rounding(const Half& q, Multipliers& c) {
+        set_.look(q, other_gradients_);
+        set_.rounding(other_gradients_, q, c);
+    }
 
     /// s ← J(q) v
     void slip(const Half& q, const Half& v, Multipliers& s) {
@@ -241,10 +249,14 @@ private:
     template <class Vector>
     [[noreturn]] void fail(const Vector& q, Eigen::Index row) const {
         std::vector<double> places;
-        if constexpr (std::is_constructible_v<double, Scalar>)
+        double off = 0;
+        if constexpr (std::is_constructible_v<double, Scalar>) {
             for (Eigen::Index i = 0; i < q.size(); ++i) places.push_back(static_cast<double>(q[i]));
+            if (set_.longest_rod() > Scalar(0))
+                off = static_cast<double>(Scalar(set_.worst_error(q) / set_.longest_rod()));
+        }
         const auto found = dependence_of(row);
-        throw singular_configuration(name_of(found.constraint, set_[found.constraint]), found, places);
+        throw singular_configuration(name_of(found.constraint, set_[found.constraint]), found, places, off);
     }
 
     /// Row j counts where its share in row i is more than rounding could make it.

@@ -85,6 +85,11 @@ std::string name_of(const std::vector<Force<Scalar>>& forces, std::size_t index)
     return fmt::format("force {} ({})", before + 1, words);
 }
 
+/// What lengths of a mechanism are measured by, m: the distance from end to end of its particles at the start, or its
+/// longest rod, radius or spring, or the way from a particle to the point of its slot, whichever is most. Where all
+/// that is 0, the way to the nearest droplet; where there is none, 1.
+double size_of(const Assembly<double>& assembly);
+
 /// Whether an assembly can be built, and released as it says. Throws Error (exit 2) that names the part, the value and
 /// what would be right:
 /// a mass not > 0; a particle that does not exist, or is joined with itself; a rod or circle of length zero, a slot

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace doppel {
 namespace {
@@ -159,11 +160,7 @@ private:
 };
 
 void check_places(const Assembly<double>& assembly, const State<double, Eigen::Dynamic>& q) {
-    double size = q.lpNorm<Eigen::Infinity>();
-    for (const auto& constraint : assembly.constraints) {
-        if (const auto* rod = std::get_if<Rod<double>>(&constraint)) size = std::max(size, rod->length);
-        if (const auto* slot = std::get_if<SlotCircle<double>>(&constraint)) size = std::max(size, slot->radius);
-    }
+    const double size = std::max(q.lpNorm<Eigen::Infinity>(), size_of(assembly));
     for (std::size_t i = 0; i < assembly.constraints.size(); ++i) {
         const auto& constraint = assembly.constraints[i];
         const double error = std::visit([&](const auto& part) { return part.error(q); }, constraint);
@@ -215,6 +212,35 @@ void check_velocities(const Assembly<double>& assembly, const State<double, Eige
 
 }  // namespace
 
+double size_of(const Assembly<double>& assembly) {
+    const auto place = [&](std::size_t particle) -> const auto& {
+        return assembly.particles[particle].place;
+    };
+    Place<double> low = place(0), high = low;
+    for (const auto& particle : assembly.particles) {
+        low = low.cwiseMin(particle.place);
+        high = high.cwiseMax(particle.place);
+    }
+    double size = (high - low).norm();
+    for (const auto& constraint : assembly.constraints) {
+        if (const auto rod = rod_of(constraint)) size = std::max(size, rod->length);
+        if (const auto* slot = std::get_if<SlotLine<double>>(&constraint))
+            size = std::max(size, (place(slot->particle) - slot->point).norm());
+    }
+    double nearest = std::numeric_limits<double>::infinity();  // of droplets
+    for (const auto& force : assembly.forces) {
+        if (const auto* spring = std::get_if<Spring<double>>(&force)) {
+            const auto* other = std::get_if<std::size_t>(&spring->b);
+            const auto& end = other ? place(*other) : std::get<Place<double>>(spring->b);
+            size = std::max({size, spring->length, (place(spring->a) - end).norm()});
+        }
+        if (const auto* droplet = std::get_if<Droplet<double>>(&force))
+            nearest = std::min(nearest, (low - droplet->place).norm());
+    }
+    if (size > 0) return size;
+    return std::isfinite(nearest) ? nearest : 1;
+}
+
 void check(const Assembly<double>& assembly) {
     check_particles(assembly.particles);
     for (std::size_t i = 0; i < assembly.constraints.size(); ++i)
@@ -231,17 +257,23 @@ void check(const Assembly<double>& assembly) {
                         name_of(found->constraint, assembly.constraints[found->constraint]), listed(found->others));
 }
 
-Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places) {
+Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,
+                             double off) {
     std::string where;
     for (std::size_t i = 0; i + 1 < places.size(); i += 2)
         where += fmt::format("{}({:.6g}, {:.6g})", i == 0 ? "" : ", ", places[i], places[i + 1]);
     constexpr double farthest = 1e100;  // m; the squares of more soon leave the range of a double
     if (!std::all_of(places.begin(), places.end(), [](double x) { return std::abs(x) < farthest; }))
         return method_failed("the particles have come to {} m: the motion blew up; take shorter steps", where);
+    constexpr double torn = 0.1;  // of the longest rod; what drifts is far from it where forces are still determined
+    if (!(off < torn))
+        return method_failed(
+            "the particles have come to {} m, where a constraint is off by {:.2g} times the longest rod: the motion "
+            "blew up; take shorter steps",
+            where, off);
     return method_failed(
         "singular configuration: {} has come to follow from {}, and the forces are not determined; the particles are "
-        "at "
-        "{} m; start so that they do not come there, or leave the constraint out",
+        "at {} m; start so that they do not come there, or leave the constraint out",
         name, listed(dependence.others), where);
 }
 

@@ -15,11 +15,11 @@ namespace doppel {
 ///                    ● m2 …    the pivot is the origin, x to the right, y up
 template <class Scalar>
 struct Pendulum {
-    std::vector<Scalar> mass{1, 1};    // kg, > 0
-    std::vector<Scalar> length{1, 1};  // m, > 0
-    std::vector<Scalar> angle{0, 0};   // rad, at t = 0
-    std::vector<Scalar> rate{0, 0};    // rad/s, at t = 0
-    Scalar gravity = Scalar(9.8);      // m/s²
+    std::vector<Scalar> mass{1, 1};            // kg, > 0
+    std::vector<Scalar> length{1, 1};          // m, > 0
+    std::vector<Scalar> angle{0, 0};           // rad, at t = 0
+    std::vector<Scalar> rate{0, 0};            // rad/s, at t = 0
+    Scalar gravity = Scalar(98) / Scalar(10);  // m/s²
 
     std::size_t links() const { return mass.size(); }
 

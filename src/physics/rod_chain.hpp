@@ -4,6 +4,7 @@
 #include "physics/pendulum.hpp"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace doppel {
@@ -83,6 +84,16 @@ struct RodChain {
     /// c ← C(q), m²
     void violation(const Half& q, Multipliers& c) const {
         for (Eigen::Index k = 0; k < w.size(); ++k) c[k] = (square(q, k) - l2[k]) * Scalar(0.5);
+    }
+
+    /// c ← ε |q| Σ_j |J_ij|, with the largest coordinate
+    void rounding(const Half& q, Multipliers& c) const {
+        using std::abs;
+        const Scalar unit = Scalar(std::numeric_limits<Scalar>::epsilon()) * q.cwiseAbs().maxCoeff();
+        for (Eigen::Index k = 0; k < w.size(); ++k) {
+            const Scalar part = abs(along(q, k, 0)) + abs(along(q, k, 1));
+            c[k] = (k == 0 ? part : Scalar(part + part)) * unit;
+        }
     }
 
     /// s ← J(q) v

@@ -15,9 +15,10 @@ void add(Half& to, const typename Half::Scalar& factor, const Half& what) {
 
 /// Brings positions onto their constraints along M⁻¹Jᵀ by Newton's method on the multipliers:
 ///     C(q + M⁻¹Jᵀ(q0) λ) = 0 ,     λ ← λ − (J(q) M⁻¹ Jᵀ(q0))⁻¹ C(q) .
-/// It ends where rounding does: when every constraint is met as well as rounded positions can meet it, or when a
-/// correction no longer moves any of them. At least one correction is made, so that no error waits below a tolerance.
-/// For scalars that can be compared, as the errors of its callers are.
+/// It ends where rounding does: when every constraint is met as well as rounded positions can meet it, when a
+/// correction no longer moves any of them, or when corrections no longer help and what is left is rounding. At least
+/// one correction is made, so that no error waits below a tolerance. For scalars that can be compared, as the errors of
+/// its callers are.
 template <Constrained Model>
 class Newton {
 public:
@@ -25,21 +26,16 @@ public:
     using Half = typename Model::Half;
     using Multipliers = typename Model::Multipliers;
 
-    static constexpr int limit = 50;  // corrections; four are many
+    static constexpr int limit = 50;  // corrections; four are usual
+    static constexpr int many = 8;    // after which what is left may be rounding
 
     Multipliers lambda;  // of the last call
     long solves = 0;     // linear systems so far
 
     Newton(Model& model, const Half& q)
-        : lambda(Multipliers::Zero(model.constraints())), c_(lambda), floor_(lambda), move_(q) {
-        // rounding q changes C_i by up to ½ ε |q| Σ_j |J_ij|
-        for (Eigen::Index j = 0; j < q.size(); ++j) {
-            move_.setZero();
-            move_[j] = Scalar(1);
-            model.slip(q, move_, c_);
-            floor_ += c_.cwiseAbs();
-        }
-        floor_ *= Scalar(0.5) * epsilon * q.cwiseAbs().maxCoeff();
+        : lambda(Multipliers::Zero(model.constraints())), c_(lambda), floor_(lambda), rounding_(lambda), move_(q) {
+        model.rounding(q, floor_);
+        floor_ *= Scalar(0.5);  // positions are rounded by half of ε
     }
 
     /// q ← the point on the constraints; true if one is found. q0 may be q itself: then the directions follow it.
@@ -47,7 +43,8 @@ public:
         lambda.setZero();
         for (int i = 0; i < limit; ++i) {
             model.violation(q, c_);
-            if (i > 0 && met()) return true;
+            if (i > 0 && within(floor_)) return true;
+            if (i >= many && is_rounding(model, q)) return true;
             correct(model, q0, q);
             if (i > 0 && move_.cwiseAbs().maxCoeff() <= Scalar(2) * epsilon * q.cwiseAbs().maxCoeff()) return true;
         }
@@ -70,10 +67,17 @@ public:
 private:
     inline static const Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
 
-    bool met() const {
+    bool within(const Multipliers& bounds) const {
         for (Eigen::Index i = 0; i < c_.size(); ++i)
-            if (!(c_[i] <= floor_[i] && -c_[i] <= floor_[i])) return false;
+            if (!(c_[i] <= bounds[i] && -c_[i] <= bounds[i])) return false;
         return true;
+    }
+
+    /// Whether C is no more than its own rounding, and that of the sums it is made of: there corrections go to and fro.
+    bool is_rounding(Model& model, const Half& q) {
+        model.rounding(q, rounding_);
+        rounding_ *= Scalar(4);
+        return within(rounding_);
     }
 
     void correct(Model& model, const Half& q0, Half& q) {
@@ -87,7 +91,8 @@ private:
     }
 
     Multipliers c_;      // C, then what it takes of λ
-    Multipliers floor_;  // of C, in rounding
+    Multipliers floor_;  // of C, in rounding, at the start
+    Multipliers rounding_;
     Half move_;
 };
 
@@ -98,6 +103,8 @@ private:
 template <Constrained Model>
 class Projected : public Model {
 public:
+    static constexpr bool is_stabilised = true;
+
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
     using Half = typename Model::Half;
@@ -134,6 +141,8 @@ private:
 template <Constrained Model>
 class Baumgarte : public Model {
 public:
+    static constexpr bool is_stabilised = true;
+
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
     using Half = typename Model::Half;

@@ -1,7 +1,9 @@
 #include "physics/double_pendulum.hpp"
 
+#include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"
+#include "physics/force.hpp"
 #include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"
 
@@ -166,6 +168,27 @@ TEST(Pendulum, EnergyIsThatOfTheLagrangian) {
         const double potential = -(m1 + m2) * p.gravity * l1 * std::cos(t1) - m2 * p.gravity * l2 * std::cos(t2);
         EXPECT_NEAR(energy(bobs_of_angles(p, DoublePendulum<double>::start(p)), p.gravity), kinetic + potential,
                     1e-12);  // measured 1.7e-13
+    }
+}
+
+TEST(Pendulum, DefaultsMeanTheirDecimalsInEveryScalar) {
+    EXPECT_EQ(Pendulum<double>{}.gravity, 9.8);
+    EXPECT_EQ(Pendulum<Quad>{}.gravity, parse_quad("9.8"));
+    EXPECT_EQ(Gravity<Quad>{}.g, parse_quad("9.8"));
+    EXPECT_EQ(newton_constant<Quad>(), parse_quad("6.674e-11"));
+}
+
+TEST(Bobs, OfAChainAreFoundWhereFurtherParticlesFollow) {
+    const Pendulum<double> p{{1, 2}, {1, 0.5}, {0.4, -0.7}, {3, -2}, 9.8};
+    const auto alone = released_as_particles<double, Eigen::Dynamic>(p);
+    State<double, Eigen::Dynamic> y(12);
+    y << alone.head(4), 7, 8, alone.tail(4), 9, 10;
+    const auto seen = bobs_of_particles(p, y);
+    ASSERT_EQ(seen.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(seen[i].vx, alone[4 + 2 * static_cast<Eigen::Index>(i)]);
+        EXPECT_EQ(seen[i].vy, alone[5 + 2 * static_cast<Eigen::Index>(i)]);
+        EXPECT_NEAR(seen[i].omega, p.rate[i], 1e-14);  // measured 9e-16
     }
 }
 

@@ -1,5 +1,6 @@
 #include "numeric/error.hpp"
 #include "numeric/quad.hpp"
+#include "physics/chain_parts.hpp"
 #include "physics/mechanisms.hpp"
 
 #include <gtest/gtest.h>
@@ -164,6 +165,32 @@ TEST(MechanismFault, OfAMotionThatBlowsUp) {
         EXPECT_NE(std::string(error.what()).find("the motion blew up; take shorter steps"), std::string::npos)
             << error.what();
     }
+}
+
+TEST(MechanismFault, OfRodsThatAStepHasTorn) {
+    // two hinged rods are never singular; so far out that both ends are one, the second has no direction left
+    const Pendulum<double> p{{1, 1}, {1, 1}, {1, 2}, {0, 0}, 9.8};
+    const auto parts = parts_of(p);
+    Mechanism<double> model(parts);
+    auto y = model.start(parts), dydt = y;
+    y.head(4) << 1e20, 2e20, 1e20, 2e20;
+    try {
+        model.rate(y, dydt);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        EXPECT_EQ(std::string(error.what()),
+                  "the particles have come to (1e+20, 2e+20), (1e+20, 2e+20) m, where a constraint is off by 2.2e+20 "
+                  "times the longest rod: the motion blew up; take shorter steps");
+    }
+}
+
+TEST(MechanismFault, OfNothingAtAStartThatIsMet) {
+    // what rounding leaves at the start of a bead at the origin is measured by where its slot is
+    EXPECT_EQ(fault_of({.particles = {{1, P(0, 0)}},
+                        .constraints = {SlotLine<double>{one, P(0.1, 0.3), P(1, 3)}},
+                        .forces = {Gravity<double>{}}}),
+              "no fault");
 }
 
 }  // namespace

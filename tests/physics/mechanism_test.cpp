@@ -3,11 +3,13 @@
 #include "allocations.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
+#include "physics/chain_parts.hpp"
 #include "physics/mechanisms.hpp"
 #include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <random>
@@ -278,6 +280,46 @@ TEST(Mechanism, StepsWithoutAllocating) {
     model.pull(q, c, v);
     model.solve(q, q, c);
     EXPECT_EQ(allocations() - before, 0);
+}
+
+/// Bytes that malloc has given out, of its own and of mapped memory.
+std::size_t bytes_in_use() {
+    const auto use = mallinfo2();
+    return use.uordblks + use.hblkhd;
+}
+
+TEST(Mechanism, OfAChainTakesMemoryThatGrowsWithItsLinks) {
+    const auto bytes = [](std::size_t links) {
+        Pendulum<double> p;
+        p.mass.assign(links, 1);
+        p.length.assign(links, 0.1);
+        p.angle.assign(links, 0.5);
+        p.rate.assign(links, 0);
+        const auto parts = doppel::parts_of(p);
+        const auto before = bytes_in_use();
+        const Mechanism<double> model(parts);
+        return bytes_in_use() - before;
+    };
+    const auto few = bytes(100), many = bytes(4000);
+    if (few == 0) GTEST_SKIP() << "sanitizers keep malloc to themselves";
+    EXPECT_LT(many, 60 * few);    // measured 35
+    EXPECT_LT(many, 3'000'000u);  // measured 1.4 MB; the zeros alone were 128 MB
+}
+
+TEST(Mechanism, SizeIsThatOfWhatItIsMadeOf) {
+    const auto size = [](const std::vector<Constraint<double>>& constraints, const std::vector<Force<double>>& forces,
+                         const P& start = P(0, 0)) {
+        return size_of({.particles = {{1, start}}, .constraints = constraints, .forces = forces});
+    };
+    EXPECT_DOUBLE_EQ(size_of(four_bars()), std::hypot(2.9, 1.2));
+    EXPECT_DOUBLE_EQ(size({Rod<double>{one, P(1, 0), 1}}, {}), 1);
+    EXPECT_DOUBLE_EQ(size({SlotCircle<double>{one, P(0, 3), 3}}, {}), 3);
+    EXPECT_DOUBLE_EQ(size({SlotLine<double>{one, P(-3, -4), P(3, 4)}}, {}), 5);
+    EXPECT_DOUBLE_EQ(size({}, {Spring<double>{one, P(0, 2), 1, 0.5}}), 2);
+    EXPECT_DOUBLE_EQ(size({}, {Spring<double>{one, P(0, 2), 1, 2.5}}), 2.5);
+    EXPECT_DOUBLE_EQ(size({}, {Droplet<double>{P(0, 4), 1}, Droplet<double>{P(0, 3), 1}}), 3);
+    EXPECT_DOUBLE_EQ(size({Rod<double>{one, P(1, 0), 1}}, {Droplet<double>{P(0, 4), 1}}), 1);
+    EXPECT_DOUBLE_EQ(size({Anchor<double>{one, P(0, 0)}}, {Gravity<double>{}}), 1);
 }
 
 TEST(Mechanism, SaysWhatToDraw) {
