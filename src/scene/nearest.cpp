@@ -25,6 +25,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
+    constexpr std::size_t longest = 100;  // more is no slip of the hand
+    if (word.size() > longest) return {};
     const auto better = [&](auto a, auto b) { return edit_distance(word, a) < edit_distance(word, b); };
     const auto best = std::min_element(candidates.begin(), candidates.end(), better);
     if (best == candidates.end() || edit_distance(word, *best) > std::max<std::size_t>(2, word.size() / 3)) return {};

@@ -62,7 +62,7 @@ void bound_keys(std::string_view text, const std::string& path) {
 
 toml::table parse(const std::string& text, const std::string& path, TomlTexts& texts) {
     try {
-        texts[path] = text;
+        texts.insert_or_assign(path, TomlText(text));
         bound_keys(text, path);
         return toml::parse(text, path);
     } catch (const toml::parse_error& fault) {
@@ -78,7 +78,7 @@ toml::table table_of(const std::string& origin) {
 
 /// The value of `change`, in a table of its own.
 toml::table given_by(const Override& change, TomlTexts& texts) {
-    auto& text = texts[change.origin] = "value = " + change.value;
+    const auto& text = texts.insert_or_assign(change.origin, TomlText("value = " + change.value)).first->second.text();
     bound_keys(text, change.origin);
     try {
         return toml::parse(text, change.origin);

@@ -76,20 +76,6 @@ std::optional<std::string> not_drawable(std::string_view text) {
         lacking, number);
 }
 
-/// The number that stands in `text` at a line and column (counted in characters, from 1), without its underscores.
-std::string literal_at(std::string_view text, const toml::source_position& at) {
-    for (toml::source_index line = 1; line < at.line; ++line) text.remove_prefix(text.find('\n') + 1);
-    const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; };  // UTF-8
-    for (toml::source_index column = 1; column < at.column; ++column) {
-        text.remove_prefix(1);
-        while (!text.empty() && continues(text.front())) text.remove_prefix(1);
-    }
-    text = text.substr(0, text.find_first_not_of("0123456789+-._eE"));
-    std::string digits;
-    std::copy_if(text.begin(), text.end(), std::back_inserter(digits), [](char byte) { return byte != '_'; });
-    return digits;
-}
-
 }  // namespace
 
 TomlReader::TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts)
@@ -167,7 +153,8 @@ Quad TomlReader::exact(std::string_view key, std::string_view element, const tom
     const auto& origin = node.source().path;
     const auto text = texts_->find(origin ? *origin : path_);
     if (text == texts_->end()) return Quad(rounded);
-    const Quad value = parse_quad(literal_at(text->second, node.source().begin)) + 0;
+    const auto& at = node.source().begin;
+    const Quad value = parse_quad(text->second.literal_at(at.line, at.column)) + 0;
     // the literal found must be the number that was read, or its place was mistaken
     constexpr double rounding = 1e-15, least = 1e-322;
     if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))

@@ -4,13 +4,13 @@
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 #include "picture/color.hpp"
+#include "scene/toml_text.hpp"
 
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -19,10 +19,6 @@
 #include <vector>
 
 namespace doppel {
-
-/// The text behind every TOML document that was read, by the path its nodes carry: numbers mean their decimals, which
-/// only the text still has.
-using TomlTexts = std::map<std::string, std::string>;
 
 /// Reads one table of a preset key by key. Every read_… leaves its target alone where the key is absent, and throws
 /// Error (exit 2) with place, value and what would be right where it is of the wrong kind. finish() finds the keys
