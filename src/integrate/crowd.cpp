@@ -57,20 +57,22 @@ public:
           ensemble_(pendulums_, in_angles_ ? EnsembleModel::angles : EnsembleModel::constraints, specs.front().method,
                     specs.front().sample_interval.value() / static_cast<double>(specs.front().steps_per_sample)),
           steps_(specs.front().steps_per_sample),
-          portion_(steps_in_one_go(specs.front(), ensemble_.state(0).size() * static_cast<Eigen::Index>(specs.size()),
-                                   follows_turns(specs.front()))) {
+          step_(specs.front().sample_interval.value() / static_cast<double>(steps_)),
+          portion_(steps_in_one_go(ensemble_.state(0).size() * static_cast<Eigen::Index>(specs.size()))) {
         if (!follows_turns(specs.front())) return;
         for (const auto& p : pendulums_) turns_.emplace_back(p.angle);
-        follow_turns();
+        follow_turns(0);
     }
 
     int width() const { return ensemble_.width(); }
 
     void advance(const std::atomic<bool>& stop) override {
-        for (long left = steps_; left > 0; left -= portion_) {
+        for (long left = steps_, steps; left > 0; left -= steps) {
             if (stop) throw Error(ExitCode::interrupted, "interrupted");
-            ensemble_.advance(std::min(left, portion_));
-            follow_turns();
+            steps = std::min(left, portion_);
+            for (const auto& turns : turns_) steps = std::min(steps, steps_within(turns.patience(), step_));
+            ensemble_.advance(steps);
+            follow_turns(static_cast<double>(steps) * step_);
         }
     }
 
@@ -91,17 +93,19 @@ private:
 
     static bool follows_turns(const MotionSpec& spec) { return spec.model == Model::constraints && spec.follows_turns; }
 
-    void follow_turns() {
+    void follow_turns(double seconds) {
         for (std::size_t k = 0; k < turns_.size(); ++k) {
             ensemble_.read(k, state_);
-            turns_[k].look(state_);
+            turns_[k].look(state_, seconds);
         }
     }
 
     bool in_angles_;
     std::vector<Pendulum<double>> pendulums_;
     Ensemble ensemble_;
-    long steps_, portion_;      // a sample, and in one go
+    long steps_;                // a sample
+    double step_;               // s
+    long portion_;              // steps in one go
     std::vector<Turns> turns_;  // of each; none where they are not followed
     State<double, Eigen::Dynamic> state_;
 };

@@ -36,7 +36,7 @@ struct MotionSpec {
 /// The state at one sample, the same for every model.
 struct Observation {
     Bobs<double> bobs;         // angles unwrapped
-    Bobs<Quad> exact;          // the same to all digits, where the precision is quad; else empty
+    Bobs<Quad> exact;          // the same, turns too, to all digits, where the precision is quad; else empty
     double energy = 0;         // J
     double energy_change = 0;  // J, since the start; in quad the difference is taken in quad
     double length_error = 0;   // of the worst rod, m
@@ -62,7 +62,8 @@ public:
     virtual Effort effort() const = 0;
 };
 
-/// Throws Error (exit 2) where no method has that name, the method cannot step the model, or the system is faulty.
+/// Throws Error (exit 2) where no method has that name, the method cannot step the model, a stabilisation has nothing
+/// to do (in angles, or with a method that keeps the constraints itself), or the system is faulty.
 std::unique_ptr<Motion> make_motion(const MotionSpec& spec);
 
 }  // namespace doppel

@@ -86,12 +86,12 @@ public:
             portion_ = scalar_of<Scalar>(spec.sample_interval) / Scalar(portions_);
         } else {
             steps_per_sample_ = spec.steps_per_sample;
-            portion_steps_ = steps_in_one_go(spec, start.size(), follows_turns(spec));
+            portion_steps_ = steps_in_one_go(start.size());
             smallest_step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
         }
         if constexpr (View::follows_turns)
             if (spec.follows_turns) turns_ = Turns(view_.pendulum.template cast<double>().angle);
-        turns_.look(start);
+        turns_.look(start, 0);
         start_energy_ = view_.energy(start, view_.bobs(start));
     }
 
@@ -102,14 +102,15 @@ public:
         if constexpr (Which::method.adaptive) {
             for (long i = 0; i < portions_; ++i) {
                 check();
-                stepper_.advance(portion_);
-                follow_turns();
+                advance_by(portion_);
             }
         } else {
-            for (long left = steps_per_sample_; left > 0; left -= portion_steps_) {
+            for (long left = steps_per_sample_, steps; left > 0; left -= steps) {
                 check();
-                stepper_.advance(std::min(left, portion_steps_));
-                follow_turns();
+                steps = std::min(left, portion_steps_);
+                if (turns_.followed()) steps = std::min(steps, steps_within(turns_.patience(), smallest_step_));
+                stepper_.advance(steps);
+                follow_turns(static_cast<double>(steps) * smallest_step_);
             }
             steps_ += steps_per_sample_;
         }
@@ -117,7 +118,8 @@ public:
 
     Observation observe() const override {
         const State y = stepper_.state();
-        const auto bobs = view_.bobs(y);
+        auto bobs = view_.bobs(y);
+        turns_.add_to(bobs);
         const Scalar energy = view_.energy(y, bobs);
         Observation seen{.bobs = {},
                          .exact = {},
@@ -130,7 +132,6 @@ public:
             seen.bobs.push_back({in_double(bob.mass), in_double(bob.x), in_double(bob.y), in_double(bob.vx),
                                  in_double(bob.vy), in_double(bob.theta), in_double(bob.omega)});
         }
-        turns_.add_to(seen.bobs);
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
         if (wants_tension_) seen.tension = view_.tension(seen.bobs);
         return seen;
@@ -162,9 +163,21 @@ private:
 
     static bool follows_turns(const MotionSpec& spec) { return View::follows_turns && spec.follows_turns; }
 
-    void follow_turns() {
+    /// An adaptive method, in as many pieces as turns want to be looked at.
+    void advance_by(const Scalar& seconds) {
+        constexpr double most = 1e6;
+        const double pieces =
+            turns_.followed() ? std::clamp(std::ceil(static_cast<double>(seconds) / turns_.patience()), 1.0, most) : 1;
+        const Scalar piece = seconds / Scalar(pieces);
+        for (double i = 0; i < pieces; ++i) {
+            stepper_.advance(piece);
+            follow_turns(static_cast<double>(piece));
+        }
+    }
+
+    void follow_turns(double seconds) {
         if constexpr (View::follows_turns)
-            if (turns_.followed()) turns_.look(stepper_.state());
+            if (turns_.followed()) turns_.look(stepper_.state(), seconds);
     }
 
     Model model_;

@@ -9,62 +9,84 @@
 
 namespace doppel {
 
-/// The whole turns of the rods of a chain whose state is (x1, y1, x2, y2 …): places tell angles only up to turns, so
-/// they are followed from one look to the next, which may be no further apart than half a turn.
+/// The whole turns of the rods of a chain whose state is (x1, y1, x2, y2 … vx1, vy1 …): places tell angles only up to
+/// turns, so they are followed from one look to the next, as far as the rates at both say.
 class Turns {
 public:
-    static constexpr double longest_unwatched = 1.0 / 500;  // s; half a turn in it would be 1570 rad/s
+    static constexpr double longest_unwatched = 1.0 / 500;  // s
+    static constexpr double farthest_unwatched = 0.5;       // rad
 
     Turns() = default;
     /// From the angles of the rods, rad, with all their turns.
     explicit Turns(const std::vector<double>& angles) {
         for (const double angle : angles) {
             const SinCos<double> turn(angle);
-            rods_.push_back({turn.sin, -turn.cos, std::round((angle - std::atan2(turn.sin, turn.cos)) / (2 * pi))});
+            const double within = std::atan2(turn.sin, turn.cos);
+            rods_.push_back({within, 0, std::round((angle - within) / (2 * pi))});
         }
     }
 
     bool followed() const { return !rods_.empty(); }
 
-    /// An angle jumps from π to −π where its rod comes by the top from the right.
+    /// At a state, so many seconds after the last look; 0 for the state released.
     template <class State>
-    void look(const State& places) {
-        using Scalar = typename State::Scalar;
+    void look(const State& y, double seconds) {
+        fastest_ = 0;
         for (std::size_t i = 0; i < rods_.size(); ++i) {
-            const auto q = 2 * static_cast<Eigen::Index>(i);
-            const double x = static_cast<double>(i == 0 ? places[q] : Scalar(places[q] - places[q - 2]));
-            const double y = static_cast<double>(i == 0 ? places[q + 1] : Scalar(places[q + 1] - places[q - 1]));
-            auto& [old_x, old_y, turns] = rods_[i];
-            const double turned = old_x * y - old_y * x;  // > 0 counter-clockwise
-            const bool was_left = std::signbit(old_x), left = std::signbit(x);
-            if (!was_left && left && turned > 0) turns += 1;
-            if (was_left && !left && turned < 0) turns -= 1;
-            old_x = x;
-            old_y = y;
+            const auto q = 2 * static_cast<Eigen::Index>(i), v = y.size() / 2 + q;
+            const auto along = [&](Eigen::Index of) {
+                using Scalar = typename State::Scalar;
+                return static_cast<double>(i == 0 ? y[of] : Scalar(y[of] - y[of - 2]));
+            };
+            const double x = along(q), height = along(q + 1);
+            const double angle = std::atan2(x, -height);
+            const double rate = (x * along(v + 1) - height * along(v)) / (x * x + height * height);
+            auto& rod = rods_[i];
+            rod.turns += std::round((rod.angle + turned(rod.rate, rate, seconds) - angle) / (2 * pi));
+            rod.angle = angle;
+            rod.rate = rate;
+            fastest_ = std::max(fastest_, std::abs(rate));
         }
     }
 
+    /// When to look again at the latest, s.
+    double patience() const { return std::min(longest_unwatched, farthest_unwatched / fastest_); }
+
     /// Adds them to the angles of bobs, within (−π, π], seen at the last look.
-    void add_to(Bobs<double>& bobs) const {
+    template <class Scalar>
+    void add_to(Bobs<Scalar>& bobs) const {
         for (std::size_t i = 0; i < rods_.size(); ++i)
-            if (rods_[i].turns != 0) bobs[i].theta += 2 * pi * rods_[i].turns;
+            if (rods_[i].turns != 0) bobs[i].theta += Scalar(2) * pi_of<Scalar>() * Scalar(rods_[i].turns);
     }
 
 private:
     struct Rod {
-        double x, y;   // where it points
+        double angle;  // rad, within (−π, π]
+        double rate;   // rad/s
         double turns;  // counter-clockwise
     };
+
+    /// What a rod has turned by, rad, within half a turn. Where the rates at both ends say too different things, of a
+    /// rod that swings to and fro, it has gone the short way.
+    static double turned(double before, double after, double seconds) {
+        const bool agree = std::abs(after - before) * seconds < 2 * farthest_unwatched;
+        return agree ? 0.5 * (before + after) * seconds : 0;
+    }
+
     std::vector<Rod> rods_;
+    double fastest_ = 0;  // rad/s, of the rates at the last look
 };
 
 /// The steps of a fixed step that are taken in one go, of a state of so many numbers: few enough that an interruption
-/// is noticed, and that no turn is lost where turns are followed.
-inline long steps_in_one_go(const MotionSpec& spec, Eigen::Index dimensions, bool follows_turns) {
+/// is noticed.
+inline long steps_in_one_go(Eigen::Index dimensions) {
     constexpr long most = 200'000;
-    const double step = spec.sample_interval.value() / static_cast<double>(spec.steps_per_sample);
-    const long steps = std::max(1L, most / static_cast<long>(dimensions));
-    return follows_turns ? std::min(steps, std::max(1L, static_cast<long>(Turns::longest_unwatched / step))) : steps;
+    return std::max(1L, most / static_cast<long>(dimensions));
+}
+
+/// The steps of so many seconds that may be taken until turns must be looked at.
+inline long steps_within(double patience, double step) {
+    return std::max(1L, static_cast<long>(patience / step));
 }
 
 }  // namespace doppel

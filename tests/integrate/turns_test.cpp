@@ -7,13 +7,13 @@
 namespace doppel {
 namespace {
 
-/// Two rods of lengths 1 and 0.5 m at these angles, rad.
-Pendulum<double> chain(double first, double second) {
-    return {{1, 1}, {1, 0.5}, {first, second}, {0, 0}, 9.8};
+/// Two rods of lengths 1 and 0.5 m at these angles, rad, and rates, rad/s.
+Pendulum<double> chain(double first, double second, double rate1 = 0, double rate2 = 0) {
+    return {{1, 1}, {1, 0.5}, {first, second}, {rate1, rate2}, 9.8};
 }
 
-State<double, 8> places(double first, double second) {
-    return released_as_particles<double, 2>(chain(first, second));
+State<double, 8> places(double first, double second, double rate1 = 0, double rate2 = 0) {
+    return released_as_particles<double, 2>(chain(first, second, rate1, rate2));
 }
 
 /// The angles that turns make of what places tell.
@@ -28,10 +28,10 @@ TEST(Turns, AreCountedBothWaysFromAnyStart) {
     const auto first = [](int n) { return 7.5 - 1.2e-3 * n * n; };
     const auto second = [](int n) { return -20 + 9 * std::sin(0.25 * n); };
     Turns turns({first(0), second(0)});
-    turns.look(places(first(0), second(0)));
+    turns.look(places(first(0), second(0)), 0);
     for (int n = 0; n <= 1000; ++n) {
         const auto y = places(first(n), second(n));
-        turns.look(y);
+        turns.look(y, 1);
         const auto bobs = seen(turns, y);
         ASSERT_NEAR(bobs[0].theta, first(n), 2e-12) << n;   // measured 2e-13
         ASSERT_NEAR(bobs[1].theta, second(n), 1e-14) << n;  // measured 2e-15
@@ -46,7 +46,7 @@ TEST(Turns, AreKeptWhereARodPointsStraightUp) {
             auto y = places(released, released);
             y[0] = x;
             y[2] = 2 * x;
-            turns.look(y);
+            turns.look(y, 0);
             for (const auto& bob : seen(turns, y)) EXPECT_DOUBLE_EQ(bob.theta, released) << x;
         }
 }
@@ -54,8 +54,47 @@ TEST(Turns, AreKeptWhereARodPointsStraightUp) {
 TEST(Turns, AreNotAddedWhereNotFollowed) {
     Turns turns;
     EXPECT_FALSE(turns.followed());
-    turns.look(places(4, 5));
+    turns.look(places(4, 5), 0);
     EXPECT_DOUBLE_EQ(seen(turns, places(4, 5))[0].theta, 4 - 2 * pi);
+}
+
+TEST(Turns, AreCountedWhereMoreThanHalfATurnPassesBetweenLooks) {
+    // 30 rad and −20 rad a look, at rates that grow to twice and fall to nothing
+    const auto first = [](double n) { return 15 * n + 0.15 * n * n; };
+    const auto second = [](double n) { return 3 - 20 * n + 0.2 * n * n; };
+    const auto at = [&](double n) { return places(first(n), second(n), 15 + 0.3 * n, -20 + 0.4 * n); };
+    Turns turns({first(0), second(0)});
+    turns.look(at(0), 0);
+    for (int n = 1; n <= 50; ++n) {
+        turns.look(at(n), 1);
+        const auto bobs = seen(turns, at(n));
+        ASSERT_NEAR(bobs[0].theta, first(n), 1e-11) << n;   // measured 4e-13
+        ASSERT_NEAR(bobs[1].theta, second(n), 1e-11) << n;  // measured 3e-13
+    }
+}
+
+TEST(Turns, AreNotMadeUpOfARodThatSwingsToAndFro) {
+    // by 0.9 rad about the top, as a light mass between heavy ones does, up to 8 rad of a swing between two looks
+    const auto angle = [](double t) { return pi + 0.9 * std::sin(4000 * t); };
+    const auto rate = [](double t) { return 0.9 * 4000 * std::cos(4000 * t); };
+    Turns turns({angle(0), 0});
+    turns.look(places(angle(0), 0, rate(0)), 0);
+    double t = 0;
+    for (int n = 1; n <= 100'000; ++n) {
+        const double wait = turns.patience();
+        t += wait;
+        const auto y = places(angle(t), 0, rate(t));
+        turns.look(y, wait);
+        ASSERT_NEAR(seen(turns, y)[0].theta, angle(t), 1e-12) << n;  // measured 9e-16
+    }
+}
+
+TEST(Turns, AreLookedAtTheMoreOftenTheFasterTheyAre) {
+    Turns turns({0, 0});
+    turns.look(places(0, 0, 3, -8), 0);
+    EXPECT_DOUBLE_EQ(turns.patience(), Turns::longest_unwatched);
+    turns.look(places(0, 0, 2000, -8), 0);
+    EXPECT_DOUBLE_EQ(turns.patience(), Turns::farthest_unwatched / 2000);
 }
 
 }  // namespace
