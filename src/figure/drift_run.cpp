@@ -102,7 +102,7 @@ DriftRun drift(const DriftSpec& spec, const DriftMethod& method, const std::atom
         for (std::size_t point = 0; point < unseen.size(); ++point)
             for (; scene.time(look + 1) <= spec.times_s[point]; ++look) {
                 const auto seen = run.next(stop);
-                const double energy = std::abs(run.energy_error(seen));
+                const double energy = std::abs(run.energy_error(seen).value());
                 if (energy >= 1 || seen.length_error >= shortest) throw BreakDown("the motion is lost", 'a', look + 1);
                 made.energy_error[point] = std::fmax(made.energy_error[point], energy);
                 made.length_error[point] = std::fmax(made.length_error[point], seen.length_error);

@@ -69,8 +69,12 @@ std::vector<Composer::StripValue> Composer::strip_values(StripKind kind) const {
             values.push_back({exponent_so_far(scene_, now_.moment, start_distance_), theme.trace, width});
             break;
         case StripKind::energy:
-            for (std::size_t side = 0; side < 2; ++side)
-                values.push_back({std::abs(seen(side).energy_change) / energy_unit_, theme.sides[side], widths[side]});
+            // where damping takes energy no change of it is an error
+            for (std::size_t side = 0; side < 2; ++side) {
+                const bool conserves = (side == 0 ? scene_.a : scene_.b).conserves_energy;
+                const double error = std::abs(seen(side).energy_change) / energy_unit_;
+                values.push_back({conserves ? std::optional(error) : std::nullopt, theme.sides[side], widths[side]});
+            }
             break;
         case StripKind::rod_error:
             for (std::size_t side = 0; side < 2; ++side)
@@ -199,6 +203,8 @@ void Composer::compose_strip(std::size_t index, DisplayList& list) const {
         say(fmt::format("{:.2f}", *values[0].value), values[0].color, 110 * t);
     else if (strip.kind == StripKind::exponent && start_distance_ == 0)
         say("none: both start alike", style.theme.quiet_text, 0);
+    else if (strip.kind == StripKind::energy && !scene_.a.conserves_energy && !scene_.b.conserves_energy)
+        say("none: damping takes energy", style.theme.quiet_text, 0);
     for (const auto& value : values)
         if (!value.name.empty()) say(value.name, value.color, 0);
 

@@ -30,7 +30,8 @@ Json side_json(const Scene& scene, const Side& side, const Effort& effort, doubl
     json["steps"] = effort.steps;
     json["evaluations"] = effort.evaluations;
     json["smallest_step_s"] = effort.smallest_step;
-    json["worst_energy_error"] = energy_error;
+    json["conserves_energy"] = side.conserves_energy;
+    json["worst_energy_error"] = side.conserves_energy ? Json(energy_error) : Json(nullptr);
     json["worst_length_error_m"] = length_error;
     return json;
 }

@@ -8,6 +8,7 @@
 #include "numeric/clock.hpp"
 #include "numeric/error.hpp"
 #include "output/part_files.hpp"
+#include "scene/distance_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,8 @@ namespace doppel {
 namespace {
 
 void watch_worst(WorstErrors& worst, const Moment& moment) {
-    worst.energy_a = std::max(worst.energy_a, std::abs(moment.energy_error_a));
-    worst.energy_b = std::max(worst.energy_b, std::abs(moment.energy_error_b));
+    worst.energy_a = std::max(worst.energy_a, std::abs(moment.energy_error_a.value_or(0)));
+    worst.energy_b = std::max(worst.energy_b, std::abs(moment.energy_error_b.value_or(0)));
     worst.length_a = std::max(worst.length_a, moment.a.length_error);
     worst.length_b = std::max(worst.length_b, moment.b.length_error);
 }
@@ -103,6 +104,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         }
         const auto& moment = shot.moment;
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        check_distance(scene, moment);
         if (sample == 0) start_distance = moment.distance;
         watch_worst(record.worst, moment);
         record.largest_distance = std::max(record.largest_distance, moment.distance);

@@ -46,14 +46,19 @@ void PairTable::add(const Moment& moment, double start_distance) {
     csv_.end_row();
 }
 
-void PairTable::add_side(const Side& side, const Observation& seen, double energy_error) {
+void PairTable::add_side(const Side& side, const Observation& seen, std::optional<double> energy_error) {
     if (side.has_angles) {
         for (const auto& bob : seen.bobs) csv_.add(bob.theta);
         for (const auto& bob : seen.bobs) csv_.add(bob.omega);
     }
     for (const auto& bob : seen.bobs)
         for (const double value : {bob.x, bob.y, bob.vx, bob.vy}) csv_.add(value);
-    for (const double value : {seen.energy, energy_error, seen.length_error}) csv_.add(value);
+    csv_.add(seen.energy);
+    if (energy_error)
+        csv_.add(*energy_error);
+    else
+        csv_.add_empty();
+    csv_.add(seen.length_error);
 }
 
 }  // namespace doppel

@@ -15,7 +15,7 @@ public:
     void finish() { csv_.finish(); }
 
 private:
-    void add_side(const Side& side, const Observation& seen, double energy_error);
+    void add_side(const Side& side, const Observation& seen, std::optional<double> energy_error);
 
     const Scene& scene_;
     Csv csv_;

@@ -60,22 +60,22 @@ void measure(Side& side) {
     const auto parts = side.motion.parts->cast<double>();
     check(parts);
     side.lines = lines_of(parts);
+    side.conserves_energy = parts.conserves_energy();
     if (side.has_angles) return;
-    // no chain: its size is that of its start, and its energies those of falling that far
-    Place<double> low = parts.particles.front().place, high = low;
-    double mass = 0;
-    for (const auto& particle : parts.particles) {
-        side.mass.push_back(particle.mass);
-        mass += particle.mass;
-        low = low.cwiseMin(particle.place);
-        high = high.cwiseMax(particle.place);
-    }
-    side.reach = std::max((high - low).norm(), 1e-9);
+    // no chain: its energies are those of falling as far as it is large, and those of its start
+    side.reach = size_of(parts);
     for (const auto& force : parts.forces)
         if (const auto* gravity = std::get_if<Gravity<double>>(&force)) side.gravity = gravity->g;
     const Mechanism<double> mechanism(parts);
     const auto start = Mechanism<double>::start(parts);
-    side.energy_unit = std::max(2 * mass * side.gravity * side.reach, std::abs(mechanism.energy(start)));
+    const auto bobs = mechanism.bobs(start);
+    double mass = 0, kinetic = 0;
+    for (const auto& bob : bobs) {
+        side.mass.push_back(bob.mass);
+        mass += bob.mass;
+        kinetic += 0.5 * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
+    }
+    side.energy_unit = std::max({2 * mass * side.gravity * side.reach, std::abs(mechanism.energy(start)), kinetic});
     if (!(side.energy_unit > 0)) side.energy_unit = 1;
 }
 

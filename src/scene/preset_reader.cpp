@@ -1,8 +1,10 @@
 #include "integrate/methods.hpp"
+#include "scene/nearest.hpp"
 #include "scene/preset_tables.hpp"
 #include "scene/side_reader.hpp"
 #include "scene/video_reader.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace doppel {
@@ -87,6 +89,28 @@ void check_layout(const Preset& preset, const TomlReader& video) {
                           "\"{}\" takes sides that differ in their numbers alone, not in how they are stepped", name);
 }
 
+/// Samples are compared particle by particle: a particle of one side must be one of the other.
+void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& table) {
+    std::vector<std::string_view> names, others;
+    for (const auto& particle : side.particles) names.push_back(particle.name);
+    for (const auto& particle : other.particles) others.push_back(particle.name);
+    if (names.empty() || names == others) return;
+    if (others.empty())
+        throw table.fault("particle", "must be on both sides, so that they can be compared; the other is a chain");
+    const auto tables = table.read_tables("particle");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
+        std::string name;
+        entry.read_text("name", name);
+        if (std::find(others.begin(), others.end(), name) != others.end()) continue;
+        const auto meant = nearest(name, others);
+        throw entry.fault("name", "must be that of a particle on both sides; \"{}\" is on this one only{}", name,
+                          meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
+    }
+    if (names.size() == others.size())
+        throw table.fault("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
+}
+
 }  // namespace
 
 std::string read_kind(TomlReader& scene) {
@@ -114,6 +138,8 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
             throw b.fault("links",
                           "must be that of the other side, so that the two can be compared; they are {} and {}",
                           preset.a.links(), preset.b.links());
+        check_particles(preset.a, preset.b, a);
+        check_particles(preset.b, preset.a, b);
     }
 }
 

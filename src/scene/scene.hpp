@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct Side {
     bool has_angles = true;    // a chain, whose bobs hang one below the other
     double gravity = 0;        // m/s²
     double energy_unit = 0;    // J, what an error of its energy is measured by in pictures (the potential range)
-    double reach = 0;          // m, from the pivot to the end of the outstretched chain; of a mechanism, its size
+    double reach = 0;          // m, from the pivot to the end of the outstretched chain; of a mechanism, its size_of()
+    bool conserves_energy = true;      // no spring is damped
     std::vector<MechanismLine> lines;  // what is drawn besides the bobs
 };
 
@@ -62,8 +64,8 @@ std::string_view name_of(Model model);  // as in presets: "angles", "constraints
 struct Moment {
     long sample = 0;
     Observation a, b;
-    double energy_error_a = 0, energy_error_b = 0;  // relative, analysis/energy_error.hpp
-    double distance = 0;                            // state space, analysis/distance.hpp
+    std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
+    double distance = 0;                                   // state space, analysis/distance.hpp
 };
 
 /// A side whose method broke down (exit 3).
@@ -85,7 +87,8 @@ public:
     /// set.
     Observation next(const std::atomic<bool>& stop);
 
-    double energy_error(const Observation& seen) const;  // relative
+    /// Relative (analysis/energy_error.hpp); nothing where damping takes energy, so that no change of it is an error.
+    std::optional<double> energy_error(const Observation& seen) const;
     Effort effort() const { return motion_->effort(); }
 
 private:

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <string>
 
 namespace doppel {
 namespace {
@@ -102,10 +104,13 @@ std::string served(const MethodEntry& method) {
 template <class Spec, class Read>
 void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& entries, const Read& read) {
     const auto tables = table.read_tables(key);
+    std::set<std::string> given;
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.{}]] {}", table.bare_name(), key, i + 1));
         std::string name;
         entry.read_text("name", name);
+        if (!name.empty() && !given.insert(name).second)
+            throw entry.fault("name", "must differ from those before it; \"{}\" is there already", name);
         auto same = std::find_if(entries.begin(), entries.end(),
                                  [&](const Spec& spec) { return !name.empty() && spec.name == name; });
         if (same == entries.end()) same = entries.insert(entries.end(), Spec{.name = name});

@@ -51,7 +51,8 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
     longest_rod_ = side.reach;
 }
 
-double SideRun::energy_error(const Observation& seen) const {
+std::optional<double> SideRun::energy_error(const Observation& seen) const {
+    if (!side_.conserves_energy) return std::nullopt;
     return seen.energy_change / energy_scale_;
 }
 

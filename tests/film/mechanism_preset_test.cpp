@@ -101,6 +101,32 @@ to = [0, -3]
     EXPECT_GT(moment.distance, 0.1);
 }
 
+TEST(MechanismPreset, SidesHaveTheSameParticles) {
+    const std::string two = bead + "[[system.particle]]\nname = \"bob\"\nposition_m = [0, 1]\n";
+    EXPECT_EQ(
+        fault(two + "[[b.particle]]\nname = \"bob\"\nposition_m = [0, 2]\n[[b.particle]]\nname = \"baed\""),
+        R"(presets/x.toml:14:1: [[b.particle]] 2 name must be that of a particle on both sides; "baed" is on this one only; did you mean "bead"?)");
+    EXPECT_EQ(
+        fault("[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\n[[a.particle]]\nname = \"three\""),
+        "presets/x.toml:1:5: [a] particle must be on both sides, so that they can be compared; the other is a chain");
+    EXPECT_EQ(fault("[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\nposition_m = [1, 0]\n"
+                    "[[b.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\"\nposition_m = [1, 0]"),
+              "presets/x.toml:1:5: [a] particle must be in the order of the other side: two, one");
+    EXPECT_EQ(
+        fault("[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\""),
+        R"(presets/x.toml:4:1: [[a.particle]] 2 name must be that of a particle on both sides; "two" is on this one only)");
+}
+
+TEST(MechanismPreset, PartsOfOneNameAreNotTakenForOne) {
+    EXPECT_EQ(
+        fault(bead + "[[system.particle]]\nname = \"bead\"\nposition_m = [0, 1]"),
+        R"(presets/x.toml:8:1: [[system.particle]] 2 name must differ from those before it; "bead" is there already)");
+    const std::string spring = "[[system.force]]\nname = \"pull\"\nkind = \"spring\"\nfrom = \"bead\"\nto = [0, 3]\n";
+    EXPECT_EQ(
+        fault(bead + spring + spring),
+        R"(presets/x.toml:13:1: [[system.force]] 2 name must differ from those before it; "pull" is there already)");
+}
+
 TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
     EXPECT_EQ(fault("[[system.particle]]\nmass_kg = 1"),
               "presets/x.toml: [[system.particle]] 1 name is missing; constraints and forces call a particle by it");

@@ -254,5 +254,37 @@ TEST(Run, NeverMixesOldFramesIntoNewOnes) {
     EXPECT_EQ(names, (std::set<std::string>{"000010.png", "000011.png"}));
 }
 
+TEST(Run, LeavesTheEnergyErrorOpenWhereDampingTakesEnergy) {
+    const auto out = fresh_folder();
+    const auto scene = make_scene(read_preset({"damped", "damped.toml", R"(
+[scene]
+duration_s = 0.1
+[system]
+integrator = "rk4"
+step_s = "1/1200"
+[[b.force]]
+kind = "spring"
+from = "bob2"
+to = [0, -3]
+damping_N_s_per_m = 2
+)"}));
+    run(scene, {.out = out, .pictures = false}, never, [](const Progress&) {});
+    const auto lines = lines_of(out / "damped/damped.csv");
+    const auto header = cells_of(lines[0]), last = cells_of(lines.back());
+    const auto cell = [&](const char* name) {
+        return last[static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin())];
+    };
+    EXPECT_EQ(header.size(), last.size());
+    EXPECT_NE(cell("a_energy_error"), "");
+    EXPECT_EQ(cell("b_energy_error"), "");
+    EXPECT_NE(cell("b_energy_J"), "");
+    EXPECT_NE(cell("b_length_error_m"), "");
+    const auto manifest = nlohmann::json::parse(bytes_of(out / "damped/damped.json"));
+    EXPECT_TRUE(manifest["a"]["worst_energy_error"].is_number());
+    EXPECT_EQ(manifest["a"]["conserves_energy"], true);
+    EXPECT_TRUE(manifest["b"]["worst_energy_error"].is_null());
+    EXPECT_EQ(manifest["b"]["conserves_energy"], false);
+}
+
 }  // namespace
 }  // namespace doppel

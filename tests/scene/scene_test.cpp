@@ -1,7 +1,11 @@
+#include "scene/distance_check.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace doppel {
 namespace {
@@ -176,6 +180,102 @@ TEST(PairRun, StopsInTheMiddleOfALongSample) {
     pair.next(stop);
     stop = true;
     EXPECT_EQ(error_of([&] { pair.next(stop); }).first, ExitCode::interrupted);
+}
+
+/// A preset of this text.
+Scene scene_from(const std::string& text) {
+    return make_scene(read_preset({"x", "presets/x.toml", text}));
+}
+
+/// A bead of 1 kg on a rod from a fixed place 1 m beside it.
+const std::string bead = R"(
+[[system.particle]]
+name = "bead"
+position_m = [0, 0]
+[[system.constraint]]
+kind = "rod"
+from = "bead"
+to = [1, 0]
+)";
+
+TEST(Size, OfOneParticleIsThatOfWhatHoldsIt) {
+    const auto scene = scene_from("[system]\nintegrator = \"rk4\"\nstep_s = \"1/1200\"" + bead);
+    EXPECT_DOUBLE_EQ(scene.a.reach, 1);
+    EXPECT_DOUBLE_EQ(scene.a.energy_unit, 2 * 9.8);
+    // it starts with E = 0, and swings for half a minute
+    PairRun pair(scene);
+    const std::atomic<bool> never = false;
+    double worst = 0;
+    for (long n = 0; n <= scene.samples; ++n) worst = std::max(worst, std::abs(*pair.next(never).energy_error_a));
+    EXPECT_LT(worst, 1e-7);  // measured 1.1e-8, of the method
+}
+
+TEST(Size, OfOneParticleMakesItsErrorsThoseOfTheSamePendulum) {
+    // the same pendulum as a chain
+    const auto particle = scene_from("[system]\naccuracy = 1e-6" + bead),
+               chain = scene_from("[system]\nlinks = 1\nangle_deg = -90\naccuracy = 1e-6");
+    ASSERT_TRUE(particle.a.choice && chain.a.choice);
+    EXPECT_EQ(particle.a.choice->horizon, particle.samples);
+    EXPECT_LT(particle.a.choice->estimated_error, 1e-6);
+}
+
+TEST(Distance, OutOfRangeIsToldOfTheSideAndTheQuantity) {
+    const auto fault = [](const std::vector<std::string>& arguments) {
+        const auto scene = scene_of("butterfly", arguments);
+        PairRun pair(scene);
+        const std::atomic<bool> never = false;
+        auto moment = pair.next(never);
+        const auto start = error_of([&] { check_distance(scene, moment); });
+        moment.sample = 1;
+        EXPECT_EQ(error_of([&] { check_distance(scene, moment); }).first,
+                  start.first == ExitCode::done ? ExitCode::done : ExitCode::method_failed);
+        return start;
+    };
+    using Fault = std::pair<ExitCode, std::string>;
+    EXPECT_EQ(fault({"system.length_m=1e300"}),
+              Fault(ExitCode::bad_input,
+                    "butterfly: side b: the place in y, m, of mass 1 is 5.23599e+295 at t = 0 s, and -6.12323e+283 on "
+                    "the other side: the square of their difference is out of range, beyond 1.8e308"));
+    EXPECT_EQ(fault({"a.mass_kg=[1, 1e200]"}),
+              Fault(ExitCode::bad_input,
+                    "butterfly: side a: the mass, kg, of mass 2 is 1e+200 at t = 0 s, and 1 on the other side: the "
+                    "square of their difference is out of range, beyond 1.8e308"));
+    EXPECT_EQ(fault({"system.mass_kg=1e200"}).first, ExitCode::done);
+    EXPECT_EQ(fault({}).first, ExitCode::done);
+}
+
+TEST(Damping, IsNoErrorOfTheEnergy) {
+    const auto scene = scene_from(R"(
+[scene]
+duration_s = 1
+[system]
+integrator = "rk4"
+step_s = "1/1200"
+[[system.particle]]
+name = "bead"
+position_m = [0, 0]
+[[system.force]]
+kind = "spring"
+name = "spring"
+from = "bead"
+to = [1, 0]
+stiffness_N_per_m = 20
+[[b.force]]
+name = "spring"
+damping_N_s_per_m = 2
+)");
+    EXPECT_TRUE(scene.a.conserves_energy);
+    EXPECT_FALSE(scene.b.conserves_energy);
+    PairRun pair(scene);
+    const std::atomic<bool> never = false;
+    Moment last;
+    for (long n = 0; n <= scene.samples; ++n) {
+        last = pair.next(never);
+        ASSERT_TRUE(last.energy_error_a);
+        ASSERT_FALSE(last.energy_error_b);
+    }
+    EXPECT_LT(std::abs(*last.energy_error_a), 1e-11);  // measured 6e-13
+    EXPECT_LT(last.b.energy_change, -1);               // measured -3.9 J
 }
 
 }  // namespace
