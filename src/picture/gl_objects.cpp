@@ -38,19 +38,45 @@ void attach(GLuint program, GLenum type, const std::string& name) {
     if (!compiled) throw io_failed("shaders/{}: {}", name, log(GetShaderInfoLog, shader));
 }
 
+std::string name_of(GLenum error) {
+    switch (error) {
+        case GL_INVALID_ENUM:
+            return "GL_INVALID_ENUM";
+        case GL_INVALID_VALUE:
+            return "GL_INVALID_VALUE";
+        case GL_INVALID_OPERATION:
+            return "GL_INVALID_OPERATION";
+        case GL_INVALID_FRAMEBUFFER_OPERATION:
+            return "GL_INVALID_FRAMEBUFFER_OPERATION";
+        default:
+            return fmt::format("error {:#06x}", error);
+    }
+}
+
 }  // namespace
 
+void check_errors(const std::string& what) {
+    const GLenum first = GetError();
+    if (first == GL_NO_ERROR) return;
+    bool no_memory = false;
+    // a driver may keep several, but a lost context reports one for ever
+    GLenum error = first;
+    for (int k = 0; k < 16 && error != GL_NO_ERROR; ++k, error = GetError()) no_memory |= error == GL_OUT_OF_MEMORY;
+    if (no_memory) throw io_failed("OpenGL has no memory for {}", what);
+    throw io_failed("OpenGL failed at {}: {}", what, name_of(first));
+}
+
 Canvas::Canvas(Size size) {
-    while (GetError() != GL_NO_ERROR) {
-    }
+    const auto what = fmt::format("a picture of {} × {} px", size.width, size.height);
+    check_errors("what came before " + what);
     BindTexture(GL_TEXTURE_2D, pixels_);
     TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, pixels_, 0);
-    if (GetError() != GL_NO_ERROR || CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-        throw io_failed("OpenGL has no memory for a picture of {} × {} px", size.width, size.height);
-    }
+    check_errors(what);
+    if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw io_failed("OpenGL has no memory for {}", what);
 }
 
 void Canvas::put(const Picture& picture, const Rect& r) {

@@ -7,6 +7,10 @@
 
 namespace doppel::gl {
 
+/// Throws Error (exit 4) where OpenGL has reported an error since it was asked last. `what` it was told to do: "a
+/// canvas of 64 × 64 px".
+void check_errors(const std::string& what);
+
 /// A thing of OpenGL's, known by its number, that lives as long as this. Its context must be current at both ends.
 template <auto& generate, auto& destroy>
 class Object {

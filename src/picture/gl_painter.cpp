@@ -68,6 +68,7 @@ Painter::Painter(Size size)
     BindTexture(GL_TEXTURE_2D, atlas_);
     set_crisp();
     PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    check_errors("the shaders and the buffers of their input");
 }
 
 void Painter::paint(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
@@ -165,6 +166,7 @@ void Painter::upload_vertices() {
     if (needed > vertex_room_) {
         vertex_room_ = needed + needed / 2;
         BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertex_room_), nullptr, GL_DYNAMIC_DRAW);
+        check_errors(fmt::format("the outlines of {} shapes", vertices_.size() / 4));
     }
     BufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(needed), vertices_.data());
 }
@@ -175,6 +177,7 @@ void Painter::upload(const GlyphAtlas& atlas) {
     BindTexture(GL_TEXTURE_2D, atlas_);
     TexImage2D(GL_TEXTURE_2D, 0, GL_R8, GlyphAtlas::width, atlas.height(), 0, GL_RED, GL_UNSIGNED_BYTE,
                atlas.values().data());
+    check_errors(fmt::format("an atlas of {} glyphs", atlas.count()));
     atlas_glyphs_ = atlas.count();
 }
 
@@ -198,6 +201,7 @@ void Painter::upload(const std::vector<std::shared_ptr<const Picture>>& images) 
         set_crisp();
         TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                    pixels->rgba.data());
+        check_errors(fmt::format("an image of {} × {} px", size.width, size.height));
     }
 }
 

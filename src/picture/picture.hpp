@@ -19,6 +19,9 @@ struct Rect {
     friend constexpr bool operator==(const Rect&, const Rect&) = default;
 };
 
+constexpr Rect all_of(Size size) {
+    return {0, 0, size.width, size.height};
+}
 /// The smallest rectangle that holds both.
 Rect united(const Rect& a, const Rect& b);
 /// What both cover; empty() where they do not meet.

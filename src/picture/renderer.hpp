@@ -4,6 +4,7 @@
 #include "picture/gl.hpp"
 #include "picture/picture.hpp"
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,14 +17,18 @@ namespace doppel {
 /// list or this one touches are drawn and read back; the pixels are the same as if everything had been drawn anew.
 class Renderer {
 public:
-    /// Throws Error (exit 4) where no OpenGL context of this kind or no memory for this size is to be had.
-    explicit Renderer(Size size, const DisplayList& backdrop = {}, Gl gl = Gl::automatic);
+    /// Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size is to be had, 130 as
+    /// draw().
+    explicit Renderer(Size size, const DisplayList& backdrop = {}, Gl gl = Gl::automatic,
+                      const std::atomic<bool>& stop = false);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// The backdrop with `list` on top. The picture belongs to the renderer and lasts until the next draw().
-    const Picture& draw(const DisplayList& list);
+    /// The backdrop with `list` on top. The picture belongs to the renderer and lasts until the next draw(). Throws
+    /// Error: exit 4 where OpenGL fails, exit 130 soon after `stop` is set, which it looks at between parts of a large
+    /// picture.
+    const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop = false);
 
     /// Where the last picture differs from the one before it; the whole picture after the first draw().
     const std::vector<Rect>& changed() const;

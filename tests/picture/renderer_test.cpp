@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <random>
 
 namespace doppel {
@@ -168,6 +169,37 @@ TEST(Renderer, RefusesSizesThatOpenGlCannotDraw) {
             EXPECT_NE(std::string(error.what()).find(std::to_string(wrong.width)), std::string::npos) << error.what();
         }
     }
+}
+
+TEST(Renderer, DrawsLargePicturesInPartsAsInOne) {
+    const Size large{4200, 4000};  // 16.8 million px: two parts, which meet at row 3809
+    DisplayList list{Capsule{{100, 3700}, {4100, 3950}, 30, rgb(0xffa640)}, Box{2000, 3800.5f, 2100, 3820.5f, 6, white},
+                     Ring{{600, 3809}, 40, 7, white},
+                     Label{"at the seam", {3000, 3815}, 40, Align::center, Weight::bold, white}};
+    Stroke stroke{.vertices = {}, .width = 9, .color = rgb(0x4fb0ff)};
+    for (int i = 0; i < 60; ++i) {
+        const float t = 0.3f * static_cast<float>(i);
+        stroke.vertices.push_back({{1000 + 30 * t, 3809 + 60 * std::sin(t)}, t / 20});
+    }
+    list.push_back(stroke);
+    Renderer in_parts(large, {background(large, black)}), in_one(large, {background(large, black)});
+    in_one.draw({});
+    EXPECT_EQ(in_one.draw(list).rgba, in_parts.draw(list).rgba);  // what changed since is less than 16 million px
+}
+
+TEST(Renderer, StopsBetweenThePartsOfAPictureAndDrawsOnLater) {
+    const std::atomic<bool> stopped = true;
+    EXPECT_THROW(Renderer(size, {}, Gl::automatic, stopped), Error);
+    const DisplayList dot{Capsule{{20, 20}, {20, 20}, 5, white}};
+    Renderer renderer(size), other(size);
+    renderer.draw({});
+    try {
+        renderer.draw(dot, stopped);
+        ADD_FAILURE() << "it drew";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::interrupted);
+    }
+    EXPECT_EQ(renderer.draw(dot).rgba, other.draw(dot).rgba);
 }
 
 TEST(Renderer, RefusesLettersThatFitNowhere) {
