@@ -5,6 +5,7 @@
 #include "scene/video_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace doppel {
@@ -28,14 +29,27 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
     return text.empty() ? "a longer or shorter step_s would" : text + " would";
 }
 
-/// The most frames a second, up to 30, at which every frame and the last sample fall together; where there is none, a
-/// frame a sample.
-std::optional<Rational> usual_gif_rate(const Rational& sampled, long samples) {
-    constexpr double most = 30;
-    for (long stride = 1; stride <= samples; ++stride)
-        if (const auto rate = quotient(sampled, {stride, 1}); rate && samples % stride == 0 && rate->value() <= most)
-            return rate;
-    return sampled;
+/// The rate of a GIF that names none, at which the last sample is a frame: the most frames a second up to 30, from 10
+/// on or of all samples; where there is none, the fewest up to 50, which is what GIF can time. A film shorter than a
+/// frame keeps all samples.
+Rational usual_gif_rate(const Rational& sampled, const Preset& preset, long samples, const TomlReader& video) {
+    constexpr double fewest = 10, usual = 30, most = 50;
+    std::optional<Rational> faster;
+    for (long stride = 1; stride <= samples; ++stride) {
+        const auto rate = samples % stride == 0 ? quotient(sampled, {stride, 1}) : std::nullopt;
+        if (!rate || rate->value() > most) continue;
+        if (rate->value() <= usual && (stride == 1 || rate->value() >= fewest)) return *rate;
+        if (rate->value() < fewest) break;
+        faster = rate;
+    }
+    if (faster) return *faster;
+    if (sampled.value() > most * static_cast<double>(samples)) return sampled;
+    const long stride = std::lround(std::ceil(sampled.value() / usual));
+    const auto shorter = quotient({std::max(samples - samples % stride, stride), 1}, preset.sample_hz);
+    throw video.fault("fps",
+                      "of a GIF must let the last of {} samples be a frame, and no rate from {} to {} does; "
+                      "scene.duration_s = \"{}\" would do",
+                      samples, fewest, most, shorter ? shorter->text() : "?");
 }
 
 /// Frames must fall on samples exactly.
@@ -43,7 +57,7 @@ void check_frames(Preset& preset, const TomlReader& video) {
     const long samples = product(preset.duration_s, preset.sample_hz)->numerator;  // check_clock() saw to it
     const auto sampled = product(preset.sample_hz, preset.video.speed);
     if (sampled && !preset.video.fps && preset.video.format == "gif")
-        preset.video.fps = usual_gif_rate(*sampled, samples);
+        preset.video.fps = usual_gif_rate(*sampled, preset, samples, video);
     const auto fps = preset.video.fps ? preset.video.fps : sampled;
     constexpr double most_fps = 1000;
     constexpr long most_digits = 1'000'000;

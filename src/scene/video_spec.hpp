@@ -89,7 +89,7 @@ inline constexpr std::array<std::pair<std::string_view, Color Theme::*>, 11> col
 /// [video]: what a film shows and how it is written. Sizes are for 1920×1080 and grow and shrink with the picture.
 struct VideoSpec {
     Size size{1920, 1080};
-    std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif the nearest below 30
+    std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif about 30
     Rational speed{1, 1};         // seconds of motion shown a second
     Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // how long the first and the last frame stand
     Rational title_card_s{0, 1}, end_card_s{0, 1};  // 0 = none

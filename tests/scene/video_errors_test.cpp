@@ -112,6 +112,23 @@ TEST(VideoErrors, GifsGetARateThatTheyCanShow) {
     EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\""}).fps, (Rational{30, 1}));
     EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\"", "scene.duration_s=\"1/120\""}).fps, (Rational{120, 1}));
     EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\"", "video.fps=20"}).fps, (Rational{20, 1}));
+    const auto rate = [](const char* duration, const char* sampled = "scene.sample_hz=120") {
+        return scene_of("butterfly", {"video.format=\"gif\"", duration, sampled, "system.integrator=\"taylor\""}).fps;
+    };
+    EXPECT_EQ(rate("scene.duration_s=10.1"), (Rational{30, 1}));    // 1212 samples
+    EXPECT_EQ(rate("scene.duration_s=10.05"), (Rational{20, 1}));   // 1206: not by 4 or 5
+    EXPECT_EQ(rate("scene.duration_s=30.025"), (Rational{40, 1}));  // 3 · 1201: faster rather than a frame in 10 s
+    EXPECT_EQ(rate("scene.duration_s=30.03", "scene.sample_hz=\"24000/1001\""), (Rational{24000, 1001}));
+    EXPECT_EQ(rate("scene.duration_s=10", "scene.sample_hz=5"), (Rational{5, 1}));  // all samples
+    EXPECT_EQ(rate("scene.duration_s=10", "scene.sample_hz=45"), (Rational{45, 2}));
+
+    const auto [code, message] = error_of([&] { rate("scene.duration_s=\"1201/120\""); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("[video] fps of a GIF must let the last of 1201 samples be a frame, and no rate from 10 to "
+                           "50 does; scene.duration_s = \"10\" would do"),
+              std::string::npos)
+        << message;
+    EXPECT_EQ(rate("scene.duration_s=10"), (Rational{30, 1})) << "as the message says";
 }
 
 }  // namespace
