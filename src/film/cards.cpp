@@ -59,8 +59,9 @@ DisplayList Composer::end_card(double opacity) const {
     const auto& style = layout_.style;
     const auto& theme = style.theme;
     const auto size = 1.3 * style.font.heading;
-    const auto outcome = parted_ ? fmt::format("parted after {:.1f} s", *parted_)
-                                 : fmt::format("together to the end, {:g} s", scene_.time(scene_.samples));
+    const auto outcome = !start_as_one() ? "apart from the start"
+                         : parted_       ? fmt::format("parted after {:.1f} s", *parted_)
+                                         : fmt::format("together to the end, {:g} s", scene_.time(scene_.samples));
     std::vector<CardLine> lines{{layout_.title, 0.7 * style.font.card, Weight::bold, theme.text},
                                 {"", style.font.subtitle, Weight::regular, theme.text},
                                 {outcome, size, Weight::regular, theme.trace}};

@@ -12,7 +12,8 @@
 namespace doppel {
 namespace {
 
-constexpr double parted_at = 1;  // state-space distance from which the two count as strangers
+constexpr double parted_at = 1;                  // state-space distance from which the two count as strangers
+constexpr double together_at = 0.1 * parted_at;  // up to which a pair starts as one, and can part
 
 /// As many decimals as tell one frame from the next.
 std::string clock(const Scene& scene, double time) {
@@ -86,6 +87,10 @@ DisplayList Composer::backdrop() const {
     return list;
 }
 
+bool Composer::start_as_one() const {
+    return start_distance_ <= together_at;
+}
+
 void Composer::add(const Shot& shot) {
     now_ = shot;
     const auto& moment = now_.moment;
@@ -104,7 +109,7 @@ void Composer::add(const Shot& shot) {
         for (std::size_t k = 0; k < values.size(); ++k)
             if (values[k].value) traces_[i][k].add({strip.time.at(time), strip.value.at(*values[k].value)});
     }
-    if (!parted_ && moment.distance >= parted_at && moment.sample > 0) parted_ = time;
+    if (start_as_one() && !parted_ && moment.distance >= parted_at) parted_ = time;
 }
 
 DisplayList Composer::frame() const {

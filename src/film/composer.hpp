@@ -52,6 +52,7 @@ private:
 
     const Observation& seen(std::size_t side) const { return side == 0 ? now_.moment.a : now_.moment.b; }
     const PendulumPanel& panel_of(std::size_t side) const;
+    bool start_as_one() const;  // or there is no parting to speak of
     double now() const { return scene_.time(now_.moment.sample); }
 
     // composer.cpp: the page

@@ -1,6 +1,7 @@
 #include "film/view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace doppel {
@@ -13,21 +14,42 @@ Range airy(const Range& seen) {
     return {low < 0 ? low - width / 10 : 0, high > 0 ? high + width / 10 : 0};
 }
 
-/// The distance axis where the preset names none: from the decade of the start to beyond two strangers of the same
-/// energy.
+/// How far apart two chains can get in state space: as fast as each can be, in opposite directions, each bob as far
+/// from where it hangs at rest as it can be, on opposite sides. With the energy E above rest, a bob of mass m rises by
+/// at most E/(m g), and one that hangs a length l below the pivot is within √(2 l · rise) of its place at rest.
+double farthest(const Scene& scene, const Moment& start) {
+    const auto energy = [](const Side& side, const Observation& seen) {
+        return std::max(seen.energy + side.energy_unit / 2, 0.0);  // J, above rest
+    };
+    const auto fastest = [](const Side& side, double available) {
+        return std::sqrt(2 * available / *std::min_element(side.mass.begin(), side.mass.end()));
+    };
+    const std::array sides{&scene.a, &scene.b};
+    const std::array available{energy(scene.a, start.a), energy(scene.b, start.b)};
+    double squares = std::pow(fastest(scene.a, available[0]) + fastest(scene.b, available[1]), 2);
+    std::array<double, 2> below{};  // m, of the bob that hangs
+    for (std::size_t k = 0; k < scene.a.mass.size(); ++k) {
+        double swing = 0;
+        for (std::size_t s = 0; s < 2; ++s) {
+            below[s] += static_cast<double>(sides[s]->motion.chain->length[k]);
+            const double rise = available[s] / (sides[s]->mass[k] * sides[s]->gravity);
+            swing += std::sqrt(2 * below[s] * std::min(rise, 2 * below[s]));
+        }
+        const double apart = std::min(swing + std::abs(below[0] - below[1]), below[0] + below[1]);
+        squares += apart * apart + std::pow(scene.a.mass[k] - scene.b.mass[k], 2);
+    }
+    return std::sqrt(squares);
+}
+
+/// The distance axis where the preset names none: from the decade of the start to as far as the two can get.
 Range fitted_distance(const Scene& scene, const std::optional<Survey>& seen) {
     const auto start = PairRun(scene).next(std::atomic<bool>(false));
-    const auto& side = scene.a;
-    const double available = start.a.energy + side.energy_unit / 2;  // J, above hanging at rest
-    const double speed2 = 2 * available / *std::min_element(side.mass.begin(), side.mass.end());
-    const double apart2 =
-        std::min(2 * side.reach * side.reach, 2 * available / (side.mass[0] * side.gravity) * side.reach);
     constexpr double decades = 1e60;  // the most an axis spans, whatever the masses and lengths
     const bool is_mechanism = scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism;
-    const double most = is_mechanism && seen ? seen->largest_distance : std::sqrt(speed2 + apart2),
+    const double most = is_mechanism && seen ? 1.5 * seen->largest_distance : farthest(scene, start),
                  high = std::isfinite(most) ? std::clamp(most, 1e-12, decades) : decades;
     const double low = start.distance > 0 ? start.distance / 2 : high * 1e-8;
-    const double top = std::pow(10, std::ceil(2 * std::log10(1.5 * high)) / 2);  // half a decade of air
+    const double top = std::pow(10, std::ceil(2 * std::log10(high)) / 2);  // a half or a whole decade
     return {std::clamp(std::pow(10, std::floor(std::log10(low))), top / decades, top / 10), top};
 }
 

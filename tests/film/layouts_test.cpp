@@ -214,6 +214,73 @@ TEST(Layouts, AxesStayFiniteForAnyPreset) {
     }
 }
 
+const std::vector<std::string> one_link{"system.links=1", "system.mass_kg=[1]", "system.length_m=[1]",
+                                        "system.omega_deg_per_s=[0]"};
+
+std::vector<std::string> one_link_at(const char* a, const char* b) {
+    auto keys = one_link;
+    for (const char* table : {"system", "a"}) keys.push_back(fmt::format("{}.angle_deg=[{}]", table, a));
+    keys.push_back(fmt::format("b.angle_deg=[{}]", b));
+    return keys;
+}
+
+TEST(Layouts, TheDistanceAxisHoldsAllThatThePairDoes) {
+    // chains that start alike, apart, at unlike energies, and of unlike masses and lengths
+    const std::vector<std::pair<const char*, std::vector<std::string>>> pairs{
+        {"butterfly", {}},
+        {"butterfly", one_link_at("10", "90")},
+        {"butterfly", one_link_at("90", "10")},
+        {"butterfly", one_link_at("5", "-5")},
+        {"butterfly", {"a.angle_deg=[0, 1]", "b.angle_deg=[170, 170]"}},
+        {"butterfly", {"a.mass_kg=[1, 0.1]", "b.mass_kg=[3, 1]"}},
+        {"butterfly", {"a.length_m=[0.1, 0.1]", "b.length_m=[2, 1]"}},
+        {"butterfly", {"b.omega_deg_per_s=[720, -720]"}},
+        {"triple", {"a.angle_deg=[1, 2, 3]", "b.angle_deg=[2, 3, 1]"}},
+    };
+    for (const auto& [preset, more] : pairs) {
+        auto keys = more;
+        keys.insert(keys.end(), {"scene.duration_s=10", "system.integrator=\"rk4\"", "system.step_s=\"1/1200\""});
+        const auto what = fmt::format("{} {}", preset, fmt::join(keys, " "));
+        const auto scene = scene_of(preset, keys);
+        const Axis axis = make_layout(scene).strips.front().value;
+        double start = 0, most = 0;
+        for_each_shot(scene, scene.samples, [&](const Shot& shot) {
+            if (shot.moment.sample == 0) start = shot.moment.distance;
+            most = std::max(most, shot.moment.distance);
+        });
+        EXPECT_LE(most, axis.high) << what;
+        EXPECT_GE(start, axis.low) << what;
+        if (start > 0.1) {
+            EXPECT_GE(most, axis.high / 10) << what;
+        }
+    }
+}
+
+bool says(const DisplayList& list, const std::string& words) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& item) {
+        const auto* label = std::get_if<Label>(&item);
+        return label && label->text.find(words) != std::string::npos;
+    });
+}
+
+TEST(Layouts, OnlyWhoStartsTogetherParts) {
+    const auto outcome = [](std::vector<std::string> keys) {
+        keys.emplace_back("system.integrator=\"taylor\"");
+        const auto scene = scene_of("butterfly", keys);
+        Composer composer(scene);
+        for_each_shot(scene, scene.samples, [&](const Shot& shot) { composer.add(shot); });
+        const auto end = composer.end_card(1);
+        EXPECT_EQ(says(composer.frame(), "parted at"), says(end, "parted after"));
+        return says(end, "parted after") ? "parted"
+               : says(end, "together")   ? "together"
+               : says(end, "apart")      ? "apart"
+                                         : "";
+    };
+    EXPECT_STREQ(outcome({"scene.duration_s=20"}), "parted");
+    EXPECT_STREQ(outcome({"scene.duration_s=1"}), "together");
+    EXPECT_STREQ(outcome(one_link_at("10", "90")), "apart");
+}
+
 TEST(Layouts, ColoursWidthsAndSizesAreThePresets) {
     const auto scene = scene_of("butterfly", {"video.colors.background=\"#203040\"", "video.colors.bob=\"#00ff00\"",
                                               "video.side_colors=[\"#ff0000\", \"#0000ff\"]", "video.widths_px.bob=60",
