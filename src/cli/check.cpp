@@ -5,7 +5,7 @@
 #include "figure/computation.hpp"
 #include "film/schedule.hpp"
 #include "numeric/clock.hpp"
-#include "numeric/share_out.hpp"
+#include "numeric/machine.hpp"
 #include "numeric/time_limit.hpp"
 #include "scene/choice.hpp"
 #include "scene/outlook.hpp"
@@ -181,8 +181,10 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
                : estimate.at_least ? "more than "
                                    : "about ",
                counted(estimate.steps));
-    print_line("  video  {} frames of {}×{} at {} frames/s, {}", grouped(frames_of(scene)), video.size.width,
-               video.size.height, scene.fps.text(), format_words(video));
+    const auto stride =
+        scene.samples_per_frame == 1 ? "" : fmt::format(" (one of {} samples is one)", scene.samples_per_frame);
+    print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
+               video.size.height, scene.fps.text(), stride, format_words(video));
     print_line("  takes  {} {:.2g} s to simulate, {:.2g} s to render", estimate.at_least ? "more than" : "about",
                estimate.seconds, std::max(estimate.seconds, estimated_pictures(scene)));
 }

@@ -40,7 +40,9 @@ void add_render(CLI::App& app) {
         "  doppel render butterfly --format gif --size 640x360\n"
         "  doppel render butterfly --set 'video.layout=\"overlay\"' --set video.poster_s=14 --set "
         "'video.contact_sheet=[4, 3]'");
-    add_run_options(command, *options, "Threads that encode; two a core where not given");
+    add_run_options(command, *options,
+                    "Threads that compress PNGs, one a core where not given; films of other formats, and all bytes, do "
+                    "not depend on it");
     command.add_option("--frames", options->frames, "Only the samples A to B-1; the same pixels as in the whole")
         ->type_name("A:B");
     command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")
@@ -66,7 +68,7 @@ void add_render(CLI::App& app) {
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first of them is filmed
         for (const auto& scene : scenes)
-            if (scene.preset.video.format != "png") check_video(video_options(scene, 0));
+            if (scene.preset.video.format != "png") check_video(video_options(scene));
         run_all(scenes, *options, run);
     });
 }

@@ -1,6 +1,7 @@
 #include "figure/computation.hpp"
 
 #include "numeric/clock.hpp"
+#include "numeric/threads.hpp"
 #include "numeric/time_limit.hpp"
 #include "scene/wording.hpp"
 

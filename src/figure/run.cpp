@@ -4,6 +4,7 @@
 #include "figure/merge.hpp"
 #include "numeric/clock.hpp"
 #include "numeric/error.hpp"
+#include "numeric/machine.hpp"
 #include "numeric/share_out.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"
@@ -58,7 +59,7 @@ public:
     /// Makes the renderer for the first picture while others compute.
     void warm_up(const FigurePreset& figure) {
         if (!options_.shard)
-            renderer_for(figure.picture_size()).draw(compose({.title = "0"}, figure.picture_size(), themes[0]));
+            renderer_for(figure.picture_size()).draw(compose({.title = "0"}, figure.picture_size(), themes[0]), stop_);
     }
 
     RunResult print(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials, FigureRecord facts,
@@ -73,10 +74,9 @@ public:
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
             auto& renderer = renderer_for(figure.picture_size());
             const auto list = compose_figure(figure, trials);
+            const auto picture = renderer.draw(list, stop_);
             check_stop();
-            const auto picture = renderer.draw(list);
-            check_stop();
-            write_png(files.file(png), picture);
+            write_png(files.file(png), picture, {}, stop_);
             files.finished(png);
             facts.gl = renderer.description();
             check_stop();
@@ -98,7 +98,7 @@ private:
         if (stop_) throw Error(ExitCode::interrupted, "interrupted");
     }
     Renderer& renderer_for(Size size) {
-        if (!renderer_ || size_ != size) renderer_.emplace(size, DisplayList{}, options_.gl);
+        if (!renderer_ || size_ != size) renderer_.emplace(size, DisplayList{}, options_.gl, stop_);
         size_ = size;
         return *renderer_;
     }
@@ -140,7 +140,7 @@ public:
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
         }
-        thread_ = std::jthread([this, jobs] { work(jobs); });
+        thread_ = start_thread([this, jobs] { work(jobs); });
     }
     ~Workshop() {
         closing_ = true;

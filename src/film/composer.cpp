@@ -28,9 +28,9 @@ std::string speed_words(const Rational& speed) {
 
 }  // namespace
 
-Composer::Composer(const Scene& scene)
+Composer::Composer(const Scene& scene, const std::atomic<bool>& stop)
     : scene_(scene),
-      layout_(make_layout(scene)),
+      layout_(make_layout(scene, stop)),
       heaviest_(std::max(*std::max_element(scene.a.mass.begin(), scene.a.mass.end()),
                          *std::max_element(scene.b.mass.begin(), scene.b.mass.end()))),
       energy_unit_(std::max(scene.a.energy_unit, scene.b.energy_unit)),

@@ -16,7 +16,8 @@ namespace doppel {
 /// nothing else: any frame can be drawn alone.
 class Composer {
 public:
-    explicit Composer(const Scene& scene);
+    /// Throws as make_layout() does.
+    explicit Composer(const Scene& scene, const std::atomic<bool>& stop = false);
 
     /// What never changes: the page, the panels, the axes and their words.
     DisplayList backdrop() const;

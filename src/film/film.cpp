@@ -52,7 +52,13 @@ std::vector<long> spread(long first, long last, long stride, long count) {
 
 }  // namespace
 
-VideoOptions video_options(const Scene& scene, int threads) {
+std::optional<long> poster_sample(const Scene& scene) {
+    const auto& seconds = scene.preset.video.poster_s;
+    if (!seconds) return std::nullopt;
+    return product(*seconds, scene.preset.sample_hz)->numerator;  // whole: the preset's reader saw to it
+}
+
+VideoOptions video_options(const Scene& scene) {
     const auto& video = scene.preset.video;
     return {.format = video.format == "webm"   ? VideoFormat::webm
                       : video.format == "gif"  ? VideoFormat::gif
@@ -67,14 +73,13 @@ VideoOptions video_options(const Scene& scene, int threads) {
                                                                 : PixelFormat::yuv420,
             .preset = video.preset,
             .crf = video.crf,
-            .threads = threads,
             .transparent = video.transparent,
             .metadata = metadata_of(scene.preset)};
 }
 
-Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record)
-    : scene_(scene), schedule_(schedule_of(scene)), composer_(scene), parts_(parts) {
-    const int jobs = run_threads(options.jobs);
+Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record,
+           const std::atomic<bool>& stop)
+    : scene_(scene), schedule_(schedule_of(scene)), composer_(scene, stop), parts_(parts), stop_(stop) {
     const auto& video = scene.preset.video;
     if (video.format == "png") {
         film_name_ = "frames";
@@ -82,20 +87,21 @@ Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunR
         const auto place_of = [this, &folder](long k) {
             return FilePlace(folder, fmt::format("{:06}.png", first_number_ + k));
         };
-        sink_ = make_png_sink(place_of, jobs, {.with_alpha = video.transparent, .metadata = metadata_of(scene.preset)});
+        sink_ = make_png_sink(place_of, png_threads(options.jobs, video.size),
+                              {.with_alpha = video.transparent, .metadata = metadata_of(scene.preset)}, stop);
     } else {
-        const auto file = video_options(scene, jobs);
+        const auto file = video_options(scene);
         film_name_ = scene.preset.name + extension(file.format);
-        sink_ = make_video_sink(parts.file(film_name_), file);
+        sink_ = make_video_sink(parts.file(film_name_), file, stop);
         record.libav = libav_description();
     }
     auto backdrop = composer_.backdrop();
     if (video.transparent) {
-        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), options.gl);
+        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), options.gl, stop);
         backdrop = on_page(backdrop, video.size, rgb(0x000000));
         matted_ = Picture(video.size);
     }
-    renderer_.emplace(video.size, backdrop, options.gl);
+    renderer_.emplace(video.size, backdrop, options.gl, stop);
     record.gl = renderer_->description();
     if (video.contact_sheet)
         sheet_samples_ = spread(options.first, options.last, scene.samples_per_frame,
@@ -103,10 +109,10 @@ Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunR
 }
 
 const Picture& Film::drawn(const DisplayList& list) {
-    const auto& picture = renderer_->draw(list);
+    const auto& picture = renderer_->draw(list, stop_);
     changed_ = renderer_->changed();
     if (!on_white_) return picture;
-    const auto& white = on_white_->draw(list);
+    const auto& white = on_white_->draw(list, stop_);
     changed_.insert(changed_.end(), on_white_->changed().begin(), on_white_->changed().end());
     for (const auto& area : changed_) matte(picture, white, area, matted_);
     return matted_;
@@ -138,7 +144,7 @@ void Film::take_card(long frames, bool comes_up, RunRecord& record) {
 /// What is wanted of a frame besides the film.
 void Film::keep(const Picture& picture) {
     const auto& video = scene_.preset.video;
-    if (video.poster_s && product(*video.poster_s, scene_.preset.sample_hz)->numerator == sample_) poster_ = picture;
+    if (poster_sample(scene_) == sample_) poster_ = picture;
     const auto times = std::count(sheet_samples_.begin(), sheet_samples_.end(), sample_);
     if (times == 0) return;
     constexpr int sheet_width = 1920;  // px, about
@@ -167,8 +173,8 @@ void Film::finish() {
     const auto& preset = scene_.preset;
     const auto write = [&](const std::string& ending, const Picture& picture) {
         const auto name = preset.name + ending;
-        write_png(parts_.file(name), picture,
-                  {.with_alpha = preset.video.transparent, .metadata = metadata_of(preset)});
+        write_png(parts_.file(name), picture, {.with_alpha = preset.video.transparent, .metadata = metadata_of(preset)},
+                  stop_);
         parts_.finished(name);
     };
     if (poster_) write(".poster.png", *poster_);

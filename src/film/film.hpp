@@ -19,8 +19,10 @@ namespace doppel {
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
 class Film {
 public:
-    /// For the samples options.first … options.last − 1. Adds its files to `parts`.
-    Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record);
+    /// For the samples options.first … options.last − 1. Adds its files to `parts`. All may throw Error (exit 130) soon
+    /// after `stop` is set.
+    Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record,
+         const std::atomic<bool>& stop);
 
     /// Every sample, from 0 on.
     void add(const Shot& shot) {
@@ -44,7 +46,8 @@ private:
     Schedule schedule_;
     Composer composer_;
     PartFiles& parts_;
-    std::string film_name_;               // of the video, or the folder of pictures
+    std::string film_name_;  // of the video, or the folder of pictures
+    const std::atomic<bool>& stop_;
     long sample_ = 0;                     // added last
     std::atomic<long> first_number_ = 0;  // of the first picture; compressor threads ask
     std::unique_ptr<Sink> sink_;
@@ -58,7 +61,10 @@ private:
     std::vector<Picture> sheet_;
 };
 
-/// How the video file of a scene is written. `threads` of the encoder.
-VideoOptions video_options(const Scene& scene, int threads);
+/// The sample that the poster shows, where there is one.
+std::optional<long> poster_sample(const Scene& scene);
+
+/// How the video file of a scene is written.
+VideoOptions video_options(const Scene& scene);
 
 }  // namespace doppel

@@ -80,7 +80,8 @@ float place_strips(Layout& layout, const Scene& scene, float header, const std::
     for (auto kind = video.strips.rbegin(); kind != video.strips.rend(); ++kind) {
         const float top = bottom - std::max(share_of(*kind) * unit, 8 * t);
         const Area area{layout.page.left + std::round(84 * t), std::round(top), layout.page.right, std::round(bottom)};
-        const auto range = video.ranges[static_cast<std::size_t>(*kind)].value_or(fitted_range(*kind, scene, seen));
+        const auto& asked = video.ranges[static_cast<std::size_t>(*kind)];
+        const auto range = asked ? *asked : fitted_range(*kind, scene, seen);
         layout.strips.push_back({*kind,
                                  area,
                                  {.low = 0, .high = scene.time(scene.samples), .from = area.left, .to = area.right},
@@ -190,7 +191,7 @@ Point PendulumPanel::at(double x_m, double y_m) const {
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
 }
 
-Layout make_layout(const Scene& scene) {
+Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
     Layout layout;
@@ -201,7 +202,7 @@ Layout make_layout(const Scene& scene) {
     layout.page = {std::round(60 * u), std::round(28 * u), width - std::round(60 * u), height - std::round(26 * u)};
     layout.title = scene.preset.title;
     layout.subtitle = scene_words(scene);
-    const auto seen = survey(scene);
+    const auto seen = survey(scene, stop);
 
     const float header = layout.page.top + 96 * t;
     const float bottom = place_strips(layout, scene, header, seen);

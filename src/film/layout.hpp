@@ -61,6 +61,7 @@ struct Layout {
     float time_labels = 0;      // their baseline, px
 };
 
-Layout make_layout(const Scene& scene);
+/// May run the scene beforehand (film/survey.hpp); throws Error (exit 130) soon after `stop` is set.
+Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false);
 
 }  // namespace doppel

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <thread>
 
 namespace doppel {
 namespace {
@@ -52,7 +51,7 @@ struct SampleRange {
     long first, last, stride, total;
 };
 
-/// Throws Error (exit 2) where the scene has no such samples, or none of them is a frame.
+/// Throws Error (exit 2) where the scene has no such samples, none of them is a frame, or the poster is none of them.
 SampleRange range_of(const Scene& scene, const RunOptions& options) {
     const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
     if (first < 0 || first >= last || last > scene.samples + 1)
@@ -63,6 +62,10 @@ SampleRange range_of(const Scene& scene, const RunOptions& options) {
     if (options.pictures && total < 1)
         throw bad_input("--frames {}:{}: no frame of {} falls into it; every {}th sample is one", first, last,
                         scene.preset.name, stride);
+    if (const auto poster = poster_sample(scene); options.pictures && poster && (*poster < first || *poster >= last))
+        throw bad_input("--frames {}:{}: the poster of {}, poster_s = {}, is sample {}; --frames {}:{} would have it",
+                        first, last, scene.preset.name, scene.preset.video.poster_s->text(), *poster,
+                        std::min(first, *poster), std::max(last, *poster + 1));
     return {first, last, stride, total};
 }
 
@@ -70,10 +73,6 @@ SampleRange range_of(const Scene& scene, const RunOptions& options) {
 
 void check_range(const Scene& scene, const RunOptions& options) {
     range_of(scene, options);
-}
-
-int run_threads(int jobs) {
-    return jobs > 0 ? jobs : 2 * static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
@@ -85,7 +84,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     std::optional<Film> film;
     auto range = options;
     range.first = first, range.last = last;
-    if (options.pictures) film.emplace(scene, range, parts, record);
+    if (options.pictures) film.emplace(scene, range, parts, record, stop);
     const auto csv_name = scene.preset.name + ".csv";
     PairTable table(parts.file(csv_name), scene);
 

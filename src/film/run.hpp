@@ -17,13 +17,9 @@ struct RunOptions {
     std::filesystem::path out = "out";  // the files go to OUT/NAME/
     bool pictures = true;               // false: the table and the manifest alone; no GL
     long first = 0, last = -1;          // samples first … last − 1; all where last < 0
-    int jobs = 0;                       // threads that encode or compress; 0 = run_threads() decides
+    int jobs = 0;                       // threads that compress PNGs; 0 = one a core
     Gl gl = Gl::automatic;              // what draws
 };
-
-/// The threads that encode where `jobs` of them were asked for: that many, or two a core where it is 0 (x264 waits for
-/// itself otherwise).
-int run_threads(int jobs);
 
 /// How far a run is, as often as a frame is done.
 struct Progress {

@@ -1,6 +1,7 @@
 #include "film/simulation.hpp"
 
 #include "numeric/clock.hpp"
+#include "numeric/threads.hpp"
 
 namespace doppel {
 namespace {
@@ -14,12 +15,7 @@ std::size_t most_ahead(bool with_crowd) {
 
 Simulation::Simulation(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop)
     : ahead_(most_ahead(with_crowd)),
-      thread_([this, &scene, last, with_crowd, &stop] { work(scene, last, with_crowd, stop); }) {}
-
-Simulation::~Simulation() {
-    ahead_.close();
-    thread_.join();
-}
+      thread_(start_thread([this, &scene, last, with_crowd, &stop] { work(scene, last, with_crowd, stop); })) {}
 
 Shot Simulation::next() {
     auto shot = ahead_.pop();

@@ -17,9 +17,12 @@ namespace doppel {
 /// them.
 class Simulation {
 public:
-    /// Shots 0 … last − 1. The members of an ensemble are stepped where `with_crowd`.
+    /// Shots 0 … last − 1. The members of an ensemble are stepped where `with_crowd`. Throws Error (exit 4) where there
+    /// is no thread to be had.
     Simulation(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop);
-    ~Simulation();
+    ~Simulation() { ahead_.close(); }
+    Simulation(const Simulation&) = delete;
+    Simulation& operator=(const Simulation&) = delete;
 
     /// The next shot; rethrows what stopped the simulation.
     Shot next();
@@ -36,7 +39,7 @@ private:
     std::atomic<double> cpu_s_ = 0;
     std::mutex mutex_;
     std::pair<Effort, Effort> efforts_;
-    std::thread thread_;  // last: it uses all the rest
+    std::jthread thread_;  // last: it uses all the rest
 };
 
 }  // namespace doppel

@@ -12,11 +12,13 @@ void include(Range& range, double value) {
 
 bool is_needed(const Scene& scene) {
     const auto& video = scene.preset.video;
+    const bool is_mechanism = scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism;
     const auto fits_itself = [&](StripKind kind) {
-        return !is_logarithmic(kind) && !video.ranges[static_cast<std::size_t>(kind)];
+        const bool by_formula = is_logarithmic(kind) && !(kind == StripKind::distance && is_mechanism);
+        return !by_formula && !video.ranges[static_cast<std::size_t>(kind)];
     };
-    return scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism ||
-           video.layout == Arrangement::phase || std::any_of(video.strips.begin(), video.strips.end(), fits_itself);
+    const bool view = video.pendulums && (is_mechanism || video.layout == Arrangement::phase);
+    return view || std::any_of(video.strips.begin(), video.strips.end(), fits_itself);
 }
 
 void add(Survey& seen, const Scene& scene, const Observation& side) {
@@ -39,11 +41,10 @@ std::optional<double> exponent_so_far(const Scene& scene, const Moment& moment, 
     return std::log(moment.distance / start_distance) / scene.time(moment.sample);
 }
 
-std::optional<Survey> survey(const Scene& scene) {
+std::optional<Survey> survey(const Scene& scene, const std::atomic<bool>& stop) {
     if (!is_needed(scene)) return std::nullopt;
-    const std::atomic<bool> never = false;
     PairRun pair(scene);
-    auto moment = pair.next(never);
+    auto moment = pair.next(stop);
     const auto& first = moment.a.bobs.front();
     Survey seen{first.x, first.x, first.y, first.y};
     const double start_distance = moment.distance;
@@ -54,7 +55,7 @@ std::optional<Survey> survey(const Scene& scene) {
             seen.largest_distance = std::max(seen.largest_distance, moment.distance);
             if (const auto exponent = exponent_so_far(scene, moment, start_distance)) include(seen.exponent, *exponent);
             if (moment.sample == scene.samples) break;
-            moment = pair.next(never);
+            moment = pair.next(stop);
         }
     } catch (const BreakDown&) {  // the run itself will say so
     }

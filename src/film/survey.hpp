@@ -15,8 +15,9 @@ struct Survey {
     Range rod_force{0, 0};            // N, where it was asked for
 };
 
-/// Nothing where formulas do. Ends without an error where a side breaks down.
-std::optional<Survey> survey(const Scene& scene);
+/// Of the whole motion, whichever frames are drawn: they are the same pixels alone as in the film. Nothing where
+/// formulas do. Ends without an error where a side breaks down; throws Error (exit 130) soon after `stop` is set.
+std::optional<Survey> survey(const Scene& scene, const std::atomic<bool>& stop);
 
 /// ln(d/d0) / t, 1/s: nothing in the first twentieth of the scene, when it says nothing yet, or where a distance is 0.
 std::optional<double> exponent_so_far(const Scene& scene, const Moment& moment, double start_distance);

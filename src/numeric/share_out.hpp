@@ -1,22 +1,17 @@
 #pragma once
 
+#include "numeric/threads.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
 #include <mutex>
-#include <thread>
-#include <vector>
 
 namespace doppel {
 
-/// As many threads as this process may use cores at once, at least one.
-inline int cores() {
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
-
-/// Calls work(i) once for each i = 0 … count − 1, on `jobs` threads (this one among them): whoever is free takes the
-/// next. The first error stops them all and is thrown here.
+/// Calls work(i) once for each i = 0 … count − 1, on `jobs` threads (this one among them), or as many as there are to
+/// be had: whoever is free takes the next. The first error stops them all and is thrown here.
 template <class Work>
 void share_out(std::size_t count, int jobs, Work&& work) {
     std::atomic<std::size_t> next = 0;
@@ -32,9 +27,8 @@ void share_out(std::size_t count, int jobs, Work&& work) {
         }
     };
     {
-        std::vector<std::jthread> threads;
         const auto helpers = std::min(static_cast<std::size_t>(std::max(jobs, 1)), count) - (count > 0 ? 1 : 0);
-        for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(run);
+        const auto threads = start_threads(helpers, run);  // they end where this block does
         run();
     }
     if (error) std::rethrow_exception(error);

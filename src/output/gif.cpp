@@ -1,6 +1,8 @@
 #include "output/gif.hpp"
 
 #include "numeric/error.hpp"
+#include "numeric/machine.hpp"
+#include "numeric/threads.hpp"
 #include "output/palette.hpp"
 #include "output/pool.hpp"
 #include "output/spool.hpp"
@@ -33,8 +35,12 @@ std::string comment_and_end(const Metadata& metadata) {
 
 class GifSink final : public Sink {
 public:
-    GifSink(const FilePlace& place, const VideoOptions& options)
-        : options_(options), encoder_(place, encoding_of(options)), spool_(place, Samples::rgba) {}
+    GifSink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop)
+        : options_(options),
+          encoder_(place, encoding_of(options), stop),
+          spool_(place, Samples::rgba),
+          counting_(1, in_hand(byte_count(Samples::rgba, all_of(options.size)), 8),
+                    [this](SampledAreas& changes) { count(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
         SampledAreas changes = spare_.take();
@@ -104,13 +110,16 @@ private:
     Palette palette_;
     Buffer indices_;
     Pool<SampledAreas> spare_;
-    Workers<SampledAreas> counting_{1, 8, [this](SampledAreas& changes) { count(changes); }};
+    Workers<SampledAreas> counting_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options) {
-    return std::make_unique<GifSink>(place, options);
+std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options,
+                                    const std::atomic<bool>& stop) {
+    // libimagequant's OpenMP starts one a core for each thread that calls it, and ends the program where it cannot
+    need_threads(2 * std::size_t{std::thread::hardware_concurrency()});
+    return std::make_unique<GifSink>(place, options, stop);
 }
 
 }  // namespace doppel

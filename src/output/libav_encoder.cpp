@@ -1,6 +1,8 @@
 #include "output/libav_encoder.hpp"
 
 #include "numeric/error.hpp"
+#include "numeric/threads.hpp"
+#include "output/libav_log.hpp"
 #include "output/video.hpp"
 
 extern "C" {
@@ -10,7 +12,6 @@ extern "C" {
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <stdexcept>
@@ -27,10 +28,7 @@ Libav<T> owned(T* thing) {
 }
 
 Libav<AVFormatContext> open_format(const char* container) {
-    // libav prints unless told not to
-    av_log_set_level(AV_LOG_QUIET);
-    // and SVT-AV1, which asks the environment alone
-    setenv("SVT_LOG", "0", 0);
+    keep_libav_log();
     AVFormatContext* format = nullptr;
     avformat_alloc_output_context2(&format, nullptr, container, "film");
     return owned(format);
@@ -68,9 +66,10 @@ const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID cod
                     others.empty() ? "none" : fmt::format("{}", fmt::join(others, ", ")));
 }
 
-Encoder::Encoder(const FilePlace& place, Encoding encoding)
+Encoder::Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bool>& stop)
     : path_(place.path.string()),
       encoding_(std::move(encoding)),
+      stop_(stop),
       file_(place),
       format_(open_format(encoding_.container)),
       packet_(owned(av_packet_alloc())) {
@@ -88,6 +87,9 @@ void Encoder::open_frame() {
 }
 
 void Encoder::open_codec() {
+    const std::string_view name = encoding_.encoder->name;
+    // where one of theirs cannot be started SVT-AV1, which starts some 110, waits for ever, and libaom ends the program
+    if (has_chroma(encoding_.pixels)) need_threads(name == "libsvtav1" ? 200 : 3 * encoding_.threads);
     codec_ = owned(avcodec_alloc_context3(encoding_.encoder));
     codec_->width = encoding_.size.width;
     codec_->height = encoding_.size.height;
@@ -96,9 +98,8 @@ void Encoder::open_codec() {
     codec_->time_base = encoding_.tick;
     codec_->pix_fmt = encoding_.pixels;
     if (has_chroma(encoding_.pixels)) tag_bt709(*codec_);
-    codec_->thread_count = encoding_.threads;
+    codec_->thread_count = static_cast<int>(encoding_.threads);
     codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    const char* name = encoding_.encoder->name;
     for (const auto& [key, value] : encoding_.encoder_options)
         check(av_opt_set(codec_.get(), key.c_str(), value.c_str(), AV_OPT_SEARCH_CHILDREN),
               fmt::format("{} refuses {} = {}", name, key, value));
@@ -112,8 +113,11 @@ void Encoder::write_header() {
     // MP4 multiplies 1/time_base by a power of two: every frame starts at a whole tick
     stream_->time_base = codec_->time_base;
     stream_->avg_frame_rate = stream_->r_frame_rate = codec_->framerate;
+    // meanwhile Matroska numbers its tracks instead of naming them by chance
+    format_->flags |= AVFMT_FLAG_BITEXACT;
     check(avformat_init_output(format_.get(), nullptr), "the header cannot be made");
-    // here, as libav has just named itself as the encoder
+    format_->flags &= ~AVFMT_FLAG_BITEXACT;
+    // here, as libav has just cleared, or named itself as, the encoder
     for (const auto& [key, text] : encoding_.metadata)
         check(av_dict_set(&format_->metadata, key.c_str(), text.c_str(), 0), "no memory for metadata");
     check(avformat_write_header(format_.get(), nullptr), "the header cannot be written");
@@ -142,6 +146,7 @@ void Encoder::send_frame(std::int64_t time, std::int64_t lasting) {
 /// What comes out of the encoder.
 void Encoder::write_packets() {
     for (;;) {
+        if (stop_) throw Error(ExitCode::interrupted, "interrupted");
         const int result = avcodec_receive_packet(codec_.get(), packet_.get());
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "cannot be encoded");
@@ -178,10 +183,14 @@ void Encoder::finish(std::string_view ending, int replaced) {
 }
 
 void Encoder::check(int result, std::string_view what) const {
-    if (result >= 0) return;
+    if (result >= 0) {
+        take_libav_word();  // what did no harm
+        return;
+    }
     std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
     av_strerror(result, reason.data(), reason.size());
-    throw io_failed("{}: {}: {}", path_, what, reason.data());
+    const auto word = take_libav_word();
+    throw io_failed("{}: {}: {}{}{}", path_, what, word, word.empty() ? "" : ": ", reason.data());
 }
 
 std::string libav_description() {

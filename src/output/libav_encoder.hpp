@@ -9,6 +9,7 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -36,19 +37,20 @@ struct Encoding {
     AVPixelFormat pixels;    // those in Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
     Size size;
     AVRational frame_rate;
-    AVRational tick;                                        // s; the times of frames are counted in it
-    int threads = 0;                                        // 0 = the encoder's own choice
+    AVRational tick;  // s; the times of frames are counted in it
+    std::size_t threads = 1;
     Metadata encoder_options = {}, container_options = {};  // by libav's names
     Metadata metadata = {};
     std::string png_chunks = {};  // to follow the header of an APNG
 };
 
-/// An encoder and the file it fills. All throw Error (exit 4) with the path and libav's reason.
+/// An encoder and the file it fills. All throw Error: exit 4 with the path and libav's reason, exit 130 soon after
+/// `stop` is set.
 class Encoder {
 public:
     /// Opens the file. The encoder itself is opened with the first frame: SVT-AV1 waits for ever where it is closed
     /// before it had one.
-    Encoder(const FilePlace& place, Encoding encoding);
+    Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bool>& stop);
 
     /// The picture as it is now: its planes can be written to.
     AVFrame& frame();
@@ -70,6 +72,7 @@ private:
 
     const std::string path_;
     Encoding encoding_;
+    const std::atomic<bool>& stop_;
     LibavFile file_;
     Libav<AVFormatContext> format_;
     Libav<AVCodecContext> codec_;

@@ -1,6 +1,7 @@
 #include "output/png.hpp"
 
 #include "numeric/error.hpp"
+#include "numeric/machine.hpp"
 #include "output/output_file.hpp"
 #include "output/png_text.hpp"
 #include "output/pool.hpp"
@@ -106,16 +107,13 @@ Samples samples_of(const PngOptions& options) {
     return options.with_alpha ? Samples::rgba : Samples::rgb;
 }
 
-Rect all_of(Size size) {
-    return {0, 0, size.width, size.height};
-}
-
 /// A file's text chunks follow its signature and header.
 constexpr std::size_t header_bytes = 8 + 25;
 
 /// `bytes` are the picture's as samples_of() has them.
 void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
-                   const std::string& text_chunks) {
+                   const std::string& text_chunks, const std::atomic<bool>& stop) {
+    if (stop) throw Error(ExitCode::interrupted, "interrupted");
     OutputFile output(place);
     struct Target {
         OutputFile& output;
@@ -142,11 +140,13 @@ void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes,
 
 class PngSink final : public Sink {
 public:
-    PngSink(std::function<FilePlace(long)> place_of, int jobs, PngOptions options)
+    PngSink(std::function<FilePlace(long)> place_of, std::size_t threads, PngOptions options,
+            const std::atomic<bool>& stop)
         : place_of_(std::move(place_of)),
           options_(std::move(options)),
+          stop_(stop),
           text_chunks_(png_text_chunks(options_.metadata)),
-          writers_(std::max(jobs, 1), std::size_t(std::max(jobs, 1)), [this](Job& job) { write(job); }) {}
+          writers_(threads, threads, [this](Job& job) { write(job); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& /*changed*/) override {
         Job job{place_of_(taken_++), picture.size, spare_.take()};
@@ -166,12 +166,13 @@ private:
     };
 
     void write(Job& job) {
-        write_samples(job.place, job.size, job.bytes.data(), options_, text_chunks_);
+        write_samples(job.place, job.size, job.bytes.data(), options_, text_chunks_, stop_);
         spare_.give_back(std::move(job.bytes));
     }
 
     const std::function<FilePlace(long)> place_of_;
     const PngOptions options_;
+    const std::atomic<bool>& stop_;
     const std::string text_chunks_;
     long taken_ = 0;
     Pool<Buffer> spare_;
@@ -180,15 +181,24 @@ private:
 
 }  // namespace
 
-void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options) {
+void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options,
+               const std::atomic<bool>& stop) {
     const Rect all = all_of(picture.size);
     Buffer bytes;
     convert(picture, all, samples_of(options), bytes.make_room(byte_count(samples_of(options), all)));
-    write_samples(place, picture.size, bytes.data(), options, png_text_chunks(options.metadata));
+    write_samples(place, picture.size, bytes.data(), options, png_text_chunks(options.metadata), stop);
 }
 
-std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int jobs, PngOptions options) {
-    return std::make_unique<PngSink>(std::move(place_of), jobs, std::move(options));
+std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options,
+                                    const std::atomic<bool>& stop) {
+    return std::make_unique<PngSink>(std::move(place_of), static_cast<std::size_t>(std::max(threads, 1)),
+                                     std::move(options), stop);
+}
+
+int png_threads(int jobs, Size size) {
+    // what waits, what is at work, its rows with their filters, compressed, and the file
+    const std::size_t bytes = 5 * byte_count(Samples::rgba, all_of(size));
+    return static_cast<int>(in_hand(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }
 
 }  // namespace doppel

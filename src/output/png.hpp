@@ -16,15 +16,23 @@ struct PngOptions {
     Metadata metadata = {{"encoder", "Doppel"}};
 };
 
-/// One picture, through stb_image_write with libdeflate. Throws Error (exit 4).
-void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options = {});
+/// One picture, through stb_image_write with libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the
+/// picture was compressed.
+void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options = {},
+               const std::atomic<bool>& stop = false);
 
 /// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it cannot be
 /// decoded.
 Picture read_png(const std::filesystem::path& path);
 
-/// A numbered sequence: picture k of the run, k = 0, 1, …, is written to place_of(k), which any thread may ask.
-/// `jobs` threads compress, fed through a bounded queue. Errors as write_png's, thrown by take() or finish().
-std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int jobs, PngOptions options = {});
+/// A numbered sequence: picture k of the run, k = 0, 1, …, is written to place_of(k), which the thread that gives the
+/// pictures is asked. `threads` compress, fed through a bounded queue. Errors as write_png's, and exit 130 soon after
+/// `stop` is set, thrown by take() or finish().
+std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options = {},
+                                    const std::atomic<bool>& stop = never_stopped);
+
+/// The threads for pictures of this size where `jobs` were asked for: that many, or one a core where it is 0; fewer
+/// where their pictures would take too much of the memory.
+int png_threads(int jobs, Size size);
 
 }  // namespace doppel

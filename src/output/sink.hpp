@@ -2,9 +2,13 @@
 
 #include "picture/picture.hpp"
 
+#include <atomic>
 #include <vector>
 
 namespace doppel {
+
+/// Of sinks that nobody asks to stop.
+inline const std::atomic<bool> never_stopped = false;
 
 /// Where pictures go: a video or a folder of images. Fed in order, closed by finish(); both may block and both throw
 /// Error (exit 4) with the path and the reason. Destroyed unfinished it stops at once; whoever owns the file removes

@@ -1,5 +1,6 @@
 #include "output/video.hpp"
 
+#include "numeric/machine.hpp"
 #include "output/gif.hpp"
 #include "output/pool.hpp"
 #include "output/video_codecs.hpp"
@@ -16,8 +17,11 @@ namespace {
 /// 1080p frame would add a copy of 0.2 ms: as much as it takes to convert a tenth of one.)
 class VideoSink final : public Sink {
 public:
-    VideoSink(const FilePlace& place, const VideoOptions& options)
-        : samples_(samples_of(options)), encoder_(place, encoding_of(options)) {}
+    VideoSink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop)
+        : samples_(samples_of(options)),
+          encoder_(place, encoding_of(options), stop),
+          encoding_(1, in_hand(byte_count(samples_, all_of(options.size)), 8),
+                    [this](SampledAreas& changes) { encode(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
         SampledAreas changes = spare_.take();
@@ -50,15 +54,16 @@ private:
     Encoder encoder_;
     std::int64_t sent_ = 0;
     Pool<SampledAreas> spare_;
-    Workers<SampledAreas> encoding_{1, 8, [this](SampledAreas& changes) { encode(changes); }};
+    Workers<SampledAreas> encoding_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options) {
+std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options,
+                                      const std::atomic<bool>& stop) {
     check_options(options);
-    if (options.format == VideoFormat::gif) return make_gif_sink(place, options);
-    return std::make_unique<VideoSink>(place, options);
+    if (options.format == VideoFormat::gif) return make_gif_sink(place, options, stop);
+    return std::make_unique<VideoSink>(place, options, stop);
 }
 
 void check_video(const VideoOptions& options) {

@@ -14,6 +14,10 @@ enum class VideoFormat { mp4, webm, gif, apng };
 /// Of H.264, VP9 and AV1: chroma for 2×2 pixels or for each; 8 bits a sample or 10.
 enum class PixelFormat { yuv420, yuv444, yuv420_10 };
 
+/// Threads of an encoder, on every machine: the bytes that x264 and libvpx make depend on how many they are. (On two
+/// cores, eight take x264 as much CPU time as two.)
+inline constexpr std::size_t encoder_threads = 8;
+
 struct VideoOptions {
     VideoFormat format = VideoFormat::mp4;
     std::string codec = {};   // "h264" (mp4), "vp9" or "av1" (webm); empty = h264, vp9
@@ -23,7 +27,6 @@ struct VideoOptions {
     PixelFormat pixel_format = PixelFormat::yuv420;  // gif and apng: not used
     std::string preset = "veryfast";                 // x264's names, for each codec; gif and apng: not used
     int crf = 18;              // h264 0…51, vp9 and av1 0…63, lower is better; gif and apng: not used
-    int threads = 0;           // of the encoder; 0 = its own choice
     bool transparent = false;  // the pictures' alpha counts: apng, webm of vp9; else it is taken for 255
     Metadata metadata = {};
 };
@@ -36,10 +39,12 @@ struct VideoOptions {
 ///       waits on the disk until finish(), as the palette needs to know all of it.
 /// apng  Every pixel and every time as given; plays for ever.
 /// mp4 and webm are BT.709 (limited range), converted and tagged, at a constant rate. Alpha is not premultiplied.
+/// The same pictures and options give the same bytes.
 /// take() converts what changed; a thread of the sink's encodes, fed through a queue of a few frames.
 /// Throws Error: exit 2 for what the format cannot have, exit 4 where libav has no encoder for it (those present are
-/// listed) or writing fails.
-std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options);
+/// listed) or writing fails, exit 130 soon after `stop` is set, to which the sink keeps looking.
+std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options,
+                                      const std::atomic<bool>& stop = never_stopped);
 
 /// Throws what make_video_sink() would, but for the file.
 void check_video(const VideoOptions& options);

@@ -1,7 +1,12 @@
 #include "output/video_codecs.hpp"
 
 #include "numeric/error.hpp"
+#include "output/libav_log.hpp"
 #include "output/png_text.hpp"
+
+extern "C" {
+#include <libavutil/imgutils.h>
+}
 
 #include <algorithm>
 #include <array>
@@ -67,11 +72,34 @@ bool is_yuv(const VideoOptions& options) {
     return options.format == VideoFormat::mp4 || options.format == VideoFormat::webm;
 }
 
+/// libav counts a picture's bytes, with room to spare, in 31 bits.
+bool libav_takes(Size size) {
+    keep_libav_log();
+    return av_image_check_size(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height), 0, nullptr) >= 0;
+}
+
+/// The largest of about the same shape that libav takes, of even sides.
+Size largest_alike(Size size) {
+    const double height = static_cast<double>(size.height) / size.width;
+    for (int width = size.width - size.width % 2; width > 2; width -= 2)
+        if (const Size alike{width, 2 * static_cast<int>(width * height / 2)}; alike.height > 0 && libav_takes(alike))
+            return alike;
+    return {2, 2};
+}
+
 void check_size(const VideoOptions& options, const Codec& codec) {
     const auto [width, height] = options.size;
     if (width < 1 || height < 1 || std::max(width, height) > codec.largest_side)
         throw bad_input("{} has sizes of 1x1 … {}x{} px; {}x{} is none", codec.title, codec.largest_side,
                         codec.largest_side, width, height);
+    if (!libav_takes(options.size)) {
+        const auto [less_wide, less_high] = largest_alike(options.size);
+        throw bad_input("{} of {}x{} px is more than libav encodes; {}x{} would do{}", codec.title, width, height,
+                        less_wide, less_high,
+                        options.format == VideoFormat::mp4
+                            ? ", and 8192x4352 for players that keep to the highest level of H.264, 6.2"
+                            : "");
+    }
     const bool halved = is_yuv(options) && options.pixel_format != PixelFormat::yuv444;
     if (halved && (width % 2 != 0 || height % 2 != 0))
         throw bad_input("{} needs even sizes; {}x{} is not; {}x{} would do", codec.title, width, height,
@@ -124,9 +152,8 @@ Metadata av1_options(const VideoOptions& options, std::string_view encoder) {
     const auto crf = fmt::to_string(options.crf);
     if (encoder != "libsvtav1")
         return {{"cpu-used", fmt::to_string(preset.aom)}, {"row-mt", "1"}, {"b", "0"}, {"crf", crf}};
-    Metadata result{{"preset", fmt::to_string(preset.svt)}, {"crf", crf}};
-    if (options.threads > 0) result.emplace_back("svtav1-params", fmt::format("lp={}", options.threads));
-    return result;
+    return {
+        {"preset", fmt::to_string(preset.svt)}, {"crf", crf}, {"svtav1-params", fmt::format("lp={}", encoder_threads)}};
 }
 
 /// SVT-AV1 is several times as fast as libaom, but has neither 4:4:4 nor every size.
@@ -226,7 +253,7 @@ Encoding encoding_of(const VideoOptions& options) {
                       .size = options.size,
                       .frame_rate = rate,
                       .tick = av_inv_q(rate),
-                      .threads = options.threads,
+                      .threads = encoder_threads,
                       .metadata = options.metadata};
     choose_encoder(options, encoding);
     return encoding;

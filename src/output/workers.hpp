@@ -1,9 +1,12 @@
 #pragma once
 
+#include "numeric/threads.hpp"
 #include "output/queue.hpp"
 
 #include <exception>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -15,9 +18,11 @@ namespace doppel {
 template <class T>
 class Workers {
 public:
-    /// At most `waiting` things wait; then give() does.
-    Workers(int threads, std::size_t waiting, std::function<void(T&)> work) : queue_(waiting), work_(std::move(work)) {
-        for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+    /// `threads` of them, or as many as there are to be had; throws Error (exit 4) where there is none. At most
+    /// `waiting` things wait; then give() does.
+    Workers(std::size_t threads, std::size_t waiting, std::function<void(T&)> work)
+        : queue_(waiting), work_(std::move(work)), threads_(start_threads(threads, [this] { run(); })) {
+        if (threads_.empty()) throw no_thread();
     }
     ~Workers() { queue_.abandon(); }
     Workers(const Workers&) = delete;

@@ -3,6 +3,7 @@
 #include "numeric/error.hpp"
 #include "output/png.hpp"
 #include "output/samples.hpp"
+#include "output/video.hpp"
 #include "picture/renderer.hpp"
 
 #include <benchmark/benchmark.h>
@@ -158,7 +159,7 @@ Cost encode_alone(const Reel& reel, const Scene& scene) {
     context->pix_fmt = AV_PIX_FMT_YUV420P;
     context->time_base = {1, 120};
     context->framerate = {120, 1};
-    context->thread_count = run_threads(0);
+    context->thread_count = static_cast<int>(encoder_threads);
     av_opt_set(context->priv_data, "preset", video.preset.c_str(), 0);
     av_opt_set(context->priv_data, "crf", std::to_string(video.crf).c_str(), 0);
     auto* packet = av_packet_alloc();

@@ -8,10 +8,13 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sched.h>
 
+#include <chrono>
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <thread>
 
 namespace doppel {
 namespace {
@@ -241,6 +244,93 @@ TEST(Run, RefusesFramesThatAreNotThere) {
     const auto [code, message] = error_of([&] { render(small(), {.out = fresh_folder(), .first = 60, .last = 62}); });
     EXPECT_EQ(code, ExitCode::bad_input);
     EXPECT_EQ(message, "--frames 60:62: butterfly has the samples 0 to 60; A:B must have 0 ≤ A < B ≤ 61");
+}
+
+TEST(Run, SameArgumentsGiveTheSameBytesWhateverTheJobsAndCores) {
+    const auto one_core = [](auto&& action) {
+        cpu_set_t all, one;
+        ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+        CPU_ZERO(&one);
+        CPU_SET(sched_getcpu(), &one);
+        sched_setaffinity(0, sizeof one, &one);
+        action();
+        sched_setaffinity(0, sizeof all, &all);
+    };
+    const std::vector<std::pair<std::string, std::vector<std::string>>> formats{
+        {"mp4", {}},
+        {"webm", {}},
+        {"webm", {"video.codec=\"av1\""}},
+        {"webm", {"video.codec=\"av1\"", "video.pixel_format=\"yuv444p\""}},
+        {"webm", {"video.transparent=true"}},
+        {"gif", {}},
+        {"apng", {}},
+        {"png", {}}};
+    for (const auto& [format, more] : formats) {
+        const auto out = fresh_folder();
+        auto arguments = more;
+        arguments.push_back(fmt::format("video.format=\"{}\"", format));
+        const auto scene = small(arguments);
+        const auto film =
+            format == "png" ? out / "butterfly/frames/000019.png" : out / ("butterfly/butterfly." + format);
+        std::set<std::string> films;
+        one_core([&] { render(scene, {.out = out, .last = 20, .jobs = 1}); });
+        films.insert(bytes_of(film));
+        render(scene, {.out = out, .last = 20, .jobs = 5});
+        films.insert(bytes_of(film));
+        EXPECT_EQ(films.size(), 1u) << fmt::format("{}", fmt::join(arguments, " "));
+    }
+}
+
+TEST(Run, StopsBeforeItsFirstFrameWhileItLooksHowFarThePairGets) {
+    // 100 million samples of a mechanism, whose view depends on all of them
+    const auto scene = scene_of("springs", {"scene.duration_s=800000", "video.size=[64, 64]"});
+    const auto out = fresh_folder();
+    std::atomic<bool> stop = false;
+    const std::jthread later([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        stop = true;
+    });
+    const auto start = std::chrono::steady_clock::now();
+    const auto [code, message] =
+        error_of([&] { run(scene, {.out = out, .first = 0, .last = 1}, stop, [](const Progress&) {}); });
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(code, ExitCode::interrupted) << message;
+    EXPECT_LT(taken.count(), 2);  // s; measured 0.06, and half an hour where the survey does not look
+    EXPECT_TRUE(fs::is_empty(out));
+}
+
+TEST(Run, LooksAheadOnlyWhereAPictureDependsOnIt) {
+    const std::vector<std::string> arguments{"scene.duration_s=800000", "video.size=[64, 64]",
+                                             "video.panels=[\"distance\"]", "video.distance_range=[1e-5, 10]"};
+    EXPECT_EQ(render(scene_of("springs", arguments), {.out = fresh_folder(), .first = 0, .last = 1}).frames, 1);
+}
+
+TEST(Run, LeavesNoFrameOfASequenceThatBrokeDown) {
+    // many threads still write large pictures when the method fails, and nothing better is looked for
+    const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1000",
+                                              "scene.duration_s=2", "video.size=[1280, 720]", "video.format=\"png\""});
+    for (int round = 0; round < 4; ++round) {
+        const auto out = fresh_folder();
+        EXPECT_EQ(error_of([&] { render(scene, {.out = out, .jobs = 32}); }).first, ExitCode::method_failed);
+        std::set<std::string> names;
+        for (const auto& entry : fs::recursive_directory_iterator(out / "butterfly"))
+            names.insert(entry.path().filename());
+        EXPECT_EQ(names, (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
+    }
+}
+
+TEST(Run, RefusesAPosterOutsideItsFrames) {
+    const auto out = fresh_folder();
+    const auto scene = small({"video.poster_s=0.25"});
+    const auto [code, message] = error_of([&] { render(scene, {.out = out, .first = 0, .last = 30}); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_EQ(message,
+              "--frames 0:30: the poster of butterfly, poster_s = 1/4, is sample 30; --frames 0:31 would have it");
+    EXPECT_TRUE(fs::is_empty(out));
+    EXPECT_EQ(error_of([&] { render(scene, {.out = out, .first = 31, .last = 40}); }).first, ExitCode::bad_input);
+    render(scene, {.out = out, .first = 30, .last = 31});
+    EXPECT_TRUE(fs::exists(out / "butterfly/butterfly.poster.png"));
+    render(scene, {.out = out, .pictures = false, .first = 0, .last = 30});  // no picture, no poster to miss
 }
 
 TEST(Run, NeverMixesOldFramesIntoNewOnes) {

@@ -3,6 +3,7 @@
 #include "output/fixtures.hpp"
 #include "output/libav_encoder.hpp"
 #include "output/video.hpp"
+#include "output/video_codecs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +65,6 @@ VideoOptions options_of(const Kind& kind, Size size = small) {
             .size = size,
             .fps_numerator = 50,
             .pixel_format = kind.pixel_format,
-            .threads = 2,
             .transparent = kind.transparent,
             .metadata = {{"title", "Three thousandths of a degree"}, {"comment", "butterfly – 90.003°"}}};
 }
@@ -87,6 +87,40 @@ bool is_yuv(const Kind& kind) {
 }
 
 }  // namespace
+
+TEST(Encoder, SaysWhatLibavSays) {
+    auto encoding = encoding_of({.size = tiny});
+    encoding.encoder_options = {{"crf", "abc"}};
+    Encoder encoder(fresh_folder() / "x.mp4", encoding, never_stopped);
+    expect_error(ExitCode::io_failed,
+                 {"x.mp4: libx264 refuses crf = abc: Unable to parse option value \"abc\": Invalid argument"},
+                 [&] { encoder.send_frame(0, 1); });
+    // each is said once
+    encoding.encoder_options = {{"no-such-option", "1"}};
+    Encoder other(fresh_folder() / "y.mp4", encoding, never_stopped);
+    expect_error(ExitCode::io_failed, {"libx264 refuses no-such-option = 1: Option not found"},
+                 [&] { other.send_frame(0, 1); });
+}
+
+TEST(Formats, HaveNoSizeThatLibavDoesNotTake) {
+    const Size huge{16384, 16384};
+    expect_error(
+        ExitCode::bad_input,
+        {"H.264 of 16384x16384 px is more than libav encodes; 16254x16254 would do, and 8192x4352 for players"},
+        [&] { check_video({.size = huge}); });
+    expect_error(ExitCode::bad_input, {"VP9 of 16384x16384 px", "16254x16254 would do"},
+                 [&] { check_video({.format = VideoFormat::webm, .size = huge}); });
+    EXPECT_NO_THROW(check_video({.size = {16254, 16254}}));
+    EXPECT_NO_THROW(check_video({.size = {16384, 8192}}));
+}
+
+TEST_P(Encoders, StopWhileTheyFinish) {
+    std::atomic<bool> stop = false;
+    const auto sink = make_video_sink(fresh_folder() / "x.part", options_of(GetParam(), tiny), stop);
+    for (long k = 0; k < 30; ++k) sink->take(clear_scene(tiny, k), whole(tiny));
+    stop = true;
+    expect_error(ExitCode::interrupted, {"interrupted"}, [&] { sink->finish(); });
+}
 
 TEST_P(Formats, HaveTheFramesTimesTagsWordsAndLooksAskedFor) {
     const Kind& kind = GetParam();
@@ -133,7 +167,6 @@ TEST_P(Encoders, OnlyWhatChangedNeedsToBeTaken) {
     const Kind& kind = GetParam();
     if (kind.format == VideoFormat::gif) return;  // what is taken more often weighs more in the palette
     auto options = options_of(kind);
-    options.threads = 1;
     const auto square = [](long k) {
         Picture picture = clear_scene(small, 0);
         for (int y = 51; y < 84; ++y)

@@ -134,6 +134,24 @@ TEST(PngSink, ThrowsTheFirstErrorFromTakeAndFromFinish) {
     expect_error(ExitCode::io_failed, {"0.png"}, [&] { late->finish(); });
 }
 
+TEST(PngSink, StopsWhenAsked) {
+    const Size size{64, 36};
+    std::atomic<bool> stop = false;
+    const auto sink = make_png_sink(
+        fresh_folder(), [](long k) { return fmt::format("{}.png", k); }, 2, {}, stop);
+    sink->take(noise(size, 1), whole(size));
+    stop = true;
+    sink->take(noise(size, 2), whole(size));
+    expect_error(ExitCode::interrupted, {"interrupted"}, [&] { sink->finish(); });
+}
+
+TEST(PngSink, HasThreadsForWhatFitsIntoMemory) {
+    EXPECT_EQ(png_threads(7, {64, 36}), 7);
+    EXPECT_GE(png_threads(0, {64, 36}), 1);
+    EXPECT_LE(png_threads(1024, {3840, 2160}), 12);  // 2 GiB of them
+    EXPECT_EQ(png_threads(64, {16384, 16384}), 1);
+}
+
 TEST(PngSink, DestroyedUnfinishedStopsAtOnce) {
     const Size size{1920, 1080};
     const Picture picture = noise(size, 8);

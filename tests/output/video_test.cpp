@@ -65,7 +65,7 @@ TEST(Mp4, OnlyWhatChangedNeedsToBeTaken) {
         return picture;
     };
     const auto film_squares = [&](const fs::path& path, auto changed_in) {
-        const auto sink = make_video_sink(path, {.size = small, .threads = 1});
+        const auto sink = make_video_sink(path, {.size = small});
         for (long k = 0; k < 40; ++k) sink->take(square(k), changed_in(k));
         sink->finish();
         return bytes_of(path);
@@ -94,7 +94,7 @@ TEST(Mp4, WhatCannotBeEncodedIsRefused) {
 
 TEST(Mp4, WhereverTheDiskIsFullItIsAnError) {
     const auto path = fresh_folder() / "x.mp4.part";
-    const VideoOptions options{.size = small, .threads = 1};
+    const VideoOptions options{.size = small};
     const auto size = static_cast<long>(fs::file_size(film(path, options, 60)));
     // in the header, the packets, the index, and while the packets move to make room for it at the front
     for (const long room : {0L, 10L, size / 2, size - 5000, size - 1500, size - 500, size - 1}) {

@@ -1,0 +1,68 @@
+// Where the system gives the program only some threads, or none.
+#include "cli/sandbox.hpp"
+
+#include <fmt/format.h>
+
+namespace doppel {
+namespace {
+
+using namespace test;
+
+/// The program's answer where it may start `count` threads and no more.
+int code_with_threads(int count, const std::filesystem::path& folder, const std::vector<std::string>& line) {
+    const auto prepare = [&] {
+        setenv("LD_PRELOAD", DOPPEL_FEW_THREADS, 1);
+        setenv("DOPPEL_TEST_THREADS", std::to_string(count).c_str(), 1);
+        setenv("ASAN_OPTIONS", "verify_asan_link_order=0", 1);
+    };
+    return wait_at_most(start(folder, line, prepare),
+                        60);  // s; measured 0.3, and for ever where a thread is waited for
+}
+
+TEST(FewThreads, AreEnoughOrItSaysSoAndLeavesNothing) {
+    const auto film = [](const std::vector<std::string>& more) {
+        return with({"render", "butterfly", "--size", "128x72", "--frames", "0:5", "--progress", "none"}, more);
+    };
+    const std::vector<std::vector<std::string>> lines{
+        film({}),
+        film({"--format", "png", "--jobs", "3"}),
+        film({"--format", "gif"}),
+        film({"--format", "apng"}),
+        film({"--format", "webm"}),
+        film({"--format", "webm", "--set", "video.codec=\"av1\""}),
+        film({"--format", "webm", "--set", "video.codec=\"av1\"", "--set", "video.pixel_format=\"yuv444p\""}),
+        {"simulate", "butterfly", "--set", "scene.duration_s=0.1", "--progress", "none"},
+        {"figure", "fig2-right", "--set", "sweep.step=30", "--jobs", "4", "--progress", "none"},
+    };
+    for (const auto& line : lines)
+        for (const int count : {0, 1, 4, 12, 1000}) {
+            const auto what = fmt::format("{} threads: {}", count, fmt::join(line, " "));
+            const auto folder = fresh_folder();
+            const int code = code_with_threads(count, folder, line);
+            const auto message = bytes_of(folder / "stderr");
+            if (code == 0) {
+                EXPECT_GT(count, 0) << what;
+                EXPECT_EQ(message, "") << what;
+                continue;
+            }
+            EXPECT_EQ(code, 4) << what << "\n" << message;
+            EXPECT_TRUE(one_line(message)) << what << "\n" << message;
+            EXPECT_NE(message.find("no further thread"), std::string::npos) << what << "\n" << message;
+            EXPECT_TRUE(left_nothing(folder)) << what;
+            EXPECT_LT(count, 1000) << what;
+        }
+}
+
+TEST(FewThreads, AreEnoughForPictures) {
+    // one to simulate, and one of the three that would compress
+    const auto folder = fresh_folder();
+    const std::vector<std::string> line{"render", "butterfly", "--size",   "128x72", "--frames",   "0:20",
+                                        "--jobs", "3",         "--format", "png",    "--progress", "none"};
+    int needed = 2;
+    while (needed < 8 && code_with_threads(needed, folder, line) != 0) ++needed;
+    EXPECT_LT(needed, 8);  // measured 4: two are OpenGL's
+    EXPECT_EQ(listing(folder / "out/butterfly/frames").size(), 20u);
+}
+
+}  // namespace
+}  // namespace doppel
