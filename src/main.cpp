@@ -52,9 +52,16 @@ void fill_standard_streams() {
             throw doppel::io_failed("/dev/null cannot be opened in place of a closed standard stream");
 }
 
-/// One line, whatever the message quotes; throws nothing where nobody reads it.
+/// One line that can be read, whatever the message quotes; throws nothing where nobody does.
 int failed(doppel::ExitCode code, std::string_view message) {
-    std::fprintf(stderr, "doppel: %s\n", doppel::on_one_line(message).c_str());
+    auto line = doppel::on_one_line(message);
+    constexpr std::size_t most = 4000;  // bytes
+    if (line.size() > most) {
+        auto end = most;
+        while ((static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // not within a character
+        line.replace(end, std::string::npos, "…");
+    }
+    std::fprintf(stderr, "doppel: %s\n", line.c_str());
     return static_cast<int>(code);
 }
 

@@ -1,5 +1,6 @@
 // What goes to and comes from the terminal, pipes and closed descriptors. With the real program.
 #include "cli/sandbox.hpp"
+#include "numeric/text.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
@@ -144,6 +145,22 @@ TEST(Streams, APresetsWordsAreShownAndNotObeyed) {
     const auto terminal = shell(folder, "script -qec '\"$DOPPEL\" show raw.toml' /dev/null | tr -d '\\r'");
     if (terminal.code == 0) {
         EXPECT_EQ(terminal.out, "#  [31mred\n");
+    }
+}
+
+TEST(Streams, AMessageIsNoLongerThanCanBeRead) {
+    const auto folder = fresh_folder();
+    std::string word;
+    for (int i = 0; i < 200'000; ++i) word += "é";
+    for (const std::string_view before : {"", "a"}) {
+        write_bytes(folder / "long.toml", "\"" + std::string(before) + word + "\" = 1\n");
+        const auto result = doppel(folder, {"check", "long.toml"});
+        EXPECT_EQ(result.code, 2);
+        EXPECT_TRUE(one_line(result.err));
+        EXPECT_GT(result.err.size(), 3900u);
+        EXPECT_LT(result.err.size(), 4100u);
+        EXPECT_TRUE(is_utf8(result.err));
+        EXPECT_TRUE(result.err.ends_with("é…\n"));
     }
 }
 
