@@ -8,15 +8,22 @@
 
 namespace doppel {
 
-/// The largest difference between an angle of one and of the other, rad, up to whole turns: 0 … π. NaN where a number
-/// is none. Either may be in quad; the difference is then taken in quad.
+/// How far one angle is from another, rad, up to whole turns: 0 … π. NaN where one is none. Either may be in quad; the
+/// turns are then taken off in quad, or nothing below their rounding in double, 2e-16 a turn, could be seen.
+template <class One, class Other>
+double angle_between(const One& one, const Other& other) {
+    using Wide = std::conditional_t<std::is_same_v<One, double>, Other, One>;
+    using std::remainder;
+    const Wide turn = 2 * pi_of<Wide>();
+    return std::abs(static_cast<double>(Wide(remainder(Wide(Wide(one) - Wide(other)), turn))));
+}
+
+/// The largest angle_between() of the bobs of one and of the other; NaN where a number is none.
 template <class One, class Other>
 double angle_error(const Bobs<One>& one, const Bobs<Other>& other) {
-    using Wide = std::conditional_t<std::is_same_v<One, double>, Other, One>;
     double worst = 0;
     for (std::size_t i = 0; i < one.size(); ++i) {
-        const auto apart = static_cast<double>(Wide(Wide(one[i].theta) - Wide(other[i].theta)));
-        const double error = std::abs(std::remainder(apart, 2 * pi));
+        const double error = angle_between(one[i].theta, other[i].theta);
         if (!std::isfinite(error)) return error;
         worst = std::max(worst, error);
     }

@@ -35,6 +35,49 @@ Bobs<Quad> end_by(MotionSpec spec, const char* method, const char* tolerance, co
     return motion->observe().exact;
 }
 
+TEST(AngleError, SeesInQuadBelowTheRoundingOfWholeTurns) {
+    // a planted error, and as many turns between the two as one formulation counts and the other does not
+    for (const int turns : {0, 1, -1, 7, 11, 13, 15, 1000})
+        for (const double planted : {0.0, 3e-30, -1e-17, 2e-9}) {
+            const Quad one = parse_quad("1.234567890123456789012345678901234"), turn = 2 * pi_of<Quad>();
+            const Bobs<Quad> a{{.mass = 1, .x = 0, .y = 0, .vx = 0, .vy = 0, .theta = one}};
+            auto b = a;
+            b[0].theta = one + turns * turn + Quad(planted);
+            EXPECT_NEAR(angle_error(a, b), std::abs(planted), 1e-30 * (1 + std::abs(turns)))  // measured 0.1 of it
+                << turns << ' ' << planted;
+            // and where one of them is in double
+            Bobs<double> rounded{{.mass = 1, .x = 0, .y = 0, .vx = 0, .vy = 0, .theta = 0}};
+            rounded[0].theta = static_cast<double>(b[0].theta);
+            const double rounding = std::abs(static_cast<double>(Quad(b[0].theta - Quad(rounded[0].theta))));
+            EXPECT_NEAR(angle_error(rounded, b), rounding, 1e-30 * (1 + std::abs(turns))) << turns << ' ' << planted;
+        }
+}
+
+TEST(AngleError, IsThatOfTheWorstAngle) {
+    const auto bobs = [](double first, double second) {
+        Bobs<double> all(2, {1, 0, 0, 0, 0});
+        all[0].theta = first;
+        all[1].theta = second;
+        return all;
+    };
+    EXPECT_NEAR(angle_error(bobs(0.1, 1), bobs(0.1, 1.3)), 0.3, 1e-15);
+    EXPECT_NEAR(angle_error(bobs(0.1, 1), bobs(0.5, 1.3)), 0.4, 1e-15);
+    EXPECT_NEAR(angle_error(bobs(0, 0), bobs(0, 3 * pi)), pi, 1e-14);
+    EXPECT_TRUE(std::isnan(angle_error(bobs(0, 0), bobs(0, NAN))));
+}
+
+TEST(Reference, CertifiesEveryAngleAndAfterWholeTurns) {
+    // P3 ends with θ2 = 2.89 π; one link that turns eleven times
+    auto turning = chain({0});
+    turning.chain->rate[0] = 4000 * pi_of<Quad>() / 180;
+    for (const auto& [spec, seconds] : {std::pair{chain({150, 90}), 5L}, {turning, 1L}}) {
+        const auto reference = reference_end(spec, {seconds, 1}, 1e-26, never);
+        EXPECT_GT(reference.disagreement, 0);      // blind, it was 0
+        EXPECT_LT(reference.disagreement, 1e-28);  // measured 3e-31, 6e-30
+        EXPECT_GT(static_cast<double>(abs(reference.end.back().theta)), pi);
+    }
+}
+
 TEST(Reference, OfTwoEquationsThatAgree) {
     const auto spec = chain({150, 90});
     const auto reference = reference_end(spec, {5, 1}, 1e-26, never);
