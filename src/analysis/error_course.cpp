@@ -1,83 +1,46 @@
 #include "analysis/error_course.hpp"
 
-#include "analysis/angle_error.hpp"
 #include "numeric/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace doppel {
-namespace {
 
-double error_between(const Observation& one, const Observation& other, bool angles, double reach) {
-    const auto between = [&](const auto& x, const auto& y) {
-        return angles ? angle_error(x, y) : place_error(x, y) / reach;
-    };
-    return one.exact.empty() ? between(one.bobs, other.bobs) : between(one.exact, other.exact);
+double ErrorCourse::at(std::size_t sample) const {
+    return sample < error.size() ? error[sample] : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace
-
-double ErrorCourse::error(std::size_t sample) const {
-    return sample < truncation.size() ? std::max(truncation[sample], rounding[sample])
-                                      : std::numeric_limits<double>::infinity();
+long ErrorCourse::last_within(double allowed) const {
+    return std::upper_bound(error.begin(), error.end(), allowed) - error.begin() - 1;
 }
 
-MotionSpec some_roundings_away(MotionSpec spec) {
-    // a number errs by half an ulp at most; 12 ulps leave room for what the steps add
-    Quad change = 12 * (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
-                                                            : Quad(std::numeric_limits<double>::epsilon()));
-    const auto move = [&](Quad& number) {
-        number *= 1 + change;
-        change = -change;
-    };
-    if (spec.chain) {
-        for (auto* numbers : {&spec.chain->angle, &spec.chain->rate, &spec.chain->length, &spec.chain->mass})
-            for (auto& number : *numbers) move(number);
-        move(spec.chain->gravity);
-    }
-    if (spec.parts) {
-        // places and velocities stay: constraints hold them
-        for (auto& particle : spec.parts->particles) move(particle.mass);
-        for (auto& force : spec.parts->forces) {
-            if (auto* gravity = std::get_if<Gravity<Quad>>(&force)) move(gravity->g);
-            if (auto* spring = std::get_if<Spring<Quad>>(&force)) move(spring->stiffness);
-        }
-    }
-    return spec;
-}
-
-ErrorCourse error_course(const MotionSpec& spec, const MotionSpec& finer, long samples, double reach, double enough,
+ErrorCourse error_course(const MotionSpec& spec, const ReferenceCourse& reference, double enough,
                          const std::atomic<bool>& stop) {
-    const bool angles = spec.chain.has_value();
-    const auto watched = [](MotionSpec of) {
-        of.follows_turns = false;
-        return make_motion(of);
-    };
-    const auto run = watched(spec), fine = watched(finer), moved = watched(some_roundings_away(spec));
+    auto watched = spec;
+    watched.follows_turns = watched.wants_tension = false;
+    const auto run = make_motion(watched);
     ErrorCourse course;
-    double truncation = 0, rounding = 0;
-    for (long sample = 0; sample <= samples; ++sample) {
+    double worst = 0;
+    for (std::size_t sample = 0; sample < reference.seen.size(); ++sample) {
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
         try {
-            if (sample > 0)
-                for (const auto& motion : {&run, &fine, &moved}) (*motion)->advance(stop);
+            if (sample > 0) run->advance(stop);
         } catch (const Error& fault) {
             if (fault.code() != ExitCode::method_failed) throw;
-            course.failure = fault.what();
-            break;
+            if (worst <= enough) course.failure = fault.what();
+            return course;
         }
-        const auto seen = run->observe();
-        const double apart = error_between(seen, fine->observe(), angles, reach),
-                     shaken = error_between(seen, moved->observe(), angles, reach);
-        if (!std::isfinite(apart) || !std::isfinite(shaken)) break;
-        truncation = std::max(truncation, apart);
-        rounding = std::max(rounding, shaken);
-        course.truncation.push_back(truncation);
-        course.rounding.push_back(rounding);
         course.effort = run->effort();
-        if (std::max(truncation, rounding) > enough) break;
+        course.effort_samples = static_cast<long>(sample);
+        if (worst > enough) continue;
+        const double off = reference.off(sample, run->observe()) + reference.doubt[sample];
+        if (!std::isfinite(off)) return course;
+        worst = std::max(worst, off);
+        course.error.push_back(worst);
     }
+    if (worst <= enough) course.failure = reference.failure;
     return course;
 }
 

@@ -1,32 +1,24 @@
 #pragma once
 
-#include "integrate/motion.hpp"
-
-#include <string>
-#include <vector>
+#include "analysis/reference_course.hpp"
 
 namespace doppel {
 
-/// How far a run can be trusted, by its own evidence. Errors are in rad, the largest of all angles and of all samples
-/// so far; of what hangs in no chain, those of places in units of `reach`.
+/// How far a run is off, in rad, the largest of all angles and of all samples so far; of what hangs in no chain, of
+/// places in units of its size. What the reference itself may be off by counts as well.
 struct ErrorCourse {
-    std::vector<double> truncation;  // at samples 0, 1 …: against a run that steps more finely
-    std::vector<double> rounding;    // against one from a start some roundings away
-    Effort effort;                   // of the run itself
-    std::string failure;             // why one of them could not go on
+    std::vector<double> error;  // at samples 0, 1 …, up to the first that is too great
+    Effort effort;              // of the run, as far as the reference goes:
+    long effort_samples = 0;    // up to that one
+    std::string failure;        // why it, or the reference, could not go on
 
-    /// At a sample, or later where nothing was seen that far.
-    double error(std::size_t sample) const;
+    double at(std::size_t sample) const;     // infinity where nothing was seen that far
+    long last_within(double allowed) const;  // the last sample before an error is greater; −1 = none
 };
 
-/// The run of `spec` beside one of `finer`, and one of itself from a start some roundings away, sample by sample, until
-/// one is off by more than `enough`, breaks down, or `samples` are done.
-/// Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
-ErrorCourse error_course(const MotionSpec& spec, const MotionSpec& finer, long samples, double reach, double enough,
+/// The run of `spec` beside the reference, sample by sample; errors until it is off by more than `enough`, breaks down,
+/// or the reference ends. Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
+ErrorCourse error_course(const MotionSpec& spec, const ReferenceCourse& reference, double enough,
                          const std::atomic<bool>& stop);
-
-/// The same system with its numbers some roundings away, those of its precision: what they do to the motion is what
-/// rounding may have done.
-MotionSpec some_roundings_away(MotionSpec spec);
 
 }  // namespace doppel

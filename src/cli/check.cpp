@@ -121,10 +121,11 @@ void print_side(const char* name, const Side& side) {
 void print_outlook(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
     const auto seen = outlook(scene, side, stop);
     const auto unit = side.has_angles ? "rad" : "of its size";
+    const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto say = [](const std::string& words) { print_line("         {}", words); };
     if (side.choice && side.choice->horizon < scene.samples)
-        say(fmt::format("errs by less than {} {} up to {:.3g} s; beyond, rounding forbids it",
-                        scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon)));
+        say(fmt::format("errs by less than {} {} up to {:.3g} s; no setting holds much longer in {}",
+                        scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon), precision));
     else if (side.choice)
         say(fmt::format("errs by {} {} at most, to the end; verified by {}", scientific(side.choice->estimated_error),
                         unit, side.choice->verified_by));
@@ -132,30 +133,45 @@ void print_outlook(const Scene& scene, const Side& side, const std::atomic<bool>
         say(fmt::format("off by half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", seen.error_s));
     else
         say(fmt::format("errs by about {} {} at the end", scientific(seen.error), unit));
-    if (seen.exponent && is_regular(*seen.exponent))
-        say(fmt::format("regular: no Lyapunov exponent to be seen ({:.2g} ± {:.1g} 1/s)", seen.exponent->value,
-                        seen.exponent->uncertainty));
-    else if (seen.exponent)
-        say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
-                        std::log(10) / seen.exponent->value, seen.exponent->value, seen.exponent->uncertainty));
-    if (seen.horizon_s)
-        say(fmt::format("beyond {:.2g} s no run in {} can be right", *seen.horizon_s,
-                        side.motion.precision == Precision::in_quad ? "quad" : "double"));
+    if (seen.exponent) {
+        const auto& [value, uncertainty] = *seen.exponent;
+        const double tenfold = std::log(10) / value;
+        switch (seen.kind) {
+            case Outlook::Kind::regular:
+                say(fmt::format("regular: no Lyapunov exponent to be seen ({:.2g} ± {:.1g} 1/s)", value, uncertainty));
+                break;
+            case Outlook::Kind::chaotic:
+                say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
+                                tenfold, value, uncertainty));
+                break;
+            case Outlook::Kind::unstable:
+                say(
+                    fmt::format("released at an unstable equilibrium: near it errors grow tenfold every {:.2g} s "
+                                "(exponent {:.2g} 1/s); this alone is no chaos",
+                                tenfold, value));
+        }
+    }
+    if (seen.limit) {
+        const auto from = fmt::format("{:.2g}", seen.limit->from), to = fmt::format("{:.2g}", seen.limit->to);
+        say(fmt::format("{} can follow it for about {}{} s", precision, from, from == to ? "" : " to " + to));
+    }
 }
 
 /// What half or ten times the accuracy would take, against what is asked.
 void print_rivals(const Scene& scene, const SideSpec& spec, const Side& side, const std::atomic<bool>& stop) {
-    for (const auto& [factor, title] : {std::pair(Quad(2), "half"), {Quad(1) / 10, "ten times"}}) {
-        auto other = spec;
-        *other.accuracy *= factor;
-        if (*other.accuracy > 1) continue;
+    const Chooser chooser(spec, scene.preset.duration_s, scene.preset.sample_hz, stop);
+    for (const auto& [factor, title] : {std::pair(2.0, "half"), {0.1, "ten times"}}) {
+        const double accuracy = factor * side.choice->accuracy;
+        if (accuracy > 1) continue;
         std::string words = "is out of reach";
         try {
-            const auto way = choose_side(other, scene.preset.duration_s, scene.preset.sample_hz, stop);
-            words = fmt::format("takes {:.2f} times the work ({}, {})",
-                                way.choice->evaluations / side.choice->evaluations, way.method.name, pace_words(way));
-            if (way.choice->horizon < scene.samples)
-                words += fmt::format(", up to {:.3g} s", scene.time(way.choice->horizon));
+            const auto way = chooser.choose(accuracy);
+            // where rounding decides how far it holds, it decides the work too
+            words =
+                way.choice->horizon < scene.samples
+                    ? fmt::format("holds up to {:.3g} s", scene.time(way.choice->horizon))
+                    : fmt::format("takes {:.2f} times the work ({}, {})",
+                                  way.choice->evaluations / side.choice->evaluations, way.method.name, pace_words(way));
         } catch (const Error& fault) {
             if (fault.code() != ExitCode::bad_input) throw;
         }

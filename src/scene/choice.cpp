@@ -8,80 +8,81 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 
 namespace doppel {
 namespace {
 
-constexpr double margin = 2;        // by which an estimate stays below what is asked
-constexpr double enough = 0.5;      // rad, of an error: nothing is known beyond
-constexpr int most_trials = 12;     // of settings
-constexpr double no_better = 0.25;  // of what is asked: where a looser setting would not do
+constexpr double margin = 0.8;   // of what is asked: what an error may come to, at the samples
+constexpr double enough = 0.5;   // rad, of an error: nothing is known beyond
+constexpr double nearly = 0.97;  // as far as the finest setting gets, where rounding keeps all from the end
 
 /// A setting, tried.
 struct Trial {
-    Pace setting;
+    int rung;
     ErrorCourse course;
-    long rounding_horizon;  // the last sample to which rounding leaves the accuracy
-    long horizon;           // the last one to which both do
+    long horizon;  // the last sample to which the accuracy holds; −1 = none
 
-    Trial(const Pace& of, ErrorCourse found, double allowed) : setting(of), course(std::move(found)) {
-        const auto last_within = [&](const auto& error) {
-            long last = -1;
-            while (last + 1 < static_cast<long>(course.rounding.size()) && error(last + 1) <= allowed) ++last;
-            return last;
-        };
-        rounding_horizon = last_within([&](long n) { return course.rounding[static_cast<std::size_t>(n)]; });
-        horizon = last_within([&](long n) { return course.error(static_cast<std::size_t>(n)); });
-    }
-    bool meets() const { return horizon == rounding_horizon; }
-    double truncation() const {
-        return rounding_horizon < 0 ? 0 : course.truncation[static_cast<std::size_t>(rounding_horizon)];
+    /// Evaluations of the right-hand side a sample.
+    double work() const {
+        return static_cast<double>(course.effort.evaluations) /
+               static_cast<double>(std::max(course.effort_samples, 1L));
     }
 };
 
-/// Settings of one way, tried until one does.
+/// The loosest setting of one way that does.
 class Search {
 public:
-    Search(const Way& way, double accuracy, long samples, const std::atomic<bool>& stop)
-        : way_(way), allowed_(accuracy / margin), samples_(samples), stop_(stop) {}
+    Search(const Way& way, double accuracy, const ReferenceCourse& reference, const std::atomic<bool>& stop)
+        : way_(way), allowed_(margin * accuracy), reference_(reference), stop_(stop) {}
 
-    Trial best() const {
-        auto trial = tried(way_.start());
-        for (int i = 0; i < most_trials && !trial.meets(); ++i) {
-            const auto next = way_.scaled(trial.setting, tightening(trial));
-            if (!next) break;
-            trial = tried(*next);
+    /// To the last of `samples`, or close to where the finest gets; which is taken if it does not get to `least`.
+    Trial best(long samples, long least) {
+        long goal = samples;
+        if (tried(way_.start()).horizon < goal) {
+            const auto& finest = tried(way_.finest());
+            if (finest.horizon < least) return finest;
+            if (finest.horizon < goal)
+                goal = std::max(least, std::lround(nearly * static_cast<double>(finest.horizon)));
         }
-        if (!trial.meets() || trial.truncation() > no_better * allowed_) return trial;
-        // perhaps too good: one looser, if it does as well
-        const double room = trial.truncation() > 0 ? no_better * 2 * allowed_ / trial.truncation() : 1e3;
-        if (const auto looser = way_.scaled(trial.setting, std::min(room, 1e6))) {
-            auto other = tried(*looser);
-            if (other.meets() && other.horizon >= trial.horizon &&
-                other.course.effort.evaluations < trial.course.effort.evaluations)
-                return other;
+        const auto does = [&](int rung) { return tried(rung).horizon >= goal; };
+        // by growing strides from what the table suggests, then by halves
+        int fine = way_.start(), loose = fine, stride = 1;
+        if (does(fine)) {
+            do {
+                fine = loose;
+                loose = std::max(fine - stride, way_.loosest() - 1);
+                stride *= 2;
+            } while (loose >= way_.loosest() && does(loose));
+        } else {
+            do {
+                loose = fine;
+                fine = std::min(loose + stride, way_.finest());
+                stride *= 2;
+            } while (!does(fine));
         }
-        return trial;
+        while (fine - loose > 1) {
+            const int middle = (fine + loose) / 2;
+            (does(middle) ? fine : loose) = middle;
+        }
+        return tried(fine);
     }
 
 private:
-    Trial tried(const Pace& setting) const {
-        const auto side = way_.side(setting);
-        return {setting,
-                error_course(side.motion, way_.side(way_.finer(setting)).motion, samples_, side.reach, enough, stop_),
-                allowed_};
-    }
-
-    /// What factor the error is to shrink by: where it is not yet small, it tells little.
-    double tightening(const Trial& trial) const {
-        const double error = trial.truncation();
-        return error > 0.05 || !(error > 0) ? 1e-3 : std::clamp(no_better * allowed_ / error, 1e-6, 0.3);
+    const Trial& tried(int rung) {
+        const auto known = trials_.find(rung);
+        if (known != trials_.end()) return known->second;
+        auto course = error_course(way_.side(rung).motion, reference_, enough, stop_);
+        const long horizon = course.last_within(allowed_);
+        return trials_.emplace(rung, Trial{rung, std::move(course), horizon}).first->second;
     }
 
     const Way& way_;
     double allowed_;
-    long samples_;
+    const ReferenceCourse& reference_;
     const std::atomic<bool>& stop_;
+    std::map<int, Trial> trials_;
 };
 
 /// √(l/g) of the mean link, s; of what knows no gravity, a sixtieth of the run.
@@ -107,8 +108,7 @@ Error out_of_reach(double accuracy, const Trial& trial, const SideSpec& spec, do
                    long samples) {
     const bool quad = spec.precision == Precision::in_quad;
     const auto within = [&](double seconds) {
-        const auto n = static_cast<std::size_t>(std::lround(seconds * sample_hz.value()));
-        return trial.course.error(n) * margin;
+        return trial.course.at(static_cast<std::size_t>(std::lround(seconds * sample_hz.value()))) / margin;
     };
     const double to_end = within(static_cast<double>(samples) / sample_hz.value());
     const auto up = [](double value) {
@@ -123,92 +123,104 @@ Error out_of_reach(double accuracy, const Trial& trial, const SideSpec& spec, do
         quad ? "" : "; precision = \"quad\" reaches further");
 }
 
+/// The ways that are the table's cheapest for this accuracy or a finer one: of these nothing finer is left out, so that
+/// less accuracy never takes more work.
+std::vector<MeasuredWay> cheapest_ways(const SideSpec& spec, double accuracy) {
+    std::vector<MeasuredWay> all;
+    const auto is_new = [&](const MeasuredWay& way) {
+        return std::none_of(all.begin(), all.end(), [&](const MeasuredWay& known) {
+            return known.model == way.model && known.method == way.method;
+        });
+    };
+    constexpr int finest = 22;  // the table has an accuracy each half decade
+    for (int half_decades = 0; half_decades <= finest; ++half_decades) {
+        const double of_table = std::pow(10, -0.5 * half_decades);
+        if (of_table > accuracy * 1.0001 && half_decades < finest) continue;
+        const auto ways = allowed_ways(spec, half_decades < finest ? of_table : std::min(accuracy, finest_in_table));
+        if (!ways.empty() && is_new(ways.front())) all.push_back(ways.front());
+    }
+    if (all.empty()) throw bad_input("no method that serves this system was measured to reach accuracy = {}", accuracy);
+    return all;
+}
+
 /// A way, and the trial of it that did best.
 struct Found {
     Way way;
     Trial trial;
 
-    /// Nearly as far as `sample`: no way gets much further than rounding leaves.
-    bool reaches(long sample) const {
-        constexpr double nearly = 0.9;
-        return trial.horizon >= 0 && static_cast<double>(trial.horizon) >= nearly * static_cast<double>(sample);
+    /// Further; or as far, or short of the end nearly so, with less work.
+    bool beats(const Found& other, long end) const {
+        const auto reaches = [&](const Found& one, const Found& two) {
+            const long goal = two.trial.horizon;
+            return static_cast<double>(one.trial.horizon) >= (goal == end ? 1 : nearly) * static_cast<double>(goal);
+        };
+        if (reaches(*this, other) && reaches(other, *this)) return trial.work() < other.trial.work();
+        return trial.horizon > other.trial.horizon;
     }
 };
-
-/// What the search for one side goes by.
-struct Question {
-    const SideSpec& spec;
-    Rational sample_hz;
-    double accuracy, time_unit;  // rad, s
-    long samples;
-    const std::atomic<bool>& stop;
-};
-
-/// The first of the ways that does; or the one that comes furthest.
-Found best_of(const std::vector<MeasuredWay>& ways, const Question& question) {
-    if (ways.empty())
-        throw bad_input("no method that serves this system was measured to reach accuracy = {}", question.accuracy);
-    std::optional<Found> best;
-    constexpr std::size_t most_ways = 3;  // the first does, but for systems very unlike those of the table
-    for (std::size_t i = 0; i < std::min(ways.size(), most_ways); ++i) {
-        const Way way(question.spec, question.sample_hz, ways[i], question.time_unit);
-        auto trial = Search(way, question.accuracy, question.samples, question.stop).best();
-        if (!best || trial.horizon > best->trial.horizon) best.emplace(Found{way, std::move(trial)});
-        if (best->reaches(best->trial.rounding_horizon)) break;
-    }
-    return *std::move(best);
-}
-
-/// The cheapest for the accuracy; where rounding cuts the run short, the cheapest close to it.
-Found searched(const Question& question) {
-    auto found = best_of(allowed_ways(question.spec, question.accuracy), question);
-    if (found.trial.rounding_horizon == question.samples) return found;
-    auto fine = best_of(allowed_ways(question.spec, finest_in_table), question);
-    const auto work = [](const Found& of) { return of.trial.course.effort.evaluations; };
-    return fine.reaches(found.trial.horizon) && work(fine) < work(found) ? std::move(fine) : std::move(found);
-}
 
 std::string why_words(const SideSpec& spec, const Way& chosen, double accuracy) {
-    auto words = fmt::format("the cheapest way to {} rad that was measured", scientific(accuracy));
     const auto ways = allowed_ways(spec, accuracy);
     const auto of_method = [&](bool same) {
         return std::find_if(ways.begin(), ways.end(),
                             [&](const auto& way) { return (way.method == chosen.method().name) == same; });
     };
     const auto taken = of_method(true), rival = of_method(false);
-    if (taken != ways.end() && rival != ways.end() && rival->cost > taken->cost)
+    const bool cheapest = taken == ways.begin();
+    auto words = cheapest ? fmt::format("the cheapest way to {} rad that was measured", scientific(accuracy))
+                          : fmt::format("takes less work here than {}, the cheapest way to {} rad that was measured",
+                                        ways.front().method, scientific(accuracy));
+    if (cheapest && rival != ways.end() && rival->cost > taken->cost)
         words += fmt::format("; {} would take {:.1f} times as long", rival->method, rival->cost / taken->cost);
     return words;
 }
 
 }  // namespace
 
-Side choose_side(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
-                 const std::atomic<bool>& stop) {
-    const auto accuracy = static_cast<double>(*spec.accuracy);
-    const long samples = product(duration, sample_hz)->numerator;
-    const double time_unit = time_unit_of(spec, duration.value()),
-                 swing = std::min(duration.value(), 2 * pi * time_unit);
-    const auto [way, trial] = searched({spec, sample_hz, accuracy, time_unit, samples, stop});
-    const auto& course = trial.course;
-    if (static_cast<double>(trial.horizon) / sample_hz.value() < swing * (1 - 1e-9))
-        throw course.failure.empty()
-            ? out_of_reach(accuracy, trial, spec, swing, sample_hz, samples)
-            : method_failed("the motion breaks down within {:.2g} s: {}",
-                            static_cast<double>(course.truncation.size()) / sample_hz.value(), course.failure);
+Chooser::Chooser(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
+                 const std::atomic<bool>& stop)
+    : spec_(spec),
+      duration_(duration),
+      sample_hz_(sample_hz),
+      stop_(stop),
+      time_unit_(time_unit_of(spec, duration.value())),
+      samples_(product(duration, sample_hz)->numerator) {
+    const Way any(spec, sample_hz, cheapest_ways(spec, finest_in_table).front(), time_unit_);
+    const auto side = any.side(any.finest());
+    reference_ = reference_course(side.motion, samples_, side.reach, enough, stop);
+}
 
-    auto side = way.side(trial.setting);
-    const auto finer = way.side(way.finer(trial.setting));
-    const double seen = static_cast<double>(course.truncation.size() - 1);
+Side Chooser::choose(double accuracy) const {
+    const double swing = std::min(duration_.value(), 2 * pi * time_unit_);
+    const long swing_samples = std::min(samples_, std::lround(std::ceil(swing * sample_hz_.value() * (1 - 1e-9))));
+    std::optional<Found> best;
+    for (const auto& measured : cheapest_ways(spec_, accuracy)) {
+        const Way way(spec_, sample_hz_, measured, time_unit_);
+        Found found{way, Search(way, accuracy, reference_, stop_).best(samples_, swing_samples)};
+        if (!best || found.beats(*best, samples_)) best.emplace(std::move(found));
+    }
+    const auto& [way, trial] = *best;
+    const auto& course = trial.course;
+    if (trial.horizon < swing_samples)
+        throw course.failure.empty()
+            ? out_of_reach(accuracy, trial, spec_, swing, sample_hz_, samples_)
+            : method_failed("the motion breaks down within {:.2g} s: {}",
+                            static_cast<double>(course.error.size()) / sample_hz_.value(), course.failure);
+
+    auto side = way.side(trial.rung);
     side.choice = Choice{
         .accuracy = accuracy,
-        .estimated_error = std::max(course.error(static_cast<std::size_t>(trial.horizon)), least_error(spec.precision)),
+        .estimated_error = std::max(course.at(static_cast<std::size_t>(trial.horizon)), least_error(spec_.precision)),
         .horizon = trial.horizon,
-        .verified_by = pace_words(finer),
-        .evaluations =
-            static_cast<double>(course.effort.evaluations) * (seen > 0 ? static_cast<double>(samples) / seen : 1)};
-    side.why = why_words(spec, way, accuracy);
+        .verified_by = reference_.words(),
+        .evaluations = trial.work() * static_cast<double>(samples_)};
+    side.why = why_words(spec_, way, accuracy);
     return side;
+}
+
+Side choose_side(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
+                 const std::atomic<bool>& stop) {
+    return Chooser(spec, duration, sample_hz, stop).choose(static_cast<double>(*spec.accuracy));
 }
 
 }  // namespace doppel

@@ -10,34 +10,83 @@ namespace {
 
 constexpr double off = 0.5;  // rad: a run that errs by as much tells nothing
 
-/// The motion by the best method there is, in the same precision.
-MotionSpec finest(const Side& side, double tolerance) {
-    auto motion = side.motion;
-    motion.method = "taylor";
-    motion.tolerance = tolerance;
-    return motion;
+/// How far some runs get: the sample at which each is off, and the greatest and least error of those that are not.
+struct Ends {
+    std::vector<long> lost;
+    double least_error = off, greatest_error = 0;
+};
+
+Ends ends_of_fine_runs(const Side& side, const ReferenceCourse& reference, long samples,
+                       const std::atomic<bool>& stop) {
+    Ends ends;
+    const auto add = [&](const std::vector<double>& error) {
+        if (static_cast<long>(error.size()) <= samples || error.back() > off) {
+            ends.lost.push_back(static_cast<long>(error.size()) - 1);
+        } else {
+            ends.least_error = std::min(ends.least_error, error.back());
+            ends.greatest_error = std::max(ends.greatest_error, error.back());
+        }
+    };
+    if (reference.is_wider) {
+        for (const char* tolerance : {"3e-14", "1e-14", "3e-15", "2e-15", "1e-15"})
+            add(error_course(by_taylor_series(side.motion, parse_quad(tolerance)), reference, off, stop).error);
+    } else {
+        add(reference.doubt);
+    }
+    return ends;
+}
+
+/// A chain with no parts but its own.
+bool is_plain_chain(const MotionSpec& motion) {
+    if (!motion.chain || !motion.parts) return motion.chain.has_value();
+    return motion.parts->constraints.size() == motion.chain->links() && motion.parts->forces.size() <= 1;
+}
+
+Outlook::Kind kind_of(const Pendulum<double>& pendulum, const Exponent& exponent) {
+    if (equilibrium_exponent(pendulum)) return exponent.value > 0 ? Outlook::Kind::unstable : Outlook::Kind::regular;
+    // one link keeps its energy, which leaves it no choice, however slowly its exponent vanishes near the upright
+    return pendulum.links() == 1 || is_regular(exponent) ? Outlook::Kind::regular : Outlook::Kind::chaotic;
+}
+
+/// Beyond the end, errors go on growing by the exponent, whose mean over a time t varies like 1/√t.
+std::optional<Outlook::Limit> limit_of(const Ends& ends, const Scene& scene, const Outlook& seen) {
+    std::optional<Outlook::Limit> limit;
+    if (!ends.lost.empty()) {
+        const auto [first, last] = std::minmax_element(ends.lost.begin(), ends.lost.end());
+        limit = {scene.time(*first), scene.time(*last)};
+    }
+    if (ends.greatest_error == 0) return limit;
+    if (!seen.exponent || seen.kind == Outlook::Kind::regular) return std::nullopt;
+    const auto time_to_grow = [&](double error, int sign) {
+        const ExponentSpec spec;
+        const double mean = seen.exponent->value, growth = std::log(off / error), time = growth / mean;
+        const double spread = seen.exponent->uncertainty * std::sqrt((spec.duration_s - spec.transient_s) / time);
+        return growth / std::max(mean + sign * spread, 0.5 * mean);
+    };
+    const double end = scene.time(scene.samples);
+    const double first = end + time_to_grow(ends.greatest_error, 1), last = end + time_to_grow(ends.least_error, -1);
+    return Outlook::Limit{limit ? limit->from : first, last};
 }
 
 }  // namespace
 
 Outlook outlook(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
-    const bool quad = side.motion.precision == Precision::in_quad;
-    const auto reference = finest(side, quad ? 1e-32 : 1e-15);
-    const auto course = error_course(side.motion, reference, scene.samples, side.reach, off, stop);
-    if (course.truncation.empty()) throw method_failed("the method breaks down at once");
-    Outlook seen{.error = course.truncation.back(),
-                 .error_s = scene.time(static_cast<long>(course.truncation.size()) - 1)};
+    const auto reference = reference_course(side.motion, scene.samples, side.reach, off, stop);
+    const auto course = error_course(side.motion, reference, off, stop);
+    if (course.error.empty()) throw method_failed("the method breaks down at once");
+    Outlook seen{.error = course.error.back(),
+                 .error_s = scene.time(static_cast<long>(course.error.size()) - 1),
+                 .exponent = std::nullopt,
+                 .limit = std::nullopt};
 
     constexpr std::size_t most_links = 12;
-    if (side.motion.chain && side.motion.chain->links() <= most_links)
-        seen.exponent = largest_exponent(side.motion.chain->cast<double>(), {}, stop);
-    const auto motion =
-        error_course(finest(side, quad ? 1e-30 : 1e-14), reference, scene.samples, side.reach, off, stop);
-    const double last = motion.rounding.back(), last_s = scene.time(static_cast<long>(motion.rounding.size()) - 1);
-    if (static_cast<long>(motion.rounding.size()) <= scene.samples)
-        seen.horizon_s = last_s;
-    else if (seen.exponent && !is_regular(*seen.exponent) && last > 0)
-        seen.horizon_s = last_s + std::log(off / last) / seen.exponent->value;
+    if (is_plain_chain(side.motion) && side.motion.chain->links() <= most_links) {
+        const auto pendulum = side.motion.chain->cast<double>();
+        seen.exponent = largest_exponent(pendulum, {}, stop);
+        seen.kind = kind_of(pendulum, *seen.exponent);
+    }
+    if (reference.failure.empty())
+        seen.limit = limit_of(ends_of_fine_runs(side, reference, scene.samples, stop), scene, seen);
     return seen;
 }
 

@@ -3,26 +3,35 @@
 #include "scene/choose.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <string>
 
 namespace doppel {
 namespace {
 
-constexpr double loosest = 1e-2;  // of tolerances
+constexpr int first_decade = -2;  // of tolerances
 
-/// The least of 1, 2, 3, 4, 6, 8, 12 … that is `least` or more.
-long round_steps(double least) {
-    for (long n = 1;; n *= 2) {
-        if (static_cast<double>(n) >= least) return n;
-        if (n > 1 && static_cast<double>(n / 2 * 3) >= least) return n / 2 * 3;
-    }
+/// 1e-2, 3e-3, 1e-3 …
+std::string tolerance_at(int rung) {
+    return fmt::format("{}e{}", rung % 2 == 0 ? 1 : 3, first_decade - (rung + 1) / 2);
 }
 
-/// The largest of 1e-k and 3e-k that is `most` or less.
-double round_tolerance(double most) {
-    const int decade = static_cast<int>(std::floor(std::log10(most) + 1e-9));
-    const double one = std::pow(10, decade);
-    return 3 * one <= most * (1 + 1e-9) ? 3 * one : one;
+/// The loosest that is `most` or less.
+int rung_of_tolerance(double most) {
+    int rung = 0;
+    while (static_cast<double>(parse_quad(tolerance_at(rung))) > most * (1 + 1e-9)) ++rung;
+    return rung;
+}
+
+/// 1, 2, 3, 4, 6, 8, 12 …
+long steps_at(int rung) {
+    return rung == 0 ? 1 : rung % 2 == 1 ? 1L << (rung + 1) / 2 : 3L << (rung / 2 - 1);
+}
+
+/// The fewest that are `least` or more.
+int rung_of_steps(double least) {
+    int rung = 0;
+    while (static_cast<double>(steps_at(rung)) < least) ++rung;
+    return rung;
 }
 
 ModelChoice choice_of(Model model) {
@@ -38,40 +47,23 @@ Way::Way(const SideSpec& spec, const Rational& sample_hz, const MeasuredWay& mea
     spec_.accuracy.reset();
     spec_.integrator = measured.method;
     spec_.model = choice_of(measured.model);
-    const bool quad = spec.precision == Precision::in_quad;
-    finest_ = quad ? 1e-30 : 1e-14;
-    finest_check_ = quad ? 1e-33 : 1e-15;
-    if (method_.adaptive)
-        start_.tolerance = round_tolerance(std::clamp(measured.setting, finest_, loosest));
-    else
-        start_.steps = round_steps(1 / (sample_hz.value() * measured.setting * time_unit));
+    if (method_.adaptive) {
+        finest_ = rung_of_tolerance(spec.precision == Precision::in_quad ? 1e-30 : 1e-14);
+        start_ = std::min(rung_of_tolerance(measured.setting), finest_);
+    } else {
+        start_ = rung_of_steps(1 / (sample_hz.value() * measured.setting * time_unit));
+        constexpr int further = 12;  // 64 times as many; then another way is better
+        finest_ = start_ + further;
+    }
 }
 
-Side Way::side(const Pace& setting) const {
+Side Way::side(int rung) const {
     auto spec = spec_;
     if (method_.adaptive)
-        spec.tolerance = parse_quad(fmt::format("{:.0e}", setting.tolerance));
+        spec.tolerance = parse_quad(tolerance_at(rung));
     else
-        spec.step_s = quotient({1, setting.steps}, sample_hz_);
+        spec.step_s = quotient({1, steps_at(rung)}, sample_hz_);
     return make_side(spec, sample_hz_);
-}
-
-Pace Way::finer(const Pace& setting) const {
-    if (method_.adaptive) return {.tolerance = std::max(1e-3 * setting.tolerance, finest_check_)};
-    return {.steps = setting.steps * std::max(2L, 16L >> (method_.order - 1))};
-}
-
-std::optional<Pace> Way::scaled(const Pace& setting, double factor) const {
-    Pace next = setting;
-    if (method_.adaptive) {
-        next.tolerance = round_tolerance(std::clamp(setting.tolerance * factor, finest_, loosest));
-        if (next.tolerance == setting.tolerance) return std::nullopt;
-        return next;
-    }
-    next.steps = round_steps(static_cast<double>(setting.steps) * std::pow(factor, -1.0 / method_.order));
-    constexpr long most_times = 64;  // as many as the table's: then another way is better
-    if (next.steps == setting.steps || next.steps > most_times * start_.steps) return std::nullopt;
-    return next;
 }
 
 std::vector<MeasuredWay> allowed_ways(const SideSpec& spec, double accuracy) {

@@ -1,0 +1,156 @@
+#include "analysis/reference_course.hpp"
+
+#include "analysis/angle_error.hpp"
+#include "numeric/error.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+namespace doppel {
+namespace {
+
+std::vector<Quad> coordinates(const Observation& observed, bool in_angles) {
+    std::vector<Quad> all;
+    const auto take = [&](const auto& bobs) {
+        for (const auto& bob : bobs) {
+            if (in_angles) {
+                all.emplace_back(bob.theta);
+            } else {
+                all.emplace_back(bob.x);
+                all.emplace_back(bob.y);
+            }
+        }
+    };
+    observed.exact.empty() ? take(observed.bobs) : take(observed.exact);
+    return all;
+}
+
+double largest_difference(std::span<const Quad> one, std::span<const Quad> other, bool in_angles, double reach) {
+    double worst = 0;
+    for (std::size_t i = 0; i < one.size(); i += in_angles ? 1 : 2) {
+        const double off = in_angles ? angle_between(one[i], other[i])
+                                     : std::hypot(static_cast<double>(Quad(one[i] - other[i])),
+                                                  static_cast<double>(Quad(one[i + 1] - other[i + 1]))) /
+                                           reach;
+        if (!std::isfinite(off)) return off;
+        worst = std::max(worst, off);
+    }
+    return worst;
+}
+
+/// Several motions, sample by sample. False, with the reason, where one of them cannot go on.
+bool advanced(std::span<const std::unique_ptr<Motion>> motions, std::string& failure, const std::atomic<bool>& stop) {
+    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    try {
+        for (const auto& motion : motions) motion->advance(stop);
+        return true;
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::method_failed) throw;
+        failure = fault.what();
+        return false;
+    }
+}
+
+/// Light masses make nearly as much of the roundings of steps as of those of the start: 0.93 of it was seen.
+constexpr double caution = 3;
+
+/// In the motion's own precision, with its doubt; and what it cost.
+ReferenceCourse own_course(const MotionSpec& spec, long samples, double reach, double enough,
+                           const std::atomic<bool>& stop, Effort& effort) {
+    ReferenceCourse course{.in_angles = spec.chain.has_value(), .reach = reach, .seen = {}, .doubt = {}, .failure = {}};
+    const bool quad = spec.precision == Precision::in_quad;
+    const std::unique_ptr<Motion> motions[]{
+        make_motion(by_taylor_series(spec, parse_quad(quad ? "1e-33" : "1e-15"))),
+        make_motion(by_taylor_series(some_roundings_away(spec), parse_quad(quad ? "3e-33" : "3e-15")))};
+    double doubt = 0;
+    for (long sample = 0; sample <= samples && doubt <= enough; ++sample) {
+        if (sample > 0 && !advanced(motions, course.failure, stop)) break;
+        auto seen = coordinates(motions[0]->observe(), course.in_angles);
+        const double off =
+            largest_difference(seen, coordinates(motions[1]->observe(), course.in_angles), course.in_angles, reach);
+        if (!std::isfinite(off)) break;
+        doubt = std::max(doubt, caution * off);
+        course.seen.push_back(std::move(seen));
+        course.doubt.push_back(doubt);
+    }
+    effort = motions[0]->effort();
+    return course;
+}
+
+/// Of a motion in double, in quad.
+ReferenceCourse wide_course(const MotionSpec& spec, long samples, double reach, double enough,
+                            const std::atomic<bool>& stop) {
+    constexpr double further = 1.25;  // than a run in double is of use; quad at that tolerance gets as much further
+    ReferenceCourse course{
+        .in_angles = spec.chain.has_value(), .reach = reach, .seen = {}, .doubt = {}, .is_wider = true, .failure = {}};
+    auto wide = by_taylor_series(spec, parse_quad("1e-20"));
+    wide.precision = Precision::in_quad;
+    const std::unique_ptr<Motion> motions[]{make_motion(wide),
+                                            make_motion(by_taylor_series(spec, parse_quad("1e-15")))};
+    long last = samples;
+    for (long sample = 0; sample <= last; ++sample) {
+        if (sample > 0 && !advanced(motions, course.failure, stop)) break;
+        course.seen.push_back(coordinates(motions[0]->observe(), course.in_angles));
+        course.doubt.push_back(0);
+        const double off = course.off(static_cast<std::size_t>(sample), motions[1]->observe());
+        if (last == samples && !(off <= enough))
+            last = std::min(samples, std::lround(further * static_cast<double>(sample)));
+    }
+    return course;
+}
+
+}  // namespace
+
+double ReferenceCourse::off(std::size_t sample, const Observation& observed) const {
+    return largest_difference(seen[sample], coordinates(observed, in_angles), in_angles, reach);
+}
+
+std::string ReferenceCourse::words() const {
+    return is_wider ? "Taylor series in quad" : "Taylor series as fine as the precision allows";
+}
+
+MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance) {
+    if (spec.model == Model::constraints) spec.model = Model::angles;
+    spec.method = "taylor";
+    spec.tolerance = tolerance;
+    spec.stabilise = Stabilise::none;
+    spec.follows_turns = spec.wants_tension = false;
+    return spec;
+}
+
+MotionSpec some_roundings_away(MotionSpec spec) {
+    // a number errs by half an ulp at most; 12 ulps leave room for what the steps add
+    Quad change = 12 * (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
+                                                             : Quad(std::numeric_limits<double>::epsilon()));
+    const auto move = [&](Quad& number) {
+        number *= 1 + change;
+        change = -change;
+    };
+    if (spec.chain) {
+        for (auto* numbers : {&spec.chain->angle, &spec.chain->rate, &spec.chain->length, &spec.chain->mass})
+            for (auto& number : *numbers) move(number);
+        move(spec.chain->gravity);
+    }
+    if (spec.parts) {
+        // places and velocities stay: constraints hold them
+        for (auto& particle : spec.parts->particles) move(particle.mass);
+        for (auto& force : spec.parts->forces) {
+            if (auto* gravity = std::get_if<Gravity<Quad>>(&force)) move(gravity->g);
+            if (auto* spring = std::get_if<Spring<Quad>>(&force)) move(spring->stiffness);
+        }
+    }
+    return spec;
+}
+
+ReferenceCourse reference_course(const MotionSpec& spec, long samples, double reach, double enough,
+                                 const std::atomic<bool>& stop, double most_work) {
+    Effort effort;
+    auto own = own_course(spec, samples, reach, enough, stop, effort);
+    const auto bodies = static_cast<double>(spec.parts ? spec.parts->particles.size() : spec.chain->links());
+    const bool affordable = static_cast<double>(effort.evaluations) * bodies <= most_work;
+    if (spec.precision == Precision::in_quad || !affordable) return own;
+    return wide_course(spec, samples, reach, enough, stop);
+}
+
+}  // namespace doppel

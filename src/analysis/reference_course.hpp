@@ -1,0 +1,44 @@
+#pragma once
+
+#include "integrate/motion.hpp"
+
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// The motion as well as it can be known, sample by sample: what the errors of a run are measured by.
+///
+/// Of a motion in double, by Taylor series in quad: wrong by a ten-thousandth of what any run in double is. Where that
+/// would cost too much, and of a motion in quad, by Taylor series as fine as its own precision allows; how far those
+/// may be off is told by others of another tolerance, from a start some roundings away.
+struct ReferenceCourse {
+    bool in_angles = true;                // of a chain; else by places, in units of `reach`
+    double reach = 1;                     // m
+    std::vector<std::vector<Quad>> seen;  // at samples 0, 1 …: the angles, rad, or x and y of all particles, m
+    std::vector<double> doubt;            // how far that may be off: rad, or units of `reach`, the largest so far
+    bool is_wider = false;                // in more digits than the motion's own: then no doubt is left
+    std::string failure;                  // why it could not go on
+
+    /// How far a motion is from it at a sample that was seen: rad, the largest of all angles, up to whole turns; or of
+    /// places, in units of `reach`. NaN where a number is none.
+    double off(std::size_t sample, const Observation& observed) const;
+    std::string words() const;  // "Taylor series in quad"
+};
+
+/// What quad may cost, in evaluations of the right-hand side times links or particles: some two seconds.
+inline constexpr double most_quad_work = 3e5;
+
+/// Up to `samples`, or somewhat beyond where a run in the motion's own precision would be off by more than `enough`.
+/// The system is that of `spec`; its method does not matter. `most_work` of quad; 0 = none.
+/// Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
+ReferenceCourse reference_course(const MotionSpec& spec, long samples, double reach, double enough,
+                                 const std::atomic<bool>& stop, double most_work = most_quad_work);
+
+/// The motion of `spec` by the method of the reference in the motion's own precision.
+MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance);
+
+/// The same system with its numbers some roundings away, those of its precision.
+MotionSpec some_roundings_away(MotionSpec spec);
+
+}  // namespace doppel

@@ -1,0 +1,80 @@
+#include "scene/outlook.hpp"
+
+#include "analysis/error_course.hpp"
+#include "scene/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+namespace doppel {
+namespace {
+
+const std::atomic<bool> never = false;
+
+Scene scene_from(const std::string& system, int duration_s) {
+    return make_scene(
+        read_preset({"test", "test.toml",
+                     fmt::format("[scene]\nduration_s = {}\nsample_hz = 30\n[system]\nintegrator = \"taylor\"\n{}",
+                                 duration_s, system)}));
+}
+
+Outlook outlook_of(const std::string& system, int duration_s = 30) {
+    const auto scene = scene_from(system, duration_s);
+    return outlook(scene, scene.a, never);
+}
+
+TEST(Outlook, TellsForAboutHowLongRunsInDoubleCanBeRight) {
+    for (const char* system : {"angle_deg = [90, 90]", "angle_deg = [150, 90]",
+                               "angle_deg = [120, -60]\nmass_kg = [2, 1]", "links = 3\nangle_deg = [120, 0, 0]"}) {
+        const auto scene = scene_from(system, 40);
+        const auto limit = outlook(scene, scene.a, never).limit;
+        ASSERT_TRUE(limit) << system;
+        EXPECT_LE(limit->from, limit->to);
+        // others, by methods and equations that it did not try
+        const auto reference = reference_course(scene.a.motion, scene.samples, scene.a.reach, 0.5, never);
+        for (const auto& [model, method, tolerance] : {std::tuple{Model::angles, "dop853", "1e-14"},
+                                                       {Model::constraints, "taylor", "1e-15"},
+                                                       {Model::constraints, "taylor", "1e-14"},
+                                                       {Model::angles, "taylor", "5e-15"}}) {
+            auto other = scene.a.motion;
+            other.model = model;
+            other.method = method;
+            other.tolerance = parse_quad(tolerance);
+            const double lost =
+                scene.time(static_cast<long>(error_course(other, reference, 0.5, never).error.size()) - 1);
+            EXPECT_GT(lost, 0.9 * limit->from) << system << ": " << method;  // measured 0.98
+            EXPECT_LT(lost, 1.15 * limit->to) << system << ": " << method;   // measured 1.07
+        }
+    }
+}
+
+TEST(Outlook, SaysSoBeforeTheEndToo) {
+    // what it makes of ten seconds holds what forty show
+    const auto shown = *outlook_of("angle_deg = [90, 90]", 40).limit,
+               told = *outlook_of("angle_deg = [90, 90]", 10).limit;
+    EXPECT_NEAR(told.from / shown.from, 1, 0.2);  // measured 0.02
+    EXPECT_GT(told.to, 0.9 * shown.to);
+    EXPECT_LT(told.to, 1.8 * shown.to);
+    EXPECT_FALSE(outlook_of("angle_deg = [30, 0]").limit);  // regular: no end in sight
+}
+
+TEST(Outlook, TellsAnUnstableEquilibriumFromChaos) {
+    using Kind = Outlook::Kind;
+    const auto upright = outlook_of("links = 1\nangle_deg = [180]", 5);
+    EXPECT_EQ(upright.kind, Kind::unstable);
+    EXPECT_NEAR(upright.exponent->value, std::sqrt(9.8), 1e-12);
+    EXPECT_EQ(outlook_of("angle_deg = [180, 0]", 5).kind, Kind::unstable);
+    EXPECT_EQ(outlook_of("angle_deg = [0, 0]", 5).kind, Kind::regular);
+    EXPECT_EQ(outlook_of("links = 1\nangle_deg = [179.999]", 5).kind, Kind::regular);
+    EXPECT_EQ(outlook_of("angle_deg = [30, 0]", 5).kind, Kind::regular);
+    EXPECT_EQ(outlook_of("angle_deg = [90, 90]", 5).kind, Kind::chaotic);
+    // a spring makes another system of it, of which the chain's exponent tells nothing
+    EXPECT_FALSE(
+        outlook_of("angle_deg = [90, 90]\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [2, 0]", 5)
+            .exponent);
+}
+
+}  // namespace
+}  // namespace doppel
