@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -68,37 +69,48 @@ void check(const ExponentSpec& spec) {
     if (spec.blocks < 2) throw bad_input("an exponent takes at least 2 blocks; there are {}", spec.blocks);
 }
 
-/// Mean and uncertainty of the local exponents of blocks. Its parts:
-///     standard error      of the mean over the blocks
+/// Of the mean, from `count` blocks of as many parts each, 1/s.
+double standard_error(const std::vector<double>& local, std::size_t count) {
+    const auto parts = local.size() / count;
+    std::vector<double> blocks(count);
+    double mean = 0, square = 0;
+    for (std::size_t i = 0; i < count * parts; ++i) blocks[i / parts] += local[i] / static_cast<double>(parts);
+    for (const double block : blocks) mean += block / static_cast<double>(count);
+    for (const double block : blocks) square += (block - mean) * (block - mean);
+    return std::sqrt(square / static_cast<double>(count * (count - 1)));
+}
+
+/// Mean and uncertainty of the local exponents of equal parts. Its own parts:
+///     standard error      of the mean, the greatest of those from blocks of growing length (Flyvbjerg & Petersen 1989,
+///                         J. Chem. Phys. 91:461): near sticky orbits, blocks that are short are not independent
 ///     finite time         what a tangent that grows like t, as that of a regular motion does, would show by now
 Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
-    const auto n = static_cast<double>(local.size());
-    double mean = 0, square = 0;
-    for (const double value : local) mean += value / n;
-    for (const double value : local) square += (value - mean) * (value - mean);
-    const double standard_error = std::sqrt(square / (n * (n - 1)));
+    double mean = 0, error = 0;
+    for (const double value : local) mean += value / static_cast<double>(local.size());
+    const auto blocks = static_cast<std::size_t>(spec.blocks);
+    for (std::size_t count = 4 * blocks; count >= std::max<std::size_t>(2, blocks / 4); count /= 2)
+        if (count <= local.size()) error = std::max(error, standard_error(local, count));
     const double finite_time = std::log(spec.duration_s / spec.transient_s) / (spec.duration_s - spec.transient_s);
-    return {mean, std::hypot(standard_error, finite_time)};
+    return {mean, std::hypot(error, finite_time)};
 }
 
 template <class Model>
 Exponent measured(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     const NaturalUnits units(p);
     Growth<Model> growth(p, spec, units);
-    const auto exponent_over = [&](double seconds) {
-        const long parts = parts_of(seconds, units);
-        double sum = 0;
+    const auto exponents_of_parts = [&](double seconds, long parts) {
+        std::vector<double> local;
         for (long i = 0; i < parts; ++i) {
             if (stop) throw Error(ExitCode::interrupted, "interrupted");
-            sum += growth.advance(seconds / static_cast<double>(parts));
+            local.push_back(growth.advance(seconds) / seconds);
         }
-        return sum / seconds;
+        return local;
     };
-    exponent_over(spec.transient_s);
-    std::vector<double> local;
-    for (int i = 0; i < spec.blocks; ++i)
-        local.push_back(exponent_over((spec.duration_s - spec.transient_s) / spec.blocks));
-    return summary(local, spec);
+    const long parts = parts_of(spec.transient_s, units);
+    exponents_of_parts(spec.transient_s / static_cast<double>(parts), parts);
+    const double block_s = (spec.duration_s - spec.transient_s) / spec.blocks;
+    const long of_block = parts_of(block_s, units);
+    return summary(exponents_of_parts(block_s / static_cast<double>(of_block), spec.blocks * of_block), spec);
 }
 
 }  // namespace

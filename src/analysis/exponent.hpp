@@ -11,13 +11,17 @@ struct ExponentSpec {
     double duration_s = 500;  // of the motion, the transient included
     double transient_s = 50;  // left out at the start, while the tangent finds its direction; > 0
     double tolerance = 1e-7;  // of dop853, state and tangent alike; energy keeps to 3e-7 of its range over 500 s
-    int blocks = 20;          // that what follows the transient is cut into, for the standard error
+    int blocks = 20;          // that what follows the transient is cut into, for the standard error; from four times as
+                              // many to a quarter
 };
 
 /// The largest Lyapunov exponent, λ = lim ln|δ(t)|/t.
 struct Exponent {
-    double value;        // 1/s
-    double uncertainty;  // 1/s: standard error and finite time, as one standard deviation
+    double value;  // 1/s
+    /// 1/s: standard error and finite time, as one standard deviation. Of 60 motions of one sea, 500 s each, 58 to 82 %
+    /// are within one of their mean and 85 to 100 % within two (ten seas). Where sticky orbits hold a motion for
+    /// minutes, as from 70° and 75°, it is 1.3 to 1.4 times too small.
+    double uncertainty;
 };
 
 /// Whether the exponent cannot be told from 0, as for regular motion: below twice its uncertainty.

@@ -110,6 +110,40 @@ TEST(Exponent, UncertaintyIsTheScatterOfLikeMotions) {
     EXPECT_NEAR(scatter / uncertainty, 1, 0.7);  // measured 0.09
 }
 
+TEST(Exponent, UncertaintyHoldsNearStickyOrbitsToo) {
+    // motions of one sea each; in the last two, orbits that are regular for minutes on end
+    struct Sea {
+        std::vector<double> degrees, mass;
+        double worst;  // times that the scatter may exceed the uncertainty
+    };
+    for (const auto& [degrees, mass, worst] : {Sea{{90, 90}, {1, 1}, 1.3},
+                                               {{120, -60}, {2, 1}, 1.3},
+                                               {{95, 0}, {1, 1}, 1.3},
+                                               {{120, 0, 0}, {1, 1, 1}, 1.3},
+                                               {{75, 0}, {1, 1}, 1.8}}) {
+        constexpr int runs = 32;
+        std::vector<Exponent> all;
+        double mean = 0, uncertainty = 0, scatter = 0;
+        for (int k = 0; k < runs; ++k) {
+            auto p = from_rest(degrees);
+            p.mass = mass;
+            p.angle[0] += 2e-4 * k;
+            all.push_back(largest_exponent(p, {}, never));
+            mean += all.back().value / runs;
+            uncertainty += all.back().uncertainty * all.back().uncertainty / runs;
+        }
+        int within_two = 0;
+        for (const auto& e : all) {
+            scatter += (e.value - mean) * (e.value - mean) / (runs - 1);
+            within_two += std::abs(e.value - mean) < 2 * e.uncertainty;
+        }
+        const double ratio = std::sqrt(scatter / uncertainty);
+        EXPECT_LT(ratio, worst) << degrees[0] << '/' << degrees[1];  // measured 0.72, 1.00, 0.83, 0.65, 1.44
+        EXPECT_GT(ratio, 0.5) << degrees[0] << '/' << degrees[1];
+        EXPECT_GE(within_two, runs * 8 / 10) << degrees[0] << '/' << degrees[1];  // measured 27 and more
+    }
+}
+
 TEST(Exponent, ScalesWithTheUnits) {
     // four times the lengths: the same motion at half the speed; masses cancel
     auto p = from_rest({130, 20});
