@@ -67,6 +67,10 @@ void check(const Pendulum<double>& p, std::span<const Release> releases, const F
 
 }  // namespace
 
+double flip_tolerance(double duration) {
+    return std::pow(10, -std::clamp(8 + std::ceil((duration - 20) / 2), 8.0, 14.0));
+}
+
 bool flip_is_forbidden(const Pendulum<double>& pendulum) {
     return energy_of(pendulum) < least_energy_to_flip(pendulum);
 }

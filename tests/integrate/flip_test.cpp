@@ -169,6 +169,30 @@ TEST(Flips, ComeWhenTheReferenceSays) {
     EXPECT_LT(odd.early, 1e-7);  // measured 1.2e-8
 }
 
+TEST(Flips, ComeWhenTheReferenceSaysInLongerRunsToo) {
+    EXPECT_EQ(flip_tolerance(20), 1e-8);
+    EXPECT_EQ(flip_tolerance(5), 1e-8);
+    EXPECT_EQ(flip_tolerance(25), 1e-11);
+    EXPECT_EQ(flip_tolerance(1000), 1e-14);
+    // all that flip after 20 s, of releases drawn by lot
+    const double duration = 30;
+    const auto releases = some_releases(3000);
+    const auto times = flips(releases, {}, {duration, flip_tolerance(duration)}),
+               coarse = flips(releases, {}, {duration});
+    int late = 0, wrong = 0, wrong_before = 0;
+    for (std::size_t i = 0; i < releases.size(); ++i) {
+        if (std::min(times[i], coarse[i]) < 20 || std::min(times[i], coarse[i]) == never) continue;
+        ++late;
+        const double exact = reference_flip(released({}, releases[i]), duration, 1e-14);
+        const auto is_wrong = [&](double time) { return time != exact && !(std::abs(time - exact) < 0.01); };
+        wrong += is_wrong(times[i]);
+        wrong_before += is_wrong(coarse[i]);
+    }
+    EXPECT_GT(late, 30);
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GT(wrong_before, 0);  // measured 9 of 41
+}
+
 /// Between two releases whose flips are far apart in time lies one whose rod comes up to the upright, and no further.
 TEST(Flips, AreFoundWhereTheRodTurnsBackWithinTheStep) {
     constexpr double tolerance = 1e-11;
