@@ -1,8 +1,9 @@
 #include "analysis/section.hpp"
 
-#include "analysis/natural_units.hpp"
 #include "integrate/taylor.hpp"
+#include "numeric/bernstein.hpp"
 #include "numeric/error.hpp"
+#include "numeric/quad.hpp"
 #include "physics/canonical.hpp"
 
 #include <algorithm>
@@ -16,51 +17,66 @@ void check_links(const Pendulum<double>& p) {
     if (p.links() != 2) throw bad_input("a Poincaré section is of 2 links; there are {}", p.links());
 }
 
-/// A double pendulum on its way from crossing to crossing.
+/// A double pendulum on its way from crossing to crossing, step by step.
 class Crossings {
 public:
     using Model = DoublePendulum<double>;
 
     Crossings(const Pendulum<double>& p, double tolerance)
-        : model_(p), canonical_(model_), stepper_(model_, Model::start(p), tolerance), turns_(turns()) {}
+        : model_(p), canonical_(model_), stepper_(model_, Model::start(p), tolerance) {}
 
-    /// Goes on by so many seconds; whether θ1 has passed 0 (mod 2π) upwards meanwhile.
-    bool advance(double seconds) {
-        stepper_.advance(seconds);
-        const double before = turns_;
-        turns_ = turns();
-        return turns_ > before;
-    }
+    double time() const { return static_cast<double>(time_); }  // s, up to which all crossings are found
 
-    /// The crossing within the seconds just gone by; `time` is now. Newton's method, kept within brackets. A series
-    /// holds on both sides of the state that it is about, so the stepper can look back.
-    SectionPoint crossing(double seconds, double time) {
-        constexpr double close = 1e-15;  // rad, and relative
-        double low = -seconds, high = 0, at = 0;
-        for (int i = 0; i < 60; ++i) {
-            const auto& y = stepper_.state();
-            const double beyond = y[0] - 2 * pi * turns_;
-            if (std::abs(beyond) <= close * (1 + std::abs(y[0]))) break;
-            (beyond < 0 ? low : high) = at;
-            double next = at - beyond / y[2];
-            if (!(next > low && next < high)) next = 0.5 * (low + high);
-            stepper_.advance(next - at);
-            at = next;
+    /// Another step; the crossings on it, in order.
+    std::vector<SectionPoint> step() {
+        stepper_.take_step();
+        const double start = stepper_.state()[0], end = stepper_.at(stepper_.step())[0];
+        const auto angle = angle_on_step(start);
+        const auto [least, greatest] = std::minmax_element(angle.b.begin(), angle.b.end());
+        std::vector<SectionPoint> points;
+        for (double turns = std::floor(*least / (2 * pi)); turns <= std::ceil(*greatest / (2 * pi)); ++turns) {
+            auto beyond = angle;
+            for (double& value : beyond.b) value -= 2 * pi * turns;
+            // where one step ends and the next starts, both see the same
+            beyond.b.front() = start - 2 * pi * turns;
+            beyond.b.back() = end - 2 * pi * turns;
+            for (const auto& bracket : beyond.rises()) points.push_back(crossing(bracket, 2 * pi * turns));
         }
-        Model::State z;
-        canonical_.momenta(stepper_.state(), z);
-        stepper_.advance(-at);
-        const double theta2 = std::remainder(z[1], 2 * pi);
-        return {theta2 == -pi ? pi : theta2, z[3], z[2], time + at};
+        std::sort(points.begin(), points.end(), [](auto& one, auto& other) { return one.time_s < other.time_s; });
+        time_ += stepper_.step();
+        return points;
     }
 
 private:
-    double turns() const { return std::floor(stepper_.state()[0] / (2 * pi)); }
+    /// θ1 on the step, from the series of ω1.
+    Bernstein angle_on_step(double start) const {
+        std::vector<double> coefficients{start};
+        for (int k = 0; k <= stepper_.order(); ++k) coefficients.push_back(stepper_.series().rate(k, 0) / (k + 1));
+        return Bernstein::of_powers(coefficients, stepper_.step());
+    }
+
+    /// Where θ1 rises through `level`, rad, within a bracket. Newton's method, kept within it.
+    SectionPoint crossing(const Bernstein::Bracket& bracket, double level) {
+        constexpr double close = 1e-15;  // rad, and relative
+        double low = bracket.low * stepper_.step(), high = bracket.high * stepper_.step(), at = 0.5 * (low + high);
+        for (int i = 0; i < 60; ++i) {
+            const auto& y = stepper_.at(at);
+            const double beyond = y[0] - level;
+            if (std::abs(beyond) <= close * (1 + std::abs(y[0]))) break;
+            (beyond < 0 ? low : high) = at;
+            at -= beyond / y[2];
+            if (!(at > low && at < high)) at = 0.5 * (low + high);
+        }
+        canonical_.momenta(stepper_.at(at), z_);
+        const double theta2 = std::remainder(z_[1], 2 * pi);
+        return {theta2 == -pi ? pi : theta2, z_[3], z_[2], static_cast<double>(time_ + at)};
+    }
 
     Model model_;
     Canonical<Model> canonical_;
     Taylor::Stepper<Model> stepper_;
-    double turns_;
+    Model::State z_ = Model::State::Zero();  // no local: what is written to that, GCC 12 loses at -O3
+    Quad time_ = 0;                          // s, where the step starts: a sum of tens of thousands
 };
 
 /// Point number k of a sequence that fills the unit square evenly, however many are taken.
@@ -80,14 +96,15 @@ std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const Sect
     if (spec.crossings < 1 || !(spec.longest_s > 0))
         throw bad_input("a section takes at least one crossing and a time > 0 s; they are {} and {} s", spec.crossings,
                         spec.longest_s);
-    const double look = NaturalUnits(p).time / 16;
     Crossings motion(p, spec.tolerance);
     std::vector<SectionPoint> points;
-    for (long k = 1; static_cast<double>(k) * look <= spec.longest_s; ++k) {
+    while (motion.time() < spec.longest_s) {
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
-        if (!motion.advance(look)) continue;
-        points.push_back(motion.crossing(look, static_cast<double>(k) * look));
-        if (points.size() == static_cast<std::size_t>(spec.crossings)) break;
+        for (const auto& point : motion.step()) {
+            if (point.time_s > spec.longest_s) break;
+            points.push_back(point);
+            if (points.size() == static_cast<std::size_t>(spec.crossings)) return points;
+        }
     }
     return points;
 }

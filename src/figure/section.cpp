@@ -1,6 +1,7 @@
 #include "analysis/section.hpp"
 
 #include "figure/kinds.hpp"
+#include "picture/theme.hpp"
 #include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
 
@@ -8,6 +9,15 @@
 
 namespace doppel {
 namespace {
+
+/// Whose colour is whose: a theme has fewer than a section may have orbits.
+std::string color_words(std::size_t orbits) {
+    const auto colors = themes.front().palette.size();
+    if (orbits <= colors) return "Every colour is one orbit.";
+    return fmt::format(
+        "An orbit has one colour throughout; of the {} orbits to an energy, {} share each of {} colours.", orbits,
+        orbits % colors == 0 ? fmt::format("{}", orbits / colors) : "several", colors);
+}
 
 /// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy.
 class Section final : public FigureWork {
@@ -78,6 +88,8 @@ public:
             }
             figure.panels.push_back(std::move(plot));
         }
+        figure.captions.push_back(color_words(orbits()) +
+                                  " Closed curves are regular orbits; what fills an area is chaotic.");
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

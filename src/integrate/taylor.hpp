@@ -45,12 +45,29 @@ public:
     void advance(const Scalar& seconds) {
         add(offset_, offset_lost_, seconds);
         while (offset_ > step_) next_step(plain_value(seconds));
-        series_.move(offset_, change_);
-        out_ = base_ + (change_ + lost_);
-        settle(model_, out_);
+        at(offset_);
     }
 
     const State& state() const { return out_; }
+
+    /// In place of advance(), for what looks into every step: on to the end of the last one, where the next is
+    /// expanded. On it, at(t) holds for 0 ≤ t ≤ step(), s from where it starts; at(step()) is at(0) of the one after,
+    /// to the bit.
+    void take_step() {
+        offset_ = step_;
+        offset_lost_ = Scalar(0);
+        next_step(plain_value(step_));
+        at(Scalar(0));
+    }
+    const State& at(const Scalar& t) {
+        series_.move(t, change_);
+        out_ = base_ + (change_ + lost_);
+        settle(model_, out_);
+        return out_;
+    }
+    const Scalar& step() const { return step_; }
+    const auto& series() const { return series_; }  // of the step
+
     int order() const { return order_; }
     long steps() const { return steps_; }
     Scalar smallest_step() const { return smallest_; }

@@ -42,6 +42,8 @@ public:
     void move(double h, State& change) const { kernel_.move(chain_, terms_.data(), order_, h, change.data()); }
     double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
     double longest_step() const { return longest_step_; }
+    /// Coefficient k of the rate of a link, rad/s^(k+1).
+    double rate(int k, int link) const { return terms_[static_cast<std::size_t>(k)].rate[link]; }
 
 private:
     /// The greatest |ω_k|.

@@ -1,5 +1,6 @@
 #include "analysis/section.hpp"
 
+#include "integrate/dop853.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/rk4.hpp"
 #include "integrate/taylor.hpp"
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 namespace doppel {
 namespace {
@@ -81,6 +83,38 @@ TEST(Section, NoCrossingIsMissed) {
     }
     const auto points = poincare_section(release, {.crossings = 30}, never);
     for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(points[i].theta2, theta2[i], 1e-5) << i;  // measured 4e-6
+}
+
+/// The passages of θ1 through 0 upwards after the start and before `to`, s, by its signs 2e-5 s apart, by dop853.
+std::vector<double> passages(const Pendulum<double>& p, double to) {
+    Model model(p);
+    Dop853::Stepper<Model> stepper(model, Model::start(p), 1e-13);
+    std::vector<double> times;
+    constexpr double apart = 2e-5;
+    for (double time = 0, before = stepper.state()[0]; time < to; time += apart) {
+        stepper.advance(apart);
+        const double after = stepper.state()[0];
+        if (std::floor(after / (2 * pi)) > std::floor(before / (2 * pi))) times.push_back(time + apart);
+        before = after;
+    }
+    return times;
+}
+
+TEST(Section, ReturnsThatAllButTouchAreFound) {
+    // unit masses and lengths; θ1 passes 0 upwards for hundredths of a second
+    for (const auto& [energy_J, orbit, time_s] : {std::tuple{5.88, 4u, 74.448}, {14.7, 9u, 171.162}}) {
+        auto release = releases_of_energy({}, energy_J, 24)[orbit];
+        const auto before = poincare_section(release, {.crossings = 500, .longest_s = time_s + 1e-3}, never).back();
+        // chaos parts any two computations of so long a time: on from the last crossing before
+        const auto y = state_at(release, before);
+        release.angle = {y[0], y[1]};
+        release.rate = {y[2], y[3]};
+        const auto points = poincare_section(release, {.crossings = 500, .longest_s = 4}, never);
+        const auto expected = passages(release, 4);
+        ASSERT_EQ(points.size(), expected.size()) << energy_J;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            EXPECT_NEAR(points[i].time_s, expected[i], 1e-4) << energy_J;  // measured 2e-5, the steps of the signs
+    }
 }
 
 TEST(Section, OfSmallSwingsIsAnEllipse) {

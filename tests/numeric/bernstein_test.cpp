@@ -1,0 +1,71 @@
+#include "numeric/bernstein.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// Powers of Π (t − root), times a factor.
+std::vector<double> with_roots(const std::vector<double>& roots, double factor) {
+    std::vector<double> a{factor};
+    for (const double root : roots) {
+        a.push_back(0);
+        for (std::size_t i = a.size() - 1; i > 0; --i) a[i] = a[i - 1] - root * a[i];
+        a[0] *= -root;
+    }
+    return a;
+}
+
+TEST(Bernstein, HasTheEndsOfThePolynomialAndHoldsIt) {
+    const std::vector<double> a{0.3, -2, 1.5, 4, -3.3};
+    const double length = 0.7;
+    const auto polynomial = Bernstein::of_powers(a, length);
+    const auto value = [&](double t) { return a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * a[4]))); };
+    ASSERT_EQ(polynomial.b.size(), 5u);
+    EXPECT_EQ(polynomial.b.front(), 0.3);
+    EXPECT_NEAR(polynomial.b.back(), value(length), 1e-15);  // measured 0
+    const auto [least, greatest] = std::minmax_element(polynomial.b.begin(), polynomial.b.end());
+    for (double t = 0; t <= length; t += 0.01) {
+        EXPECT_GE(value(t), *least);
+        EXPECT_LE(value(t), *greatest);
+    }
+}
+
+TEST(Bernstein, FindsEveryRiseInOrder) {
+    const std::vector<double> roots{-0.5, 0.11, 0.112, 0.112001, 0.4, 0.9, 1.3};
+    for (const double length : {1.0, 1.2, 0.2}) {
+        // seven factors: below the first root the product is < 0, so it rises at the first, third … root
+        const auto rises = Bernstein::of_powers(with_roots(roots, 2), length).rises();
+        std::vector<double> expected;
+        for (std::size_t i = 0; i < roots.size(); i += 2)
+            if (roots[i] > 0 && roots[i] <= length) expected.push_back(roots[i]);
+        ASSERT_EQ(rises.size(), expected.size()) << length;
+        for (std::size_t i = 0; i < rises.size(); ++i) {
+            EXPECT_LE(rises[i].low * length, expected[i]) << length;
+            EXPECT_GE(rises[i].high * length, expected[i]) << length;
+        }
+    }
+}
+
+TEST(Bernstein, TellsPairsOfRootsApartDownToRounding) {
+    for (const double apart : {1e-2, 1e-5, 1e-7}) {
+        const auto rises = Bernstein::of_powers(with_roots({0.3 - apart / 2, 0.3 + apart / 2}, 1), 1).rises();
+        ASSERT_EQ(rises.size(), 1u) << apart;
+        EXPECT_GT(rises[0].low, 0.3 - apart / 2);  // of the two, only the one where it rises lies between
+        EXPECT_LT(rises[0].low, 0.3 + apart / 2);
+        EXPECT_GT(rises[0].high, 0.3 + apart / 2);
+    }
+    EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{0.09 + 1e-9, -0.6, 1}, 1).rises().empty());  // comes close
+}
+
+TEST(Bernstein, CountsARootAtTheEndAndNoneAtTheStart) {
+    EXPECT_EQ(Bernstein::of_powers(std::vector<double>{-1, 1}, 1).rises().size(), 1u);
+    EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{0, 1}, 1).rises().empty());
+    EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{1, -1}, 1).rises().empty());  // falls
+}
+
+}  // namespace
+}  // namespace doppel
