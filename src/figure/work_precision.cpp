@@ -94,6 +94,7 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        if (figure.subtitle.empty()) figure.subtitle = problems_.subtitle;
         const auto ladders = merged_ladders(numbers);
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             figure.panels.push_back(work_plot({p, problems_.all[p], 0x1p-53 * numbers[p][0], ladders, cost_}));

@@ -67,7 +67,27 @@ WorkProblems read_standard(TomlReader& table) {
     if (table.has("duration_s"))
         throw table.fault("duration_s", "is for the motion of a \"scene\"; the problems have their own");
     problems.resolved = fmt::format("problems = [{}]\n", fmt::join(quoted, ", "));
+    problems.subtitle =
+        "double and triple pendulums released at rest, links of 1 m and 1 kg, g = 9.8 m/s²; double precision, one core";
     return problems;
+}
+
+/// "1", or "1, 2, 0.5" where they differ.
+std::string numbers_words(const std::vector<double>& numbers) {
+    const bool alike = std::all_of(numbers.begin(), numbers.end(), [&](double x) { return x == numbers.front(); });
+    return alike ? fmt::format("{}", numbers.front()) : fmt::format("{}", fmt::join(numbers, ", "));
+}
+
+/// What moves, in the words of a subtitle.
+std::string system_words(const WorkProblem& problem) {
+    constexpr std::string_view computed = "double precision, one core";
+    const auto& side = problem.side;
+    if (!side.motion.chain) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
+    const auto chain = side.motion.chain->cast<double>();
+    const bool rests = std::all_of(chain.rate.begin(), chain.rate.end(), [](double rate) { return rate == 0; });
+    return fmt::format("side a of {}{}: links of {} m and {} kg{}, g = {} m/s²; {}", problem.name,
+                       rests ? ", released at rest" : "", numbers_words(chain.length), numbers_words(chain.mass),
+                       problem.plain ? "" : " and more", chain.gravity, computed);
 }
 
 /// Side a of a film. What it says stands beside its name, so that two films of one name are told apart.
@@ -88,6 +108,7 @@ WorkProblems read_scene(TomlReader& table) {
     if (table.has("duration_s")) table.read_positive_ratio("duration_s", film.duration_s);
     WorkProblems problems;
     problems.all.push_back(make_problem(source.name, film.a, film.duration_s));
+    problems.subtitle = system_words(problems.all.back());
     problems.resolved = fmt::format("scene = {}\nduration_s = \"{}\"\n", toml_text(name), film.duration_s.text());
     film.b = film.a;
     std::string comment;

@@ -56,6 +56,7 @@ private:
 struct WorkProblems {
     std::vector<WorkProblem> all;
     std::string resolved;  // the keys that name them, TOML
+    std::string subtitle;  // what moves
 };
 WorkProblems read_problems(TomlReader& table);
 

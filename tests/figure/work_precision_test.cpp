@@ -66,6 +66,32 @@ std::vector<Row> rows_of(const FigurePreset& figure) {
     return rows_of(table_text(figure, computed(figure)));
 }
 
+TEST(WorkPrecision, SaysWhatMoves) {
+    const auto subtitle = [](const FigurePreset& figure) {
+        Figure page{.subtitle = figure.subtitle};
+        figure.work->draw(computed(figure), page);
+        return page.subtitle;
+    };
+    const std::vector<std::string> quick{"work_precision.methods=[\"rk4\"]", "work_precision.models=[\"angles\"]",
+                                         "work_precision.most_evaluations=1000"};
+    auto arguments = quick;
+    arguments.insert(arguments.end(), {by_evaluations, "work_precision.problems=[\"P3\"]"});
+    EXPECT_EQ(
+        subtitle(figure_of("speed-accuracy", arguments)),
+        "double and triple pendulums released at rest, links of 1 m and 1 kg, g = 9.8 m/s²; double precision, one "
+        "core");
+    const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("uneven-{}.toml", getpid());
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << "[scene]\nduration_s = 1\n[system]\nlength_m = [1, 0.5]\nmass_kg = 3\n"
+                           "omega_deg_per_s = [10, 0]\ngravity_m_per_s2 = 3.7\n";
+    arguments = quick;
+    arguments.insert(arguments.end(), {by_evaluations, fmt::format("work_precision.scene=\"{}\"", path.string())});
+    EXPECT_EQ(subtitle(figure_of("speed-accuracy", arguments)),
+              fmt::format("side a of uneven-{}: links of 1, 0.5 m and 3 kg, g = 3.7 m/s²; double precision, one core",
+                          getpid()));
+    std::filesystem::remove(path);
+}
+
 TEST(WorkPrecision, HasTheColumnsAndEveryLadder) {
     const auto figure =
         second({"work_precision.methods=[\"rk4\", \"rattle\", \"taylor\"]", "work_precision.most_evaluations=20000"});
