@@ -10,7 +10,8 @@ class PairTable {
 public:
     PairTable(const FilePlace& place, const Scene& scene);
 
-    /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers.
+    /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers. Throws Error (exit 3) where the
+    /// distance is beyond the range of double.
     void add(const Moment& moment, double start_distance);
     void finish() { csv_.finish(); }
 

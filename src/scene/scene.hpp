@@ -106,16 +106,15 @@ private:
 /// Steps the pair from sample to sample.
 class PairRun {
 public:
-    explicit PairRun(const Scene& scene) : scene_(scene), a_(scene, scene.a, 'a'), b_(scene, scene.b, 'b') {}
+    explicit PairRun(const Scene& scene) : a_(scene, scene.a, 'a'), b_(scene, scene.b, 'b') {}
 
-    /// Sample 0, then 1, 2, … Throws as SideRun does, and exit 3 where the distance is beyond the range of double.
+    /// Sample 0, then 1, 2, … Throws as SideRun does.
     Moment next(const std::atomic<bool>& stop);
 
     Effort effort_a() const { return a_.effort(); }
     Effort effort_b() const { return b_.effort(); }
 
 private:
-    const Scene& scene_;
     SideRun a_, b_;
     long sample_ = -1;
 };
