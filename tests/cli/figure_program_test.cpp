@@ -1,4 +1,4 @@
-#include "cli/process.hpp"
+#include "cli/sandbox.hpp"
 #include "output/png.hpp"
 
 #include <nlohmann/json.hpp>

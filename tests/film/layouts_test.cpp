@@ -205,7 +205,7 @@ TEST(Layouts, ForcesOfTheRodsAreDrawnWherePhysicsSays) {
 TEST(Layouts, AxesStayFiniteForAnyPreset) {
     for (const char* key :
          {"system.length_m=[1e200, 1]", "system.mass_kg=[1e300, 1]", "system.mass_kg=[1e-300, 1]",
-          "system.gravity_m_per_s2=1e300", "system.length_m=[1e-200, 1e-200]", "b.mass_kg=[1e150, 1]"}) {
+          "system.gravity_m_per_s2=1e300", "system.length_m=[1e-200, 1e-200]", "b.mass_kg=[1e300, 1]"}) {
         const Axis axis = make_layout(scene_of("butterfly", {key})).strips.front().value;
         EXPECT_GT(axis.low, 0) << key;
         EXPECT_GE(axis.high / axis.low, 9.99) << key;

@@ -137,8 +137,7 @@ TEST(PngSink, ThrowsTheFirstErrorFromTakeAndFromFinish) {
 TEST(PngSink, StopsWhenAsked) {
     const Size size{64, 36};
     std::atomic<bool> stop = false;
-    const auto sink = make_png_sink(
-        fresh_folder(), [](long k) { return fmt::format("{}.png", k); }, 2, {}, stop);
+    const auto sink = make_png_sink(numbered_in(fresh_folder()), 2, {}, stop);
     sink->take(noise(size, 1), whole(size));
     stop = true;
     sink->take(noise(size, 2), whole(size));
