@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -36,11 +35,6 @@ std::vector<std::string> columns(const Scene& scene) {
 PairTable::PairTable(const FilePlace& place, const Scene& scene) : scene_(scene), csv_(place, columns(scene)) {}
 
 void PairTable::add(const Moment& moment, double start_distance) {
-    if (!std::isfinite(moment.distance))
-        throw method_failed(
-            "{}: the distance of the two sides at t = {} s is {}: what they differ in has squares beyond "
-            "the range of double",
-            scene_.preset.name, scene_.time(moment.sample), moment.distance);
     csv_.add(moment.sample);
     csv_.add(scene_.time(moment.sample));
     add_side(scene_.a, moment.a, moment.energy_error_a);

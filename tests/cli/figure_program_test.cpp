@@ -147,7 +147,7 @@ TEST(FigureProgram, ExitsWith130WithinASecondOfCtrlC) {
     EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1));  // measured 0.05 s
     EXPECT_EQ(bytes_of(folder / "stderr").rfind("doppel: interrupted", 0), 0u);
     // nothing of what was not complete, but what the same command goes on from where that took long
-    for (const auto& name : listing(folder / "out/droplet")) EXPECT_TRUE(name.ends_with(".resume")) << name;
+    for (const auto& name : test::listing(folder / "out/droplet")) EXPECT_TRUE(name.ends_with(".resume")) << name;
     EXPECT_TRUE(fs::exists(folder / "out/fig6/fig6.png")) << "all of what was";
 }
 
