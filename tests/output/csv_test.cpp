@@ -87,3 +87,12 @@ TEST(Csv, AFullDiskIsAnErrorWithItsReason) {
     });
     expect_error(ExitCode::io_failed, {"none/x.csv", "No such file"}, [&] { Csv(none, {"x"}); });
 }
+
+TEST(OutputFile, SaysAtOnceWhatAFlushCouldNotWrite) {
+    OutputFile full("/dev/full"), file(fresh_folder() / "x");
+    full.write("x");
+    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [&] { full.flush(); });
+    file.write("x");
+    file.flush();
+    EXPECT_EQ(test::bytes_of(file.path()), "x");
+}

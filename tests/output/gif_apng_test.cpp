@@ -134,6 +134,24 @@ TEST(Gif, EvenNoiseHasAPalette) {
     EXPECT_GT(worst, 18.0);
 }
 
+TEST(Gif, EndsInItsCommentWhereThereIsOne) {
+    // GIF89a, 24 and 27: 21 FE, blocks of at most 255 bytes after their lengths, a block of none; then 3B
+    const auto folder = fresh_folder();
+    const auto ends_as = [&](const Metadata& metadata, const std::string& end) {
+        const auto path =
+            film(folder / "x.gif",
+                 {.format = VideoFormat::gif, .size = small, .fps_numerator = 25, .metadata = metadata}, 2);
+        const auto bytes = bytes_of(path);
+        return bytes.substr(bytes.size() - std::min(end.size(), bytes.size())) == end;
+    };
+    const std::string start = "\x21\xfe", none(1, '\0');
+    EXPECT_TRUE(ends_as({{"a", "bc"}}, start + '\5' + "a: bc" + none + ';'));
+    EXPECT_TRUE(ends_as({{"a", std::string(253, 'b')}},
+                        start + '\xff' + "a: " + std::string(252, 'b') + '\1' + 'b' + none + ';'));
+    EXPECT_TRUE(ends_as({}, none + ';'));  // of the last frame
+    EXPECT_FALSE(ends_as({}, none + none + ';'));
+}
+
 TEST(Apng, FramesTimesAndWordsAreExact) {
     const auto path = film(fresh_folder() / "x.apng",
                            {.format = VideoFormat::apng,
