@@ -136,6 +136,17 @@ TEST(Reference, OfAMechanismByTwoTolerances) {
         EXPECT_LT(static_cast<double>(abs(error)), 4e-34);  // measured 5e-35
 }
 
+TEST(PlaceError, IsTheLargestDistanceAndNoNumberWhereThereIsNone) {
+    Bobs<double> one(2);
+    auto other = one;
+    other[0].x = 3;
+    other[0].y = -4;
+    other[1].y = 1;
+    EXPECT_EQ(place_error(one, other), 5);
+    other[0].x = std::nan("");
+    EXPECT_TRUE(std::isnan(place_error(one, other)));
+}
+
 TEST(Reference, StopsWhenAsked) {
     const std::atomic<bool> stop = true;
     EXPECT_THROW(reference_end(chain({90, 90}), {10, 1}, 1, stop), Error);
