@@ -116,9 +116,9 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     }
     take_efforts();
     const auto finish = [&] {
+        if (film) film->finish();
         table.finish();
         parts.finished(csv_name);
-        if (film) film->finish();
         record.simulate_cpu_s = simulation.cpu_s();
         record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
         record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;

@@ -84,7 +84,7 @@ TEST(Extremes, StrangePicturesAreServedOrRefusedWithAPlace) {
         {0, set({"video.energy_range=[1e299, 1e308]"})},
         {0, set({"video.trail_s=3600"})},
         {0, set({"system.length_m=[1e-9, 1e9]", "system.integrator=\"taylor\""})},
-        {3, set({"system.length_m=1e200"})},
+        {2, set({"system.length_m=1e200"})},
         {0, set({"system.angle_deg=0", "b.angle_deg=0"})},
         {0, set({"system.angle_deg=180", "b.angle_deg=180"})},
     };
@@ -100,7 +100,7 @@ TEST(Extremes, PhysicsIsServedOrRefusedWithAPlace) {
         {2, set({"system.mass_kg=1e4000"})},
         {3, set({"system.length_m=1e-300"})},
         {3, set({"system.length_m=[1e-300, 1e300]"})},
-        {3, set({"system.length_m=1e300"})},
+        {2, set({"system.length_m=1e300"})},
         {3, set({"system.length_m=1e-4000", "system.precision=\"quad\""})},
         {2, set({"system.gravity_m_per_s2=0"})},
         {0, set({"system.gravity_m_per_s2=1e-300"})},

@@ -89,7 +89,7 @@ TEST(Csv, AFullDiskIsAnErrorWithItsReason) {
 }
 
 TEST(OutputFile, SaysAtOnceWhatAFlushCouldNotWrite) {
-    OutputFile full("/dev/full"), file(fresh_folder() / "x");
+    OutputFile full(std::filesystem::path("/dev/full")), file(fresh_folder() / "x");
     full.write("x");
     expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [&] { full.flush(); });
     file.write("x");
