@@ -16,19 +16,19 @@ using Json = nlohmann::json;
 
 /// The first bytes of a file, `most` of them; none where it cannot be read.
 std::string head_of(const Folder& folder, const std::string& name, std::size_t most) {
-    std::string bytes;
     try {
         const Descriptor file = open_file({folder, name});
-        bytes.resize(std::min<std::size_t>(most, folder.entry(name).bytes));
-        most = bytes.size();
+        std::string bytes(std::min<std::size_t>(most, folder.entry(name).bytes), '\0');
         std::size_t got = 0;
-        for (ssize_t n = 1; n > 0 && got < most; got += static_cast<std::size_t>(std::max<ssize_t>(n, 0)))
-            n = read(file.number(), bytes.data() + got, most - got);
-        bytes.resize(got);
+        while (got < bytes.size()) {
+            const auto more = read(file.number(), bytes.data() + got, bytes.size() - got);
+            if (more <= 0) break;
+            got += static_cast<std::size_t>(more);
+        }
+        return bytes.substr(0, got);
     } catch (const Error&) {
-        bytes.clear();
+        return {};
     }
-    return bytes;
 }
 
 /// A manifest of Doppel's; null where the file is none.
