@@ -142,10 +142,10 @@ TEST(Streams, APresetsWordsAreShownAndNotObeyed) {
     // on a terminal, not in a file
     write_bytes(folder / "raw.toml", "# \x1b[31mred\n");
     EXPECT_EQ(doppel(folder, {"show", "raw.toml"}).out, "# \x1b[31mred\n");
-    const auto terminal = shell(folder, "script -qec '\"$DOPPEL\" show raw.toml' /dev/null | tr -d '\\r'");
-    if (terminal.code == 0) {
-        EXPECT_EQ(terminal.out, "#  [31mred\n");
-    }
+    // script fails where there are no terminals to be had, as in a bare chroot
+    const auto terminal =
+        shell(folder, "script -qec '\"$DOPPEL\" show raw.toml' /dev/null >shown && tr -d '\\r' <shown");
+    EXPECT_EQ(terminal.out, terminal.code == 0 ? "#  [31mred\n" : "") << terminal.err;
 }
 
 TEST(Streams, AMessageIsNoLongerThanCanBeRead) {
