@@ -1,11 +1,54 @@
-# add_room(NAME [NEEDS room…] [USES library…])
+# use_precompiled(TARGET OPTION): the headers of precompiled.hpp for TARGET, which is compiled with OPTION on top: what is
+# precompiled keeps the optimization that it was compiled with.
+function(use_precompiled target option)
+    string(MAKE_C_IDENTIFIER "precompiled${option}" name)
+    if(NOT TARGET ${name})
+        file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
+        add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/generated/precompiled.cpp)
+        target_compile_options(${name} PRIVATE ${option})
+        target_precompile_headers(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp)
+        target_link_libraries(${name} PRIVATE fmt::fmt Eigen3::Eigen Boost::headers)
+    endif()
+    target_precompile_headers(${target} REUSE_FROM ${name})
+endfunction()
+
+# compile_fast(TARGET COLD BATCH): BATCH files in one go, with the headers of precompiled.hpp; if COLD, with little
+# optimization.
+function(compile_fast target cold batch)
+    set(optimization "")
+    if(cold AND CMAKE_BUILD_TYPE STREQUAL "Release")
+        set(optimization -O1)
+        target_compile_options(${target} PRIVATE -O1)
+    endif()
+    if(DOPPEL_UNITY)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
+        target_compile_options(${target} PRIVATE -Wno-shadow)  # of a neighbour in the same go
+        use_precompiled(${target} "${optimization}")
+    endif()
+endfunction()
+
+# add_room(NAME [COLD] [BATCH files] [COLD_FILES file…] [NEEDS room…] [USES library…])
 # All of src/NAME as one static library. What it NEEDS and USES, its users get as well; headers are included from src,
-# as "room/file.hpp".
+# as "room/file.hpp". Its files are compiled BATCH (16) at a time, which saves most of what their headers take; a COLD
+# room, where no time is spent, and COLD_FILES of others, with little optimization.
 function(add_room name)
-    cmake_parse_arguments(room "" "" "NEEDS;USES" ${ARGN})
+    cmake_parse_arguments(room "COLD" "BATCH" "COLD_FILES;NEEDS;USES" ${ARGN})
+    if(NOT room_BATCH)
+        set(room_BATCH 16)
+    endif()
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+    list(TRANSFORM room_COLD_FILES PREPEND ${PROJECT_SOURCE_DIR}/src/${name}/)
     if(sources)
+        if(room_COLD_FILES)
+            list(REMOVE_ITEM sources ${room_COLD_FILES})
+            add_library(${name}_cold OBJECT ${room_COLD_FILES})
+            compile_fast(${name}_cold ON 1)
+            target_include_directories(${name}_cold PRIVATE ${PROJECT_SOURCE_DIR}/src)
+            target_link_libraries(${name}_cold PRIVATE ${room_NEEDS})
+            list(APPEND sources $<TARGET_OBJECTS:${name}_cold>)
+        endif()
         add_library(${name} STATIC ${sources})
+        compile_fast(${name} ${room_COLD} ${room_BATCH})
         set(scope PUBLIC)
     else()
         add_library(${name} INTERFACE)

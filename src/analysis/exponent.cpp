@@ -1,11 +1,10 @@
 #include "analysis/exponent.hpp"
 
+#include "analysis/linear_stability.hpp"
 #include "analysis/tangent.hpp"
 #include "numeric/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +15,11 @@ namespace {
 
 /// The growth of one tangent, told in logarithms.
 template <class Model>
-class Growth {
+class TangentGrowth {
 public:
     using State = typename TangentMotion<Model>::State;
 
-    Growth(const Pendulum<double>& p, const ExponentSpec& spec, const NaturalUnits& units)
+    TangentGrowth(const Pendulum<double>& p, const ExponentSpec& spec, const NaturalUnits& units)
         : motion_(p, spec.tolerance), size_(static_cast<Eigen::Index>(2 * p.links())), unit_(units.time) {
         // a direction that no symmetry knows: 1, 1/2, 1/3 …
         typename Model::State start = Model::start(p.cast<typename Model::Scalar>());
@@ -97,7 +96,7 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
 template <class Model>
 Exponent measured(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     const NaturalUnits units(p);
-    Growth<Model> growth(p, spec, units);
+    TangentGrowth<Model> growth(p, spec, units);
     const auto exponents_of_parts = [&](double seconds, long parts) {
         std::vector<double> local;
         for (long i = 0; i < parts; ++i) {
@@ -124,29 +123,6 @@ Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, c
     if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
     if (p.links() == 2) return measured<DoublePendulum<Dual<double, 1>>>(p, spec, stop);
     return measured<AngleChain<Dual<double, 1>, Eigen::Dynamic>>(p, spec, stop);
-}
-
-/// M θ″ = −K θ near an equilibrium, with M_ij = μ_max(i,j) l_i l_j cosθ_i cosθ_j and K_ii = μ_i g l_i cosθ_i, μ as in
-/// physics/angle_chain.hpp. The exponent is √−κ for the least κ with K x = κ M x, or 0.
-std::optional<double> equilibrium_exponent(const Pendulum<double>& p) {
-    const auto n = static_cast<Eigen::Index>(p.links());
-    Eigen::MatrixXd mass(n, n), stiffness = Eigen::MatrixXd::Zero(n, n);
-    double hanging = 0;  // μ_i, kg
-    for (Eigen::Index i = n - 1; i >= 0; --i) {
-        const auto k = static_cast<std::size_t>(i);
-        const SinCos<double> turn(p.angle[k]);
-        constexpr double rounding = 1e-14;
-        if (p.rate[k] != 0 || (p.gravity != 0 && std::abs(turn.sin) > rounding)) return std::nullopt;
-        hanging += p.mass[k];
-        stiffness(i, i) = hanging * p.gravity * p.length[k] * turn.cos;
-        for (Eigen::Index j = 0; j <= i; ++j) {
-            const auto other = static_cast<std::size_t>(j);
-            mass(i, j) = mass(j, i) = hanging * p.length[k] * p.length[other] * std::cos(p.angle[k] - p.angle[other]);
-        }
-    }
-    if (p.gravity == 0) return 0.0;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, -solver.eigenvalues()[0]));
 }
 
 }  // namespace doppel

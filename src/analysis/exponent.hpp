@@ -3,7 +3,6 @@
 #include "physics/pendulum.hpp"
 
 #include <atomic>
-#include <optional>
 
 namespace doppel {
 
@@ -32,9 +31,5 @@ bool is_regular(const Exponent& exponent);
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:21.
 /// Errors  exit 2 where the spec makes no sense, exit 3 where dop853 breaks down, exit 130 soon after `stop` is set.
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
-
-/// The exponent in closed form, 1/s, where the release is an equilibrium: at rest and all links upright or hanging to
-/// rounding (or g = 0). Nothing elsewhere.
-std::optional<double> equilibrium_exponent(const Pendulum<double>& p);
 
 }  // namespace doppel

@@ -21,6 +21,8 @@ double unimodular_growth(double half_trace) {
     return a <= 1 ? 1 : a + std::sqrt((a - 1) * (a + 1));
 }
 
+using Eigenproblem = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>;  // K v = λ M v
+
 constexpr std::size_t adams_order = AdamsWeights::bashforth.size();
 using Companion = Eigen::Matrix<std::complex<double>, adams_order, adams_order>;
 
@@ -40,8 +42,17 @@ Companion adams_step(double z) {
     return step;
 }
 
+/// The spectral radius, lim |Aⁿ|^(1/n) (Gelfand 1941), by squaring: what is left out shrinks like 2⁻ᵏ.
 double adams_growth(double z) {
-    return Eigen::ComplexEigenSolver<Companion>(adams_step(z), false).eigenvalues().cwiseAbs().maxCoeff();
+    Companion power = adams_step(z);
+    double logarithm = 0;
+    for (double share = 1; share > 1e-17; share /= 2) {
+        const double norm = power.norm();
+        logarithm += share * std::log(norm);
+        power /= norm;
+        power = (power * power).eval();
+    }
+    return std::exp(logarithm);
 }
 
 /// What is left of the amplitude after `steps` from the true motion: the roots that grow are not those that carry it,
@@ -135,7 +146,7 @@ std::vector<Mode> small_oscillations(const Pendulum<double>& pendulum) {
             inertia(i, j) = inertia(j, i) = at(pendulum.length, i) * at(pendulum.length, j) * hanging;
     }
     // v of unit inertia: each mode is an oscillator by itself
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solved(stiffness, inertia);
+    const Eigenproblem solved(stiffness, inertia);
     const auto amounts = [&](const std::vector<double>& values) -> Eigen::VectorXd {
         return solved.eigenvectors().transpose() * inertia * Eigen::Map<const Eigen::VectorXd>(values.data(), n);
     };
@@ -177,6 +188,29 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
         (grows(middle) ? fails : stays) = middle;
     }
     return fails;
+}
+
+/// M θ″ = −K θ near an equilibrium, with M_ij = μ_max(i,j) l_i l_j cosθ_i cosθ_j and K_ii = μ_i g l_i cosθ_i, μ as in
+/// physics/angle_chain.hpp. The exponent is √−κ for the least κ with K x = κ M x, or 0.
+std::optional<double> equilibrium_exponent(const Pendulum<double>& p) {
+    const auto n = static_cast<Eigen::Index>(p.links());
+    Eigen::MatrixXd mass(n, n), stiffness = Eigen::MatrixXd::Zero(n, n);
+    double hanging = 0;  // μ_i, kg
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+        const auto k = static_cast<std::size_t>(i);
+        const SinCos<double> turn(p.angle[k]);
+        constexpr double rounding = 1e-14;
+        if (p.rate[k] != 0 || (p.gravity != 0 && std::abs(turn.sin) > rounding)) return std::nullopt;
+        hanging += p.mass[k];
+        stiffness(i, i) = hanging * p.gravity * p.length[k] * turn.cos;
+        for (Eigen::Index j = 0; j <= i; ++j) {
+            const auto other = static_cast<std::size_t>(j);
+            mass(i, j) = mass(j, i) = hanging * p.length[k] * p.length[other] * std::cos(p.angle[k] - p.angle[other]);
+        }
+    }
+    if (p.gravity == 0) return 0.0;
+    const Eigenproblem solver(stiffness, mass, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, -solver.eigenvalues()[0]));
 }
 
 }  // namespace doppel

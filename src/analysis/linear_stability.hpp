@@ -39,4 +39,8 @@ double largest_frequency(const Pendulum<double>& pendulum);
 /// Nothing where no step up to `seconds` does it.
 std::optional<double> step_limit(std::string_view method, std::span<const Mode> modes, double seconds, double times);
 
+/// The Lyapunov exponent in closed form, 1/s, where the release is an equilibrium: at rest and all links upright or
+/// hanging to rounding (or g = 0). Nothing elsewhere.
+std::optional<double> equilibrium_exponent(const Pendulum<double>& p);
+
 }  // namespace doppel

@@ -20,17 +20,17 @@ template <class Model, int N>
 class Frame {
 public:
     static constexpr int size = 2 * N;
-    using Matrix = Eigen::Matrix<double, size, size>;
-    using Column = Eigen::Matrix<double, size, 1>;
+    using Matrix = Eigen::MatrixXd;
+    using Column = Eigen::VectorXd;
 
     Frame(const Pendulum<double>& p, double tolerance, const NaturalUnits& units)
         : model_(p.cast<Number>()), canonical_(model_), motion_(p, tolerance) {
         double mass = 0;
         for (const double m : p.mass) mass += m;
-        unit_.template head<N>().setOnes();
-        unit_.template tail<N>().setConstant(mass * units.length * units.length / units.time);
+        unit_.setOnes(size);
+        unit_.tail(N).setConstant(mass * units.length * units.length / units.time);
         canonical_.momenta(Model::start(p.cast<Number>()), z_);
-        set_down(Matrix::Identity());
+        set_down(Matrix::Identity(size, size));
     }
 
     /// What ln|δ_i| grow by in so many seconds.
@@ -38,10 +38,10 @@ public:
         motion_.advance(seconds);
         TangentFlow<Model>::to_dual(motion_.state(), y_);
         canonical_.momenta(y_, z_);
-        Matrix frame;
+        Matrix frame(size, size);
         for (int i = 0; i < size; ++i) frame.row(i) = z_[i].tangent.transpose() / unit_[i];
         const Eigen::HouseholderQR<Matrix> qr(frame);
-        set_down(qr.householderQ() * Matrix::Identity());
+        set_down(qr.householderQ() * Matrix::Identity(size, size));
         return qr.matrixQR().diagonal().cwiseAbs().array().log();
     }
 
@@ -52,7 +52,7 @@ private:
     void set_down(const Matrix& frame) {
         for (int i = 0; i < size; ++i) z_[i].tangent = unit_[i] * frame.row(i).transpose();
         canonical_.velocities(z_, y_);
-        typename TangentMotion<Model>::State all;
+        typename TangentMotion<Model>::State all(y_.size() * (1 + size));
         TangentFlow<Model>::from_dual(y_, all);
         motion_.set_down(all);
     }
@@ -71,7 +71,7 @@ std::vector<SpectrumSample> estimates(const Pendulum<double>& p, const SpectrumS
     Frame<Model, N> frame(p, spec.tolerance, units);
     const double interval = spec.duration_s / spec.samples;
     const long parts = parts_of(interval, units);
-    typename Frame<Model, N>::Column sum = Frame<Model, N>::Column::Zero();
+    typename Frame<Model, N>::Column sum = Frame<Model, N>::Column::Zero(2 * N);
     std::vector<SpectrumSample> samples;
     for (int k = 1; k <= spec.samples; ++k) {
         for (long i = 0; i < parts; ++i) {

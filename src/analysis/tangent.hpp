@@ -1,13 +1,13 @@
 #pragma once
 
 #include "analysis/natural_units.hpp"
-#include "integrate/dop853.hpp"
+#include "integrate/stepper.hpp"
 #include "numeric/dual.hpp"
 #include "physics/pendulum.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
 
 namespace doppel {
 
@@ -25,7 +25,7 @@ public:
     using DualState = typename Model::State;
     using Number = typename Model::Scalar;
     static constexpr int directions = Number::Tangent::RowsAtCompileTime;
-    using State = doppel::State<double, times<1 + directions, DualState::RowsAtCompileTime>>;
+    using State = doppel::State<double, Eigen::Dynamic>;
 
     explicit TangentFlow(const Pendulum<double>& p)
         : model_(p.cast<Number>()), y_(Model::start(p.cast<Number>())), rate_(y_) {}
@@ -75,16 +75,16 @@ public:
 
     void set_down(State y) {
         for (Eigen::Index i = 0; i < links_; ++i) y[i] = std::remainder(y[i], 2 * pi);
-        stepper_.emplace(flow_, y, tolerance_);
+        stepper_ = make_any_stepper("dop853", AnySystem<State>(flow_), y, tolerance_);
     }
-    void advance(double seconds) { stepper_->advance(seconds); }
-    const State& state() const { return stepper_->state(); }
+    void advance(double seconds) { stepper_->advance_by(seconds); }
+    State state() const { return stepper_->state(); }
 
 private:
     Flow flow_;
     double tolerance_;
     Eigen::Index links_;
-    std::optional<Dop853::Stepper<Flow>> stepper_;
+    std::unique_ptr<Stepper<State>> stepper_;
 };
 
 }  // namespace doppel

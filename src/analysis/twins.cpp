@@ -2,18 +2,14 @@
 
 #include "analysis/distance.hpp"
 #include "numeric/error.hpp"
+#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace doppel {
 namespace {
-
-bool same(const Pendulum<double>& a, const Pendulum<double>& b) {
-    return a.mass == b.mass && a.length == b.length && a.angle == b.angle && a.rate == b.rate && a.gravity == b.gravity;
-}
 
 /// The pendulums of one side, or of both where they obey the same equations, each of them once.
 class Crowd {
@@ -22,8 +18,7 @@ public:
 
     /// The number of this pendulum, which is new or was there.
     std::size_t add(const Pendulum<double>& pendulum) {
-        const auto known =
-            std::find_if(members_.begin(), members_.end(), [&](const auto& p) { return same(p, pendulum); });
+        const auto known = std::find(members_.begin(), members_.end(), pendulum);
         if (known != members_.end()) return static_cast<std::size_t>(known - members_.begin());
         members_.push_back(pendulum);
         return members_.size() - 1;
@@ -94,7 +89,7 @@ void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::s
     }
     for (std::size_t i = 0; i < twins.size(); ++i) {
         const double mean = sum[i] / static_cast<double>(counted[i]);
-        averages[i] = std::isfinite(mean) ? mean : std::numeric_limits<double>::quiet_NaN();
+        averages[i] = std::isfinite(mean) ? mean : nan_value;
     }
 }
 

@@ -24,7 +24,7 @@ struct TwinSide {
 struct TwinRun {
     TwinSide a, b;
     double sample_interval = 1.0 / 120;  // s
-    long samples = 3000;                 // without the one at the start
+    long samples = 0;                    // without the one at the start
 };
 
 /// How many pendulums are best stepped at once at a register width, 0 for the widest.

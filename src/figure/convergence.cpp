@@ -1,21 +1,19 @@
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
+#include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace doppel {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 /// One of the ladders: the methods of both sides, and the precision.
-struct Ladder {
+struct PairLadder {
     std::string method_a, method_b;
     Precision precision;
     std::size_t rungs;
@@ -104,7 +102,7 @@ public:
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        std::array<double, 2> floors{none, none};
+        std::array<double, 2> floors{nan_value, nan_value};
         for (const auto& [begin, ladder] : ladders_) {
             const bool in_double = ladder.precision == Precision::in_double;
             for (std::size_t rung = 0; rung < ladder.rungs; ++rung)
@@ -130,7 +128,7 @@ public:
 
 private:
     /// The order that the distances tell: with steps between the two finest, with tolerances over the middle third.
-    static double slope(std::span<const TrialNumbers> numbers, std::size_t begin, const Ladder& ladder) {
+    static double slope(std::span<const TrialNumbers> numbers, std::size_t begin, const PairLadder& ladder) {
         const std::size_t fine_rung = ladder.adaptive() ? 2 * ladder.rungs / 3 : ladder.rungs - 1;
         const auto& fine = numbers[begin + fine_rung];
         const auto& coarse = numbers[begin + (ladder.adaptive() ? ladder.rungs / 3 : ladder.rungs - 2)];
@@ -140,7 +138,7 @@ private:
     /// What the ladders come to, in words.
     std::string words(std::span<const TrialNumbers> numbers) const {
         std::string slopes;
-        double least_double = none, least_quad = none;
+        double least_double = nan_value, least_quad = nan_value;
         for (const auto& finding : findings(numbers)) {
             const double value = std::get<double>(finding.value);
             if (finding.key == "least_distance_in_double") least_double = value;
@@ -158,7 +156,7 @@ private:
 
     void add_ladder(TomlReader& table, const std::string& name, Precision precision) {
         const auto slash = name.find('/');
-        Ladder ladder{name.substr(0, slash), slash == std::string::npos ? name : name.substr(slash + 1), precision, 0};
+        PairLadder ladder{name.substr(0, slash), slash == std::string::npos ? name : name.substr(slash + 1), precision, 0};
         const auto *a = find_method(ladder.method_a), *b = find_method(ladder.method_b);
         if (!a || !b || a->adaptive != b->adaptive)
             throw table.fault("methods",
@@ -206,7 +204,7 @@ private:
         return pair;
     }
 
-    std::pair<Ladder, std::size_t> place_of(std::size_t trial) const {
+    std::pair<PairLadder, std::size_t> place_of(std::size_t trial) const {
         const auto next =
             std::find_if(ladders_.begin(), ladders_.end(), [&](const auto& l) { return l.first > trial; });
         const auto& [begin, ladder] = *std::prev(next);
@@ -221,7 +219,7 @@ private:
         try {
             for (long n = 0; n <= scene.samples; ++n) most = std::fmax(most, run.next(stop).distance);
         } catch (const BreakDown&) {
-            return {none, none, 0};
+            return {nan_value, nan_value, 0};
         }
         const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
         return {2 * pair_.duration_s.value() / steps, most, steps};
@@ -234,7 +232,7 @@ private:
     std::vector<std::string> methods_{"euler", "midpoint", "rk4", "gauss6/rattle6", "dop853"};
     int halvings_ = 10, quad_halvings_ = 6, decades_ = 11, quad_decades_ = 24;
     std::optional<Rational> mark_step_;                    // a line at it
-    std::vector<std::pair<std::size_t, Ladder>> ladders_;  // each with its first trial
+    std::vector<std::pair<std::size_t, PairLadder>> ladders_;  // each with its first trial
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "analysis/distance.hpp"
 #include "figure/kinds.hpp"
 #include "figure/pair_words.hpp"
+#include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 #include "scene/wording.hpp"
@@ -8,14 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace doppel {
 namespace {
 
 using namespace std::string_view_literals;
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array quantities{"distance"sv, "log_ratio"sv};
 
 /// One pair, and how its distance is shown.
@@ -67,12 +66,12 @@ public:
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             const auto scene = make_scene(pair_of(first + i));
             PairRun run(scene);
-            numbers[i].assign(static_cast<std::size_t>(samples_) + 1, none);
+            numbers[i].assign(static_cast<std::size_t>(samples_) + 1, nan_value);
             double start = 0;
             for (std::size_t n = 0; n < numbers[i].size(); ++n) {
                 const double distance = run.next(stop).distance;
                 if (n == 0) start = distance;
-                numbers[i][n] = quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(none);
+                numbers[i][n] = quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(nan_value);
             }
         }
     }

@@ -14,7 +14,7 @@ namespace doppel {
 namespace {
 
 // what a trial's numbers begin with; then the energy errors and the length errors of all points
-enum Entry : std::size_t { setting, evaluations, cpu, broken, points };
+enum DriftEntry : std::size_t { setting, evaluations, cpu, broken, points };
 
 /// How a kind of growth looks: one hue for all its curves, and its law beside their names.
 struct GrowthLook {

@@ -1,7 +1,8 @@
 #include "figure/drift_growth.hpp"
 
+#include "numeric/nan.hpp"
+
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace doppel {
@@ -37,7 +38,7 @@ Growth growth_of(std::span<const double> times_s, std::span<const double> errors
         return slope({x.begin() + from, x.end()}, {log_errors.begin() + from, log_errors.end()});
     };
     Growth growth{.exponent = times.size() < 2 ? 0 : fitted(log_times, decades * std::log(10)),
-                  .doubling_s = std::numeric_limits<double>::quiet_NaN(),
+                  .doubling_s = nan_value,
                   .broken_at_s = broken_at_s};
     using Kind = Growth::Kind;
     if (broken_at_s > 0) {

@@ -1,17 +1,16 @@
 #include "figure/drift_run.hpp"
 
 #include "numeric/clock.hpp"
+#include "numeric/nan.hpp"
 #include "scene/choose.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace doppel {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double calibration_s = 200;
 constexpr long looks_per_s = 4;  // at least, where steps are not longer
 
@@ -86,9 +85,9 @@ long calibrated(const DriftSpec& spec, const DriftMethod& method, const std::ato
 DriftRun drift(const DriftSpec& spec, const DriftMethod& method, const std::atomic<bool>& stop) {
     const auto scene = scene_of(spec, method, calibrated(spec, method, stop));
     const auto& motion = scene.a.motion;
-    const std::vector<double> unseen(spec.times_s.size(), none);
+    const std::vector<double> unseen(spec.times_s.size(), nan_value);
     DriftRun made{.setting = scene.a.method.adaptive ? static_cast<double>(motion.tolerance) : scene.a.step.value(),
-                  .broken_at_s = none,
+                  .broken_at_s = nan_value,
                   .energy_error = unseen,
                   .length_error = unseen};
     const auto lengths = motion.chain->cast<double>().length;

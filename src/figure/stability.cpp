@@ -1,15 +1,13 @@
 #include "analysis/linear_stability.hpp"
 #include "figure/stability_spec.hpp"
+#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace doppel {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// How well each method keeps energy, over its step or tolerance and a parameter of the release: where it blows up, and
 /// where linear theory says that it must. A trial is a column of one method's map: all releases at one step.
@@ -40,8 +38,8 @@ public:
         for (std::size_t trial = 0; trial < numbers.size(); ++trial)
             for (int row = 0; row < spec_.rows.count; ++row) {
                 table.add(method_of(trial).name);
-                table.add_or_empty(method_of(trial).adaptive ? none : pace_of(trial));
-                table.add_or_empty(method_of(trial).adaptive ? pace_of(trial) : none);
+                table.add_or_empty(method_of(trial).adaptive ? nan_value : pace_of(trial));
+                table.add_or_empty(method_of(trial).adaptive ? pace_of(trial) : nan_value);
                 table.add(spec_.rows.middle(row));
                 table.add_or_empty(numbers[trial][static_cast<std::size_t>(row)]);
                 table.end_row();
@@ -79,7 +77,7 @@ public:
         std::vector<Finding> all;
         for (std::size_t m = 0; m < spec_.methods.size(); ++m) {
             const auto& method = *spec_.methods[m];
-            double blown = 0, least = none;
+            double blown = 0, least = nan_value;
             for (std::size_t trial = m * columns_; trial < (m + 1) * columns_; ++trial) {
                 for (const double error : numbers[trial]) blown += std::isnan(error);
                 if (std::isnan(numbers[trial].front())) least = std::fmin(least, pace_of(trial));
@@ -135,7 +133,7 @@ private:
     /// Where linear theory has a row blow up, s; not a number where nowhere.
     double limit_at(std::string_view method, std::size_t row) const {
         const auto modes = small_oscillations(spec_.releases[row].cast<double>());
-        return step_limit(method, modes, spec_.duration.value(), blow_up).value_or(none);
+        return step_limit(method, modes, spec_.duration.value(), blow_up).value_or(nan_value);
     }
 
     /// A rule where it is the same for all rows, else a curve.

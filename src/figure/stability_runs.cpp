@@ -2,23 +2,21 @@
 
 #include "integrate/ensemble.hpp"
 #include "numeric/error.hpp"
+#include "numeric/nan.hpp"
 #include "physics/bob.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace doppel {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Takes the error of one look at the energy in; not a number stays.
 void take(double error, double& greatest) {
     if (error <= blow_up)
         greatest = std::max(error, greatest);
     else
-        greatest = none;
+        greatest = nan_value;
 }
 
 double energy_of(const Pendulum<double>& p, const Ensemble& ensemble, std::size_t trial, Model model) {
@@ -67,7 +65,7 @@ double alone(const StabilityRun& run, const Pendulum<Quad>& release, const std::
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::method_failed) throw;
-        return none;
+        return nan_value;
     }
     return greatest;
 }

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-constexpr std::array parameters{
+constexpr std::array stability_parameters{
     StabilityParameter{"theta1_deg", "release angle θ₁, °",
                        [](SideSpec& side, const Quad& x) { side.angle_deg[0] = x; }, 0, 180, 180, false, 45},
     StabilityParameter{"mass_ratio", "mass ratio m₁/m₂",
@@ -18,10 +18,10 @@ constexpr std::array parameters{
 
 void read_rows(TomlReader& table, StabilitySpec& spec) {
     std::vector<std::string_view> names;
-    for (const auto& parameter : parameters) names.push_back(parameter.name);
+    for (const auto& parameter : stability_parameters) names.push_back(parameter.name);
     std::string name(names.front());
     table.read_choice("parameter", name, names);
-    for (const auto& parameter : parameters)
+    for (const auto& parameter : stability_parameters)
         if (parameter.name == name) spec.parameter = &parameter;
     const auto& parameter = *spec.parameter;
     if (parameter.logarithmic && spec.release.links() != 2)

@@ -3,21 +3,19 @@
 #include "analysis/twins.hpp"
 #include "figure/kinds.hpp"
 #include "figure/pair_words.hpp"
+#include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace doppel {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 /// What a sweep goes over: the columns' name, how people call it, and what it changes in a side.
-struct Parameter {
+struct SweepParameter {
     std::string_view name, label;
     std::size_t links;  // that it takes
     void (*set)(SideSpec&, const Quad&);
@@ -25,13 +23,15 @@ struct Parameter {
     bool positive = false;
 };
 
-constexpr std::array parameters{
-    Parameter{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& side, const Quad& x) { side.angle_deg[0] = x; }, 30},
-    Parameter{"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& side, const Quad& x) { side.angle_deg[1] = x; }, 30},
-    Parameter{"mass_ratio", "mass ratio m₁/m₂", 2,
-              [](SideSpec& side, const Quad& x) { side.mass_kg[0] = x * side.mass_kg[1]; }, 0, true},
-    Parameter{"length_ratio", "length ratio l₁/l₂", 2,
-              [](SideSpec& side, const Quad& x) { side.length_m[0] = x * side.length_m[1]; }, 0, true}};
+constexpr std::array sweep_parameters{
+    SweepParameter{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& side, const Quad& x) { side.angle_deg[0] = x; },
+                   30},
+    SweepParameter{"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& side, const Quad& x) { side.angle_deg[1] = x; },
+                   30},
+    SweepParameter{"mass_ratio", "mass ratio m₁/m₂", 2,
+                   [](SideSpec& side, const Quad& x) { side.mass_kg[0] = x * side.mass_kg[1]; }, 0, true},
+    SweepParameter{"length_ratio", "length ratio l₁/l₂", 2,
+                   [](SideSpec& side, const Quad& x) { side.length_m[0] = x * side.length_m[1]; }, 0, true}};
 
 /// The study's sweeps: twins released over a range of one parameter, and how far apart they come on average.
 class Sweep final : public FigureWork {
@@ -39,10 +39,10 @@ public:
     explicit Sweep(FigureReader& reader) : pair_(reader.pair()) {
         auto table = reader.table("sweep");
         std::vector<std::string_view> names;
-        for (const auto& parameter : parameters) names.push_back(parameter.name);
+        for (const auto& parameter : sweep_parameters) names.push_back(parameter.name);
         std::string name(names.front());
         table.read_choice("parameter", name, names);
-        for (const auto& parameter : parameters)
+        for (const auto& parameter : sweep_parameters)
             if (parameter.name == name) parameter_ = &parameter;
         if (pair_.a.links() < parameter_->links || !pair_.a.particles.empty())
             throw table.fault("parameter", "\"{}\" takes a chain of {} links", name, parameter_->links);
@@ -143,7 +143,7 @@ public:
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        double least = none, most = none, regular = 0;
+        double least = nan_value, most = nan_value, regular = 0;
         for (const auto& trial : numbers) {
             least = std::fmin(least, trial[0]);
             most = std::fmax(most, trial[0]);
@@ -248,7 +248,7 @@ private:
                     ++counted;
                 }
         } catch (const BreakDown&) {
-            return none;
+            return nan_value;
         }
         return sum / static_cast<double>(counted);
     }
@@ -262,7 +262,7 @@ private:
             if (numbers[i][1] == 0 || numbers[i][2] != 0) continue;
             equilibria += fmt::format(" At {:g}{}, an unstable equilibrium, it is {:.2f} 1/s.", exponents.x[i],
                                       parameter_->positive ? "" : "°", numbers[i][1]);
-            exponents.y[i] = none;
+            exponents.y[i] = nan_value;
         }
         return fmt::format(
             "{} of {} releases are regular: their exponent cannot be told from 0. Its band is one standard "
@@ -280,7 +280,7 @@ private:
     }
 
     Preset pair_;
-    const Parameter* parameter_ = nullptr;
+    const SweepParameter* parameter_ = nullptr;
     Quad from_ = 0, to_ = 180, step_ = 1, difference_ = 0;
     std::size_t trials_ = 0;
     bool exponent_ = false;

@@ -1,5 +1,6 @@
 #include "figure/work_chart.hpp"
 
+#include "numeric/nan.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>
@@ -13,7 +14,6 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double rounding = 0x1p-53;
 constexpr double most_shown = 1;  // rad: beyond, an end is not known
 
@@ -66,7 +66,7 @@ Curve curve_of(const Ladder& ladder, const WorkPanel& panel, bool best) {
         const auto& rung = ladder.rungs[i];
         const double spread = std::min(ladder.spread[i], 0.9);
         if (spread < shows) continue;
-        add(none, none);
+        add(nan_value, nan_value);
         add(rung.cpu_s * (1 - spread), rung.error);
         add(rung.cpu_s * (1 + spread), rung.error);
     }

@@ -3,6 +3,7 @@
 #include "figure/work_run.hpp"
 #include "integrate/methods.hpp"
 #include "numeric/error.hpp"
+#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,6 @@
 
 namespace doppel {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Steps of 2^(k/2)/30000 s, from the problem's natural time down.
 std::vector<Setting> step_settings(const WorkProblem& problem, const LadderSpec& spec) {
@@ -94,7 +93,7 @@ std::vector<Rung> climb(const WorkProblem& problem, const Truth& truth, const Co
         const double steps = std::round(problem.duration.value() / study_step);
         rungs.push_back(rung_at({problem.duration.value() / steps, static_cast<long>(steps), 0}));
     }
-    if (rungs.empty()) rungs.push_back({none, none, none, none, none, none, none});
+    if (rungs.empty()) rungs.push_back({nan_value, nan_value, nan_value, nan_value, nan_value, nan_value, nan_value});
     return rungs;
 }
 

@@ -1,20 +1,19 @@
 #include "figure/kinds.hpp"
 #include "figure/work_chart.hpp"
 #include "integrate/methods.hpp"
+#include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace doppel {
 namespace {
 
 using namespace std::string_view_literals;
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array costs{"time"sv, "evaluations"sv};
 constexpr std::array all_models{Model::angles, Model::constraints, Model::mechanism};
 
@@ -283,7 +282,7 @@ private:
         std::vector<double> all;
         for (const auto& ladder : ladders)
             for (const std::size_t i : useful_rungs(ladder, Cost::time, {0, 1})) all.push_back(ladder.spread[i]);
-        if (all.empty()) return {none, none};
+        if (all.empty()) return {nan_value, nan_value};
         std::sort(all.begin(), all.end());
         return {all[all.size() / 2], all.back()};
     }

@@ -3,13 +3,13 @@
 #include "analysis/angle_error.hpp"
 #include "analysis/natural_units.hpp"
 #include "analysis/sensitivity.hpp"
+#include "numeric/nan.hpp"
 #include "scene/assemble.hpp"
 #include "scene/choose.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace doppel {
 namespace {
@@ -161,9 +161,8 @@ const Truth& Truths::of(std::size_t index, const WorkProblem& problem, const std
     auto& found = found_[index];
     std::call_once(found.once, [&] {
         const auto spec = problem.motion(problem.plain ? Model::angles : Model::mechanism);
-        const double none = std::numeric_limits<double>::quiet_NaN();
         const double sensitivity =
-            problem.plain ? angle_sensitivity(spec.chain->cast<double>(), problem.duration.value(), stop) : none;
+            problem.plain ? angle_sensitivity(spec.chain->cast<double>(), problem.duration.value(), stop) : nan_value;
         const double most = problem.plain ? allowed * std::max(sensitivity, 1.0) : allowed_blindly;
         found.truth = {reference_end(spec, problem.duration, most, stop), sensitivity};
     });

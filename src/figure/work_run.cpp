@@ -3,6 +3,7 @@
 #include "analysis/energy_error.hpp"
 #include "numeric/clock.hpp"
 #include "numeric/error.hpp"
+#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@
 namespace doppel {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double long_enough_s = 1e-3;  // that a clock tells it within some tenths of a percent
 constexpr double warm_enough_s = 3e-3;  // that what comes first is not seen
 constexpr long most_runs = 32;          // at a time: all of them fit into the nearest cache
@@ -57,8 +57,8 @@ void watch(const WorkProblem& problem, MotionSpec spec, Rung& rung, const std::a
         length = std::max(length, seen.length_error);
         if (!std::isfinite(seen.energy_change)) energy = length = std::numeric_limits<double>::infinity();
     }
-    if (!std::isfinite(energy)) energy = length = none;
-    rung.energy_error = problem.conserves_energy ? energy : none;
+    if (!std::isfinite(energy)) energy = length = nan_value;
+    rung.energy_error = problem.conserves_energy ? energy : nan_value;
     rung.length_error = length;
 }
 
@@ -77,7 +77,7 @@ double timed(const MotionSpec& spec, double first_s, const std::atomic<bool>& st
 
 Rung motion_rung(const WorkProblem& problem, const Truth& truth, const Contender& contender, const Setting& setting,
                  const LadderSpec& spec, const std::atomic<bool>& stop) {
-    Rung rung{setting.value, none, none, none, none, none, none};
+    Rung rung{setting.value, nan_value, nan_value, nan_value, nan_value, nan_value, nan_value};
     const auto motion_spec = spec_of(problem, contender, setting);
     const auto motion = make_motion(motion_spec);
     const auto take_effort = [&] {
@@ -94,14 +94,14 @@ Rung motion_rung(const WorkProblem& problem, const Truth& truth, const Contender
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::method_failed) throw;
         take_effort();
-        rung.error = none;
+        rung.error = nan_value;
     }
     return rung;
 }
 
 Rung peer_rung(const WorkProblem& problem, const Truth& truth, const Peer& peer, const Setting& setting,
                const LadderSpec& spec) {
-    Rung rung{setting.value, none, none, none, none, none, none};
+    Rung rung{setting.value, nan_value, nan_value, nan_value, nan_value, nan_value, nan_value};
     const auto& chain = *problem.side.motion.chain;
     try {
         const auto solver = peer.make(chain.cast<double>(), problem.duration.value(), setting.value);
@@ -111,7 +111,7 @@ Rung peer_rung(const WorkProblem& problem, const Truth& truth, const Peer& peer,
         Observation seen;
         for (std::size_t i = 0; i < chain.links(); ++i) seen.bobs.push_back({.theta = solver->state()[i]});
         rung.error = problem.error(seen, truth.reference);
-        if (!std::isfinite(rung.error)) rung.error = none;
+        if (!std::isfinite(rung.error)) rung.error = nan_value;
         if (!spec.timed) return rung;
         const long runs = runs_for(first_s);
         const double all = cpu_of([&] {

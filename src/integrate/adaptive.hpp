@@ -53,7 +53,6 @@ public:
 
 private:
     static constexpr std::size_t end = pair.stages;  // index of the slope at the end of a step
-    static constexpr bool settles = requires(Model & model, State& y) { model.settle(y); };
     static constexpr bool error_needs_end = [] {
         bool needs = false;
         for (const auto& row : pair.error) needs |= !is_zero(row[end]);
@@ -94,7 +93,7 @@ private:
             h_ *= Scalar(growth(error, 1, 1));
         }
         settle(model_, y1_);
-        if constexpr (settles || !error_needs_end) {
+        if (!error_needs_end || settles(model_)) {
             doppel::slope(model_, y1_, k_[end]);
             ++evaluations_;
         }

@@ -2,6 +2,8 @@
 
 #include "physics/constrained.hpp"
 
+#include <concepts>
+#include <memory>
 #include <string_view>
 
 namespace doppel {
@@ -15,26 +17,89 @@ struct Method {
     std::string_view properties;  // "explicit", "implicit, symplectic, time-reversible"
 };
 
-/// Every method is a class template over the model, used like this; all its memory is allocated by the constructor:
+/// What every method's class template over the model offers, besides its constructor:
 ///
-///     fixed step   Stepper(Model&, const State& start, const Scalar& step);       advance(long steps)
-///     adaptive     Stepper(Model&, const State& start, const Scalar& tolerance);  advance(const Scalar& seconds)
-///     both         state() → State, now          evaluations() → long, of the right-hand side so far
-///     adaptive     steps() → long, accepted      smallest_step() → Scalar, s, of the accepted ones that error control chose
+///     fixed step   (Model&, const State& start, const Scalar& step)
+///     adaptive     (Model&, const State& start, const Scalar& tolerance)
 ///
 /// Errors: Error (exit 3) where a step cannot be made: no convergence, a step size that vanishes, a tolerance that the
-/// scalar cannot give.
+/// scalar cannot give. All memory is allocated by the constructor.
+template <class S>
+concept Steps = requires(S stepper) {
+    stepper.state();                                         // now
+    { stepper.evaluations() } -> std::convertible_to<long>;  // of the right-hand side so far
+};
+template <class S>
+concept FixedStepper = Steps<S> && requires(S stepper) {
+    stepper.advance(1L);
+};  // so many steps
+template <class S>
+concept AdaptiveStepper = Steps<S> && requires(S stepper, const typename S::Scalar& seconds) {
+    stepper.advance(seconds);
+    { stepper.steps() } -> std::convertible_to<long>;                        // accepted
+    { stepper.smallest_step() } -> std::convertible_to<typename S::Scalar>;  // s, of those that error control chose
+};
+
+/// After every step a model may set the state right (projection onto its constraints): settle().
+template <class Model, class State>
+void settle(Model& model, State& y) {
+    if constexpr (requires { model.settle(y); }) model.settle(y);
+}
+template <class Model>
+bool settles(const Model& model) {
+    if constexpr (requires { model.settles(); })
+        return model.settles();
+    else
+        return requires(Model & m, typename Model::State & y) {
+            m.settle(y);
+        };
+}
+
+/// Any system with states of one type, behind a virtual call: what steps it is compiled once for all of them.
+template <class Y>
+class AnySystem {
+public:
+    using State = Y;
+    using Scalar = typename Y::Scalar;
+
+    template <System Model>
+    requires(!std::same_as<Model, AnySystem> &&
+             std::same_as<typename Model::State, State>) explicit AnySystem(const Model& model)
+        : system_(std::make_unique<Held<Model>>(model)), settles_(doppel::settles(model)) {}
+
+    void rate(const State& y, State& dydt) { system_->rate(y, dydt); }
+    void settle(State& y) {
+        if (settles_) system_->settle(y);
+    }
+    bool settles() const { return settles_; }
+
+private:
+    struct Interface {
+        virtual ~Interface() = default;
+        virtual void rate(const State& y, State& dydt) = 0;
+        virtual void settle(State& y) = 0;
+    };
+    template <class Model>
+    struct Held final : Interface {
+        Model model;
+        explicit Held(const Model& held) : model(held) {}
+        void rate(const State& y, State& dydt) override { model.rate(y, dydt); }
+        void settle(State& y) override { doppel::settle(model, y); }
+    };
+
+    std::unique_ptr<Interface> system_;
+    bool settles_;
+};
+
 /// The right-hand side, for methods of many stages: called, not copied into every one of them, which costs them two
 /// nanoseconds a stage and saves minutes of compiling.
 template <class Model, class State>
 [[gnu::noinline]] void slope(Model& model, const State& y, State& dydt) {
     model.rate(y, dydt);
 }
-
-/// After every step a model may set the state right (projection onto its constraints): settle().
-template <class Model, class State>
-void settle(Model& model, State& y) {
-    if constexpr (requires { model.settle(y); }) model.settle(y);
+template <class State>
+void slope(AnySystem<State>& model, const State& y, State& dydt) {
+    model.rate(y, dydt);
 }
 
 }  // namespace doppel

@@ -1,7 +1,7 @@
 #include "integrate/motion.hpp"
 
 #include "integrate/methods.hpp"
-#include "integrate/stepped.hpp"
+#include "integrate/simulation.hpp"
 
 namespace doppel {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/stepped.hpp"
+#include "integrate/simulation.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
 
@@ -11,7 +11,7 @@ template <class Scalar>
 std::unique_ptr<Motion> make_angles_motion(const MotionSpec& spec) {
     const auto p = spec.chain->cast<Scalar>();
     const auto made = [&]<class Model>(std::type_identity<Model>) {
-        return stepped(spec, Model(p), Model::start(p), AnglesView<Scalar>{p});
+        return simulation(spec, Model(p), Model::start(p), AnglesView<Scalar>{p});
     };
     if (p.links() == 2) return made(std::type_identity<DoublePendulum<Scalar>>());
     if constexpr (std::is_same_v<Scalar, double>)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/stepped.hpp"
+#include "integrate/simulation.hpp"
 #include "physics/rod_chain.hpp"
 
 namespace doppel {
@@ -16,7 +16,7 @@ std::unique_ptr<Motion> make_constraints_motion(const MotionSpec& spec) {
     if constexpr (std::is_same_v<Scalar, double>) {
         if (p.links() == 2) return made(std::type_identity<RodChain<Scalar, 2>>());
         if (p.links() == 3 && spec.stabilise == Stabilise::none)
-            return stepped(spec, RodChain<Scalar, 3>(p), RodChain<Scalar, 3>::start(p), ParticlesView<Scalar>{p});
+            return simulation(spec, RodChain<Scalar, 3>(p), RodChain<Scalar, 3>::start(p), ParticlesView<Scalar>{p});
     }
     return made(std::type_identity<RodChain<Scalar, Eigen::Dynamic>>());
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/stepped.hpp"
+#include "integrate/simulation.hpp"
 #include "physics/mechanism.hpp"
 #include "physics/tension.hpp"
 

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #pragma GCC diagnostic push
@@ -17,15 +20,54 @@
 #pragma GCC diagnostic pop
 
 namespace doppel {
+namespace {
+
+struct Free {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+    void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
+};
+using File = std::unique_ptr<std::FILE, Free>;
+
+std::uint64_t big_endian(const unsigned char* bytes) {
+    return std::uint64_t{bytes[0]} << 24 | bytes[1] << 16 | bytes[2] << 8 | bytes[3];
+}
+
+/// What a file claims that it cannot hold; "" where its lengths are possible. stb_image makes room for the length of a
+/// chunk and for the size in the header before it reads on, so a file of a hundred bytes could take gigabytes.
+/// Source  Portable Network Graphics (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE makes at most 1032 bytes of one.
+std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
+    constexpr std::uint64_t signature = 8, around = 12;  // length, type and checksum of a chunk
+    constexpr std::uint64_t most_inflated = 1032;
+    unsigned char head[26];  // of a file: signature, length and type, width, height, bits, kind of colour
+    if (std::fread(head, 1, sizeof head, file) == sizeof head) {
+        const auto width = big_endian(head + 16), height = big_endian(head + 20);
+        const std::uint64_t bits = head[24] * (head[25] == 2 ? 3U : head[25] == 4 ? 2U : head[25] == 6 ? 4U : 1U);
+        if (width * bits / 8 > most_inflated * bytes / std::max<std::uint64_t>(height, 1))
+            return fmt::format("{}x{} pixels cannot be in {} bytes", width, height, bytes);
+    }
+    for (std::uint64_t at = signature; at + 8 <= bytes;) {
+        unsigned char chunk[8];  // length and type
+        if (std::fseek(file, static_cast<long>(at), SEEK_SET) != 0 || std::fread(chunk, 1, 8, file) != 8) break;
+        if (std::string_view(reinterpret_cast<const char*>(chunk + 4), 4) == "IEND") break;
+        if (big_endian(chunk) + around > bytes - at)
+            return fmt::format("the chunk at byte {} is longer than the file", at);
+        at += around + big_endian(chunk);
+    }
+    std::rewind(file);
+    return {};
+}
+
+}  // namespace
 
 Picture read_png(const std::filesystem::path& path) {
-    struct Free {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-        void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
-    };
-    const std::unique_ptr<std::FILE, Free> file(std::fopen(path.c_str(), "rb"));
+    const File file(std::fopen(path.c_str(), "rb"));
     if (!file && errno == ENOENT) throw bad_input("{}: there is no such file", path.string());
     if (!file) throw io_failed("{}: cannot be read: {}", path.string(), std::generic_category().message(errno));
+    std::error_code fault;
+    const auto bytes = std::filesystem::file_size(path, fault);
+    if (fault) throw io_failed("{}: cannot be read: {}", path.string(), fault.message());
+    if (const auto claim = impossible_claim(file.get(), bytes); !claim.empty())
+        throw io_failed("{}: cannot be decoded as PNG: {}", path.string(), claim);
 
     Size size;
     int channels = 0;

@@ -107,7 +107,8 @@ void check_size(const VideoOptions& options, const Codec& codec) {
 }
 
 void check_rate(const VideoOptions& options) {
-    const auto [numerator, denominator] = std::pair(options.fps_numerator, options.fps_denominator);
+    const int numerator = options.fps_numerator;
+    const int denominator = options.fps_denominator;
     if (numerator < 1 || denominator < 1)
         throw bad_input("frames per second must be > 0; they are {}/{}", numerator, denominator);
     const auto limit = [&](int most, std::string_view why) {

@@ -21,6 +21,8 @@ struct Pendulum {
     std::vector<Scalar> rate{0, 0};            // rad/s, at t = 0
     Scalar gravity = Scalar(98) / Scalar(10);  // m/s²
 
+    friend bool operator==(const Pendulum&, const Pendulum&) = default;
+
     std::size_t links() const { return mass.size(); }
 
     /// The same in another scalar.

@@ -25,7 +25,7 @@ public:
         set(k, part_of(q, a_) - velocity_of(b_, q));
     }
 
-    /// Σ_{j=1}^{n−1} r_j · r_{n−j}
+    /// Σ_{j=1}^{n−1} r_j · r_{n−j}, n ≥ 1
     Scalar inner_square(int n) const {
         const Scalar *x = x_.data(), *y = y_.data();
         Scalar across(0), up(0);
@@ -35,7 +35,7 @@ public:
         }
         const Scalar half = across + up;
         const Scalar sum = half + half;
-        return n % 2 == 1 || n == 0 ? sum : Scalar(sum + (x[n / 2] * x[n / 2] + y[n / 2] * y[n / 2]));
+        return n % 2 == 1 ? sum : Scalar(sum + (x[n / 2] * x[n / 2] + y[n / 2] * y[n / 2]));
     }
 
     /// Coefficient n of |r|²

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -12,6 +15,11 @@ struct Color {
     constexpr Color with_alpha(float alpha) const { return {r, g, b, alpha}; }
     friend constexpr bool operator==(const Color&, const Color&) = default;
 };
+
+/// A channel as a byte, rounded.
+inline std::uint8_t byte_of(double channel) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.0, 1.0)));
+}
 
 /// From 0xRRGGBB, opaque.
 constexpr Color rgb(unsigned hex) {

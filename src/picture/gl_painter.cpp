@@ -17,13 +17,13 @@ void set_crisp() {
     TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
-/// The corners of a mark that turns, one after another.
-std::array<Point, 4> outline(const Mark& mark) {
+/// The corners of a primitive that turns, one after another.
+std::array<Point, 4> outline(const Primitive& primitive) {
     const float room = 0.05f;  // px, so that rounding loses none
-    const Point x{mark.axis.x * (mark.half.x + room), mark.axis.y * (mark.half.x + room)};
-    const Point y{-mark.axis.y * (mark.half.y + room), mark.axis.x * (mark.half.y + room)};
+    const Point x{primitive.axis.x * (primitive.half.x + room), primitive.axis.y * (primitive.half.x + room)};
+    const Point y{-primitive.axis.y * (primitive.half.y + room), primitive.axis.x * (primitive.half.y + room)};
     const auto corner = [&](float along, float across) {
-        return Point{mark.origin.x + along * x.x + across * y.x, mark.origin.y + along * x.y + across * y.y};
+        return Point{primitive.origin.x + along * x.x + across * y.x, primitive.origin.y + along * x.y + across * y.y};
     };
     return {corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
 }
@@ -71,33 +71,33 @@ Painter::Painter(Size size)
     check_errors("the shaders and the buffers of their input");
 }
 
-void Painter::paint(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
-    plan(sketch, places);
+void Painter::paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
+    plan(items, places);
     vertices_.clear();
     for (std::size_t r = 0; r < used_runs_; ++r) {
         Run& run = runs_[r];
         run.begin = vertices_.size() / 4;
         for (const std::size_t p : run.parts) {
-            for (std::size_t i = sketch.parts[p].begin; i < sketch.parts[p].end; ++i) {
-                add(sketch.marks[i], sketch.bounds[i], places);
+            for (std::size_t i = items.parts[p].begin; i < items.parts[p].end; ++i) {
+                add(items.primitives[i], items.bounds[i], places);
             }
         }
         run.end = vertices_.size() / 4;
     }
     upload_vertices();
     upload(atlas);
-    upload(sketch.images);
+    upload(items.images);
     for (std::size_t r = 0; r < used_runs_; ++r) draw(runs_[r]);
 }
 
 /// Shares out the parts among few runs. A part may be drawn earlier than its turn if it meets nothing on the way.
-void Painter::plan(const Sketch& sketch, const std::vector<Rect>& places) {
+void Painter::plan(const RenderList& items, const std::vector<Rect>& places) {
     used_runs_ = 0;
     const auto meet = [](const Rect& a, const Rect& b) { return !common(a, b).empty(); };
-    for (std::size_t p = 0; p < sketch.parts.size(); ++p) {
-        const Sketch::Part& part = sketch.parts[p];
+    for (std::size_t p = 0; p < items.parts.size(); ++p) {
+        const RenderList::Part& part = items.parts[p];
         if (std::none_of(places.begin(), places.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
-        const Picture* image = sketch.marks[part.begin].image;
+        const Picture* image = items.primitives[part.begin].image;
         std::size_t home = used_runs_;
         for (std::size_t r = used_runs_; r-- > 0;) {
             const bool met = meet(runs_[r].bounds, part.bounds);
@@ -117,25 +117,25 @@ void Painter::plan(const Sketch& sketch, const std::vector<Rect>& places) {
     }
 }
 
-/// What of the mark lies within the places. A pixel that it touches is drawn once, whichever way.
-void Painter::add(const Mark& mark, const Rect& bounds, const std::vector<Rect>& places) {
+/// What of the primitive lies within the places. A pixel that it touches is drawn once, whichever way.
+void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places) {
     for (const Rect& place : places) {
         const Rect seen = common(bounds, place);
         if (seen.empty()) continue;
         const auto left = static_cast<float>(seen.left), right = static_cast<float>(seen.right);
         const auto top = static_cast<float>(seen.top), bottom = static_cast<float>(seen.bottom);
         outline_ = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
-        if (mark.half.x > 0) {
+        if (primitive.half.x > 0) {
             // along its own axes fewer pixels lie around what it shows
-            const auto corners = outline(mark);
+            const auto corners = outline(primitive);
             outline_.assign(corners.begin(), corners.end());
             if (seen != bounds) clip(left, right, top, bottom);
         }
         // a fan, two triangles at a time
         for (std::size_t i = 2; i < outline_.size(); i += 2)
             for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
-                vertices_.push_back(
-                    {outline_[corner], mark.origin, mark.axis, mark.shape, mark.more, mark.bow, mark.tint});
+                vertices_.push_back({outline_[corner], primitive.origin, primitive.axis, primitive.shape,
+                                     primitive.more, primitive.bow, primitive.tint});
     }
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "picture/gl_objects.hpp"
-#include "picture/sketch.hpp"
+#include "picture/render_list.hpp"
 
 #include <cstdint>
 
 namespace doppel::gl {
 
-/// Draws sketches onto the canvas that is bound.
+/// Draws render lists onto the canvas that is bound.
 ///
 /// A canvas's alpha is 1 at rest. While a stroke is drawn it holds how transparent the stroke is there: segments keep
 /// the smallest value, so that they do not add up where they meet; then the cover blends the colour and restores the 1,
@@ -16,9 +16,9 @@ class Painter {
 public:
     explicit Painter(Size size);
 
-    /// Draws what of the sketch lies within the `places`, which must not overlap. Throws Error where an image is larger
-    /// than OpenGL takes.
-    void paint(const Sketch& sketch, const std::vector<Rect>& places, const GlyphAtlas& atlas);
+    /// Draws what of the render list lies within the `places`, which must not overlap. Throws Error where an image is
+    /// larger than OpenGL takes.
+    void paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas);
 
 private:
     struct Vertex {
@@ -42,8 +42,8 @@ private:
         std::unique_ptr<Texture> texture;
     };
 
-    void plan(const Sketch& sketch, const std::vector<Rect>& places);
-    void add(const Mark& mark, const Rect& bounds, const std::vector<Rect>& places);
+    void plan(const RenderList& items, const std::vector<Rect>& places);
+    void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places);
     void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);

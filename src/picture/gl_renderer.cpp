@@ -1,5 +1,5 @@
 #include "numeric/error.hpp"
-#include "picture/damage.hpp"
+#include "picture/dirty_regions.hpp"
 #include "picture/gl_context.hpp"
 #include "picture/gl_painter.hpp"
 #include "picture/renderer.hpp"
@@ -11,7 +11,7 @@
 
 namespace doppel {
 
-/// What the renderer is made of: a context, a canvas, the backdrop, and the sketch of the last picture.
+/// What the renderer is made of: a context, a canvas, the backdrop, and the render list of the last picture.
 class Renderer::Machine {
 public:
     Machine(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop)
@@ -27,7 +27,7 @@ public:
 
         gl::ClearColor(0, 0, 0, 1);
         gl::Clear(GL_COLOR_BUFFER_BIT);
-        sketch(backdrop, size, *atlas_, now_);
+        make_render_list(backdrop, size, *atlas_, now_);
         for (const auto& places : turns({all_of(size)})) {
             if (stop) throw interrupted();
             paint(places, backdrop_);
@@ -40,8 +40,8 @@ public:
 
     const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop) {
         context_->make_current();
-        sketch(list, size_, *atlas_, now_);
-        changed_ = first_ ? std::vector{all_of(size_)} : damage(last_, now_);
+        make_render_list(list, size_, *atlas_, now_);
+        changed_ = first_ ? std::vector{all_of(size_)} : dirty_regions(last_, now_);
         first_ = true;  // until this one is whole
 
         // each switch between putting back, drawing and reading makes OpenGL finish what it has in hand: one of each a
@@ -84,7 +84,7 @@ private:
         return bands;
     }
 
-    /// Draws the sketch in hand within `places`, and reads them.
+    /// Draws the render list in hand within `places`, and reads them.
     void paint(const std::vector<Rect>& places, Picture& into) {
         painter_->paint(now_, places, *atlas_);
         for (const Rect& r : places)
@@ -113,7 +113,7 @@ private:
     std::optional<gl::Canvas> canvas_;
     std::optional<gl::Painter> painter_;
     Picture backdrop_, picture_;
-    Sketch last_, now_;  // of the last picture; of the one in hand, kept for its memory
+    RenderList last_, now_;  // of the last picture; of the one in hand, kept for its memory
     bool first_ = true;
     std::vector<Rect> changed_;
 };

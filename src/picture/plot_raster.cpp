@@ -8,14 +8,10 @@
 namespace doppel {
 namespace {
 
-std::uint8_t byte(float channel) {
-    return static_cast<std::uint8_t>(255 * std::clamp(channel, 0.0f, 1.0f) + 0.5f);
-}
-
 /// How much of each pixel of an area is covered, 0…1.
-class Coverage {
+class CoverageRaster {
 public:
-    Coverage(const Area& area, float scale)
+    CoverageRaster(const Area& area, float scale)
         : left(static_cast<int>(std::floor(area.left * scale))),
           top(static_cast<int>(std::floor(area.top * scale))),
           size{std::max(1, static_cast<int>(std::ceil(area.right * scale)) - left),
@@ -29,11 +25,11 @@ public:
 
     Image image(Color color, float scale) const {
         auto pixels = std::make_shared<Picture>(size);
-        const std::uint8_t ink[] = {byte(color.r), byte(color.g), byte(color.b)};
+        const std::uint8_t ink[] = {byte_of(color.r), byte_of(color.g), byte_of(color.b)};
         for (std::size_t i = 0; i < values.size(); ++i) {
             if (values[i] == 0) continue;
             std::copy_n(ink, 3, &pixels->rgba[4 * i]);
-            pixels->rgba[4 * i + 3] = byte(color.a * values[i]);
+            pixels->rgba[4 * i + 3] = byte_of(color.a * values[i]);
         }
         const auto px = [&](int v) { return static_cast<float>(v) / scale; };
         return {px(left), px(top), px(left + size.width), px(top + size.height), std::move(pixels)};
@@ -80,7 +76,7 @@ std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, 
 }  // namespace
 
 Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale) {
-    Coverage coverage(area, scale);
+    CoverageRaster coverage(area, scale);
     const float reach = std::max(radius * scale, 0.5f);
     for (const Point& point : points) {
         const float x = point.x * scale - static_cast<float>(coverage.left);
@@ -99,7 +95,7 @@ Image cloud_image(const std::vector<Point>& points, float radius, Color color, c
 }
 
 Image band_image(const Band& band, Color color, const Area& area, float scale) {
-    Coverage coverage(area, scale);
+    CoverageRaster coverage(area, scale);
     for (std::size_t i = 0; i + 1 < band.x.size(); ++i) {
         const std::size_t a = band.x[i] <= band.x[i + 1] ? i : i + 1, b = 2 * i + 1 - a;
         const double from = band.x[a] * scale - coverage.left, to = band.x[b] * scale - coverage.left;
@@ -162,7 +158,7 @@ Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, 
             }
             const Color color = weight > blank ? map_color(shares.share(sum / weight)) : none;
             std::uint8_t* rgba = pixels->at(column, row);
-            rgba[0] = byte(color.r), rgba[1] = byte(color.g), rgba[2] = byte(color.b), rgba[3] = 255;
+            rgba[0] = byte_of(color.r), rgba[1] = byte_of(color.g), rgba[2] = byte_of(color.b), rgba[3] = 255;
         }
     }
     return {area.left, area.top, area.right, area.bottom, std::move(pixels)};

@@ -28,10 +28,6 @@ const std::array<double, 256>& linear_of_bytes() {
     return table;
 }
 
-std::uint8_t byte(double x) {
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0, 1.0)));
-}
-
 /// Calls visit(i, share) for each of the old pixels that new pixel k covers along a side; the shares add up to 1.
 template <class Visit>
 void for_each_covered(int k, int new_length, int old_length, Visit&& visit) {
@@ -72,8 +68,8 @@ Picture reduced(const Picture& picture, Size size) {
                 for (std::size_t c = 0; c < 4; ++c) mean[c] += share * sums[std::size_t{4} * column + c];
             });
             std::uint8_t* pixel = small.at(x, y);
-            for (std::size_t c = 0; c < 3; ++c) pixel[c] = mean[3] > 0 ? byte(to_srgb(mean[c] / mean[3])) : 0;
-            pixel[3] = byte(mean[3]);
+            for (std::size_t c = 0; c < 3; ++c) pixel[c] = mean[3] > 0 ? byte_of(to_srgb(mean[c] / mean[3])) : 0;
+            pixel[3] = byte_of(mean[3]);
         }
     }
     return small;
@@ -87,7 +83,7 @@ Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px
     const int count = static_cast<int>(pictures.size()), across = std::min(columns, count);
     const int rows = (count + columns - 1) / columns;
     Picture sheet({gap_px + across * (width + gap_px), gap_px + rows * (height + gap_px)});
-    const std::array ground = {byte(background.r), byte(background.g), byte(background.b), byte(background.a)};
+    const std::array ground = {byte_of(background.r), byte_of(background.g), byte_of(background.b), byte_of(background.a)};
     for (std::size_t i = 0; i < sheet.rgba.size(); ++i) sheet.rgba[i] = ground[i % 4];
     for (int k = 0; k < count; ++k) {
         const Picture& picture = pictures[static_cast<std::size_t>(k)];

@@ -1,6 +1,7 @@
 #include "scene/outlook.hpp"
 
 #include "analysis/error_course.hpp"
+#include "analysis/linear_stability.hpp"
 
 #include <algorithm>
 #include <cmath>

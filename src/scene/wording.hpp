@@ -23,7 +23,7 @@ std::string pace_words(const Side& side);
 /// 12 → "₁₂"
 std::string subscript(std::size_t number);
 
-/// 30000 → "30 000" with thin spaces.
+/// 30000 → "30 000"
 std::string grouped(long number);
 
 /// 223456 → "220 000": what was measured once knows no more digits.

@@ -9,7 +9,7 @@
 #include <array>
 
 namespace doppel {
-namespace {
+namespace check_values_test {
 
 // Values of the study's own procedure: explicit Euler, 30 kHz, a sample each 250 steps, twins 0.003° apart (Kao 2022,
 // re-run independently). They hold to the digits given where the motion is regular.
@@ -108,5 +108,5 @@ TEST(EnergyScale, IsTheRangeWhereTheStartHasNoEnergy) {
     EXPECT_DOUBLE_EQ(scale(released(0, 0)), 29.4);
 }
 
-}  // namespace
+}  // namespace check_values_test
 }  // namespace doppel

@@ -1,4 +1,5 @@
 #include "analysis/exponent.hpp"
+#include "analysis/linear_stability.hpp"
 
 #include "analysis/tangent.hpp"
 #include "integrate/pendulums.hpp"
@@ -13,7 +14,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace exponent_test {
 
 const std::atomic<bool> never = false;
 
@@ -57,7 +58,7 @@ TEST(Exponent, TangentIsTheDifferenceOfNeighbours) {
     using Flow = TangentFlow<DoublePendulum<Dual<double, 1>>>;
     const auto p = uneven(2);
     const State<double, 4> direction(1, -0.5, 2, 0.3);
-    Flow::State start;
+    Flow::State start(8);
     start << DoublePendulum<double>::start(p), direction;
     TangentMotion<DoublePendulum<Dual<double, 1>>> motion(p, 1e-12);
     motion.set_down(start);
@@ -181,5 +182,5 @@ TEST(Exponent, StopsWhenTold) {
     }
 }
 
-}  // namespace
+}  // namespace exponent_test
 }  // namespace doppel

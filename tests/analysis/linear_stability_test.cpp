@@ -8,7 +8,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace linear_stability_test {
 
 Pendulum<double> chain(std::vector<double> mass, std::vector<double> angle) {
     Pendulum<double> p{.mass = mass, .length = std::vector(mass.size(), 1.0), .angle = angle};
@@ -139,5 +139,5 @@ TEST(StepLimit, GoesByTheEnergyInEachMode) {
     EXPECT_GT(energy_left("adams", 1.03 * adams, std::lround(50 / (1.03 * adams))), 10);
 }
 
-}  // namespace
+}  // namespace linear_stability_test
 }  // namespace doppel

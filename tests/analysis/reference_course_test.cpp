@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace reference_course_test {
 
 const std::atomic<bool> never = false;
 constexpr double enough = 0.5;
@@ -76,10 +76,22 @@ TEST(ReferenceCourse, EndsSomewhatBeyondWhatDoubleCanTell) {
     EXPECT_TRUE(course.failure.empty());
 }
 
+TEST(ErrorCourse, SaysWhyAMethodFailed) {
+    const auto reference = reference_course(in_double({150, 90}), 20, 2, enough, never);
+    auto spec = in_double({150, 90});
+    spec.method = "gauss4";
+    spec.steps_per_sample = 1;
+    spec.sample_interval = {1, 10};
+    spec.chain->rate = {Quad(60), Quad(-80)};  // too fast for steps of 0.1 s
+    const auto course = error_course(spec, reference, 1e9, never);
+    EXPECT_LT(course.error.size(), 3u);
+    EXPECT_NE(course.failure.find("the stages still change"), std::string::npos) << course.failure;
+}
+
 TEST(ReferenceCourse, StopsWhenAsked) {
     const std::atomic<bool> stop = true;
     EXPECT_THROW(reference_course(in_double({90, 90}), 10, 2, enough, stop), Error);
 }
 
-}  // namespace
+}  // namespace reference_course_test
 }  // namespace doppel

@@ -9,7 +9,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace reference_test {
 
 const std::atomic<bool> never = false;
 
@@ -152,5 +152,5 @@ TEST(Reference, StopsWhenAsked) {
     EXPECT_THROW(reference_end(chain({90, 90}), {10, 1}, 1, stop), Error);
 }
 
-}  // namespace
+}  // namespace reference_test
 }  // namespace doppel

@@ -14,7 +14,7 @@
 #include <tuple>
 
 namespace doppel {
-namespace {
+namespace section_test {
 
 using Model = DoublePendulum<double>;
 const std::atomic<bool> never = false;
@@ -209,5 +209,5 @@ TEST(Section, RefusesWhatMakesNoSenseAndStopsWhenTold) {
     EXPECT_EQ(code([&] { releases_of_energy(uneven(1), 1, 3); }), ExitCode::bad_input);
 }
 
-}  // namespace
+}  // namespace section_test
 }  // namespace doppel

@@ -10,7 +10,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace sensitivity_test {
 
 const std::atomic<bool> never = false;
 
@@ -57,5 +57,5 @@ TEST(Sensitivity, StopsWhenAsked) {
     EXPECT_THROW(angle_sensitivity(from_rest({90, 90}), 10, stop), Error);
 }
 
-}  // namespace
+}  // namespace sensitivity_test
 }  // namespace doppel

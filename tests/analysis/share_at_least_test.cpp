@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace share_at_least_test {
 
 TEST(ShareAtLeast, OfAllHitsInClosedForm) {
     for (const int n : {1, 20, 500}) EXPECT_NEAR(share_at_least(n, n), std::pow(0.05, 1.0 / n), 1e-12) << n;
@@ -17,5 +17,5 @@ TEST(ShareAtLeast, OfAllHitsInClosedForm) {
     EXPECT_NEAR(share_at_least(490, 500), 0.96634, 1e-4);
 }
 
-}  // namespace
+}  // namespace share_at_least_test
 }  // namespace doppel

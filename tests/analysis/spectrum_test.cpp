@@ -11,7 +11,7 @@
 #include <numeric>
 
 namespace doppel {
-namespace {
+namespace spectrum_test {
 
 const std::atomic<bool> never = false;
 
@@ -84,9 +84,10 @@ TEST(Spectrum, RefusesWhatMakesNoSenseAndStopsWhenTold) {
     };
     EXPECT_EQ(code(uneven(5), {}, false), ExitCode::bad_input);
     EXPECT_EQ(code(uneven(2), {.duration_s = 0}, false), ExitCode::bad_input);
+    EXPECT_EQ(code(uneven(2), {.duration_s = 0.5, .samples = 1}, false), ExitCode::done);
     EXPECT_EQ(code(uneven(2), {.samples = 0}, false), ExitCode::bad_input);
     EXPECT_EQ(code(uneven(2), {}, true), ExitCode::interrupted);
 }
 
-}  // namespace
+}  // namespace spectrum_test
 }  // namespace doppel

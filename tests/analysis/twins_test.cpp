@@ -13,7 +13,7 @@
 #include <thread>
 
 namespace doppel {
-namespace {
+namespace twins_test {
 
 constexpr long samples = 40;
 
@@ -138,6 +138,19 @@ TEST(Twins, ShareThePendulumsTheyHaveInCommon) {
     EXPECT_EQ(averages[10], averages[2]);
 }
 
+TEST(Twins, ApartInGravityAloneAreTwo) {
+    Twins twins{released(90, 90), released(90, 90)};
+    twins.b.gravity = 9.9;
+    twins.b.angle[0] += 1e-6;  // a start apart, to measure by
+    Twins heavier = twins;
+    heavier.a.gravity = 9.9;
+    const auto run = both(EnsembleModel::angles);
+    const auto averages = averages_of({twins, heavier}, run);
+    EXPECT_EQ(averages[0], average_of_films(twins, run));
+    EXPECT_EQ(averages[1], average_of_films(heavier, run));
+    EXPECT_GT(averages[0], averages[1] + 1);  // measured 9.5 and 0.56
+}
+
 TEST(Twins, OfMoreLinksThanLanesTake) {
     Pendulum<double> p{{1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}, {0.5, 0.4, 0.3, 0.2, 0.1}, {0, 0, 0, 0, 0}, 9.8};
     Twins twins{p, p};
@@ -199,5 +212,5 @@ TEST(Twins, StopSoon) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));  // measured 0.05 s
 }
 
-}  // namespace
+}  // namespace twins_test
 }  // namespace doppel

@@ -4,7 +4,7 @@
 #include <fstream>
 
 namespace doppel {
-namespace {
+namespace compare_test {
 
 namespace fs = std::filesystem;
 using test::doppel;
@@ -102,5 +102,5 @@ TEST(Compare, SeesOpacity) {
     EXPECT_NE(result.out.find("a pixel differs by 200/255"), std::string::npos) << result.out;
 }
 
-}  // namespace
+}  // namespace compare_test
 }  // namespace doppel

@@ -7,7 +7,7 @@
 #include <csignal>
 
 namespace doppel {
-namespace {
+namespace extremes_test {
 
 using namespace test;
 
@@ -135,5 +135,5 @@ TEST(Extremes, WhatWouldTakeForEverEndsWhenAsked) {
     }
 }
 
-}  // namespace
+}  // namespace extremes_test
 }  // namespace doppel

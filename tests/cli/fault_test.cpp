@@ -11,7 +11,7 @@
 #include <sstream>
 
 namespace doppel {
-namespace {
+namespace fault_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -323,5 +323,5 @@ TEST(Faults, AMessageIsOneLineWhateverItQuotes) {
     }
 }
 
-}  // namespace
+}  // namespace fault_test
 }  // namespace doppel

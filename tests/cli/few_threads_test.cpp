@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 namespace doppel {
-namespace {
+namespace few_threads_test {
 
 using namespace test;
 
@@ -64,5 +64,5 @@ TEST(FewThreads, AreEnoughForPictures) {
     EXPECT_EQ(listing(folder / "out/butterfly/frames").size(), 20u);
 }
 
-}  // namespace
+}  // namespace few_threads_test
 }  // namespace doppel

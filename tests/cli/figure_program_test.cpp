@@ -10,7 +10,7 @@
 #include <thread>
 
 namespace doppel {
-namespace {
+namespace figure_program_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -275,5 +275,5 @@ TEST(Recipe, FigureImagesInCi) {
     EXPECT_EQ(result.code, 0) << result.err;
 }
 
-}  // namespace
+}  // namespace figure_program_test
 }  // namespace doppel

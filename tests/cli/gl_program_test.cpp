@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 namespace doppel {
-namespace {
+namespace gl_program_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -104,5 +104,5 @@ TEST(GlProgram, ExitsWith4WhereNothingCanDraw) {
     }
 }
 
-}  // namespace
+}  // namespace gl_program_test
 }  // namespace doppel

@@ -11,7 +11,7 @@
 #include <thread>
 
 namespace doppel {
-namespace {
+namespace program_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -308,5 +308,5 @@ TEST(Program, ReportsProgressForPeopleAndPrograms) {
     EXPECT_EQ(plain.err.find('\r'), std::string::npos) << "no bar where there is no terminal";
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace doppel

@@ -8,7 +8,7 @@
 #include <csignal>
 
 namespace doppel {
-namespace {
+namespace streams_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -195,5 +195,5 @@ TEST(Streams, APipeAsPresetIsReadAndDoesNotSwallowCtrlC) {
     EXPECT_EQ(doppel(folder, {"check", "work.toml"}).code, 2);
 }
 
-}  // namespace
+}  // namespace streams_test
 }  // namespace doppel

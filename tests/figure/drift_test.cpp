@@ -6,7 +6,7 @@
 #include <map>
 
 namespace doppel {
-namespace {
+namespace drift_test {
 
 const std::string kind = "[scene]\nkind = \"drift\"\n";
 
@@ -153,5 +153,5 @@ TEST(Growth, DoublesUntilItBreaksDown) {
     EXPECT_EQ(growth.broken_at_s, 65);
 }
 
-}  // namespace
+}  // namespace drift_test
 }  // namespace doppel

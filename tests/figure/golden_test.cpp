@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace golden_test {
 
 /// A figure that the last bit of a number does not change: nothing beyond 3 s that is chaotic, nothing that was timed.
 struct Golden {
@@ -53,5 +53,5 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace doppel

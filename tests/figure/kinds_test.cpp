@@ -5,7 +5,7 @@
 #include <map>
 
 namespace doppel {
-namespace {
+namespace kinds_test {
 
 // What the figures that settle open questions must show, whatever their pictures look like.
 
@@ -103,5 +103,5 @@ TEST(Curves, CheckToleranceTellsUntilWhenTheyStand) {
               "sample,time_s,log_ratio");
 }
 
-}  // namespace
+}  // namespace kinds_test
 }  // namespace doppel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace numbers_test {
 
 // Each kind of figure knows what its trials' numbers look like: those of a file that do not fit are not believed.
 
@@ -111,5 +111,5 @@ TEST(NumbersOfAudit, AreAsManyAsTheClaimTakes) {
     EXPECT_FALSE(table_text(figure, trials).empty());  // they are enough to tell it: under ASan none is missing
 }
 
-}  // namespace
+}  // namespace numbers_test
 }  // namespace doppel

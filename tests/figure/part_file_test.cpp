@@ -15,7 +15,7 @@
 #include <set>
 
 namespace doppel {
-namespace {
+namespace part_file_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -447,5 +447,5 @@ TEST(Computation, StopsSoonAndKeepsARecordFromBefore) {
     EXPECT_EQ(Resumed(figure, header_of(figure), record).computed_units, 9);
 }
 
-}  // namespace
+}  // namespace part_file_test
 }  // namespace doppel

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace preset_test {
 
 std::vector<PresetText> builtin_figures() {
     std::vector<PresetText> figures;
@@ -316,5 +316,5 @@ TEST(FigureErrors, OfTheCommandLineNameTheOption) {
     EXPECT_EQ(error_of([] { figure_of("poincare", {"system.integrator=\"rk4\""}); }).first, ExitCode::bad_input);
 }
 
-}  // namespace
+}  // namespace preset_test
 }  // namespace doppel

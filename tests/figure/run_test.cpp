@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 namespace doppel {
-namespace {
+namespace run_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -404,5 +404,5 @@ TEST(MergeOfNothing, KnowsTrialsWithoutNumbers) {
     EXPECT_EQ(bytes_of(out / "x/x.csv"), table_text(figure, trials)) << any_empty;
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace doppel

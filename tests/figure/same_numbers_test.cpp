@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace same_numbers_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -112,5 +112,5 @@ TEST(FlipMap, MirroredRowsAreThoseComputed) {
     EXPECT_EQ(table_text(figure, computed(figure)), table_text(whole, computed(whole)));
 }
 
-}  // namespace
+}  // namespace same_numbers_test
 }  // namespace doppel

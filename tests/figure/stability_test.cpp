@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace stability_test {
 
 /// One row at an angle so small that linear theory holds while the energy grows a hundredfold.
 std::vector<std::string> small_angle(const std::string& method, double from, double to, int columns) {
@@ -195,5 +195,5 @@ TEST(GoldenFigureOfStability, IsAsItWas) {
     test::expect_golden("figure-stability", renderer.draw(compose_figure(figure, computed(figure))));
 }
 
-}  // namespace
+}  // namespace stability_test
 }  // namespace doppel

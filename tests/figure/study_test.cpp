@@ -5,7 +5,7 @@
 #include <algorithm>
 
 namespace doppel {
-namespace {
+namespace study_test {
 
 // The figures of the study: check values of an independent program, to the digits given (Kao 2022, re-run).
 
@@ -191,5 +191,5 @@ TEST(Sweep, ExponentTellsRegularFromChaotic) {
     EXPECT_NEAR(table.at(180, 2), std::sqrt(std::sqrt(2.0) * 9.8), 3e-15);  // measured 4e-16
 }
 
-}  // namespace
+}  // namespace study_test
 }  // namespace doppel

@@ -8,7 +8,7 @@
 #include <map>
 
 namespace doppel {
-namespace {
+namespace work_precision_test {
 
 const std::string by_evaluations = "chart.cost=\"evaluations\"";
 
@@ -294,5 +294,5 @@ TEST(WorkPrecision, SaysWhatIsWrong) {
     expect_fault({"work_precision.tolerance=1"}, "tolerance");
 }
 
-}  // namespace
+}  // namespace work_precision_test
 }  // namespace doppel

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace gl_test {
 
 /// Films a preset with both libraries at once, each drawing only what changes, as a run does.
 void expect_the_same_film(const std::string& preset, long samples, long stride) {
@@ -31,5 +31,5 @@ TEST(GlFilm, IsTheSameByOsmesaAndEgl) {
     expect_the_same_film("whip", 60, 6);
 }
 
-}  // namespace
+}  // namespace gl_test
 }  // namespace doppel

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace golden_test {
 
 struct Golden {
     const char* name;  // of the file
@@ -165,5 +165,5 @@ TEST(GoldenPolicy, DifferencePictureShowsAllThree) {
     for (int c = 0; c < 3; ++c) EXPECT_EQ(grey.at(960 + 7, 9)[c], 80);
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace doppel

@@ -11,7 +11,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace layouts_test {
 
 bool is_color(const std::uint8_t* pixel, Color color, int slack = 3) {
     const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
@@ -354,5 +354,5 @@ TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {
     }
 }
 
-}  // namespace
+}  // namespace layouts_test
 }  // namespace doppel

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace mechanism_preset_test {
 
 Scene scene_from(const std::string& text) {
     return make_scene(read_preset({"x", "presets/x.toml", text}));
@@ -198,5 +198,5 @@ mass_kg = 3.4e-5
     EXPECT_NEAR(distance / (std::sqrt(2.0) * pull * std::cos(radians(79)) / 120), 1, 0.01);  // measured 1.0002
 }
 
-}  // namespace
+}  // namespace mechanism_preset_test
 }  // namespace doppel

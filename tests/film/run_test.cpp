@@ -17,7 +17,7 @@
 #include <thread>
 
 namespace doppel {
-namespace {
+namespace run_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -376,5 +376,5 @@ damping_N_s_per_m = 2
     EXPECT_EQ(manifest["b"]["conserves_energy"], false);
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace doppel

@@ -10,7 +10,7 @@
 #include <set>
 
 namespace doppel {
-namespace {
+namespace schedule_test {
 
 namespace fs = std::filesystem;
 const std::atomic<bool> never = false;
@@ -97,5 +97,5 @@ TEST(Schedule, PosterAndContactSheetAreFramesOfTheFilm) {
                 << x << ' ' << y;
 }
 
-}  // namespace
+}  // namespace schedule_test
 }  // namespace doppel

@@ -8,7 +8,7 @@
 #include <optional>
 
 namespace doppel {
-namespace {
+namespace truth_test {
 
 // Where the truth is known, the picture is measured against it, not against an older picture.
 
@@ -190,5 +190,5 @@ TEST(Truth, TwinsDrawnMirroredAreMirrored) {
     EXPECT_EQ(differing, 0);  // both pivots are at whole or both at half pixels
 }
 
-}  // namespace
+}  // namespace truth_test
 }  // namespace doppel

@@ -92,7 +92,7 @@ std::string read_sets(std::string_view input) {
             for (const auto& preset : builtin_presets())
                 if (preset.name == line.substr(1)) source.text = preset.text;
         } else {
-            arguments.push_back(line);
+            arguments.push_back(line.substr(0, line.find('\0')));  // a command line holds no zero bytes
         }
     }
     return refusal_of([&] {

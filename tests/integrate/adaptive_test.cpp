@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace doppel {
-namespace {
+namespace adaptive_test {
 
 Pendulum<Quad> released_at(const std::vector<int>& degrees) {
     Pendulum<Quad> p{};
@@ -59,6 +59,19 @@ void keeps_to_tolerance(const std::vector<int>& degrees, double seconds, const T
 
 // The angles of the truth are those of a quad run whose own error is below 1e-15. The factors follow the sensitivities
 // of the four motions to their start, 80, 21, 320 and 1040, and the length of the second.
+
+TEST(Adaptive, SamplesWithinAStepShareItsInterpolation) {
+    using Model = DoublePendulum<double>;
+    const auto evaluations = [](int samples) {
+        const auto p = released_at({90, 90}).cast<double>();
+        Model model(p);
+        Dop853::Stepper<Model> stepper(model, Model::start(p), 1e-6);
+        for (int i = 0; i < samples; ++i) stepper.advance(1e-3 / samples);
+        EXPECT_EQ(stepper.steps(), 1);
+        return stepper.evaluations();
+    };
+    EXPECT_EQ(evaluations(8), evaluations(1));
+}
 
 TEST(Tolerance, IsKeptFromNinetyNinety) {
     const auto truth = state_after<Dop853, DoublePendulum<Quad>>(released_at({90, 90}), 10, 1e-17);
@@ -251,5 +264,5 @@ TYPED_TEST(Adaptively, SettlesEveryStepAndEverySample) {
     EXPECT_NEAR(stepper.state()[0], std::sin(angle[0]), 1e-4);  // measured 2e-5, 2e-6
 }
 
-}  // namespace
+}  // namespace adaptive_test
 }  // namespace doppel

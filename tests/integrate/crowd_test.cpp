@@ -8,7 +8,7 @@
 #include <string>
 
 namespace doppel {
-namespace {
+namespace crowd_test {
 
 /// Chains that are released a degree apart.
 std::vector<MotionSpec> fan(Model model, std::string_view method, std::size_t links, std::size_t count) {
@@ -127,5 +127,5 @@ TEST(Crowd, StopsWhenAsked) {
     }
 }
 
-}  // namespace
+}  // namespace crowd_test
 }  // namespace doppel

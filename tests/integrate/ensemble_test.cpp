@@ -12,7 +12,7 @@
 #include <string>
 
 namespace doppel {
-namespace {
+namespace ensemble_test {
 
 constexpr double step = 1.0 / 3000;
 constexpr long steps = 300;  // more than the 256 after which Euler takes its sines afresh
@@ -103,5 +103,5 @@ TEST(Ensemble, SaysWhatItCannotStep) {
     EXPECT_NE(refusal([&] { Ensemble(trials, EnsembleModel::angles, "euler", step, 3); }), "");
 }
 
-}  // namespace
+}  // namespace ensemble_test
 }  // namespace doppel

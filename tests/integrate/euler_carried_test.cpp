@@ -10,7 +10,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace euler_carried_test {
 
 constexpr double step = 1.0 / 30000;  // s
 
@@ -159,5 +159,5 @@ TEST(CarriedEuler, LanesDoNotDependOnTheirNeighbours) {
     }
 }
 
-}  // namespace
+}  // namespace euler_carried_test
 }  // namespace doppel

@@ -12,7 +12,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace explicit_test {
 
 /// q″ = −q: frequency 1, so that z is the step. State (q, v).
 struct Oscillator {
@@ -174,5 +174,5 @@ TYPED_TEST(FixedStep, StaysInEquilibrium) {
     EXPECT_EQ(stepper.state(), start);
 }
 
-}  // namespace
+}  // namespace explicit_test
 }  // namespace doppel

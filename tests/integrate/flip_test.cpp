@@ -14,7 +14,7 @@
 #include <vector>
 
 namespace doppel {
-namespace {
+namespace flip_test {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
@@ -169,6 +169,13 @@ TEST(Flips, ComeWhenTheReferenceSays) {
     EXPECT_LT(odd.early, 1e-7);  // measured 1.2e-8
 }
 
+TEST(Flips, OfARodReleasedBeyondTheTopAreThereAtOnce) {
+    for (const Release& release : {Release{pi + 0.1, 0}, Release{0, -pi - 0.1}}) {
+        EXPECT_EQ(reference_flip(released({}, release), 1, 1e-12), 0);
+        EXPECT_EQ(flips({release})[0], 0);
+    }
+}
+
 TEST(Flips, ComeWhenTheReferenceSaysInLongerRunsToo) {
     EXPECT_EQ(flip_tolerance(20), 1e-8);
     EXPECT_EQ(flip_tolerance(5), 1e-8);
@@ -286,5 +293,5 @@ TEST(Flips, AreNotLookedForInVain) {
     EXPECT_EQ(refusal({}, {}, 2, true), ExitCode::interrupted);
 }
 
-}  // namespace
+}  // namespace flip_test
 }  // namespace doppel

@@ -10,7 +10,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace gauss_test {
 
 /// Two unequal links, in motion.
 template <class Scalar>
@@ -153,5 +153,5 @@ TEST(Gauss, SaysWhenTheStepIsTooLong) {
     }
 }
 
-}  // namespace
+}  // namespace gauss_test
 }  // namespace doppel

@@ -13,7 +13,7 @@
 #include <string_view>
 
 namespace doppel {
-namespace {
+namespace limits_test {
 
 // Closed forms and hard cases that every method meets, by the door that runs go through.
 
@@ -265,5 +265,5 @@ TEST(Limits, NothingIsAllocatedInTheStepLoop) {
     });
 }
 
-}  // namespace
+}  // namespace limits_test
 }  // namespace doppel

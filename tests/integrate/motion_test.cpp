@@ -11,7 +11,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace motion_test {
 
 /// (θ1, θ2) at the end of `seconds` with steps of 1/rate.
 Eigen::Vector2d end_angles(Model model, std::string_view method, const Pendulum<double>& p, long seconds, long rate) {
@@ -246,5 +246,5 @@ TEST(Motion, InQuadKeepsWhatDoubleRoundsAway) {
     EXPECT_LT(abs(apart), 5e-25);  // measured 6.7e-26
 }
 
-}  // namespace
+}  // namespace motion_test
 }  // namespace doppel

@@ -20,7 +20,7 @@
 #include <vector>
 
 namespace doppel {
-namespace {
+namespace order_test {
 
 /// An adaptive pair at fixed step.
 template <System Model, const auto& pair>
@@ -216,5 +216,5 @@ TEST(OrderConditions, HoldForEveryTree) {
     check("dop853", weights_of(Dop853::pair.a, Dop853::pair.a[12], 12), 8, 1e-29);  // measured 3.4e-30
 }
 
-}  // namespace
+}  // namespace order_test
 }  // namespace doppel

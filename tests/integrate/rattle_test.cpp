@@ -13,7 +13,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace rattle_test {
 
 /// Unequal links, in motion.
 template <class Scalar>
@@ -400,5 +400,5 @@ TEST(Rattle, SaysWhenTheStepIsTooLong) {
     }
 }
 
-}  // namespace
+}  // namespace rattle_test
 }  // namespace doppel

@@ -7,7 +7,7 @@
 #include <map>
 
 namespace doppel {
-namespace {
+namespace reference_test {
 
 // Every method against a reference that two formulations certify: angles and constraints, both by Taylor series in
 // quad, which share no equation of motion. Starts, masses and lengths are unequal ones.
@@ -142,5 +142,5 @@ TEST(Reference, EveryMethodComesAsNearAsItShould) {
     }
 }
 
-}  // namespace
+}  // namespace reference_test
 }  // namespace doppel

@@ -10,7 +10,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace taylor_mechanism_test {
 
 using namespace counted;
 
@@ -242,5 +242,5 @@ TEST(TaylorMechanism, FallsAndHangsFromRest) {
     }
 }
 
-}  // namespace
+}  // namespace taylor_mechanism_test
 }  // namespace doppel

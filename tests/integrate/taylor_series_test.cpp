@@ -8,7 +8,7 @@
 #include <cstring>
 
 namespace doppel {
-namespace {
+namespace taylor_series_test {
 
 /// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks like h^order only if every
 /// coefficient is right. In quad; y′ by central differences.
@@ -106,5 +106,5 @@ TEST(TaylorSeries, GivesTheSameBitsWithTwoLanesAndFour) {
     expect_same_bits<3>();
 }
 
-}  // namespace
+}  // namespace taylor_series_test
 }  // namespace doppel

@@ -15,7 +15,7 @@
 #include <tuple>
 
 namespace doppel {
-namespace {
+namespace taylor_test {
 
 template <class Scalar, int N>
 using Stepper = TaylorStepper<AngleChain<Scalar, N>>;
@@ -300,5 +300,5 @@ TEST(Taylor, SaysWhenTheMotionBlowsUp) {
               "taylor: a step of");
 }
 
-}  // namespace
+}  // namespace taylor_test
 }  // namespace doppel

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace turns_test {
 
 /// Two rods of lengths 1 and 0.5 m at these angles, rad, and rates, rad/s.
 Pendulum<double> chain(double first, double second, double rate1 = 0, double rate2 = 0) {
@@ -97,5 +97,5 @@ TEST(Turns, AreLookedAtTheMoreOftenTheFasterTheyAre) {
     EXPECT_DOUBLE_EQ(turns.patience(), Turns::farthest_unwatched / 2000);
 }
 
-}  // namespace
+}  // namespace turns_test
 }  // namespace doppel

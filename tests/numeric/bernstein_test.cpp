@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace bernstein_test {
 
 /// Powers of Π (t − root), times a factor.
 std::vector<double> with_roots(const std::vector<double>& roots, double factor) {
@@ -67,5 +67,5 @@ TEST(Bernstein, CountsARootAtTheEndAndNoneAtTheStart) {
     EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{1, -1}, 1).rises().empty());  // falls
 }
 
-}  // namespace
+}  // namespace bernstein_test
 }  // namespace doppel

@@ -15,7 +15,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace dual_test {
 
 template <class Scalar>
 Pendulum<Scalar> uneven(std::size_t links) {
@@ -267,5 +267,5 @@ TEST(Dual, SolvesLinearSystems) {
     EXPECT_LT((along + value.inverse() * slope * at).norm(), 2e-15);  // measured 4e-16
 }
 
-}  // namespace
+}  // namespace dual_test
 }  // namespace doppel

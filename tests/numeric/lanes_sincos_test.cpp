@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace doppel {
-namespace {
+namespace lanes_sincos_test {
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -107,5 +107,5 @@ TEST(LanesRoughLog2, IsWithinAStraightLineOfTheLogarithm) {
     EXPECT_NEAR(rough_log2(Lanes<4>(0))[0], -1023, 0.05);
 }
 
-}  // namespace
+}  // namespace lanes_sincos_test
 }  // namespace doppel

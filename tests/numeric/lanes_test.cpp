@@ -14,7 +14,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace lanes_test {
 
 std::uint64_t bits(double x) {
     return std::bit_cast<std::uint64_t>(x);
@@ -155,5 +155,5 @@ TEST(Lanes, TheGreaterIsNoNumberWhereEitherIsNone) {
     }
 }
 
-}  // namespace
+}  // namespace lanes_test
 }  // namespace doppel

@@ -6,7 +6,7 @@
 #include <fstream>
 
 namespace doppel {
-namespace {
+namespace machine_test {
 
 namespace fs = std::filesystem;
 
@@ -114,5 +114,5 @@ TEST(Machine, HoldsNoMoreThanItsMemory) {
     EXPECT_EQ(in_hand(0, 8, bare), 8u);
 }
 
-}  // namespace
+}  // namespace machine_test
 }  // namespace doppel

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace doppel {
-namespace {
+namespace text_test {
 
 std::vector<char32_t> characters(std::string_view text) {
     std::vector<char32_t> all;
@@ -46,5 +46,5 @@ TEST(Text, OnOneLineIsShownAndNotObeyed) {
     EXPECT_EQ(on_one_line(std::string_view("\0", 1)), " ");
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace doppel

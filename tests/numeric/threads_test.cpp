@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace doppel {
-namespace {
+namespace threads_test {
 
 TEST(Threads, AreAsManyAsWereWanted) {
     std::atomic<int> ran = 0;
@@ -40,5 +40,5 @@ TEST(ShareOut, ThrowsTheFirstErrorAndStops) {
     EXPECT_LT(done, 1'000'000);
 }
 
-}  // namespace
+}  // namespace threads_test
 }  // namespace doppel

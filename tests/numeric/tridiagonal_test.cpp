@@ -6,7 +6,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace tridiagonal_test {
 
 /// Diagonally dominant, not symmetric: as those of chains and their neighbours.
 template <int N>
@@ -79,5 +79,5 @@ TEST(Tridiagonal, RoundsAlikeWhetherItsRowsAreKnownEarlyOrLate) {
     EXPECT_EQ(Eigen::VectorXd(x), y);
 }
 
-}  // namespace
+}  // namespace tridiagonal_test
 }  // namespace doppel

@@ -8,8 +8,10 @@
 #include <sstream>
 #include <stdexcept>
 
-using namespace doppel;
-using namespace doppel::test;
+namespace doppel {
+namespace csv_test {
+
+using namespace test;
 
 TEST(Csv, BytesAreThoseOfRfc4180) {
     const auto path = fresh_folder() / "x.csv";
@@ -96,3 +98,6 @@ TEST(OutputFile, SaysAtOnceWhatAFlushCouldNotWrite) {
     file.flush();
     EXPECT_EQ(test::bytes_of(file.path()), "x");
 }
+
+}  // namespace csv_test
+}  // namespace doppel

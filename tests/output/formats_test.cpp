@@ -10,11 +10,12 @@
 #include <cstring>
 #include <tuple>
 
-using namespace doppel;
-using namespace doppel::test;
-namespace fs = std::filesystem;
+namespace doppel {
+namespace formats_test {
 
-namespace {
+using namespace test;
+
+namespace fs = std::filesystem;
 
 constexpr Size small{320, 180}, tiny{96, 64};
 
@@ -85,8 +86,6 @@ INSTANTIATE_TEST_SUITE_P(All, Encoders, testing::Values(kinds[0], kinds[6], kind
 bool is_yuv(const Kind& kind) {
     return kind.format == VideoFormat::mp4 || kind.format == VideoFormat::webm;
 }
-
-}  // namespace
 
 TEST(Encoder, SaysWhatLibavSays) {
     auto encoding = encoding_of({.size = tiny});
@@ -309,3 +308,6 @@ TEST(FormatsRefusals, AMissingEncoderNamesThosePresent) {
     });
     EXPECT_STREQ(find_encoder({"libnone", "libx264"}, AV_CODEC_ID_H264).name, "libx264");
 }
+
+}  // namespace formats_test
+}  // namespace doppel

@@ -8,11 +8,12 @@
 #include <cmath>
 #include <set>
 
-using namespace doppel;
-using namespace doppel::test;
-namespace fs = std::filesystem;
+namespace doppel {
+namespace gif_apng_test {
 
-namespace {
+using namespace test;
+
+namespace fs = std::filesystem;
 
 constexpr Size small{160, 90};
 
@@ -52,8 +53,6 @@ void for_each_chunk(const fs::path& path, Visit&& visit) {
         at += length + 12;
     }
 }
-
-}  // namespace
 
 TEST(Gif, TimesAreRoundedWithoutAddingUp) {
     const auto folder = fresh_folder();
@@ -216,3 +215,6 @@ TEST(Spool, GivesBackWhatWasWrittenAndHasNoName) {
     const fs::path none = "/none/x.gif";
     expect_error(ExitCode::io_failed, {"/none/x.gif", "No such file"}, [&] { Spool(none, Samples::rgb); });
 }
+
+}  // namespace gif_apng_test
+}  // namespace doppel

@@ -1,7 +1,9 @@
 #include "output/part_files.hpp"
 
 #include "output/fixtures.hpp"
+#include "output/output_file.hpp"
 #include "output/png.hpp"
+#include "output/written.hpp"
 
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -13,11 +15,12 @@
 #include <set>
 #include <thread>
 
-using namespace doppel;
-using namespace doppel::test;
-namespace fs = std::filesystem;
+namespace doppel {
+namespace part_files_test {
 
-namespace {
+using namespace test;
+
+namespace fs = std::filesystem;
 
 /// All that is below `folder`, as paths relative to it.
 std::set<std::string> listing(const fs::path& folder) {
@@ -57,8 +60,6 @@ void killed(const std::function<void()>& action) {
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status));
 }
-
-}  // namespace
 
 TEST(PartFiles, AppearTogetherWhenPublished) {
     const auto out = fresh_folder();
@@ -237,6 +238,23 @@ TEST(PartFiles, KnowsWhatDoppelMadeByItsContentToo) {
     expect_error(ExitCode::io_failed, {"y.png"}, [&] { files.file("y.png"); });
 }
 
+TEST(PartFiles, TheMakerOfAPictureIsReadWhole) {
+    const auto folder = fresh_folder();
+    const std::string maker = "Doppel " + std::string(300, 'x');  // its length takes two bytes
+    write_png(folder / "x.png", noise({4, 4}, 1), {.metadata = {{"encoder", maker}}});
+    EXPECT_EQ(maker_of_picture(Folder::at(folder), "x.png"), maker);
+}
+
+TEST(PartFiles, AreNoPrograms) {
+    const auto folder = fresh_folder();
+    PartFiles parts(folder);
+    OutputFile(parts.file("x.csv")).close();
+    const auto executable = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+    EXPECT_EQ(listing(folder), (Names{lock, "x.csv.part"}));
+    for (const auto& entry : fs::directory_iterator(folder))
+        EXPECT_EQ(entry.status().permissions() & executable, fs::perms::none) << entry;
+}
+
 TEST(PartFiles, FilesOfEarlierRunsStayKnown) {
     const auto out = fresh_folder();
     fs::create_directory(out / "frames");
@@ -343,3 +361,6 @@ TEST(PartFiles, ALockFileOfSomebodyElseStays) {
     { PartFiles files(out); }
     EXPECT_EQ(listing(out), Names{});
 }
+
+}  // namespace part_files_test
+}  // namespace doppel

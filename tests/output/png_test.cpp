@@ -6,12 +6,14 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 
-using namespace doppel;
-using namespace doppel::test;
+namespace doppel {
+namespace png_test {
 
-namespace {
+using namespace test;
 
 const std::filesystem::path full_disk = "/dev/full";
 
@@ -19,8 +21,6 @@ const std::filesystem::path full_disk = "/dev/full";
 std::function<FilePlace(long)> numbered_in(const std::filesystem::path& folder) {
     return [folder](long k) { return folder / fmt::format("{}.png", k); };
 }
-
-}  // namespace
 
 TEST(Png, RoundTripIsBitExact) {
     const auto folder = fresh_folder();
@@ -98,7 +98,7 @@ TEST(Png, ErrorsNameThePathAndTheReason) {
     expect_error(ExitCode::bad_input, {"none.png", "no such file"}, [&] { read_png(folder / "none.png"); });
     write_bytes(folder / "garbage.png", "this is no picture");
     expect_error(ExitCode::io_failed, {"garbage.png", "decoded"}, [&] { read_png(folder / "garbage.png"); });
-    expect_error(ExitCode::io_failed, {"decoded"}, [&] { read_png(folder); });
+    expect_error(ExitCode::io_failed, {"Is a directory"}, [&] { read_png(folder); });
     write_png(folder / "whole.png", noise({64, 64}, 6));
     const std::string whole_file = test::bytes_of(folder / "whole.png");
     write_bytes(folder / "half.png", whole_file.substr(0, whole_file.size() / 2));
@@ -144,6 +144,33 @@ TEST(PngSink, StopsWhenAsked) {
     expect_error(ExitCode::interrupted, {"interrupted"}, [&] { sink->finish(); });
 }
 
+// Room is made only for what a file can hold: stb_image alone took 2 GB for the first and 1 GB for the second.
+TEST(Png, BelievesNoLengthBeyondItsFile) {
+    const auto folder = fresh_folder();
+    const auto path = folder / "x.png";
+    write_png(path, noise({8, 8}, 5));
+    std::string bytes;
+    {
+        std::ifstream file(path, std::ios::binary);
+        bytes.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    const auto refused = [&](std::size_t at, std::string_view number, std::string_view words) {
+        std::string changed = bytes;
+        changed.replace(at, number.size(), number);
+        std::ofstream(path, std::ios::binary) << changed;
+        expect_error(ExitCode::io_failed, {"x.png", "decoded", std::string(words)}, [&] { read_png(path); });
+    };
+    const auto data = bytes.find("IDAT") - 4;
+    refused(data, {"\x7f\0\0\0", 4}, fmt::format("the chunk at byte {} is longer than the file", data));
+    refused(16, {"\0\0\x40\0\0\0\x40\0", 8}, "16384x16384 pixels cannot be in");
+    bytes.resize(data);
+    bytes += {"\x7f\0\0\0IDAT", 8};  // and there the file ends
+    refused(0, "", fmt::format("the chunk at byte {} is longer than the file", data));
+    write_png(path, noise({8, 8}, 5));
+    std::ofstream(path, std::ios::binary | std::ios::app) << "what follows the picture";
+    EXPECT_EQ(read_png(path).rgba, noise({8, 8}, 5).rgba);
+}
+
 TEST(PngSink, HasThreadsForWhatFitsIntoMemory) {
     EXPECT_EQ(png_threads(7, {64, 36}), 7);
     EXPECT_GE(png_threads(0, {64, 36}), 1);
@@ -161,3 +188,6 @@ TEST(PngSink, DestroyedUnfinishedStopsAtOnce) {
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     EXPECT_LT(taken.count(), 1.0);  // measured 0.10
 }
+
+}  // namespace png_test
+}  // namespace doppel

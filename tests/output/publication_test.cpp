@@ -10,11 +10,12 @@
 #include <csignal>
 #include <map>
 
-using namespace doppel;
-using namespace doppel::test;
-namespace fs = std::filesystem;
+namespace doppel {
+namespace publication_test {
 
-namespace {
+using namespace test;
+
+namespace fs = std::filesystem;
 
 using Contents = std::map<std::string, std::string>;
 
@@ -99,8 +100,6 @@ bool killed_before(int n, const std::function<void()>& action, const CallWatch& 
 int no_exchange(const std::string& call) {
     return call == "renameat2" ? EINVAL : 0;
 }
-
-}  // namespace
 
 TEST(Publication, IsAllNewOrAllOldWheneverItIsKilled) {
     const QuickFolder quick;
@@ -225,3 +224,6 @@ TEST(FolderLock, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
     watch_calls({});
     EXPECT_EQ(contents(folder), (Contents{{"x.csv", "half a tab"}}));
 }
+
+}  // namespace publication_test
+}  // namespace doppel

@@ -10,7 +10,9 @@
 #include <stdexcept>
 #include <thread>
 
-using namespace doppel;
+namespace doppel {
+namespace queue_test {
+
 using namespace std::chrono_literals;
 
 TEST(Queue, KeepsOrderAndBound) {
@@ -89,3 +91,6 @@ TEST(Workers, DestroyedTheyDropWhatWaits) {
     }
     EXPECT_LE(done, 2);
 }
+
+}  // namespace queue_test
+}  // namespace doppel

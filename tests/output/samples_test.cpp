@@ -13,10 +13,10 @@ extern "C" {
 #include <memory>
 #include <random>
 
-using namespace doppel;
-using namespace doppel::test;
+namespace doppel {
+namespace samples_test {
 
-namespace {
+using namespace test;
 
 constexpr std::array all_samples{Samples::yuv420,  Samples::yuv444, Samples::yuv420_10,
                                  Samples::yuva420, Samples::rgb,    Samples::rgba};
@@ -63,8 +63,6 @@ Exact exact_mean(const Picture& picture, int x, int y, int by, double scale) {
         for (int c = 0; c < 3; ++c) mean[c] += picture.at(x + i % by, y + i / by)[c] / double(by * by);
     return exact(mean[0], mean[1], mean[2], scale);
 }
-
-}  // namespace
 
 TEST(Samples, AreTheExactFormulaRounded) {
     for (const Samples samples : {Samples::yuv420, Samples::yuv444, Samples::yuv420_10, Samples::yuva420}) {
@@ -213,3 +211,6 @@ TEST(Samples, WhatChangedKeepsItsMemory) {
     EXPECT_TRUE(std::equal(first.begin(), first.end(), memory));
     EXPECT_TRUE(std::equal(second.begin(), second.end(), memory + first.size()));
 }
+
+}  // namespace samples_test
+}  // namespace doppel

@@ -2,8 +2,10 @@
 
 #include "output/fixtures.hpp"
 
-using namespace doppel;
-using namespace doppel::test;
+namespace doppel {
+namespace sha256_test {
+
+using namespace test;
 
 // FIPS 180-4's examples, as NIST publishes them
 TEST(Sha256, KnownVectors) {
@@ -22,3 +24,6 @@ TEST(Sha256, ErrorsNameThePath) {
     expect_error(ExitCode::io_failed, {"none", "No such file"}, [&] { sha256_of_file(folder / "none"); });
     expect_error(ExitCode::io_failed, {folder.string(), "Is a directory"}, [&] { sha256_of_file(folder); });
 }
+
+}  // namespace sha256_test
+}  // namespace doppel

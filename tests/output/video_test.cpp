@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <ctime>
 
-using namespace doppel;
-using namespace doppel::test;
-namespace fs = std::filesystem;
+namespace doppel {
+namespace video_test {
 
-namespace {
+using namespace test;
+
+namespace fs = std::filesystem;
 
 constexpr Size small{480, 270};
 
@@ -20,8 +21,6 @@ fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
     sink->finish();
     return path;
 }
-
-}  // namespace
 
 TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
     const auto folder = fresh_folder();
@@ -131,3 +130,6 @@ TEST(Mp4, NamesItsLibraries) {
     EXPECT_EQ(libav_description().find("libavcodec "), 0u);
     EXPECT_NE(libav_description().find(", libavformat "), std::string::npos);
 }
+
+}  // namespace video_test
+}  // namespace doppel

@@ -9,7 +9,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace canonical_test {
 
 /// A pendulum with everything unequal, in motion, drawn from a seed.
 Pendulum<Quad> random_pendulum(int links, unsigned seed) {
@@ -164,5 +164,5 @@ TEST(NearbyAngle, StaysExactlyDown) {
     EXPECT_EQ(turning.at(0.0).cos, 1.0);
 }
 
-}  // namespace
+}  // namespace canonical_test
 }  // namespace doppel

@@ -14,7 +14,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace double_pendulum_test {
 
 /// θ″ from Lagrange's equations in matrix form, M θ″ = f with M_ij = μ_max(i,j) l_i l_j cos(θ_i − θ_j), solved by
 /// Eigen: another way to every model's accelerations.
@@ -192,5 +192,5 @@ TEST(Bobs, OfAChainAreFoundWhereFurtherParticlesFollow) {
     }
 }
 
-}  // namespace
+}  // namespace double_pendulum_test
 }  // namespace doppel

@@ -8,7 +8,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace mechanism_fault_test {
 
 using namespace counted;
 
@@ -91,6 +91,19 @@ TEST(MechanismFault, OfAStartOffTheConstraints) {
         fault_with(Constraint<double>(SlotCircle<double>{two, P(0.6, 0), 1})),
         "constraint 6 (slot-circle of particle 2): the particle starts 0.8 m from the centre, 0.2 m from the radius 1 "
         "m; make the radius 0.8");
+}
+
+// A start may be off by 1e-9 of the size, whatever that is.
+TEST(MechanismFault, IsMeasuredByTheSizeOfTheMechanism) {
+    for (const double size : {0.01, 1.0, 100.0}) {
+        const auto off_by = [&](double share) {
+            return fault_of({.particles = {{1, P(0, -size * (1 + share)), P(0, 0)}},
+                             .constraints = {Rod<double>{one, P(0, 0), size}},
+                             .forces = {}});
+        };
+        EXPECT_EQ(off_by(0.5e-9), "no fault") << size;
+        EXPECT_NE(off_by(2e-9), "no fault") << size;
+    }
 }
 
 TEST(MechanismFault, OfAStartThatLeavesTheConstraints) {
@@ -193,5 +206,5 @@ TEST(MechanismFault, OfNothingAtAStartThatIsMet) {
               "no fault");
 }
 
-}  // namespace
+}  // namespace mechanism_fault_test
 }  // namespace doppel

@@ -12,7 +12,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace mechanism_series_test {
 
 using namespace counted;
 
@@ -197,5 +197,5 @@ TEST(MechanismSeries, NamesASpringWhoseEndsMeet) {
               "force 2 (spring 1–fixed): its ends have met, where it has no direction; start so that they do not");
 }
 
-}  // namespace
+}  // namespace mechanism_series_test
 }  // namespace doppel

@@ -15,7 +15,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace mechanism_test {
 
 using namespace counted;
 
@@ -342,5 +342,5 @@ TEST(Mechanism, SaysWhatToDraw) {
     EXPECT_EQ(std::get<P>(lines[7].to), P(0, 2));
 }
 
-}  // namespace
+}  // namespace mechanism_test
 }  // namespace doppel

@@ -11,7 +11,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace stabilise_test {
 
 using Chain = RodChain<double, 2>;
 
@@ -228,5 +228,5 @@ TEST(Baumgarte, HoldsRodsThatDriftWithoutIt) {
     EXPECT_LT(stable.rod, 0.03 * drifting.rod);  // measured 1.4e-10 m and 3.3e-8 m
 }
 
-}  // namespace
+}  // namespace stabilise_test
 }  // namespace doppel

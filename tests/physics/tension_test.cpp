@@ -14,7 +14,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace tension_test {
 
 using Forces = std::vector<double>;
 
@@ -188,5 +188,5 @@ TEST(Tension, HasTheDigitsOfItsScalar) {
     EXPECT_LT(static_cast<double>(Quad(abs(forces[0] - parse_quad("9.8")))), 8e-33);  // measured 0
 }
 
-}  // namespace
+}  // namespace tension_test
 }  // namespace doppel

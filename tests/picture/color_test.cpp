@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace color_test {
 
 TEST(ParseColor, ReadsSixHexadecimalDigits) {
     EXPECT_EQ(parse_color("#000000"), rgb(0));
@@ -18,5 +18,5 @@ TEST(ParseColor, RefusesEverythingElse) {
     }
 }
 
-}  // namespace
+}  // namespace color_test
 }  // namespace doppel

@@ -8,7 +8,7 @@
 #include <limits>
 
 namespace doppel {
-namespace {
+namespace colormap_test {
 
 using Triple = std::array<double, 3>;
 
@@ -87,5 +87,5 @@ TEST(Themes, HaveEightHuesThatAllCanTellApart) {
     }
 }
 
-}  // namespace
+}  // namespace colormap_test
 }  // namespace doppel

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace gl_errors_test {
 
 constexpr Size size{480, 270};
 
@@ -95,5 +95,5 @@ TEST(GlErrors, WhileDrawingLeaveNoPicture) {
     EXPECT_EQ(renderer.draw(list).rgba, whole) << "and the next is as it should be";
 }
 
-}  // namespace
+}  // namespace gl_errors_test
 }  // namespace doppel

@@ -14,7 +14,7 @@
 #include <thread>
 
 namespace doppel {
-namespace {
+namespace gl_test {
 
 constexpr Size size{480, 270};
 
@@ -182,5 +182,5 @@ TEST(Gl, AContextThatCannotBeMadeLeavesTheOthersAlone) {
     EXPECT_EQ(egl.draw(list).rgba, before);
 }
 
-}  // namespace
+}  // namespace gl_test
 }  // namespace doppel

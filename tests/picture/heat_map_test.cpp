@@ -9,7 +9,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace heat_map_test {
 
 HeatMap strip(std::vector<float> values) {
     return {.columns = values.size(), .rows = 1, .values = values, .label = "an error", .low = 0, .high = 1};
@@ -105,5 +105,5 @@ TEST(HeatMap, SharesItsBar) {
     }
 }
 
-}  // namespace
+}  // namespace heat_map_test
 }  // namespace doppel

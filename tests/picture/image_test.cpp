@@ -6,7 +6,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace image_test {
 
 constexpr Size size{160, 120};
 
@@ -79,5 +79,5 @@ TEST_F(ImageTest, WithoutPixelsIsNothing) {
     EXPECT_TRUE(extent(drawn).empty());
 }
 
-}  // namespace
+}  // namespace image_test
 }  // namespace doppel

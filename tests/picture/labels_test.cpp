@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace labels_test {
 
 constexpr Size size{400, 80};
 
@@ -102,5 +102,5 @@ TEST(Text, MovesThePenByTheAdvancesOfItsLetters) {
     EXPECT_NEAR(text_width("AVA", 20), 2 * text_width("A", 20) + text_width("V", 20), 1e-4);
 }
 
-}  // namespace
+}  // namespace labels_test
 }  // namespace doppel

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 namespace doppel {
-namespace {
+namespace matte_test {
 
 /// A colour with opacity laid over a grey in sRGB, as viewers do.
 int over(int color, int opacity, int ground) {
@@ -63,5 +63,5 @@ TEST(Matte, OfADrawnPictureGivesItBackOnBlack) {
             EXPECT_NEAR(over(found.rgba[i + k], found.rgba[i + 3], 0), dark.rgba[i + k], 1);
 }
 
-}  // namespace
+}  // namespace matte_test
 }  // namespace doppel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace picture_test {
 
 TEST(Rect, UnitedHoldsBoth) {
     EXPECT_EQ(united({1, 2, 3, 4}, {10, 0, 12, 3}), (Rect{1, 0, 12, 4}));
@@ -24,5 +24,5 @@ TEST(Picture, KeepsItsRowsFromTheTopDown) {
     EXPECT_EQ(picture.rgba.back(), 9);
 }
 
-}  // namespace
+}  // namespace picture_test
 }  // namespace doppel

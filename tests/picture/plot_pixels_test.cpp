@@ -9,7 +9,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace plot_pixels_test {
 
 constexpr const Theme &dark = themes[0], &light = themes[1];
 
@@ -205,5 +205,5 @@ TEST(Plot, ABandIsTintedBetweenItsEdges) {
     EXPECT_EQ(pixels.at(x, h * 3 / 4 + 2)[3], 0);
 }
 
-}  // namespace
+}  // namespace plot_pixels_test
 }  // namespace doppel

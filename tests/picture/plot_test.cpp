@@ -10,7 +10,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace plot_test {
 
 constexpr const Theme &dark = themes[0], &light = themes[1];
 
@@ -193,5 +193,5 @@ TEST(Plot, ManyPanelsInASmallPictureKeepTheirCurves) {
     }
 }
 
-}  // namespace
+}  // namespace plot_test
 }  // namespace doppel

@@ -8,9 +8,8 @@
 #include <cmath>
 #include <numeric>
 
-using namespace doppel;
-
-namespace {
+namespace doppel {
+namespace reduce_test {
 
 using Pixel = std::array<int, 4>;
 
@@ -34,8 +33,6 @@ int grey(double share) {
     return static_cast<int>(
         std::lround(255 * (share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055)));
 }
-
-}  // namespace
 
 TEST(Reduce, MeansAreThoseOfLinearLight) {
     Picture checks({4, 4});
@@ -120,3 +117,6 @@ TEST(ContactSheet, RefusesWhatItCannotPlace) {
     EXPECT_THROW(contact_sheet(std::span(unlike).first(1), 0, 2, rgb(0)), Error);
     EXPECT_THROW(contact_sheet(std::span(unlike).first(1), 1, -1, rgb(0)), Error);
 }
+
+}  // namespace reduce_test
+}  // namespace doppel

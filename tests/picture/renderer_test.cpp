@@ -10,7 +10,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace renderer_test {
 
 constexpr Size size{320, 240};
 
@@ -207,5 +207,5 @@ TEST(Renderer, RefusesLettersThatFitNowhere) {
     EXPECT_THROW(renderer.draw({Label{.text = "W", .anchor = {0, 0}, .size = 3000, .color = white}}), Error);
 }
 
-}  // namespace
+}  // namespace renderer_test
 }  // namespace doppel

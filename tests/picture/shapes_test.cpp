@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace doppel {
-namespace {
+namespace shapes_test {
 
 constexpr Size size{96, 80};
 
@@ -107,5 +107,5 @@ TEST(Shapes, WithoutInkDrawNothing) {
     EXPECT_EQ(ink(picture).area, 0);
 }
 
-}  // namespace
+}  // namespace shapes_test
 }  // namespace doppel

@@ -8,7 +8,7 @@
 #include <numbers>
 
 namespace doppel {
-namespace {
+namespace strokes_test {
 
 constexpr Size size{160, 120};
 
@@ -177,5 +177,5 @@ TEST(Stroke, LeavesOthersAndTheBackdropAlone) {
     EXPECT_EQ(picture.at(40, 40)[2], 0);
 }
 
-}  // namespace
+}  // namespace strokes_test
 }  // namespace doppel

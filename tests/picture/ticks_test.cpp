@@ -7,7 +7,7 @@
 #include <set>
 
 namespace doppel {
-namespace {
+namespace ticks_test {
 
 /// What a person reads: "−1.5 × 10⁻⁷", "10⁻⁴", "0.30".
 double read(std::string text) {
@@ -137,5 +137,5 @@ TEST(RoundTicks, StayAsTheFilmsHaveThem) {
     EXPECT_TRUE(round_ticks({1e10, 1e10 + 1e-300, 0, 100}, 10).empty());
 }
 
-}  // namespace
+}  // namespace ticks_test
 }  // namespace doppel

@@ -10,7 +10,7 @@
 #include <random>
 
 namespace doppel {
-namespace {
+namespace choice_test {
 
 const std::atomic<bool> never = false;
 
@@ -211,6 +211,8 @@ TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
         make_scene(preset_from("[scene]\nduration_s = 10\n[system]\nlinks = 8\nlength_m = 0.2\naccuracy = 1e-6"));
     const auto& choice = *scene.a.choice;
     ASSERT_LT(choice.horizon, scene.samples);
+    EXPECT_EQ(scene.a.motion.method, "taylor");
+    EXPECT_GT(scene.a.motion.tolerance, 1e-14);  // the finest would be 1e-15; measured 3e-13, which gets nearly as far
     EXPECT_EQ(scene.horizon(), scene.time(choice.horizon));
     auto spec = scene.preset.a;
     spec.accuracy.reset();
@@ -291,5 +293,5 @@ TEST(Choice, SaysWhatIsWithinReach) {
     EXPECT_EQ(fault_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
 }
 
-}  // namespace
+}  // namespace choice_test
 }  // namespace doppel

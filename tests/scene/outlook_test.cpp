@@ -9,7 +9,7 @@
 #include <tuple>
 
 namespace doppel {
-namespace {
+namespace outlook_test {
 
 const std::atomic<bool> never = false;
 
@@ -76,5 +76,5 @@ TEST(Outlook, TellsAnUnstableEquilibriumFromChaos) {
             .exponent);
 }
 
-}  // namespace
+}  // namespace outlook_test
 }  // namespace doppel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace preset_errors_test {
 
 struct Case {
     const char* text;     // of presets/x.toml
@@ -209,5 +209,5 @@ TEST(FindPreset, NamesTheNearestOrWhatIsInItsPlace) {
     EXPECT_NE(error_of([] { find_preset("qqqqqqqqqq"); }).second.find("there are audit, butterfly"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace preset_errors_test
 }  // namespace doppel

@@ -17,7 +17,7 @@
 #include <thread>
 
 namespace doppel {
-namespace {
+namespace preset_text_test {
 
 namespace fs = std::filesystem;
 
@@ -199,5 +199,5 @@ TEST(PresetText, WhatIsDrawnHasLettersOfTheFont) {
         EXPECT_EQ(read(fmt::format("title = \"{}\"", title)).title, title);
 }
 
-}  // namespace
+}  // namespace preset_text_test
 }  // namespace doppel

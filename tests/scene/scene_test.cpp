@@ -8,7 +8,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
+namespace scene_test {
 
 TEST(Presets, AreAllReadable) {
     for (const auto& source : builtin_presets()) {
@@ -278,5 +278,5 @@ damping_N_s_per_m = 2
     EXPECT_LT(last.b.energy_change, -1);               // measured -3.9 J
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace doppel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace doppel {
-namespace {
+namespace video_errors_test {
 
 struct Case {
     const char* text;     // of [video] in presets/x.toml
@@ -131,5 +131,5 @@ TEST(VideoErrors, GifsGetARateThatTheyCanShow) {
     EXPECT_EQ(rate("scene.duration_s=10"), (Rational{30, 1})) << "as the message says";
 }
 
-}  // namespace
+}  // namespace video_errors_test
 }  // namespace doppel

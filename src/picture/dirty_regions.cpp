@@ -1,6 +1,6 @@
-#include "picture/damage.hpp"
+#include "picture/dirty_regions.hpp"
 
-#include "picture/sketch.hpp"
+#include "picture/render_list.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -52,7 +52,7 @@ private:
     std::vector<Rect> rects_;
 };
 
-std::size_t hash_of(const Mark& q) {
+std::size_t hash_of(const Primitive& q) {
     std::size_t hash = 0;
     const auto mix = [&](float value) { hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15u; };
     for (const float value : {q.origin.x, q.origin.y, q.axis.x, q.half.x, q.half.y, q.shape[1], q.shape[2], q.shape[3]})
@@ -60,39 +60,41 @@ std::size_t hash_of(const Mark& q) {
     return hash ^ hash >> 29;
 }
 
-/// The marks of a part, to be looked up.
+/// The primitives of a part, to be looked up.
 class Known {
 public:
-    Known(const Sketch& sketch, const Sketch::Part& part) : sketch_(sketch) {
-        for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(sketch.marks[i]), i);
+    Known(const RenderList& items, const RenderList::Part& part) : items_(items) {
+        for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(items.primitives[i]), i);
         std::sort(places_.begin(), places_.end());
     }
-    bool has(const Mark& mark, const Rect& bounds) const {
-        const auto hash = hash_of(mark);
+    bool has(const Primitive& primitive, const Rect& bounds) const {
+        const auto hash = hash_of(primitive);
         auto at = std::lower_bound(places_.begin(), places_.end(), std::pair{hash, std::size_t{0}});
         for (; at != places_.end() && at->first == hash; ++at)
-            if (sketch_.marks[at->second] == mark && sketch_.bounds[at->second] == bounds) return true;
+            if (items_.primitives[at->second] == primitive && items_.bounds[at->second] == bounds) return true;
         return false;
     }
 
 private:
-    const Sketch& sketch_;
+    const RenderList& items_;
     std::vector<std::pair<std::size_t, std::size_t>> places_;
 };
 
-/// Calls visit(part) for rectangles, none overlapping, that together hold what the mark touches of its bounds: one, or
-/// bands if it is long and slants.
+/// Calls visit(part) for rectangles, none overlapping, that together hold what the primitive touches of its bounds:
+/// one, or bands if it is long and slants.
 template <class Visit>
-void for_each_band(const Mark& mark, const Rect& bounds, const Visit& visit) {
-    const float across = std::abs(mark.axis.x), down = std::abs(mark.axis.y);
-    const int thick = 16 + 4 * static_cast<int>(std::min(mark.half.y, 1000.f));
+void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& visit) {
+    const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
+    const int thick = 16 + 4 * static_cast<int>(std::min(primitive.half.y, 1000.f));
     const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
-    if (shorter < 3 * thick || !(mark.half.x > 2 * mark.half.y) || std::min(across, down) < 0.05f) return visit(bounds);
+    if (shorter < 3 * thick || !(primitive.half.x > 2 * primitive.half.y) || std::min(across, down) < 0.05f)
+        return visit(bounds);
     // cut along the axis that it follows more; a hair of room for rounding
     const bool steep = down > across;
-    const float slope = steep ? mark.axis.x / mark.axis.y : mark.axis.y / mark.axis.x;
-    const float margin = mark.half.y / std::max(across, down) + 0.05f;
-    const float middle = steep ? mark.origin.x : mark.origin.y, start = steep ? mark.origin.y : mark.origin.x;
+    const float slope = steep ? primitive.axis.x / primitive.axis.y : primitive.axis.y / primitive.axis.x;
+    const float margin = primitive.half.y / std::max(across, down) + 0.05f;
+    const float middle = steep ? primitive.origin.x : primitive.origin.y,
+                start = steep ? primitive.origin.y : primitive.origin.x;
     const int end = steep ? bounds.bottom : bounds.right;
     for (int a = steep ? bounds.top : bounds.left; a < end; a += thick) {
         const int b = std::min(a + thick, end);
@@ -105,20 +107,22 @@ void for_each_band(const Mark& mark, const Rect& bounds, const Visit& visit) {
     }
 }
 
-/// Strokes: their marks may come in any order, and more than once, without a change to the picture.
+/// Strokes: their primitives may come in any order, and more than once, without a change to the picture.
 template <class Add>
-void compare_masks(const Sketch& before, Sketch::Part old, const Sketch& after, Sketch::Part now, const Add& add) {
+void compare_masks(const RenderList& before, RenderList::Part old, const RenderList& after, RenderList::Part now,
+                   const Add& add) {
     // most of a path stays as it was, in its place
     const auto same = [&](std::size_t i, std::size_t j) {
-        return before.bounds[i] == after.bounds[j] && before.marks[i] == after.marks[j];
+        return before.bounds[i] == after.bounds[j] && before.primitives[i] == after.primitives[j];
     };
     while (old.begin < old.end && now.begin < now.end && same(old.begin, now.begin)) ++old.begin, ++now.begin;
     while (old.begin < old.end && now.begin < now.end && same(old.end - 1, now.end - 1)) --old.end, --now.end;
     const Known olds(before, old), news(after, now);
     for (std::size_t i = old.begin; i < old.end; ++i)
-        if (!news.has(before.marks[i], before.bounds[i])) for_each_band(before.marks[i], before.bounds[i], add);
+        if (!news.has(before.primitives[i], before.bounds[i]))
+            for_each_band(before.primitives[i], before.bounds[i], add);
     for (std::size_t j = now.begin; j < now.end; ++j)
-        if (!olds.has(after.marks[j], after.bounds[j])) for_each_band(after.marks[j], after.bounds[j], add);
+        if (!olds.has(after.primitives[j], after.bounds[j])) for_each_band(after.primitives[j], after.bounds[j], add);
 }
 
 }  // namespace
@@ -140,12 +144,12 @@ std::vector<Rect> merged(std::vector<Rect> rects) {
     return disjoint;
 }
 
-std::vector<Rect> damage(const Sketch& before, const Sketch& after) {
+std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& after) {
     Gatherer touched;
     for (std::size_t p = 0; p < std::max(before.parts.size(), after.parts.size()); ++p) {
-        const Sketch::Part none{.kind = Kind::shape};
-        const Sketch::Part& old = p < before.parts.size() ? before.parts[p] : none;
-        const Sketch::Part& now = p < after.parts.size() ? after.parts[p] : none;
+        const RenderList::Part none{.kind = Kind::shape};
+        const RenderList::Part& old = p < before.parts.size() ? before.parts[p] : none;
+        const RenderList::Part& now = p < after.parts.size() ? after.parts[p] : none;
         const std::size_t olds = old.end - old.begin, nows = now.end - now.begin;
         const auto add = [&](const Rect& r) { touched.add(r); };
         if (old.kind == Kind::mask && now.kind == Kind::mask) {
@@ -155,10 +159,10 @@ std::vector<Rect> damage(const Sketch& before, const Sketch& after) {
         for (std::size_t k = 0; k < std::max(olds, nows); ++k) {
             const std::size_t i = old.begin + k, j = now.begin + k;
             if (k < olds && k < nows && old.kind == now.kind && before.bounds[i] == after.bounds[j] &&
-                before.marks[i] == after.marks[j])
+                before.primitives[i] == after.primitives[j])
                 continue;
-            if (k < olds) for_each_band(before.marks[i], before.bounds[i], add);
-            if (k < nows) for_each_band(after.marks[j], after.bounds[j], add);
+            if (k < olds) for_each_band(before.primitives[i], before.bounds[i], add);
+            if (k < nows) for_each_band(after.primitives[j], after.bounds[j], add);
         }
     }
     return merged(touched.take());

@@ -1,4 +1,4 @@
-#include "picture/sketch.hpp"
+#include "picture/render_list.hpp"
 
 #include "picture/font.hpp"
 #include "picture/stroke.hpp"
@@ -11,18 +11,14 @@ namespace {
 
 constexpr float edge = 1;  // px, the width of a soft edge: half of it lies beyond the shape
 
-std::uint8_t byte(float channel) {
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.f, 1.f)));
-}
-
 std::array<std::uint8_t, 4> tint(const Color& color, float opacity = 1) {
-    return {byte(color.r), byte(color.g), byte(color.b), byte(color.a * opacity)};
+    return {byte_of(color.r), byte_of(color.g), byte_of(color.b), byte_of(color.a * opacity)};
 }
 
-/// Turns items into marks. What is thinner than a pixel is drawn a pixel thin and fainter.
-class Sketcher {
+/// Turns items into primitives. What is thinner than a pixel is drawn a pixel thin and fainter.
+class RenderListMaker {
 public:
-    Sketcher(Size size, GlyphAtlas& atlas, Sketch& made) : size_(size), atlas_(atlas), made_(made) {}
+    RenderListMaker(Size size, GlyphAtlas& atlas, RenderList& made) : size_(size), atlas_(atlas), made_(made) {}
 
     void operator()(const Box& box) {
         const Point half{(box.right - box.left) / 2, (box.bottom - box.top) / 2};
@@ -153,29 +149,29 @@ private:
         return std::min(std::sqrt((1 - std::min(along, 1.f)) / 2) + slope, 1.f);
     }
 
-    void begin(Kind kind) { made_.parts.push_back({kind, made_.marks.size(), made_.marks.size()}); }
+    void begin(Kind kind) { made_.parts.push_back({kind, made_.primitives.size(), made_.primitives.size()}); }
 
-    /// Adds the mark, which touches no pixels but those that [from, to] reaches into.
-    void add(const Mark& mark, Point from, Point to) {
+    /// Adds the primitive, which touches no pixels but those that [from, to] reaches into.
+    void add(const Primitive& primitive, Point from, Point to) {
         // fmin and fmax, for they lose what is not a number
         const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
         const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
                           static_cast<int>(std::ceil(within(to.x, size_.width))),
                           static_cast<int>(std::ceil(within(to.y, size_.height)))};
         if (bounds.empty()) return;
-        made_.marks.push_back(mark);
+        made_.primitives.push_back(primitive);
         made_.bounds.push_back(bounds);
-        made_.parts.back().end = made_.marks.size();
+        made_.parts.back().end = made_.primitives.size();
         made_.parts.back().bounds = united(made_.parts.back().bounds, bounds);
     }
 
-    /// Adds the mark, which reaches `half` from its origin along either of its axes.
-    void add(Mark mark, Point half) {
-        const float across = std::abs(mark.axis.x), down = std::abs(mark.axis.y);
+    /// Adds the primitive, which reaches `half` from its origin along either of its axes.
+    void add(Primitive primitive, Point half) {
+        const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
         const Point reach{across * half.x + down * half.y, down * half.x + across * half.y};
-        mark.half = half;
-        add(mark, {mark.origin.x - reach.x, mark.origin.y - reach.y},
-            {mark.origin.x + reach.x, mark.origin.y + reach.y});
+        primitive.half = half;
+        add(primitive, {primitive.origin.x - reach.x, primitive.origin.y - reach.y},
+            {primitive.origin.x + reach.x, primitive.origin.y + reach.y});
     }
 
     void add_shape(Point center, Point axis, Point half, float corner, const Color& color, float glow = 0) {
@@ -194,7 +190,7 @@ private:
 
     Size size_;
     GlyphAtlas& atlas_;
-    Sketch& made_;
+    RenderList& made_;
     // of the stroke in hand; kept for their memory
     std::vector<Stroke::Vertex> path_;
     std::vector<Bow> bows_;
@@ -202,19 +198,19 @@ private:
 
 }  // namespace
 
-bool operator==(const Mark& a, const Mark& b) {
+bool operator==(const Primitive& a, const Primitive& b) {
     return a.origin.x == b.origin.x && a.origin.y == b.origin.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
            a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.more == b.more && a.bow == b.bow &&
            a.tint == b.tint && a.image == b.image;
 }
 
-void sketch(const DisplayList& list, Size size, GlyphAtlas& atlas, Sketch& made) {
+void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made) {
     made.parts.clear();
-    made.marks.clear();
+    made.primitives.clear();
     made.bounds.clear();
     made.images.clear();
-    Sketcher sketcher(size, atlas, made);
-    for (const Item& item : list) std::visit(sketcher, item);
+    RenderListMaker maker(size, atlas, made);
+    for (const Item& item : list) std::visit(maker, item);
 }
 
 }  // namespace doppel

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "integrate/method_stepper.hpp"
+#include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "integrate/registry.hpp"
 #include "integrate/turns.hpp"
 #include "numeric/error.hpp"
 #include "physics/stabilise.hpp"
@@ -66,40 +67,40 @@ struct ParticlesView {
 /// A whirl is watched every so many rad, so that an interruption is noticed within a sample of it; some 0.1 s of work.
 inline constexpr double most_unwatched = 1e4;
 
-/// A method at work on a model behind the door.
-template <class Model, class Which, class View>
-class Stepped final : public Motion {
+/// A model with the method that steps it, behind the door.
+template <class State, class View>
+class Simulation final : public Motion {
 public:
-    using Scalar = typename Model::Scalar;
-    using State = typename Model::State;
+    using Scalar = typename State::Scalar;
 
-    Stepped(Model model, const State& start, View view, const MotionSpec& spec)
-        : model_(std::move(model)),
-          view_(std::move(view)),
-          stepper_(model_, start, pace(spec)),
+    Simulation(std::unique_ptr<Stepper<State>> stepper, const State& start, View view, const MotionSpec& spec)
+        : view_(std::move(view)),
+          stepper_(std::move(stepper)),
+          adaptive_(find_method(spec.method)->adaptive),
           wants_tension_(spec.wants_tension) {
-        if constexpr (Which::method.adaptive) {
+        const auto bobs = view_.bobs(start);
+        if (adaptive_) {
             const double interval = spec.sample_interval.value();
             const double whole = std::max(follows_turns(spec) ? interval / Turns::longest_unwatched : 1,
-                                          interval * fastest(view_.bobs(start)) / most_unwatched);
+                                          interval * fastest(bobs) / most_unwatched);
             portions_ = static_cast<long>(std::ceil(std::min(whole, 1e12)));
             portion_ = scalar_of<Scalar>(spec.sample_interval) / Scalar(portions_);
         } else {
             steps_per_sample_ = spec.steps_per_sample;
             portion_steps_ = steps_in_one_go(start.size());
-            smallest_step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
+            step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
         }
         if constexpr (View::follows_turns)
             if (spec.follows_turns) turns_ = Turns(view_.pendulum.template cast<double>().angle);
         turns_.look(start, 0);
-        start_energy_ = view_.energy(start, view_.bobs(start));
+        start_energy_ = view_.energy(start, bobs);
     }
 
     void advance(const std::atomic<bool>& stop) override {
         const auto check = [&] {
             if (stop) throw Error(ExitCode::interrupted, "interrupted");
         };
-        if constexpr (Which::method.adaptive) {
+        if (adaptive_) {
             for (long i = 0; i < portions_; ++i) {
                 check();
                 advance_by(portion_);
@@ -108,16 +109,16 @@ public:
             for (long left = steps_per_sample_, steps; left > 0; left -= steps) {
                 check();
                 steps = std::min(left, portion_steps_);
-                if (turns_.followed()) steps = std::min(steps, steps_within(turns_.patience(), smallest_step_));
-                stepper_.advance(steps);
-                follow_turns(static_cast<double>(steps) * smallest_step_);
+                if (turns_.followed()) steps = std::min(steps, steps_within(turns_.patience(), step_));
+                stepper_->advance(steps);
+                follow_turns(static_cast<double>(steps) * step_);
             }
             steps_ += steps_per_sample_;
         }
     }
 
     Observation observe() const override {
-        const State y = stepper_.state();
+        const State y = stepper_->state();
         auto bobs = view_.bobs(y);
         turns_.add_to(bobs);
         const Scalar energy = view_.energy(y, bobs);
@@ -138,22 +139,11 @@ public:
     }
 
     Effort effort() const override {
-        Effort effort{steps_, stepper_.evaluations(), smallest_step_};
-        if constexpr (Which::method.adaptive) {
-            effort.steps = stepper_.steps();
-            effort.smallest_step = static_cast<double>(stepper_.smallest_step());
-        }
-        return effort;
+        if (!adaptive_) return {steps_, stepper_->evaluations(), step_};
+        return {stepper_->steps(), stepper_->evaluations(), static_cast<double>(stepper_->smallest_step())};
     }
 
 private:
-    static Scalar pace(const MotionSpec& spec) {
-        if constexpr (Which::method.adaptive)
-            return static_cast<Scalar>(spec.tolerance);
-        else
-            return scalar_of<Scalar>(spec.sample_interval) / Scalar(spec.steps_per_sample);
-    }
-
     /// The fastest rate of any bob, rad/s.
     static double fastest(const Bobs<Scalar>& bobs) {
         double rate = 0;
@@ -170,39 +160,40 @@ private:
             turns_.followed() ? std::clamp(std::ceil(static_cast<double>(seconds) / turns_.patience()), 1.0, most) : 1;
         const Scalar piece = seconds / Scalar(pieces);
         for (double i = 0; i < pieces; ++i) {
-            stepper_.advance(piece);
+            stepper_->advance_by(piece);
             follow_turns(static_cast<double>(piece));
         }
     }
 
     void follow_turns(double seconds) {
         if constexpr (View::follows_turns)
-            if (turns_.followed()) turns_.look(stepper_.state(), seconds);
+            if (turns_.followed()) turns_.look(stepper_->state(), seconds);
     }
 
-    Model model_;
     View view_;
-    typename Which::template Stepper<Model> stepper_;
-    bool wants_tension_;
-    long portions_ = 1, steps_per_sample_ = 0, portion_steps_ = 1, steps_ = 0;
-    Scalar portion_{0};  // s
-    double smallest_step_ = 0;
+    std::unique_ptr<Stepper<State>> stepper_;
+    bool adaptive_, wants_tension_;
+    long portions_ = 1;                                          // of a sample, of an adaptive method
+    Scalar portion_{0};                                          // s
+    long steps_per_sample_ = 0, portion_steps_ = 1, steps_ = 0;  // of a fixed step
+    double step_ = 0;                                            // s
     Scalar start_energy_{0};
     Turns turns_;
 };
 
-/// The method of that name at work on `model`. Throws Error (exit 2) where it cannot step it.
+/// The step, s, or the tolerance.
+template <class Scalar>
+Scalar pace_of(const MotionSpec& spec) {
+    if (find_method(spec.method)->adaptive) return static_cast<Scalar>(spec.tolerance);
+    return scalar_of<Scalar>(spec.sample_interval) / Scalar(spec.steps_per_sample);
+}
+
+/// The method of `spec` at work on `model`. Throws Error (exit 2) where it cannot step it.
 template <class Model, class View>
-std::unique_ptr<Motion> stepped(const MotionSpec& spec, const Model& model, const typename Model::State& start,
-                                const View& view) {
-    std::unique_ptr<Motion> motion;
-    for_each_method([&]<class Which>() {
-        if constexpr (serves<Which, Model>)
-            if (Which::method.name == spec.method)
-                motion = std::make_unique<Stepped<Model, Which, View>>(model, start, view, spec);
-    });
-    if (!motion) throw bad_input("the method \"{}\" does not serve this model", spec.method);
-    return motion;
+std::unique_ptr<Motion> simulation(const MotionSpec& spec, const Model& model, const typename Model::State& start,
+                                   const View& view) {
+    return std::make_unique<Simulation<typename Model::State, View>>(
+        make_stepper(spec.method, model, start, pace_of<typename Model::Scalar>(spec)), start, view, spec);
 }
 
 /// The same on a constrained model of `system`, stabilised as asked.
@@ -211,14 +202,14 @@ std::unique_ptr<Motion> stabilised(const MotionSpec& spec, const System& system,
     const auto start = Model::start(system);
     switch (spec.stabilise) {
         case Stabilise::baumgarte:
-            return stepped(spec, Baumgarte<Model>(system, static_cast<typename Model::Scalar>(spec.stabilise_rate)),
-                           start, view);
+            return simulation(spec, Baumgarte<Model>(system, static_cast<typename Model::Scalar>(spec.stabilise_rate)),
+                              start, view);
         case Stabilise::projection:
-            return stepped(spec, Projected<Model>(system), start, view);
+            return simulation(spec, Projected<Model>(system), start, view);
         case Stabilise::none:
             break;
     }
-    return stepped(spec, Model(system), start, view);
+    return simulation(spec, Model(system), start, view);
 }
 
 // One file each, so that they compile side by side.

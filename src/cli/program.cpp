@@ -1,0 +1,118 @@
+#include "cli/program.hpp"
+
+#include "cli/commands.hpp"
+#include "cli/print.hpp"
+#include "numeric/error.hpp"
+#include "numeric/text.hpp"
+#include "scene/nearest.hpp"
+#include "scene/version.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace doppel {
+namespace {
+
+/// A word in the place of the command that is none.
+void refuse_unknown_command(const CLI::App& app, const std::string& word) {
+    std::vector<std::string> names;
+    for (const auto* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    const auto meant = nearest(word, std::vector<std::string_view>(names.begin(), names.end()));
+    throw bad_input(
+        "there is no command \"{}\"; {}", word,
+        meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
+}
+
+/// An empty argument is mostly a variable that a script did not set: taken for "not given" it would mean everything.
+void refuse_empty_arguments(const std::vector<std::string>& words) {
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const auto& word = words[i];
+        const bool of_option = words[i - 1].starts_with('-');
+        if (word.empty())
+            throw bad_input("{} is empty; leave it out, or give a value",
+                            of_option ? words[i - 1] : fmt::format("argument {}", i));
+        if (word.starts_with("--") && word.find('=') == word.size() - 1)
+            throw bad_input("{} is empty; leave it out, or give a value", word.substr(0, word.size() - 1));
+    }
+}
+
+/// A standard stream that is closed would be the next file that is opened, and progress go into the film. What stands
+/// in for it can be neither read nor written, so that this is noticed.
+void fill_standard_streams() {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream)
+            throw io_failed("/dev/null cannot be opened in place of a closed standard stream");
+}
+
+/// One line that can be read, whatever the message quotes; throws nothing where nobody does.
+int failed(ExitCode code, std::string_view message) {
+    auto line = on_one_line(message);
+    constexpr std::size_t most = 4000;  // bytes
+    if (line.size() > most) {
+        auto end = most;
+        while ((static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // not within a character
+        line.replace(end, std::string::npos, "…");
+    }
+    std::fprintf(stderr, "doppel: %s\n", line.c_str());
+    return static_cast<int>(code);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+    try {
+        fill_standard_streams();
+        std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
+        const std::vector<std::string> words(argv, argv + argc);
+        refuse_empty_arguments(words);
+
+        CLI::App app("Doppel films chaotic pendulums in pairs, a hair apart, and charts how they part.", "doppel");
+        app.set_version_flag("--version", fmt::format("doppel {} ({})", version(), revision()));
+        app.footer(
+            "doppel COMMAND --help tells more. Exit codes: 0 done, 1 compare found a difference, 2 bad usage or "
+            "input,\n"
+            "3 the method failed, 4 reading, writing or encoding failed, 130 interrupted.");
+        app.require_subcommand(1);
+
+        int exit_code = 0;
+        add_render(app);
+        add_simulate(app);
+        add_figure(app);
+        add_compare(app, exit_code);
+        add_list(app);
+        add_show(app);
+        add_check(app);
+        if (words.size() > 1 && !words[1].starts_with('-')) refuse_unknown_command(app, words[1]);
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::ParseError& fault) {
+            if (fault.get_exit_code() == 0) {
+                std::ostringstream help;
+                app.exit(fault, help);
+                write_out(help.str());
+                return 0;
+            }
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", fault.what()));
+        }
+        return exit_code;
+    } catch (const Error& fault) {
+        return failed(fault.code(), fault.what());
+    } catch (const std::bad_alloc&) {
+        return failed(ExitCode::io_failed, "there is not enough memory");
+    } catch (const std::exception& fault) {
+        return failed(ExitCode::io_failed, fault.what());
+    }
+}
+
+}  // namespace doppel

@@ -1,7 +1,0 @@
-#include "integrate/motion_constraints.hpp"
-
-namespace doppel {
-
-template std::unique_ptr<Motion> make_constraints_motion<double>(const MotionSpec& spec);
-
-}  // namespace doppel

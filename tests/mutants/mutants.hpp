@@ -1,0 +1,130 @@
+// Before every file of a tree that mutate.py changed: what its mutants are made of. A mutant is chosen at run time, by
+// DOPPEL_MUTANT=<number>; with DOPPEL_MUTANT=-1 none is, and the ones that are reached are marked in the file
+// DOPPEL_MUTANTS_REACHED, a byte each: 1 reached, 2 reached where no other operator would compile.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <concepts>
+#include <cstdlib>
+#include <type_traits>
+
+extern "C" {
+__attribute__((weak)) int doppel_mutant = 0;
+__attribute__((weak)) unsigned char* doppel_mutants_reached = nullptr;
+
+__attribute__((weak, constructor(101))) void doppel_choose_mutant() {
+    if (const char* number = std::getenv("DOPPEL_MUTANT")) doppel_mutant = std::atoi(number);
+    const char* path = std::getenv("DOPPEL_MUTANTS_REACHED");
+    const int file = path ? open(path, O_RDWR | O_CLOEXEC) : -1;
+    if (file < 0) return;
+    void* bytes = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    if (bytes != MAP_FAILED) doppel_mutants_reached = static_cast<unsigned char*>(bytes);
+    close(file);
+}
+}
+
+namespace mutant {
+
+inline bool chosen(int id) {
+    if (doppel_mutants_reached) doppel_mutants_reached[id] |= 1;
+    return doppel_mutant == id;
+}
+inline void cannot_be(int id) {
+    if (doppel_mutants_reached) doppel_mutants_reached[id] |= 2;
+}
+
+template <class A, class B>
+constexpr bool same = std::is_same_v<std::remove_cvref_t<A>, std::remove_cvref_t<B>>;
+
+/// a OP M<id>{} OP b is a OP b, or its mutant. The left operand and then the choice:
+template <int id>
+struct M {};
+template <class A, int op, int id>
+struct Left {
+    const A& a;
+};
+
+template <int id, class Is, class Other>
+constexpr auto either(const Is& is, const Other& other) {
+    if (std::is_constant_evaluated()) return is();
+    if constexpr (same<decltype(is()), decltype(other())>) {
+        return chosen(id) ? other() : is();
+    } else if constexpr (requires { is().eval(); other().eval(); }) {  // Eigen's expressions: another type each
+        if constexpr (same<decltype(is().eval()), decltype(other().eval())>) {
+            auto value = is().eval();
+            if (chosen(id)) value = other().eval();
+            return value;
+        } else {
+            cannot_be(id);
+            return is();
+        }
+    } else {
+        cannot_be(id);
+        return is();
+    }
+}
+
+#define DOPPEL_BINARY(number, op, other)                                                             \
+    template <class A, int id>                                                                       \
+    constexpr Left<A, number, id> operator op(const A& a, M<id>) {                                   \
+        return {a};                                                                                  \
+    }                                                                                                \
+    template <class A, int id, class B>                                                              \
+    constexpr auto operator op(Left<A, number, id> l, const B& b) {                                  \
+        if constexpr (requires { l.a other b; }) {                                                   \
+            return either<id>([&] { return l.a op b; }, [&] { return l.a other b; });                \
+        } else {                                                                                     \
+            if (!std::is_constant_evaluated()) cannot_be(id);                                        \
+            return l.a op b;                                                                         \
+        }                                                                                            \
+    }
+DOPPEL_BINARY(1, +, -)
+DOPPEL_BINARY(2, -, +)
+DOPPEL_BINARY(3, *, /)
+DOPPEL_BINARY(4, /, *)
+DOPPEL_BINARY(5, ==, !=)
+DOPPEL_BINARY(6, !=, ==)
+
+/// Of whole numbers half the mutants move the bound by one; the others, and all of floating-point numbers, turn it round.
+#define DOPPEL_COMPARE(number, op, near, opposite)                                                   \
+    template <class A, int id>                                                                       \
+    constexpr Left<A, number, id> operator op(const A& a, M<id>) {                                   \
+        return {a};                                                                                  \
+    }                                                                                                \
+    template <class A, int id, class B>                                                              \
+    constexpr auto operator op(Left<A, number, id> l, const B& b) {                                  \
+        if constexpr (id % 2 == 0 && std::integral<A> && std::integral<B>) {                         \
+            return either<id>([&] { return l.a op b; }, [&] { return l.a near b; });                 \
+        } else if constexpr (requires { l.a opposite b; }) {                                         \
+            return either<id>([&] { return l.a op b; }, [&] { return l.a opposite b; });             \
+        } else {                                                                                     \
+            if (!std::is_constant_evaluated()) cannot_be(id);                                        \
+            return l.a op b;                                                                         \
+        }                                                                                            \
+    }
+DOPPEL_COMPARE(7, <, <=, >=)
+DOPPEL_COMPARE(8, <=, <, >)
+DOPPEL_COMPARE(9, >, >=, <=)
+DOPPEL_COMPARE(10, >=, >, <)
+
+/// Not<id>{} ^ b is b, or its opposite.
+template <int id>
+struct Not {};
+template <int id, class B>
+constexpr auto operator^(Not<id>, const B& b) {
+    if (std::is_constant_evaluated()) return static_cast<bool>(b);
+    return static_cast<bool>(b) != chosen(id);
+}
+
+/// 2x, or x + 1 of a whole number and of 0.
+template <int id, class T>
+constexpr T number(T x) {
+    if (std::is_constant_evaluated()) return x;
+    const T other = std::floating_point<T> && x != T(0) ? x + x : x + T(1);
+    return chosen(id) ? other : x;
+}
+
+}  // namespace mutant

@@ -1,0 +1,333 @@
+#!/usr/bin/env python3
+"""What the tests notice: small faults planted by lot, and the share of them that a test catches.
+
+    git clone . /tmp/doppel-mutants
+    tests/mutants/mutate.py plant /tmp/doppel-mutants physics integrate analysis output scene
+    tests/mutants/mutate.py build /tmp/doppel-mutants
+    tests/mutants/mutate.py cover /tmp/doppel-mutants     # which test reaches which mutant
+    tests/mutants/mutate.py run /tmp/doppel-mutants       # goes on where it was interrupted
+    tests/mutants/mutate.py report /tmp/doppel-mutants
+
+All mutants stand in one program and are chosen at run time (mutants.hpp), so that one build serves all. A mutant is an
+operator exchanged (+ -, * /, a comparison), a condition turned round, a number changed, or a statement left out. It is
+caught when a test that reaches it fails, ends by a signal, or takes five times as long; tests of its own room are tried
+first, then of those that stand on it. It runs as root (a mount of its own for what each test writes).
+"""
+import argparse, collections, concurrent.futures, json, os, pathlib, random, re, signal, subprocess, sys, time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOMS = ["numeric", "physics", "integrate", "analysis", "picture", "output", "scene", "film", "figure", "cli"]
+
+
+# ---- planting -----------------------------------------------------------------------------------------------------
+
+def masked(text):
+    """The text with comments, strings and characters as blanks of the same length (line by line)."""
+    def blank(match):
+        return re.sub(r"[^\n]", "\x01", match.group(0))
+    return re.sub(r'//[^\n]*|/\*.*?\*/|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-zA-Z])\'(?:\\.|[^\'\\\n])\'', blank, text,
+                  flags=re.S)
+
+
+SKIP = re.compile(r"^\s*#|static_assert|\btemplate\b|\brequires\b|\bconcept\b|\busing\b|\boperator\b|\bcase\b|\benum\b|"
+                  r"DOPPEL_|\balignas\b|^\s+\w+ \w+\[|\bif constexpr\b|\bdecltype\b|\bnoexcept\b|\bextern\b|std::array<")
+STATEMENT = re.compile(r"^(\s+)([\w.\->\[\]()*:]+ (?:=|\+=|-=|\*=|/=) \S.*;|(?!return|throw|delete|co_)[a-zA-Z_][\w.:\->]*\([^{}]*\);)$")
+
+
+def in_angles(line, position):
+    """Whether the position stands in template arguments."""
+    depth = 0
+    for i in range(position):
+        if line[i] == "<" and i > 0 and re.match(r"[\w]", line[i - 1]):
+            depth += 1
+        elif line[i] == ">" and depth and line[i - 1] not in " -=":
+            depth -= 1
+    return depth > 0
+
+
+def candidates(path):
+    """(line, start, end, text with @ for the number, what) of all places in a file."""
+    text = path.read_text()
+    lines, plain = text.split("\n"), masked(text).split("\n")
+    found = []
+    before = ";"
+    in_table = False  # constants over several lines, known to the compiler alone
+    for number, (line, code) in enumerate(zip(lines, plain)):
+        stripped = code.replace("\x01", "").rstrip()
+        if not stripped.strip():
+            continue
+        ends, before = before, stripped[-1]
+        in_table = (in_table or "constexpr" in stripped) and before not in ";{"
+        if in_table or SKIP.search(stripped):
+            continue
+        constant = re.match(r"^\s*(static |inline )*constexpr [\w:]+ \w+ = ", stripped)
+        if "constexpr" in stripped and not constant:
+            continue
+
+        def add(start, end, new, what):
+            found.append((number, start, end, new, what, bool(constant)))
+
+        for m in re.finditer(r"(?<=[\w)\]]) ([+\-*/]|==|!=|<=|>=|<|>) (?=[^=\s])", code):
+            op = m.group(1)
+            add(m.start(), m.end(), f" {op}::mutant::M<@>{{}}{op} ", f"{op} exchanged")
+        for m in re.finditer(r" (&&|\|\|) (?=[^=\s])", code):
+            add(m.end(), m.end(), "::mutant::Not<@>{} ^ ", "condition after it turned round")
+        for m in re.finditer(r"(?<=[( ])!(?=[\w(])", code):
+            add(m.start(), m.end(), "::mutant::Not<@>{} ^ !", "! left out")
+        for m in re.finditer(r"(?<![\w.\"'])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+|\d+)(?![\w.'])", code):
+            if not in_angles(code, m.start()):
+                add(m.start(), m.end(), f"::mutant::number<@>({m.group(0)})", "number changed")
+        for m in re.finditer(r"\b(true|false)\b", code):
+            add(m.start(), m.end(), f"(::mutant::Not<@>{{}} ^ {m.group(0)})", "bool turned round")
+        m = STATEMENT.match(code)
+        if m and ends in ";{})" and "\x01" not in code and not constant:
+            add(m.start(2), m.end(2), "{ if (!::mutant::chosen(@)) " + m.group(2) + " }", "left out")
+    return found
+
+
+def plant(tree, rooms, count, seed):
+    lot = random.Random(seed)
+    mutants = []
+    for room in rooms:
+        places = []
+        for path in sorted((tree / "src" / room).glob("*.[ch]pp")):
+            places += [(path, *place) for place in candidates(path)]
+        lot.shuffle(places)
+        taken, chosen = set(), []
+        for path, line, start, end, new, what, constant in places:
+            if (path, line) not in taken and len(chosen) < count:
+                taken.add((path, line))
+                chosen.append((path, line, start, end, new, what, constant))
+        print(f"{room}: {len(chosen)} of {len(places)} places")
+        for path, line, start, end, new, what, constant in chosen:
+            original = path.read_text().split("\n")[line]
+            mutants.append(dict(id=len(mutants) + 1, room=room, file=str(path.relative_to(tree)), line=line + 1, start=start,
+                                end=end, new=new, what=what, constant=constant, original=original, state="planted"))
+    save(tree, mutants)
+    for mutant in mutants:
+        write(tree, mutant)
+
+
+def write(tree, mutant):
+    """Puts a mutant, or where it was dropped the original line, into its file."""
+    path = tree / mutant["file"]
+    lines = path.read_text().split("\n")
+    line = mutant["original"]
+    if mutant["state"] != "dropped":
+        line = line[:mutant["start"]] + mutant["new"].replace("@", str(mutant["id"])) + line[mutant["end"]:]
+        if mutant["constant"]:
+            line = line.replace("constexpr", "const", 1)
+            if line.lstrip().startswith("static const "):
+                line = line.replace("static const ", "static inline const " if path_is_class(lines, mutant) else "static const ", 1)
+    lines[mutant["line"] - 1] = line
+    path.write_text("\n".join(lines))
+
+
+def path_is_class(lines, mutant):
+    return mutant["file"].endswith(".hpp") and mutant["original"].startswith("    static")
+
+
+def load(tree):
+    return json.loads((tree / "mutants.json").read_text())
+
+
+def save(tree, mutants):
+    (tree / "mutants.json").write_text(json.dumps(mutants, indent=1))
+
+
+def build(tree, jobs):
+    folder = tree / "build" / "mutants"
+    flags = f"-std=c++20 -O1 -w -include {HERE}/mutants.hpp"
+    subprocess.run(["cmake", "-S", tree, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+                    f"-DCMAKE_CXX_FLAGS={flags}", "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-DNDEBUG"], check=True, stdout=subprocess.DEVNULL)
+    while True:
+        log = subprocess.run(["ninja", "-C", folder, "-k0", f"-j{jobs}"], capture_output=True, text=True)
+        (tree / "build.log").write_text(log.stdout + log.stderr)
+        if log.returncode == 0:
+            return
+        mutants = load(tree)
+        at = {(m["file"], m["line"]): m for m in mutants if m["state"] != "dropped"}
+        named = re.findall(r"(src/[\w/]+\.[ch]pp):(\d+):\d+:", log.stdout)
+        faulty = [at[file, int(line)] for file, line in set(named) if (file, int(line)) in at]
+        if not faulty:  # code for another processor takes none
+            faulty = [m for m in at.values() if m["file"] in {file for file, _ in named}]
+        for mutant in faulty:
+            mutant["state"] = "dropped"
+            write(tree, mutant)
+        dropped = len(faulty)
+        save(tree, mutants)
+        print(f"{dropped} mutants that do not compile are dropped", flush=True)
+        if not dropped:
+            sys.exit(f"the build fails, see {tree}/build.log")
+
+
+# ---- running ------------------------------------------------------------------------------------------------------
+
+def program(tree, room):
+    return tree / "build" / "mutants" / "tests" / f"test_{room}"
+
+
+def run_tests(tree, worker, room, names, mutant, seconds, reached=None):
+    """(exit code or None where time ran out, output) of these tests with this mutant, in a folder of the worker's."""
+    own = tree / "workers" / str(worker)
+    (own / "output").mkdir(parents=True, exist_ok=True)
+    (own / "tmp").mkdir(parents=True, exist_ok=True)
+    output = tree / "build" / "mutants" / "test-output"
+    output.mkdir(parents=True, exist_ok=True)
+    flags = own / "flags"
+    flags.write_text("--gtest_filter=" + ":".join(names) + "\n--gtest_fail_fast\n--gtest_brief=1\n")
+    environment = dict(os.environ, DOPPEL_MUTANT=str(mutant), TMPDIR=str(own / "tmp"), GTEST_FLAGFILE=str(flags))
+    if reached:
+        environment["DOPPEL_MUTANTS_REACHED"] = str(reached)
+    command = ["unshare", "-m", "sh", "-c", f"mount --bind {own}/output {output} && exec {program(tree, room)} --gtest_flagfile={flags}"]
+    environment.pop("GTEST_FLAGFILE")
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               stdin=subprocess.DEVNULL, start_new_session=True)
+    try:
+        out, _ = process.communicate(timeout=seconds)
+        code = process.returncode
+    except subprocess.TimeoutExpired:
+        code, out = None, b""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    return code, out.decode(errors="replace")
+
+
+def tests_of(tree, room):
+    listing = subprocess.run([program(tree, room), "--gtest_list_tests"], capture_output=True, text=True).stdout
+    suite, names = "", []
+    for line in listing.splitlines():
+        if line.startswith("  "):
+            names.append(suite + line.split("#")[0].strip())
+        elif line.strip().endswith(".") or "#" in line:
+            suite = line.split("#")[0].strip()
+    return names
+
+
+def cover(tree, jobs):
+    """Every test once alone: how long it takes and which mutants it reaches. A test that fails here is left out, and
+    one that was measured before is not measured again."""
+    path = tree / "tests.json"
+    known = json.loads(path.read_text()) if path.exists() else []
+    there = {(test["room"], test["name"]) for test in known}
+    work = [(room, name) for room in ROOMS if program(tree, room).exists() for name in tests_of(tree, room)
+            if (room, name) not in there]
+    (tree / "reached").mkdir(exist_ok=True)
+
+    def one(numbered):
+        index, (room, name) = numbered
+        file = tree / "reached" / str(index)
+        file.write_bytes(bytes(4096))
+        start = time.monotonic()
+        code, out = run_tests(tree, f"cover-{index % jobs}" if jobs == 1 else f"cover-{index}", room, [name], -1, 600, file)
+        seconds = time.monotonic() - start
+        bytes_ = file.read_bytes()
+        file.unlink()
+        subprocess.run(["rm", "-rf", tree / "workers" / f"cover-{index}"])
+        if code != 0:
+            print(f"left out: {room}:{name} ({code})", flush=True)
+        return dict(room=room, name=name, seconds=seconds, passes=code == 0,
+                    reaches=[i for i, b in enumerate(bytes_) if b & 1], void=[i for i, b in enumerate(bytes_) if b == 2])
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        tests = known + list(pool.map(one, enumerate(work)))
+    path.write_text(json.dumps(tests))
+    void = {i for t in tests for i in t["void"]} - {i for t in tests for i in t["reaches"]}
+    mutants = load(tree)
+    for mutant in mutants:
+        if mutant["state"] == "planted" and mutant["id"] in void:
+            mutant["state"] = "void"  # no other operator fits its operands
+    save(tree, mutants)
+
+
+def order_of(room):
+    at = ROOMS.index(room)
+    return [room] + ROOMS[at + 1:] + ROOMS[:at]
+
+
+def run(tree, jobs, count, most_seconds):
+    mutants, tests = load(tree), json.loads((tree / "tests.json").read_text())
+    results = tree / "results.jsonl"
+    known = {json.loads(line)["id"] for line in results.read_text().splitlines()} if results.exists() else set()
+    left = collections.Counter()
+    work = []
+    for mutant in mutants:
+        if mutant["state"] == "planted" and left[mutant["room"]] < count:
+            left[mutant["room"]] += 1
+            if mutant["id"] not in known:
+                work.append(mutant)
+
+    def one(mutant):
+        worker = f"run-{mutant['id']}"
+        result = dict(id=mutant["id"], caught=None, tests=0, complete=True)
+        spent = 0
+        for room in order_of(mutant["room"]):
+            reaching = sorted((t for t in tests if t["room"] == room and t["passes"] and mutant["id"] in t["reaches"]),
+                              key=lambda t: t["seconds"])
+            names, seconds = [], 0
+            for test in reaching:
+                if spent + seconds + test["seconds"] > most_seconds and names:
+                    result["complete"] = False
+                    break
+                names.append(test["name"])
+                seconds += test["seconds"]
+            if not names or spent > most_seconds:
+                result["complete"] = result["complete"] and not names
+                continue
+            spent += seconds
+            result["tests"] += len(names)
+            code, out = run_tests(tree, worker, room, names, mutant["id"], 5 * seconds + 20)
+            if code != 0:
+                failed = re.search(r"\[  FAILED  \] (\S+)", out)
+                result["caught"] = f"{room}:" + (failed.group(1).rstrip(",") if failed else "time" if code is None else f"exit {code}")
+                break
+        subprocess.run(["rm", "-rf", tree / "workers" / worker])
+        with open(results, "a") as file:
+            file.write(json.dumps(result) + "\n")
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        list(pool.map(one, work))
+    report(tree)
+
+
+def report(tree):
+    mutants = {m["id"]: m for m in load(tree)}
+    results = [json.loads(line) for line in (tree / "results.jsonl").read_text().splitlines()]
+    for room in ROOMS:
+        of_room = [r for r in results if mutants[r["id"]]["room"] == room]
+        if not of_room:
+            continue
+        caught = [r for r in of_room if r["caught"]]
+        own = [r for r in caught if r["caught"].startswith(room + ":")]
+        print(f"{room}: {len(caught)} of {len(of_room)} caught, {len(own)} by the room's own tests")
+    for r in sorted(results, key=lambda r: (mutants[r["id"]]["file"], mutants[r["id"]]["line"])):
+        m = mutants[r["id"]]
+        if not r["caught"]:
+            line = m["original"]
+            print(f"{m['file']}:{m['line']}: mutant {m['id']}, {m['what']}, {r['tests']} tests"
+                  + ("" if r["complete"] else " (not all)"))
+            print("    " + line[:m["start"]].lstrip() + "⟦" + line[m["start"]:m["end"]] + "⟧" + line[m["end"]:])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("step", choices=["plant", "build", "cover", "run", "report"])
+    parser.add_argument("tree", type=pathlib.Path)
+    parser.add_argument("rooms", nargs="*", help="for plant")
+    parser.add_argument("--count", type=int, default=100, help="mutants a room")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--seconds", type=float, default=60, help="of tests that run shows a mutant at most, by what they take without")
+    options = parser.parse_args()
+    tree = options.tree.resolve()
+    match options.step:
+        case "plant": plant(tree, options.rooms, options.count * 3 // 2, options.seed)
+        case "build": build(tree, options.jobs)
+        case "cover": cover(tree, options.jobs)
+        case "run": run(tree, options.jobs, options.count, options.seconds)
+        case "report": report(tree)
+
+
+main()
