@@ -19,7 +19,7 @@ if(number EQUAL 0)
 endif()
 string(REPLACE ".cpp" ".hpp" header "${OUTPUT}")
 file(WRITE ${header} "#pragma once
-#include \"numeric/embedded.hpp\"
+#include \"base/embedded.hpp\"
 #include <span>
 namespace doppel {
 std::span<const EmbeddedFile> ${ROOM}_files();

@@ -9,6 +9,7 @@ function(use_precompiled target option)
         target_precompile_headers(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp)
         target_link_libraries(${name} PRIVATE fmt::fmt Eigen3::Eigen Boost::headers)
     endif()
+    target_link_libraries(${target} PRIVATE fmt::fmt Eigen3::Eigen Boost::headers)  # whose headers they are
     target_precompile_headers(${target} REUSE_FROM ${name})
 endfunction()
 

@@ -1,6 +1,6 @@
 #include "analysis/error_course.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <algorithm>
 #include <cmath>

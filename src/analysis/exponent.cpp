@@ -2,7 +2,7 @@
 
 #include "analysis/linear_stability.hpp"
 #include "analysis/tangent.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
 

@@ -1,9 +1,9 @@
 #include "analysis/linear_stability.hpp"
 
+#include "base/error.hpp"
 #include "integrate/adams.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/rattle.hpp"
-#include "numeric/error.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,7 +1,7 @@
 #include "analysis/reference.hpp"
 
 #include "analysis/angle_error.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 namespace doppel {
 namespace {

@@ -1,7 +1,7 @@
 #include "analysis/reference_course.hpp"
 
 #include "analysis/angle_error.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <algorithm>
 #include <limits>

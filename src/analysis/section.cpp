@@ -1,8 +1,8 @@
 #include "analysis/section.hpp"
 
+#include "base/error.hpp"
 #include "integrate/taylor.hpp"
 #include "numeric/bernstein.hpp"
-#include "numeric/error.hpp"
 #include "numeric/quad.hpp"
 #include "physics/canonical.hpp"
 

@@ -1,7 +1,7 @@
 #include "analysis/sensitivity.hpp"
 
 #include "analysis/tangent.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
 

@@ -1,7 +1,7 @@
 #include "analysis/spectrum.hpp"
 
 #include "analysis/tangent.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "physics/canonical.hpp"
 
 #include <Eigen/QR>

@@ -1,7 +1,7 @@
 #include "analysis/twins.hpp"
 
 #include "analysis/distance.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "numeric/nan.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/print.hpp"
-#include "numeric/error.hpp"
+#include "image/golden.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"
-#include "picture/golden.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

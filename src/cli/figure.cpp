@@ -1,9 +1,9 @@
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "figure/run.hpp"
-#include "numeric/error.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

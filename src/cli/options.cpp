@@ -1,8 +1,8 @@
 #include "cli/options.hpp"
 
+#include "base/error.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "numeric/error.hpp"
 
 #include <CLI/CLI.hpp>
 

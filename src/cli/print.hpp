@@ -1,7 +1,7 @@
 #pragma once
 
-#include "numeric/error.hpp"
-#include "numeric/text.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "cli/program.hpp"
 
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "cli/print.hpp"
-#include "numeric/error.hpp"
-#include "numeric/text.hpp"
 #include "scene/nearest.hpp"
 #include "scene/version.hpp"
 

@@ -1,7 +1,7 @@
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "film/film.hpp"
-#include "numeric/error.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,8 +1,8 @@
 #include "figure/claims.hpp"
 
 #include "analysis/exponent.hpp"
+#include "base/clock.hpp"
 #include "figure/claim_runs.hpp"
-#include "numeric/clock.hpp"
 #include "numeric/dual.hpp"
 #include "scene/assemble.hpp"
 #include "scene/scene.hpp"

@@ -1,8 +1,8 @@
 #include "figure/computation.hpp"
 
-#include "numeric/clock.hpp"
-#include "numeric/threads.hpp"
-#include "numeric/time_limit.hpp"
+#include "base/clock.hpp"
+#include "base/threads.hpp"
+#include "base/time_limit.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>

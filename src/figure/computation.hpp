@@ -1,7 +1,7 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "figure/part_file.hpp"
-#include "numeric/error.hpp"
 
 #include <atomic>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "figure/drift_run.hpp"
 
-#include "numeric/clock.hpp"
+#include "base/clock.hpp"
 #include "numeric/nan.hpp"
 #include "scene/choose.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <filesystem>
 #include <string>

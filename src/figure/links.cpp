@@ -1,7 +1,7 @@
 #include "analysis/exponent.hpp"
+#include "base/clock.hpp"
 #include "figure/kinds.hpp"
 #include "integrate/motion.hpp"
-#include "numeric/clock.hpp"
 #include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
 

@@ -1,6 +1,6 @@
 #include "figure/merge.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <algorithm>
 

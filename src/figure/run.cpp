@@ -1,15 +1,15 @@
 #include "figure/run.hpp"
 
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "base/machine.hpp"
+#include "base/parallel_for.hpp"
 #include "figure/manifest.hpp"
 #include "figure/merge.hpp"
-#include "numeric/clock.hpp"
-#include "numeric/error.hpp"
-#include "numeric/machine.hpp"
-#include "numeric/share_out.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"
 #include "output/queue.hpp"
-#include "picture/renderer.hpp"
+#include "render/renderer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ DisplayList compose_figure(const FigurePreset& figure, const KnownTrials& trials
 KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atomic<bool>& stop) {
     Computation computation(figure, header_of(figure), std::nullopt, jobs,
                             {[](const FigureProgress&) {}, [](const std::string&) {}});
-    share_out(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, stop); });
+    parallel_for(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, stop); });
     return computation.take();
 }
 
@@ -162,7 +162,7 @@ private:
 
     void work(int jobs) {
         try {
-            share_out(groups_.size(), jobs, [&](std::size_t i) { work_on(groups_[i]); });
+            parallel_for(groups_.size(), jobs, [&](std::size_t i) { work_on(groups_[i]); });
             for (const auto& group : timed_groups_) work_on(group);
         } catch (...) {
             fault_ = std::current_exception();

@@ -2,7 +2,7 @@
 
 #include "figure/computation.hpp"
 #include "film/run.hpp"
-#include "picture/gl.hpp"
+#include "render/gl.hpp"
 
 #include <functional>
 #include <optional>

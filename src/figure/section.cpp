@@ -1,7 +1,7 @@
 #include "analysis/section.hpp"
 
 #include "figure/kinds.hpp"
-#include "picture/theme.hpp"
+#include "image/theme.hpp"
 #include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
 

@@ -1,7 +1,7 @@
 #include "figure/stability_runs.hpp"
 
+#include "base/error.hpp"
 #include "integrate/ensemble.hpp"
-#include "numeric/error.hpp"
 #include "numeric/nan.hpp"
 #include "physics/bob.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "output/csv.hpp"
-#include "picture/plot.hpp"
+#include "plot/plot.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,8 +1,8 @@
 #include "figure/work_ladder.hpp"
 
+#include "base/error.hpp"
 #include "figure/work_run.hpp"
 #include "integrate/methods.hpp"
-#include "numeric/error.hpp"
 #include "numeric/nan.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "figure/work_run.hpp"
 
 #include "analysis/energy_error.hpp"
-#include "numeric/clock.hpp"
-#include "numeric/error.hpp"
+#include "base/clock.hpp"
+#include "base/error.hpp"
 #include "numeric/nan.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "film/composer.hpp"
 
 #include "film/survey.hpp"
-#include "picture/font.hpp"
+#include "render/font.hpp"
 #include "scene/wording.hpp"
 
 #include <fmt/format.h>

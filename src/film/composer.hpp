@@ -2,7 +2,7 @@
 
 #include "film/layout.hpp"
 #include "film/shot.hpp"
-#include "picture/trace.hpp"
+#include "render/trace.hpp"
 
 #include <array>
 #include <deque>

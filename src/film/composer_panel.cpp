@@ -1,5 +1,5 @@
 #include "film/composer.hpp"
-#include "picture/font.hpp"
+#include "render/font.hpp"
 
 #include <algorithm>
 #include <cmath>

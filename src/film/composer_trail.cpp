@@ -1,5 +1,5 @@
 #include "film/composer.hpp"
-#include "picture/stroke.hpp"
+#include "render/stroke.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 #include "film/film.hpp"
 
-#include "numeric/clock.hpp"
+#include "base/clock.hpp"
+#include "image/matte.hpp"
+#include "image/reduce.hpp"
 #include "output/png.hpp"
 #include "output/video.hpp"
-#include "picture/matte.hpp"
-#include "picture/reduce.hpp"
 #include "scene/version.hpp"
 
 #include <algorithm>

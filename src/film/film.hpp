@@ -7,7 +7,7 @@
 #include "output/part_files.hpp"
 #include "output/sink.hpp"
 #include "output/video.hpp"
-#include "picture/renderer.hpp"
+#include "render/renderer.hpp"
 
 #include <atomic>
 #include <memory>

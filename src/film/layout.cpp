@@ -2,7 +2,7 @@
 
 #include "film/view.hpp"
 #include "numeric/state.hpp"
-#include "picture/font.hpp"
+#include "render/font.hpp"
 #include "scene/wording.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "film/style.hpp"
-#include "picture/area.hpp"
-#include "picture/axis.hpp"
-#include "picture/display_list.hpp"
+#include "plot/axis.hpp"
+#include "render/area.hpp"
+#include "render/display_list.hpp"
 #include "scene/scene.hpp"
 
 #include <array>

@@ -1,12 +1,12 @@
 #include "film/run.hpp"
 
+#include "base/clock.hpp"
+#include "base/error.hpp"
 #include "film/film.hpp"
 #include "film/manifest.hpp"
 #include "film/rescue.hpp"
 #include "film/simulation.hpp"
 #include "film/table.hpp"
-#include "numeric/clock.hpp"
-#include "numeric/error.hpp"
 #include "output/part_files.hpp"
 #include "scene/distance_check.hpp"
 

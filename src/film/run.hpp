@@ -1,6 +1,6 @@
 #pragma once
 
-#include "picture/gl.hpp"
+#include "render/gl.hpp"
 #include "scene/scene.hpp"
 
 #include <atomic>

@@ -1,7 +1,7 @@
 #include "film/simulation.hpp"
 
-#include "numeric/clock.hpp"
-#include "numeric/threads.hpp"
+#include "base/clock.hpp"
+#include "base/threads.hpp"
 
 namespace doppel {
 namespace {

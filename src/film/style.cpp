@@ -1,6 +1,6 @@
 #include "film/style.hpp"
 
-#include "picture/colormap.hpp"
+#include "image/colormap.hpp"
 
 #include <algorithm>
 

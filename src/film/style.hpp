@@ -1,6 +1,6 @@
 #pragma once
 
-#include "picture/theme.hpp"
+#include "image/theme.hpp"
 #include "scene/video_spec.hpp"
 
 namespace doppel {

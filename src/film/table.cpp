@@ -1,7 +1,7 @@
 #include "film/table.hpp"
 
 #include "analysis/distance.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "integrate/crowd.hpp"
 
+#include "base/error.hpp"
+#include "base/parallel_for.hpp"
 #include "integrate/ensemble.hpp"
 #include "integrate/turns.hpp"
-#include "numeric/error.hpp"
-#include "numeric/share_out.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -154,7 +154,7 @@ Crowd& Crowd::operator=(Crowd&&) noexcept = default;
 void Crowd::advance(const std::atomic<bool>& stop) {
     // of several errors always the same one, whoever came first
     std::vector<std::exception_ptr> errors(parts_.size());
-    share_out(parts_.size(), jobs_, [&](std::size_t i) {
+    parallel_for(parts_.size(), jobs_, [&](std::size_t i) {
         try {
             parts_[i]->advance(stop);
         } catch (...) {

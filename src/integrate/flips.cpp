@@ -1,8 +1,8 @@
 #include "integrate/flips.hpp"
 
+#include "base/error.hpp"
 #include "integrate/ensemble.hpp"
 #include "integrate/flips_kernel.hpp"
-#include "numeric/error.hpp"
 #include "numeric/state.hpp"
 
 #include <algorithm>

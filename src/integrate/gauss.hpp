@@ -1,7 +1,7 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "integrate/method.hpp"
-#include "numeric/error.hpp"
 #include "physics/canonical.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "integrate/registry.hpp"
 #include "integrate/stepper.hpp"
-#include "numeric/error.hpp"
 
 #include <memory>
 #include <string_view>

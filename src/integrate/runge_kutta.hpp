@@ -23,7 +23,7 @@ public:
     }
 
     void advance(long steps) {
-        if constexpr (std::is_same_v<Scalar, double>)
+        if constexpr (std::is_same_v<Scalar, double> && State::RowsAtCompileTime != Eigen::Dynamic)
             repeat_flattened(steps);
         else
             repeat(steps);
@@ -40,8 +40,8 @@ private:
         for (long i = 0; i < steps; ++i) step(y_);
     }
 
-    /// Whether the compiler inlines a right-hand side of its own accord depends on what else is in the file; it must for
-    /// double. Duals and lanes take minutes to compile so where sanitizers look on.
+    /// For short states of doubles: whether the compiler inlines a right-hand side of its own accord depends on what else
+    /// is in the file. Others gain nothing by it, and take minutes to compile with sanitizers.
     [[gnu::flatten]] void repeat_flattened(long steps) { repeat(steps); }
 
     void step(State& y) {

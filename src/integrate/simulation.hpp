@@ -1,10 +1,10 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "integrate/method_stepper.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
 #include "integrate/turns.hpp"
-#include "numeric/error.hpp"
 #include "physics/stabilise.hpp"
 #include "physics/tension.hpp"
 

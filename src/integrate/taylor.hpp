@@ -1,8 +1,8 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "integrate/method.hpp"
 #include "integrate/taylor_lanes.hpp"
-#include "numeric/error.hpp"
 #include "physics/mechanism_series.hpp"
 #include "physics/rod_series.hpp"
 

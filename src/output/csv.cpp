@@ -1,6 +1,6 @@
 #include "output/csv.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "output/folder.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <dirent.h>
 #include <fcntl.h>

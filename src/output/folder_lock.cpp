@@ -1,6 +1,6 @@
 #include "output/folder_lock.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

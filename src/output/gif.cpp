@@ -1,8 +1,8 @@
 #include "output/gif.hpp"
 
-#include "numeric/error.hpp"
-#include "numeric/machine.hpp"
-#include "numeric/threads.hpp"
+#include "base/error.hpp"
+#include "base/machine.hpp"
+#include "base/threads.hpp"
 #include "output/palette.hpp"
 #include "output/pool.hpp"
 #include "output/spool.hpp"

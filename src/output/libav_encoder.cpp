@@ -1,7 +1,7 @@
 #include "output/libav_encoder.hpp"
 
-#include "numeric/error.hpp"
-#include "numeric/threads.hpp"
+#include "base/error.hpp"
+#include "base/threads.hpp"
 #include "output/libav_log.hpp"
 #include "output/video.hpp"
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "image/picture.hpp"
 #include "output/libav_file.hpp"
 #include "output/metadata.hpp"
-#include "picture/picture.hpp"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

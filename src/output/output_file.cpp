@@ -1,6 +1,6 @@
 #include "output/output_file.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 namespace doppel {
 

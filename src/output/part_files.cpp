@@ -1,6 +1,6 @@
 #include "output/part_files.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 #include "output/png.hpp"
 
-#include "numeric/error.hpp"
-#include "numeric/machine.hpp"
+#include "base/error.hpp"
+#include "base/machine.hpp"
 #include "output/output_file.hpp"
 #include "output/png_text.hpp"
 #include "output/pool.hpp"

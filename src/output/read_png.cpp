@@ -1,4 +1,4 @@
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "output/png.hpp"
 
 #include <algorithm>

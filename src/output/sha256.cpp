@@ -1,6 +1,6 @@
 #include "output/sha256.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 extern "C" {
 #include <libavutil/mem.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "picture/picture.hpp"
+#include "image/picture.hpp"
 
 #include <atomic>
 #include <vector>

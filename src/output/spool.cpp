@@ -1,6 +1,6 @@
 #include "output/spool.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <libdeflate.h>
 

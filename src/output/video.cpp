@@ -1,6 +1,6 @@
 #include "output/video.hpp"
 
-#include "numeric/machine.hpp"
+#include "base/machine.hpp"
 #include "output/gif.hpp"
 #include "output/pool.hpp"
 #include "output/video_codecs.hpp"

@@ -1,6 +1,6 @@
 #include "output/video_codecs.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "output/libav_log.hpp"
 #include "output/png_text.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/threads.hpp"
+#include "base/threads.hpp"
 #include "output/queue.hpp"
 
 #include <exception>

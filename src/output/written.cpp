@@ -1,6 +1,6 @@
 #include "output/written.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "physics/mechanism_assembly.hpp"
 #include "physics/model_series.hpp"
 #include "physics/separation_series.hpp"

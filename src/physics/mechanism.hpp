@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "physics/bob.hpp"
 #include "physics/constraint_set.hpp"
 #include "physics/mechanism_assembly.hpp"

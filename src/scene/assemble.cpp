@@ -1,6 +1,6 @@
 #include "scene/assemble.hpp"
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "scene/nearest.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "scene/cost_table.hpp"
 
+#include "base/error.hpp"
 #include "embedded/scene.hpp"
-#include "numeric/error.hpp"
 
 #include <algorithm>
 #include <charconv>

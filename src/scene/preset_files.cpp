@@ -1,6 +1,6 @@
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "embedded/scene.hpp"
-#include "numeric/error.hpp"
-#include "numeric/text.hpp"
 #include "scene/nearest.hpp"
 #include "scene/preset.hpp"
 

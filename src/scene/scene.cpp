@@ -2,7 +2,7 @@
 
 #include "analysis/distance.hpp"
 #include "analysis/energy_error.hpp"
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "scene/assemble.hpp"
 #include "scene/choice.hpp"
 #include "scene/choose.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "numeric/error.hpp"
 #include "physics/mechanism_assembly.hpp"
 #include "scene/preset.hpp"
 

@@ -1,7 +1,7 @@
 #include "scene/toml_reader.hpp"
 
-#include "numeric/text.hpp"
-#include "picture/font.hpp"
+#include "base/text.hpp"
+#include "render/font.hpp"
 #include "scene/nearest.hpp"
 
 #include <algorithm>

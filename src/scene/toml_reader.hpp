@@ -1,9 +1,9 @@
 #pragma once
 
-#include "numeric/error.hpp"
+#include "base/error.hpp"
+#include "image/color.hpp"
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
-#include "picture/color.hpp"
 #include "scene/toml_text.hpp"
 
 #include <toml++/toml.h>

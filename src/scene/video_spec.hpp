@@ -1,9 +1,9 @@
 #pragma once
 
+#include "image/color.hpp"
+#include "image/picture.hpp"
+#include "image/theme.hpp"
 #include "numeric/rational.hpp"
-#include "picture/color.hpp"
-#include "picture/picture.hpp"
-#include "picture/theme.hpp"
 
 #include <array>
 #include <cstddef>

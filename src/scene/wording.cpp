@@ -1,6 +1,6 @@
 #include "scene/wording.hpp"
 
-#include "picture/axis.hpp"
+#include "plot/axis.hpp"
 
 #include <fmt/format.h>
 

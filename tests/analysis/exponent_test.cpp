@@ -1,10 +1,10 @@
 #include "analysis/exponent.hpp"
-#include "analysis/linear_stability.hpp"
 
+#include "analysis/linear_stability.hpp"
 #include "analysis/tangent.hpp"
+#include "base/error.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
-#include "numeric/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
 

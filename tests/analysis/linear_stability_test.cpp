@@ -1,7 +1,7 @@
 #include "analysis/linear_stability.hpp"
 
+#include "base/error.hpp"
 #include "integrate/motion.hpp"
-#include "numeric/error.hpp"
 
 #include <gtest/gtest.h>
 

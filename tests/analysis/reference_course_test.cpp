@@ -1,6 +1,6 @@
 #include "analysis/error_course.hpp"
+#include "base/error.hpp"
 #include "integrate/pendulums.hpp"
-#include "numeric/error.hpp"
 
 #include <gtest/gtest.h>
 

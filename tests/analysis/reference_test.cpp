@@ -1,8 +1,8 @@
 #include "analysis/reference.hpp"
 
 #include "analysis/angle_error.hpp"
+#include "base/error.hpp"
 #include "integrate/pendulums.hpp"
-#include "numeric/error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #include "analysis/section.hpp"
 
+#include "base/error.hpp"
 #include "integrate/dop853.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/rk4.hpp"
 #include "integrate/taylor.hpp"
-#include "numeric/error.hpp"
 #include "physics/bob.hpp"
 #include "physics/canonical.hpp"
 

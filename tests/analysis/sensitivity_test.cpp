@@ -1,9 +1,9 @@
 #include "analysis/sensitivity.hpp"
 
 #include "analysis/angle_error.hpp"
+#include "base/error.hpp"
 #include "integrate/motion.hpp"
 #include "integrate/pendulums.hpp"
-#include "numeric/error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "analysis/spectrum.hpp"
 
 #include "analysis/exponent.hpp"
+#include "base/error.hpp"
 #include "integrate/pendulums.hpp"
-#include "numeric/error.hpp"
 
 #include <gtest/gtest.h>
 

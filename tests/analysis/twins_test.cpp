@@ -1,8 +1,8 @@
 #include "analysis/twins.hpp"
 
 #include "analysis/distance.hpp"
+#include "base/error.hpp"
 #include "integrate/support.hpp"
-#include "numeric/error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
+#include "base/error.hpp"
 #include "film/composer.hpp"
 #include "film/run.hpp"
-#include "numeric/error.hpp"
 #include "output/png.hpp"
 #include "output/samples.hpp"
 #include "output/video.hpp"
-#include "picture/renderer.hpp"
+#include "render/renderer.hpp"
 
 #include <benchmark/benchmark.h>
 

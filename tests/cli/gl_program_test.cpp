@@ -1,6 +1,6 @@
 #include "cli/process.hpp"
+#include "image/golden.hpp"
 #include "output/png.hpp"
-#include "picture/golden.hpp"
 
 #include <nlohmann/json.hpp>
 

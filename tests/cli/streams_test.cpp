@@ -1,6 +1,6 @@
 // What goes to and comes from the terminal, pipes and closed descriptors. With the real program.
+#include "base/text.hpp"
 #include "cli/sandbox.hpp"
-#include "numeric/text.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>

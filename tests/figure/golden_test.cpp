@@ -1,7 +1,7 @@
 #include "output/golden.hpp"
 
 #include "figure/support.hpp"
-#include "picture/renderer.hpp"
+#include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "figure/support.hpp"
 #include "integrate/ensemble.hpp"
 #include "output/golden.hpp"
-#include "picture/renderer.hpp"
+#include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
 

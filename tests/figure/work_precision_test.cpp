@@ -1,6 +1,6 @@
 #include "figure/support.hpp"
 #include "output/golden.hpp"
-#include "picture/renderer.hpp"
+#include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
 

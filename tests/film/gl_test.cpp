@@ -1,5 +1,5 @@
 #include "film/support.hpp"
-#include "picture/golden.hpp"
+#include "image/golden.hpp"
 
 #include <gtest/gtest.h>
 

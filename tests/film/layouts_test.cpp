@@ -3,7 +3,7 @@
 #include "film/survey.hpp"
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
-#include "picture/font.hpp"
+#include "render/font.hpp"
 #include "scene/resolved.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include "film/composer.hpp"
 #include "integrate/crowd.hpp"
-#include "picture/renderer.hpp"
+#include "render/renderer.hpp"
 #include "scene/support.hpp"
 
 namespace doppel {

@@ -1,6 +1,6 @@
 #include "film/support.hpp"
-#include "picture/font.hpp"
-#include "picture/theme.hpp"
+#include "image/theme.hpp"
+#include "render/font.hpp"
 
 #include <gtest/gtest.h>
 

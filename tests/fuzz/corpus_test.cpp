@@ -1,8 +1,8 @@
 // What libFuzzer found, and seeded mutations of every preset and of some files, through the readers of every build.
+#include "base/clock.hpp"
 #include "figure/preset.hpp"
 #include "fuzz/mutation.hpp"
 #include "fuzz/reading.hpp"
-#include "numeric/clock.hpp"
 #include "output/fixtures.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "fuzz/reading.hpp"
 
+#include "base/error.hpp"
 #include "figure/preset.hpp"
-#include "numeric/error.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 

@@ -1,6 +1,6 @@
+#include "base/error.hpp"
 #include "figure/run.hpp"
 #include "fuzz/reading.hpp"
-#include "numeric/error.hpp"
 #include "output/png.hpp"
 #include "output/sha256.hpp"
 

@@ -1,8 +1,8 @@
 #include "integrate/crowd.hpp"
 
+#include "base/error.hpp"
 #include "integrate/ensemble.hpp"
 #include "integrate/support.hpp"
-#include "numeric/error.hpp"
 
 #include <cmath>
 #include <string>

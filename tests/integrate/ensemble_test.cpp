@@ -1,7 +1,7 @@
 #include "integrate/ensemble.hpp"
 
+#include "base/error.hpp"
 #include "integrate/ensemble_block.hpp"
-#include "numeric/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"

@@ -1,8 +1,8 @@
+#include "base/error.hpp"
 #include "integrate/ensemble.hpp"
 #include "integrate/flip_reference.hpp"
 #include "integrate/flips.hpp"
 #include "integrate/flips_kernel.hpp"
-#include "numeric/error.hpp"
 
 #include <gtest/gtest.h>
 

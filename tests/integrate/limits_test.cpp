@@ -1,7 +1,7 @@
 #include "allocations.hpp"
+#include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/support.hpp"
-#include "numeric/error.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,9 +1,9 @@
 #include "integrate/motion.hpp"
 
+#include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/registry.hpp"
 #include "integrate/support.hpp"
-#include "numeric/error.hpp"
 #include "physics/chain_parts.hpp"
 #include "physics/rod_chain.hpp"
 #include "physics/stabilise.hpp"

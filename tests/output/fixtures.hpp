@@ -1,7 +1,7 @@
 #pragma once
 
-#include "numeric/error.hpp"
-#include "picture/picture.hpp"
+#include "base/error.hpp"
+#include "image/picture.hpp"
 
 #include <gtest/gtest.h>
 

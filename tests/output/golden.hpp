@@ -1,8 +1,8 @@
 #pragma once
 
+#include "image/golden.hpp"
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
-#include "picture/golden.hpp"
 
 #include <cstdlib>
 #include <cstring>

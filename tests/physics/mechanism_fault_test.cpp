@@ -1,4 +1,4 @@
-#include "numeric/error.hpp"
+#include "base/error.hpp"
 #include "numeric/quad.hpp"
 #include "physics/chain_parts.hpp"
 #include "physics/mechanisms.hpp"

@@ -1,5 +1,5 @@
 // What a preset is made of before it means anything: its file, its name, its bytes.
-#include "numeric/clock.hpp"
+#include "base/clock.hpp"
 #include "output/fixtures.hpp"
 #include "scene/manifest_json.hpp"
 #include "scene/resolved.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "chain_rate.hpp"
 #include "figure/peer.hpp"
-#include "numeric/error.hpp"
 
 #include <algorithm>
 #include <string_view>

@@ -1,8 +1,8 @@
+#include "base/error.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "figure/run.hpp"
-#include "numeric/error.hpp"
 #include "peers.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,10 +1,10 @@
 #include "peers.hpp"
 
 #include "allocations.hpp"
+#include "base/error.hpp"
 #include "chain_rate.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
-#include "numeric/error.hpp"
 #include "numeric/quad.hpp"
 
 #include <gtest/gtest.h>

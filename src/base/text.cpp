@@ -1,0 +1,67 @@
+#include "base/text.hpp"
+
+#include <cstddef>
+
+namespace doppel {
+namespace {
+
+constexpr char32_t replacement = 0xfffd;
+constexpr std::string_view replacement_utf8 = "\xef\xbf\xbd";
+
+/// Of the first character: its bytes, 0 where it is not well-formed; `character` ← which it is.
+std::size_t length_of_first(std::string_view text, char32_t& character) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(0);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    character = length <= 1 ? first : first & (0x7fu >> length);
+    bool well_formed = length > 0 && first < 0xf5 && text.size() >= length;
+    for (std::size_t i = 1; well_formed && i < length; ++i) {
+        well_formed = (byte(i) & 0xc0u) == 0x80;
+        character = character << 6 | (byte(i) & 0x3fu);
+    }
+    // neither longer than need be, nor half a surrogate pair, nor past the end of Unicode
+    well_formed = well_formed && !(length == 3 && (character < 0x800 || (character >> 11) == 0x1b)) &&
+                  !(length == 4 && (character < 0x10000 || character > 0x10ffff));
+    return well_formed ? length : 0;
+}
+
+}  // namespace
+
+char32_t next_character(std::string_view& text) {
+    char32_t character = 0;
+    const auto length = length_of_first(text, character);
+    text.remove_prefix(length > 0 ? length : 1);
+    return length > 0 ? character : replacement;
+}
+
+bool is_utf8(std::string_view text) {
+    for (char32_t character = 0; !text.empty();) {
+        const auto length = length_of_first(text, character);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
+bool is_control(char32_t c) {
+    const auto within = [&](char32_t first, char32_t last) { return c >= first && c <= last; };
+    return c < 0x20 || within(0x7f, 0x9f) || c == 0x61c || within(0x200e, 0x200f) || within(0x2028, 0x202e) ||
+           within(0x2066, 0x2069);
+}
+
+std::string on_one_line(std::string_view text) {
+    std::string line;
+    for (char32_t character = 0; !text.empty();) {
+        const auto length = length_of_first(text, character);
+        if (length == 0)
+            line += replacement_utf8;
+        else if (is_control(character))
+            line += ' ';
+        else
+            line += text.substr(0, length);
+        text.remove_prefix(length > 0 ? length : 1);
+    }
+    return line;
+}
+
+}  // namespace doppel

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "base/error.hpp"
+
+#include <cstddef>
+#include <exception>
+#include <latch>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace doppel {
+
+/// Starts `count` threads that call work(), or as many of them as the system lets this process have: maybe none.
+template <class Work>
+std::vector<std::jthread> start_threads(std::size_t count, const Work& work) {
+    std::vector<std::jthread> threads;
+    threads.reserve(count);
+    try {
+        while (threads.size() < count) threads.emplace_back(work);
+    } catch (const std::exception&) {  // no more threads, or no memory for them
+    }
+    return threads;
+}
+
+/// What to throw where work waits for a thread and there is none.
+inline Error no_thread() {
+    return io_failed(
+        "the system gives this process no further thread; raise its limit (ulimit -u, or pids.max of its control "
+        "group) or end other programs");
+}
+
+/// A thread that calls work(). Throws Error (exit 4) where the system lets this process have none.
+template <class Work>
+std::jthread start_thread(const Work& work) {
+    auto threads = start_threads(1, work);
+    if (threads.empty()) throw no_thread();
+    return std::move(threads.front());
+}
+
+/// Throws Error (exit 4) where this process may not have `count` further threads at once: for libraries that hang or
+/// end the program where one of theirs cannot be started.
+inline void need_threads(std::size_t count) {
+    std::latch all_there(1);
+    const auto threads = start_threads(count, [&] { all_there.wait(); });
+    all_there.count_down();
+    if (threads.size() < count) throw no_thread();
+}
+
+}  // namespace doppel

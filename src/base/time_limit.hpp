@@ -1,0 +1,28 @@
+#pragma once
+
+#include "base/clock.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace doppel {
+
+/// Ends what takes a `stop`, after some seconds or soon after another `stop` is set.
+class TimeLimit {
+public:
+    TimeLimit(double seconds, const std::atomic<bool>& other)
+        : watch_([this, &other, end = seconds_of(CLOCK_MONOTONIC) + seconds](const std::stop_token& quit) {
+              while (!quit.stop_requested() && !other && seconds_of(CLOCK_MONOTONIC) < end)
+                  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+              reached_ = true;
+          }) {}
+
+    const std::atomic<bool>& reached() const { return reached_; }
+
+private:
+    std::atomic<bool> reached_ = false;
+    std::jthread watch_;  // last: joined before the rest goes
+};
+
+}  // namespace doppel

@@ -1,0 +1,104 @@
+#include "image/golden.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace doppel {
+namespace {
+
+// The policy: identical pixels pass; otherwise all of these must hold.
+constexpr int strong_difference = 3;       // /255
+constexpr long most_strong = 4;            // pixels
+constexpr int largest_allowed = 80;        // /255
+constexpr double most_differing = 0.08;    // of all pixels
+constexpr int tile = 32;                   // px
+constexpr double most_tile_mean = 0.25;    // /255
+constexpr double most_signed_mean = 0.03;  // /255
+constexpr int colours = 3, channels = 4;   // the last is opacity
+
+/// Mean absolute difference over the tile whose corner is (left, top): of the colours, or of the opacity, which differs
+/// by itself.
+double tile_mean(const Picture& expected, const Picture& actual, int left, int top) {
+    const int right = std::min(left + tile, expected.size.width), bottom = std::min(top + tile, expected.size.height);
+    std::array<long, channels> sums{};
+    for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; ++x)
+            for (int c = 0; c < channels; ++c)
+                sums[static_cast<std::size_t>(c)] += std::abs(expected.at(x, y)[c] - actual.at(x, y)[c]);
+    const double pixels = (right - left) * (bottom - top);
+    return std::max(static_cast<double>(sums[0] + sums[1] + sums[2]) / (colours * pixels),
+                    static_cast<double>(sums[3]) / pixels);
+}
+
+}  // namespace
+
+GoldenVerdict compare_golden(const Picture& expected, const Picture& actual) {
+    const auto [width, height] = expected.size;
+    if (actual.size != expected.size)
+        throw Error(ExitCode::differs, fmt::format("the pictures differ in size: {}×{} expected, {}×{} found", width,
+                                                   height, actual.size.width, actual.size.height));
+    GoldenVerdict verdict;
+    std::array<long, channels> sums{};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            int most = 0;
+            for (int c = 0; c < channels; ++c) {
+                const int difference = actual.at(x, y)[c] - expected.at(x, y)[c];
+                sums[static_cast<std::size_t>(c)] += difference;
+                most = std::max(most, std::abs(difference));
+            }
+            verdict.differing += most > 0;
+            verdict.strong += most > strong_difference;
+            verdict.largest = std::max(verdict.largest, most);
+        }
+    for (int top = 0; top < height; top += tile)
+        for (int left = 0; left < width; left += tile)
+            verdict.worst_tile = std::max(verdict.worst_tile, tile_mean(expected, actual, left, top));
+    const double pixels = static_cast<double>(width) * height;
+    for (std::size_t c = 0; c < channels; ++c) verdict.mean[c] = static_cast<double>(sums[c]) / pixels;
+
+    const auto rule = [&](bool holds, const std::string& broken) {
+        if (holds) return;
+        verdict.passes = false;
+        verdict.why += (verdict.why.empty() ? "" : "; ") + broken;
+    };
+    rule(verdict.strong <= most_strong,
+         fmt::format("{} pixels differ by more than {}/255, {} may", verdict.strong, strong_difference, most_strong));
+    rule(verdict.largest <= largest_allowed,
+         fmt::format("a pixel differs by {}/255, {} is allowed", verdict.largest, largest_allowed));
+    rule(static_cast<double>(verdict.differing) <= most_differing * pixels,
+         fmt::format("{:.1f} % of the pixels differ, {:.0f} % may",
+                     100.0 * static_cast<double>(verdict.differing) / pixels, 100 * most_differing));
+    rule(verdict.worst_tile <= most_tile_mean,
+         fmt::format("a {0}×{0} tile differs by {1:.2f}/255 on average, {2} is allowed", tile, verdict.worst_tile,
+                     most_tile_mean));
+    for (std::size_t c = 0; c < channels; ++c)
+        rule(std::abs(verdict.mean[c]) <= most_signed_mean,
+             fmt::format("{} is {:+.3f}/255 off on average, {} is allowed",
+                         std::array{"red", "green", "blue", "opacity"}[c], verdict.mean[c], most_signed_mean));
+    return verdict;
+}
+
+Picture difference_picture(const Picture& expected, const Picture& actual) {
+    constexpr int gain = 16;
+    const auto [width, height] = expected.size;
+    Picture all({3 * width, height});
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const int opacity = std::abs(actual.at(x, y)[3] - expected.at(x, y)[3]);
+            for (int c = 0; c < colours; ++c) {
+                const int e = expected.at(x, y)[c], a = actual.at(x, y)[c];
+                all.at(x, y)[c] = static_cast<std::uint8_t>(e);
+                all.at(x + width, y)[c] = static_cast<std::uint8_t>(a);
+                all.at(x + 2 * width, y)[c] =
+                    static_cast<std::uint8_t>(std::min(255, gain * std::max(std::abs(a - e), opacity)));
+            }
+            for (int part = 0; part < 3; ++part) all.at(x + part * width, y)[3] = 255;
+        }
+    return all;
+}
+
+}  // namespace doppel

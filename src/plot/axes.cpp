@@ -1,0 +1,169 @@
+#include "plot/axes.hpp"
+
+#include "plot/curves.hpp"
+#include "plot/text.hpp"
+#include "plot/ticks.hpp"
+#include "render/font.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+constexpr float label_line = 1.4f;  // em of a label above the panel
+
+/// A line whose edges fall on pixels.
+Box upright(float x, float top, float bottom, float width, Color color) {
+    const float pen = std::max(1.0f, std::round(width)), left = std::round(x - pen / 2);
+    return {left, top, left + pen, bottom, 0, color};
+}
+Box level(float y, float left, float right, float width, Color color) {
+    const float pen = std::max(1.0f, std::round(width)), top = std::round(y - pen / 2);
+    return {left, top, right, top + pen, 0, color};
+}
+
+/// The one colour of the curves on a vertical axis; that of text where they have several.
+Color axis_color(const Plot& plot, bool right, const PlotStyle& style) {
+    std::optional<Color> color;
+    for (const Curve& curve : plot.curves) {
+        if (curve.right != right || curve.quiet) continue;
+        const Color own = curve_color(curve, style, false);
+        if (color && !(*color == own)) return style.theme.text;
+        color = own;
+    }
+    return plot.right && color ? *color : style.theme.text;
+}
+
+/// Words above the panel.
+struct Heading {
+    std::string text;
+    Align align;
+    Color color;
+};
+
+std::vector<Heading> headings(const Plot& plot, const PlotStyle& style) {
+    std::vector<Heading> all{{plot.y.label, Align::left, axis_color(plot, false, style)}};
+    if (plot.right) all.push_back({plot.right->label, Align::right, axis_color(plot, true, style)});
+    if (plot.map && !plot.map->shares_bar) all.push_back({plot.map->label, Align::right, style.theme.text});
+    std::erase_if(all, [](const Heading& heading) { return heading.text.empty(); });
+    return all;
+}
+
+/// Whether all stand in one line: at most one from either side.
+bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle& style) {
+    float need = 1.5f * style.axis * static_cast<float>(all.size() - 1);
+    for (const Heading& heading : all) need += text_width(heading.text, style.axis);
+    const auto from_right =
+        std::count_if(all.begin(), all.end(), [](const Heading& h) { return h.align == Align::right; });
+    return all.size() == 1 || (need <= width && from_right <= 1);
+}
+
+void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& held, const PlotStyle& style,
+                 DisplayList& list) {
+    const float em = style.tick, baseline = area.bottom + 1.45f * em;
+    for (const Tick& tick : x_ticks(x, plot.x, style)) {
+        const float at = x.at(tick.value);
+        const bool named = !tick.text.empty();
+        if (named && !plot.map) list.push_back(upright(at, area.top, area.bottom, style.hairline, style.theme.grid));
+        list.push_back(
+            upright(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.hairline, style.theme.frame));
+        if (!named) continue;
+        const Label label{tick.text, {at, baseline}, em, Align::center, Weight::regular, style.theme.quiet_text};
+        const Area box = text_area(label);
+        if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(label);
+    }
+    const Weight weight = Weight::regular;
+    const float size = fitting_size(plot.x.label, style.axis, weight, held.width());
+    const float half = text_width(plot.x.label, size, weight) / 2;
+    const float middle =
+        std::clamp((area.left + area.right) / 2, held.left + half, std::max(held.left + half, held.right - half));
+    if (plot.x.label.empty()) return;
+    list.push_back(
+        Label{plot.x.label, {middle, baseline + 1.5f * style.axis}, size, Align::center, weight, style.theme.text});
+}
+
+/// A vertical axis: its ticks point to `side`, −1 or 1, from `at`.
+void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, const Area& area, bool grid, Color color,
+                 const PlotStyle& style, DisplayList& list) {
+    const float em = style.tick;
+    for (const Tick& tick : y_ticks(y, asked, style)) {
+        const float place = y.at(tick.value), out = at + side * (tick.text.empty() ? 0.18f : 0.34f) * em;
+        const bool named = !tick.text.empty();
+        if (named && grid) list.push_back(level(place, area.left, area.right, style.hairline, style.theme.grid));
+        list.push_back(level(place, std::min(at, out), std::max(at, out), style.hairline, style.theme.frame));
+        if (!named) continue;
+        list.push_back(Label{tick.text,
+                             {at + side * 0.55f * em, place + 0.36f * em},
+                             em,
+                             side < 0 ? Align::right : Align::left,
+                             Weight::regular,
+                             color});
+    }
+}
+
+}  // namespace
+
+std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style) {
+    const float em = style.tick;
+    return chart_ticks(axis,
+                       {.size = em,
+                        .gap = 0.5f * em,
+                        .spacing = std::max(2.4f * em, std::abs(axis.to - axis.from) / 11),
+                        .across = false},
+                       asked.every);
+}
+
+std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style) {
+    const float em = style.tick;
+    return chart_ticks(axis,
+                       {.size = em,
+                        .gap = 1.1f * em,
+                        .spacing = std::max(3.6f * em, std::abs(axis.to - axis.from) / 15),
+                        .across = true},
+                       asked.every);
+}
+
+void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
+               const PlotStyle& style, DisplayList& list) {
+    const Theme& theme = style.theme;
+    draw_x_axis(plot, x, area, held, style, list);
+    draw_y_axis(y, plot.y, area.left, -1, area, !plot.map, theme.quiet_text, style, list);
+    if (right) {
+        const Color color = axis_color(plot, true, style);
+        draw_y_axis(*right, *plot.right, area.right, 1, area, false, color, style, list);
+        list.push_back(upright(area.right, area.top, area.bottom, style.hairline, theme.frame));
+    }
+    list.push_back(upright(area.left, area.top, area.bottom, style.hairline, theme.frame));
+    list.push_back(level(area.bottom, area.left, area.right, style.hairline, theme.frame));
+}
+
+float axis_labels_height(const Plot& plot, float width, const PlotStyle& style) {
+    const auto all = headings(plot, style);
+    if (all.empty()) return 0;
+    const float line = label_line * style.axis;
+    return side_by_side(all, width, style) ? line : line * static_cast<float>(all.size());
+}
+
+void draw_headings(const Plot& plot, const Area& held, float title, float labels, const PlotStyle& style,
+                   DisplayList& list) {
+    const float width = held.width();
+    const auto write = [&](const Heading& heading, float baseline, float em, Weight weight) {
+        const float size = fitting_size(heading.text, em, weight, width);
+        const float x = heading.align == Align::left ? held.left : held.right;
+        list.push_back(Label{heading.text, {x, baseline}, size, heading.align, weight, heading.color});
+    };
+    if (!plot.title.empty())
+        write({plot.title, Align::left, style.theme.text}, held.top + 0.95f * style.heading, style.heading,
+              Weight::bold);
+    const auto all = headings(plot, style);
+    const bool together = !all.empty() && side_by_side(all, width, style);
+    float baseline = held.top + title + labels - 0.35f * style.axis;
+    // from the line next to the panel up
+    for (std::size_t i = all.size(); i-- > 0;) {
+        write(all[i], baseline, style.axis, Weight::regular);
+        if (!together) baseline -= label_line * style.axis;
+    }
+}
+
+}  // namespace doppel

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "plot/fit.hpp"
+#include "plot/style.hpp"
+
+namespace doppel {
+
+/// px that the bar of a map and its words take on the right of a panel `height` px high.
+float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
+
+/// The bar beside `area`, from `left` on: colours with ticks, and below them what stands for no value.
+void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
+
+/// The same for a bar that maps share, with its label above it.
+float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
+void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
+
+/// What stands for no value.
+Color none_color(const HeatMap& map, const Theme& theme);
+
+}  // namespace doppel

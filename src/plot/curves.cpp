@@ -1,0 +1,263 @@
+#include "plot/curves.hpp"
+
+#include "plot/raster.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+struct Place {
+    double x, y;
+};
+
+/// Gathers a line piece by piece, cut to an area.
+class Cutter {
+public:
+    Cutter(const Area& area, std::vector<std::vector<Point>>& lines) : area_(area), lines_(lines) {}
+
+    void lift() { down_ = false; }
+
+    void move(Place to) {
+        if (!down_) {
+            down_ = true;
+            joined_ = false;
+        } else {
+            cut(last_, to);
+        }
+        last_ = to;
+    }
+
+private:
+    /// Liang & Barsky 1984: the part of from…to within all four edges.
+    void cut(Place from, Place to) {
+        double begin = 0, end = 1;
+        const double dx = to.x - from.x, dy = to.y - from.y;
+        const auto edge = [&](double towards, double distance) {
+            if (towards == 0) return distance >= 0;
+            (towards < 0 ? begin : end) =
+                towards < 0 ? std::max(begin, distance / towards) : std::min(end, distance / towards);
+            return true;
+        };
+        const bool meets = edge(-dx, from.x - area_.left) && edge(dx, area_.right - from.x) &&
+                           edge(-dy, from.y - area_.top) && edge(dy, area_.bottom - from.y) && begin <= end;
+        if (!meets) {
+            joined_ = false;
+            return;
+        }
+        const auto at = [&](double part) {
+            // within, though from far away the rounding is larger than the panel
+            return Point{std::clamp(static_cast<float>(from.x + part * dx), area_.left, area_.right),
+                         std::clamp(static_cast<float>(from.y + part * dy), area_.top, area_.bottom)};
+        };
+        if (begin > 0 || !joined_) lines_.push_back({at(begin)});
+        lines_.back().push_back(at(end));
+        joined_ = end == 1;
+    }
+
+    Area area_;
+    std::vector<std::vector<Point>>& lines_;
+    Place last_{};
+    bool down_ = false, joined_ = false;  // the pen; the last piece ends at last_
+};
+
+/// Passes a dense line on with at most four points for each half column of pixels.
+class Thinner {
+public:
+    explicit Thinner(Cutter& cutter) : cutter_(cutter) {}
+
+    void add(Place place) {
+        const double column = std::floor(2 * place.x);
+        if (held_.empty() || column != column_) {
+            flush();
+            column_ = column;
+        }
+        if (held_.size() < 4) {
+            held_.push_back(place);
+            return;
+        }
+        // the newest is the last; one between goes: neither first nor an extreme
+        held_.push_back(place);
+        std::size_t low = 1, high = 1;
+        for (std::size_t i = 1; i + 1 < held_.size(); ++i) {
+            if (held_[i].y < held_[low].y) low = i;
+            if (held_[i].y > held_[high].y) high = i;
+        }
+        for (std::size_t i = 1; i + 1 < held_.size(); ++i) {
+            if (i == low || i == high) continue;
+            held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(i));
+            return;
+        }
+    }
+
+    void flush() {
+        for (const Place& place : held_) cutter_.move(place);
+        held_.clear();
+    }
+
+    void lift() {
+        flush();
+        cutter_.lift();
+    }
+
+private:
+    Cutter& cutter_;
+    std::vector<Place> held_;
+    double column_ = 0;
+};
+
+double pixel(const Axis& axis, double value) {
+    if (axis.logarithmic && value <= 0) return std::nan("");
+    return axis.from + (static_cast<double>(axis.to) - axis.from) * axis.share(value);
+}
+
+/// A path with gaps, as one stroke: over a gap it runs without ink.
+class Pen {
+public:
+    explicit Pen(Stroke& stroke) : path_(stroke.vertices) {}
+    void down(Point at) {
+        if (!path_.empty()) path_.push_back({at, 0});
+        path_.push_back({at, 1});
+    }
+    void draw(Point to) { path_.push_back({to, 1}); }
+    void up() {
+        if (!path_.empty()) path_.push_back({path_.back().at, 0});
+    }
+
+private:
+    std::vector<Stroke::Vertex>& path_;
+};
+
+void draw_dashes(const std::vector<Point>& line, float dash, float gap, Pen& pen) {
+    float left = dash;
+    bool ink = true;
+    pen.down(line.front());
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        const Point from = line[i - 1], to = line[i];
+        const float length = std::hypot(to.x - from.x, to.y - from.y);
+        float gone = 0;
+        while (length - gone > left) {
+            gone += left;
+            const Point at{from.x + gone / length * (to.x - from.x), from.y + gone / length * (to.y - from.y)};
+            if (ink) pen.draw(at), pen.up();
+            ink = !ink;
+            if (ink) pen.down(at);
+            left = ink ? dash : gap;
+        }
+        left -= length - gone;
+        if (ink) pen.draw(to);
+    }
+    if (ink) pen.up();
+}
+
+/// A line for the others to lie on.
+void draw_ground(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
+                 DisplayList& list) {
+    std::vector<std::vector<Point>> lines;
+    Cutter cutter(area, lines);
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
+        std::isfinite(at.x) && std::isfinite(at.y) ? cutter.move(at) : cutter.lift();
+    }
+    if (curve.ground == Ground::band)
+        draw_line(lines, 6 * style.curve, false, mixed(style.theme.background, style.theme.open, 0.22f), style, list);
+    else
+        draw_line(lines, style.thin, curve.dashed,
+                  mixed(style.theme.background, curve_color(curve, style, false), 0.3f), style, list);
+}
+
+constexpr std::size_t many = 400;  // marks in a panel: from here on they are drawn as images, and smaller
+
+}  // namespace
+
+DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area) {
+    DrawnCurve made;
+    if (curve.ground != Ground::none) return made;
+    Cutter cutter(area, made.lines);
+    Thinner thinner(cutter);
+    const bool dense = static_cast<float>(curve.x.size()) > 2 * area.width();
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
+        if (!std::isfinite(at.x) || !std::isfinite(at.y)) {
+            thinner.lift();
+            continue;
+        }
+        if (curve.mark != Mark::points) dense ? thinner.add(at) : cutter.move(at);
+        const bool inside = at.x >= area.left && at.x <= area.right && at.y >= area.top && at.y <= area.bottom;
+        // a value between two gaps shows as a dot, or it would not show at all
+        const auto gap = [&](std::size_t k) {
+            return k >= curve.x.size() || !std::isfinite(pixel(x, curve.x[k]) + pixel(y, curve.y[k]));
+        };
+        if (inside && (curve.mark != Mark::line || (gap(i - 1) && gap(i + 1))))
+            made.points.push_back({static_cast<float>(at.x), static_cast<float>(at.y)});
+    }
+    thinner.flush();
+    return made;
+}
+
+Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
+    if (over_map && curve.quiet) return rgb(0xffffff);
+    const Theme& theme = over_map ? themes.front() : style.theme;
+    if (curve.quiet) return theme.cursor;
+    return theme.palette[static_cast<std::size_t>(curve.hue) % theme.palette.size()];
+}
+
+void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
+               DisplayList& list) {
+    if (curve.ground != Ground::none) draw_ground(curve, x, y, area, style, list);
+    if (curve.uncertainty.empty()) return;
+    Band band;
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        const double wide = std::abs(curve.uncertainty[i]);
+        double low = curve.y[i] - wide;
+        // on a logarithmic axis a band that reaches zero reaches the end of the axis
+        if (y.logarithmic && low <= 0 && curve.y[i] > 0) low = std::min(y.low, y.high);
+        band.x.push_back(pixel(x, curve.x[i]));
+        band.low.push_back(pixel(y, low));
+        band.high.push_back(pixel(y, curve.y[i] + wide));
+    }
+    list.push_back(band_image(band, curve_color(curve, style, false).with_alpha(0.2f), area, style.scale));
+}
+
+void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,
+               const PlotStyle& style, DisplayList& list) {
+    Stroke stroke{.vertices = {}, .width = width, .color = color};
+    Pen pen(stroke);
+    const float dash = std::max(9 * style.unit, 5.0f) + width, gap = std::max(7 * style.unit, 4.0f) + width;
+    for (const std::vector<Point>& line : lines) {
+        if (dashed) {
+            draw_dashes(line, dash, gap, pen);
+            continue;
+        }
+        pen.down(line.front());
+        for (std::size_t i = 1; i < line.size(); ++i) pen.draw(line[i]);
+        pen.up();
+    }
+    if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
+}
+
+void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
+                DisplayList& list) {
+    const Color color = curve_color(curve, style, over_map), edge = rgb(0x0b0e13).with_alpha(0.75f);
+    const float width = curve.quiet && !over_map ? style.thin : style.curve;
+    const float casing = std::max(1.6f * style.unit, 1.0f);
+    if (over_map) draw_line(drawn.lines, width + 2 * casing, curve.dashed, edge, style, list);
+    draw_line(drawn.lines, width, curve.dashed, color, style, list);
+
+    float radius = curve.quiet ? 0.75f * style.marker : style.marker;
+    if (curve.mark == Mark::line) radius = 0.8f * width;
+    if (drawn.crowd > many) {
+        const float share = static_cast<float>(many) / static_cast<float>(drawn.crowd);
+        radius = std::max(radius * std::sqrt(share), 0.75f * style.unit);
+        if (over_map) list.push_back(cloud_image(drawn.points, radius + casing, edge, area, style.scale));
+        list.push_back(cloud_image(drawn.points, radius, color, area, style.scale));
+        return;
+    }
+    for (const Point& at : drawn.points) {
+        if (over_map) list.push_back(Capsule{at, at, radius + casing, edge});
+        list.push_back(Capsule{at, at, radius, color});
+    }
+}
+
+}  // namespace doppel

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "plot/axis.hpp"
+#include "plot/plot.hpp"
+#include "plot/style.hpp"
+
+namespace doppel {
+
+/// A curve in pixels, cut to its panel.
+struct DrawnCurve {
+    std::vector<std::vector<Point>> lines;  // pieces
+    std::vector<Point> points;              // where a mark is due
+    std::size_t crowd = 0;                  // marks in the whole panel: the more, the smaller
+};
+
+/// Of many points in half a column of pixels the first, the last, the lowest and the highest stay: no pixel tells the
+/// difference.
+DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area);
+
+/// In what colour a curve is drawn; over a map (dark to bright) bright, with a dark edge.
+Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map);
+
+/// The band of its uncertainty, if it has one.
+void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
+               DisplayList& list);
+
+/// Lines and marks.
+void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
+                DisplayList& list);
+
+/// From one place to another, with gaps if it is dashed, as all curves are.
+void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,
+               const PlotStyle& style, DisplayList& list);
+
+}  // namespace doppel

@@ -1,0 +1,160 @@
+#include "plot/fit.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace doppel {
+namespace {
+
+constexpr double greatest = std::numeric_limits<double>::max();
+
+/// The values of one axis.
+class Extent {
+public:
+    explicit Extent(bool logarithmic) : logarithmic_(logarithmic) {}
+
+    void add(double value) {
+        if (!std::isfinite(value) || (logarithmic_ && value <= 0)) return;
+        low_ = std::min(low_, value);
+        high_ = std::max(high_, value);
+    }
+
+    /// What `axis` does not set, with `air` on either side, of the range.
+    Axis range(const PlotAxis& axis, double air) const {
+        double low = low_, high = high_;
+        if (!(low <= high)) low = logarithmic_ ? 1 : 0, high = logarithmic_ ? 10 : 1;
+        // one end given on the wrong side of the values: the other one beyond it
+        if (axis.low && !axis.high) high = above(*axis.low, high), low = std::min(*axis.low, low);
+        if (axis.high && !axis.low) low = below(*axis.high, low), high = std::max(*axis.high, high);
+        if (low == high) low = below(low, low), high = above(high, high);
+        if (logarithmic_) {
+            const double part = std::pow(10.0, air * (std::log10(high) - std::log10(low)));
+            low = std::max(low / part, std::numeric_limits<double>::min());
+            high = std::min(high * part, greatest);
+        } else {
+            const double part = 2 * air * (high / 2 - low / 2);
+            low = low >= 0 && low < part ? 0 : std::max(low - part, -greatest);
+            high = std::min(high + part, greatest);
+        }
+        Axis made{.low = axis.low.value_or(low), .high = axis.high.value_or(high), .logarithmic = logarithmic_};
+        if (made.low == made.high) made.low = below(made.low, made.low), made.high = above(made.high, made.high);
+        return made;
+    }
+
+private:
+    /// `value`, or what is a little more than `limit`.
+    double above(double limit, double value) const {
+        if (value > limit) return value;
+        return logarithmic_ ? std::min(limit * 3, greatest)
+               : limit == 0 ? 1
+                            : std::min(limit + 0.1 * std::abs(limit), greatest);
+    }
+    double below(double limit, double value) const {
+        if (value < limit) return value;
+        return logarithmic_ ? limit / 3 : limit == 0 ? -1 : std::max(limit - 0.1 * std::abs(limit), -greatest);
+    }
+
+    bool logarithmic_;
+    double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+};
+
+void check(const PlotAxis& axis) {
+    for (const auto& end : {axis.low, axis.high}) {
+        if (end && !std::isfinite(*end))
+            throw bad_input("the axis \"{}\" must end at a number; it is {}", axis.label, *end);
+        if (end && axis.logarithmic && *end <= 0)
+            throw bad_input("the logarithmic axis \"{}\" must begin above 0; it is {}", axis.label, *end);
+    }
+    if (axis.every && !(*axis.every > 0 && std::isfinite(*axis.every)))
+        throw bad_input("ticks of the axis \"{}\" must be more than 0 apart; it is {}", axis.label, *axis.every);
+}
+
+void check(const Curve& curve) {
+    const std::size_t points = curve.x.size();
+    if (curve.y.size() != points)
+        throw bad_input("the curve \"{}\" has {} places x and {} values y", curve.label, points, curve.y.size());
+    if (!curve.uncertainty.empty() && curve.uncertainty.size() != points)
+        throw bad_input("the curve \"{}\" has {} points and {} uncertainties", curve.label, points,
+                        curve.uncertainty.size());
+    if (curve.hue < 0)
+        throw bad_input("the hue of the curve \"{}\" must be 0 or more; it is {}", curve.label, curve.hue);
+}
+
+void check(const HeatMap& map) {
+    if (map.columns == 0 || map.rows == 0 || map.values.size() / map.columns != map.rows ||
+        map.values.size() % map.columns)
+        throw bad_input("the map \"{}\" has {} values for {} × {} cells", map.label, map.values.size(), map.columns,
+                        map.rows);
+    check(PlotAxis{.label = map.label, .low = map.low, .high = map.high, .logarithmic = map.logarithmic});
+    for (const double edge : {map.x_low, map.x_high, map.y_low, map.y_high})
+        if (!std::isfinite(edge)) throw bad_input("an edge of the map \"{}\" is {}", map.label, edge);
+}
+
+void check(const PlotTable& table) {
+    for (const PlotTable::Column& column : table.columns)
+        if (!(column.share > 0 && std::isfinite(column.share)))
+            throw bad_input("the share of the column \"{}\" must be more than 0; it is {}", column.heading,
+                            column.share);
+    for (std::size_t row = 0; row < table.rows.size(); ++row)
+        if (table.rows[row].size() > table.columns.size())
+            throw bad_input("row {} of the table has {} cells for {} columns", row, table.rows[row].size(),
+                            table.columns.size());
+}
+
+}  // namespace
+
+PlotRanges fitted_ranges(const Plot& plot) {
+    Extent x(plot.x.logarithmic), y(plot.y.logarithmic), right(plot.right && plot.right->logarithmic);
+    bool spread = !plot.map.has_value();
+    for (const Curve& curve : plot.curves) {
+        Extent& values = curve.right && plot.right ? right : y;
+        const bool log_y = curve.right && plot.right ? plot.right->logarithmic : plot.y.logarithmic;
+        for (std::size_t i = 0; i < curve.x.size(); ++i) {
+            if (!std::isfinite(curve.y[i]) || !std::isfinite(curve.x[i])) continue;
+            if ((log_y && curve.y[i] <= 0) || (plot.x.logarithmic && curve.x[i] <= 0)) continue;
+            x.add(curve.x[i]);
+            values.add(curve.y[i]);
+            if (curve.uncertainty.empty()) continue;
+            values.add(curve.y[i] - std::abs(curve.uncertainty[i]));
+            values.add(curve.y[i] + std::abs(curve.uncertainty[i]));
+        }
+    }
+    if (const auto& map = plot.map) {
+        for (const double edge : {map->x_low, map->x_high}) x.add(edge);
+        for (const double edge : {map->y_low, map->y_high}) y.add(edge);
+    }
+    for (const Rule& rule : plot.rules) (rule.way == Rule::Way::vertical ? x : y).add(rule.at);
+    PlotRanges ranges{x.range(plot.x, spread ? 0.015 : 0), y.range(plot.y, spread ? 0.05 : 0), {}};
+    if (plot.right) ranges.right = right.range(*plot.right, 0.05);
+    return ranges;
+}
+
+Axis fitted_scale(const HeatMap& map) {
+    Extent values(map.logarithmic);
+    for (const float value : map.values) values.add(static_cast<double>(value));
+    return values.range({.low = map.low, .high = map.high, .logarithmic = map.logarithmic}, 0);
+}
+
+void check(const Figure& figure) {
+    if (figure.table && !figure.panels.empty()) throw bad_input("a figure has panels or a table, not both");
+    if (figure.columns < 0) throw bad_input("a figure has 0 or more columns; it is {}", figure.columns);
+    if (figure.table) check(*figure.table);
+    for (const Plot& plot : figure.panels) {
+        check(plot.x);
+        check(plot.y);
+        if (plot.right) check(*plot.right);
+        if (plot.map) check(*plot.map);
+        for (const Curve& curve : plot.curves) {
+            check(curve);
+            if (curve.right && !plot.right) throw bad_input("the curve \"{}\" has no axis on the right", curve.label);
+        }
+        for (const Rule& rule : plot.rules)
+            if (!std::isfinite(rule.at))
+                throw bad_input("the rule \"{}\" must be at a number; it is {}", rule.label, rule.at);
+    }
+}
+
+}  // namespace doppel

@@ -1,0 +1,81 @@
+#include "plot/legend.hpp"
+
+#include "plot/text.hpp"
+#include "render/font.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+/// The emptiest place for a box of this size.
+std::optional<Point> emptiest(float width, float height, float margin, const LabelPlacer& room) {
+    constexpr int steps = 20;
+    const Area& area = room.area();
+    const float across = area.width() - width - 2 * margin, down = area.height() - height - 2 * margin;
+    if (across < 0 || down < 0) return {};
+    std::optional<Point> best;
+    float least = 0;
+    for (int row = 0; row <= steps; ++row) {
+        for (int column = steps; column >= 0; --column) {
+            const float left = area.left + margin + across * static_cast<float>(column) / steps;
+            const float top = area.top + margin + down * static_cast<float>(row) / steps;
+            const Area box{left, top, left + width, top + height};
+            if (!room.is_free(box)) continue;
+            const bool side = column == 0 || column == steps, end = row == 0 || row == steps;
+            const float cost = static_cast<float>(room.ink(box)) + (side && end ? 0 : side || end ? 6.0f : 15.0f);
+            if (!best || cost < least) best = Point{left, top}, least = cost;
+        }
+    }
+    return best;
+}
+
+/// A short piece of the curve.
+void draw_sample(const Curve& curve, float left, float right, float y, const PlotStyle& style, bool over_map,
+                 DisplayList& list) {
+    DrawnCurve sample;
+    const float middle = (left + right) / 2;
+    if (curve.mark != Mark::points) sample.lines.push_back({{left, y}, {right, y}});
+    if (curve.mark != Mark::line) sample.points.push_back({middle, y});
+    draw_curve(curve, sample, {}, style, over_map, list);
+}
+
+// of a legend's parts, em
+constexpr float row = 1.4f, pad = 0.5f, sample = 1.7f, gap = 0.5f;
+
+}  // namespace
+
+std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which,
+                                    const PlotStyle& style, const LabelPlacer& room) {
+    for (float size = 0.95f * style.words; size > 0.6f * style.words; size *= 0.9f) {
+        float widest = 0;
+        for (const std::size_t i : which) widest = std::max(widest, text_width(curves[i].label, size));
+        const float width = (2 * pad + sample + gap) * size + widest;
+        const float height = (2 * pad - 0.35f + row * static_cast<float>(which.size())) * size;
+        if (const auto at = emptiest(width, height, 0.5f * size, room))
+            return Legend{std::move(which), {at->x, at->y, at->x + width, at->y + height}, size};
+    }
+    return {};
+}
+
+void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
+                 DisplayList& list) {
+    const auto& [which, box, size] = legend;
+    const Color ground = over_map ? rgb(0x0b0e13).with_alpha(0.7f) : style.theme.background.with_alpha(0.88f);
+    list.push_back(Box{box.left, box.top, box.right, box.bottom, 0.3f * size, ground});
+    const float left = box.left + pad * size, right = left + sample * size;
+    float baseline = box.top + (pad + 0.8f) * size;
+    for (const std::size_t i : which) {
+        draw_sample(curves[i], left, right, baseline - 0.3f * size, style, over_map, list);
+        list.push_back(Label{curves[i].label,
+                             {right + gap * size, baseline},
+                             size,
+                             Align::left,
+                             Weight::regular,
+                             over_map ? rgb(0xffffff) : style.theme.text});
+        baseline += row * size;
+    }
+}
+
+}  // namespace doppel

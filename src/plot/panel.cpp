@@ -1,0 +1,137 @@
+#include "plot/panel.hpp"
+
+#include "plot/axes.hpp"
+#include "plot/bar.hpp"
+#include "plot/labels.hpp"
+#include "plot/raster.hpp"
+#include "plot/text.hpp"
+#include "render/font.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+float widest(const std::vector<Tick>& ticks, float size) {
+    float width = 0;
+    for (const Tick& tick : ticks) width = std::max(width, text_width(tick.text, size));
+    return width;
+}
+
+Axis placed(Axis axis, float from, float to) {
+    axis.from = from;
+    axis.to = to;
+    return axis;
+}
+
+/// What all drawing in a panel needs.
+struct Panel {
+    const Plot& plot;
+    Axis x, y, right;
+    Area area;
+
+    const Axis& y_of(const Curve& curve) const { return curve.right ? right : y; }
+};
+
+Panel make_panel(const Plot& plot, const PlotRanges& ranges, const Area& area) {
+    return {plot, placed(ranges.x, area.left, area.right), placed(ranges.y, area.bottom, area.top),
+            placed(ranges.right.value_or(Axis{}), area.bottom, area.top), area};
+}
+
+/// Rules, dashed.
+void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& room, DisplayList& list) {
+    for (const Rule& rule : panel.plot.rules) {
+        const bool level = rule.way == Rule::Way::horizontal;
+        const double share = (level ? panel.y : panel.x).share(rule.at);
+        if (!(share >= 0 && share <= 1)) continue;
+        const float at = std::floor((level ? panel.y : panel.x).at(rule.at)) + 0.5f;
+        const Point from = level ? Point{panel.area.left, at} : Point{at, panel.area.bottom};
+        const Point to = level ? Point{panel.area.right, at} : Point{at, panel.area.top};
+        const Color color = panel.plot.map ? rgb(0xffffff) : style.theme.quiet_text;
+        draw_line({{from, to}}, std::max(std::round(1.3f * style.unit), 1.0f), true, color, style, list);
+        room.add_line(from, to, LabelPlacer::nobody - 1);
+    }
+}
+
+void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& room, DisplayList& list) {
+    const auto& curves = panel.plot.curves;
+    const bool over_map = panel.plot.map.has_value();
+    std::vector<DrawnCurve> all;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        all.push_back(drawn(curves[i], panel.x, panel.y_of(curves[i]), panel.area));
+        const std::size_t who = i % (LabelPlacer::nobody - 1);
+        for (const auto& line : all.back().lines)
+            for (std::size_t k = 1; k < line.size(); ++k) room.add_line(line[k - 1], line[k], who);
+        const float r = style.marker;
+        for (const Point& at : all.back().points)
+            for (const float up : {-0.7f * r, 0.7f * r})
+                room.add_line({at.x - r, at.y + up}, {at.x + r, at.y + up}, who);
+        draw_band(curves[i], panel.x, panel.y_of(curves[i]), panel.area, style, list);
+    }
+    std::size_t crowd = 0;
+    for (const auto& curve : all) crowd += curve.points.size();
+    for (auto& curve : all) curve.crowd = crowd;
+    // what is there to compare with lies below
+    for (const bool quiet : {true, false})
+        for (std::size_t i = 0; i < curves.size(); ++i)
+            if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel.area, style, over_map, list);
+    label_rules(panel.plot.rules, panel.x, panel.y, style, over_map, room, list);
+    label_curves(curves, all, style, over_map, room, list);
+}
+
+}  // namespace
+
+Gutters united(const Gutters& a, const Gutters& b) {
+    return {std::max(a.left, b.left), std::max(a.right, b.right), std::max(a.title, b.title),
+            std::max(a.labels, b.labels), std::max(a.bottom, b.bottom)};
+}
+
+Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const PlotStyle& style) {
+    const float em = style.tick;
+    Gutters made;
+    made.title = plot.title.empty() ? 0 : 1.5f * style.heading;
+    made.labels = axis_labels_height(plot, width, style);
+    made.bottom = 1.75f * em + (plot.x.label.empty() ? 0 : 1.45f * style.axis);
+    const float tall = std::max(height - made.top(style) - made.bottom, 1.0f);
+    made.left = 0.55f * em + widest(y_ticks(placed(ranges.y, tall, 0), plot.y, style), em);
+    if (ranges.right) made.right = 0.55f * em + widest(y_ticks(placed(*ranges.right, tall, 0), *plot.right, style), em);
+    if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
+    // the first and the last words below the axis reach out by half
+    const float wide = std::max(width - made.left - made.right, 1.0f);
+    const auto below = x_ticks(placed(ranges.x, 0, wide), plot.x, style);
+    const float half = widest(below, em) / 2;
+    made.left = std::max(made.left, std::min(half, 0.2f * width));
+    made.right = std::max(made.right, std::min(half, 0.2f * width));
+    return made;
+}
+
+void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
+                const PlotStyle& style, DisplayList& list) {
+    Area area{std::round(cell.left + around.left), std::round(cell.top + around.top(style)),
+              std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
+    Area held = cell;
+    if (plot.square) {
+        // in the middle of its cell, words and all
+        const float side = std::min(area.width(), area.height());
+        const float right = std::floor((area.width() - side) / 2), down = std::floor((area.height() - side) / 2);
+        held = held.grown(-right, -down);
+        area = {area.left + right, area.top + down, area.left + right + side, area.top + down + side};
+    }
+    if (area.width() < 8 || area.height() < 8) return;
+    const Panel panel = make_panel(plot, ranges, area);
+    if (plot.map) {
+        list.push_back(map_image(*plot.map, fitted_scale(*plot.map), panel.x, panel.y, area,
+                                 none_color(*plot.map, style.theme), style.scale));
+        const float after =
+            plot.right ? 0.55f * style.tick + widest(y_ticks(panel.right, *plot.right, style), style.tick) : 0;
+        if (!plot.map->shares_bar) draw_bar(*plot.map, area, area.right + after, style, list);
+    }
+    draw_axes(plot, panel.x, panel.y, plot.right ? &panel.right : nullptr, area, held, style, list);
+    draw_headings(plot, held, around.title, around.labels, style, list);
+    LabelPlacer room(area);
+    draw_rules(panel, style, room, list);
+    draw_curves(panel, style, room, list);
+}
+
+}  // namespace doppel

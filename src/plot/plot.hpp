@@ -1,0 +1,99 @@
+#pragma once
+
+#include "image/picture.hpp"
+#include "image/theme.hpp"
+#include "render/display_list.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// An axis as the person who asks for a chart sees it.
+struct PlotAxis {
+    std::string label;                // with the unit: "release angle θ1, °"
+    std::optional<double> low, high;  // fitted to what is drawn where not given; low > high: inverted
+    bool logarithmic = false;
+    std::optional<double> every;  // between ticks, as long as their labels fit: 45 for degrees
+};
+
+/// What a line of data looks like.
+enum class Mark { line, points, both };
+
+/// A line that others lie on: pale and thin, or a wide pale band along it.
+enum class Ground { none, line, band };
+
+/// One series. Points that are not finite, or not positive on a logarithmic axis, interrupt the line.
+struct Curve {
+    std::string label;  // at the line where there is room, else in the legend; empty: neither
+    std::vector<double> x, y;
+    std::vector<double> uncertainty;  // of y, drawn as a band; empty: none
+    Mark mark = Mark::line;
+    int hue = 0;                         // of the theme's palette; curves that belong together share one
+    bool right = false;                  // on the second y axis
+    bool dashed = false, quiet = false;  // quiet: grey and thin, to compare with
+    Ground ground = Ground::none;        // then it has no words, and words may stand on it
+};
+
+/// A line across the chart with words at it: a limit, a moment.
+struct Rule {
+    enum class Way { horizontal, vertical } way = Way::horizontal;
+    double at = 0;
+    std::string label;
+};
+
+/// A quantity over a rectangle as colour, with a bar that tells what the colours mean.
+struct HeatMap {
+    std::size_t columns = 0, rows = 0;
+    std::vector<float> values;  // row by row, from y_low up; NaN = none, shown as `none_label`
+    double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  // outer edges of the cells, which are even on their axes
+    std::string label;                                    // of the bar, with the unit
+    std::string none_label;                               // "no flip within 20 s"
+    bool none_is_bad = false;                             // shown in the colour of what is bad
+    std::optional<double> low, high;                      // of the scale; fitted to the values where not given
+    bool logarithmic = false;
+    bool shares_bar = false;  // with all maps of the figure: one bar, on the right of them
+};
+
+/// One pair of axes and what is drawn between them.
+struct Plot {
+    std::string title;  // of a panel among several
+    PlotAxis x, y;
+    std::optional<PlotAxis> right;
+    std::optional<HeatMap> map;
+    std::vector<Curve> curves;
+    std::vector<Rule> rules;
+    bool square = false;  // as high as wide
+};
+
+/// A table for reading: a page of claims and verdicts.
+struct PlotTable {
+    struct Column {
+        std::string heading;
+        float share = 1;  // of the width
+    };
+    enum class Tone { plain, quiet, good, bad, open };
+    struct Cell {
+        std::string text;  // broken into lines where it is long
+        Tone tone = Tone::plain;
+    };
+    std::vector<Column> columns;
+    std::vector<std::vector<Cell>> rows;
+};
+
+/// A picture fit for a paper: headings, panels (or a table) in a grid, and lines of caption below.
+struct Figure {
+    std::string title, subtitle;
+    std::vector<Plot> panels;
+    int columns = 0;  // of panels; 0 = as fits
+    std::optional<PlotTable> table;
+    std::vector<std::string> captions;  // paragraphs, broken into lines
+};
+
+/// Composes a figure for a picture of `size` px. `scale` = 2 gives every length twice as many pixels: the same layout
+/// as a picture of half the size, for print. Text never overlaps: what does not fit is shrunk, moved to the legend or
+/// left out (tick labels).
+DisplayList compose(const Figure& figure, Size size, const Theme& theme, float scale = 1);
+
+}  // namespace doppel

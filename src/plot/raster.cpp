@@ -1,0 +1,167 @@
+#include "plot/raster.hpp"
+
+#include "image/colormap.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// How much of each pixel of an area is covered, 0…1.
+class CoverageRaster {
+public:
+    CoverageRaster(const Area& area, float scale)
+        : left(static_cast<int>(std::floor(area.left * scale))),
+          top(static_cast<int>(std::floor(area.top * scale))),
+          size{std::max(1, static_cast<int>(std::ceil(area.right * scale)) - left),
+               std::max(1, static_cast<int>(std::ceil(area.bottom * scale)) - top)},
+          values(static_cast<std::size_t>(size.width) * size.height) {}
+
+    void cover(int x, int y, float part) {
+        float& value = values[static_cast<std::size_t>(y) * size.width + x];
+        value = std::max(value, part);
+    }
+
+    Image image(Color color, float scale) const {
+        auto pixels = std::make_shared<Picture>(size);
+        const std::uint8_t ink[] = {byte_of(color.r), byte_of(color.g), byte_of(color.b)};
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (values[i] == 0) continue;
+            std::copy_n(ink, 3, &pixels->rgba[4 * i]);
+            pixels->rgba[4 * i + 3] = byte_of(color.a * values[i]);
+        }
+        const auto px = [&](int v) { return static_cast<float>(v) / scale; };
+        return {px(left), px(top), px(left + size.width), px(top + size.height), std::move(pixels)};
+    }
+
+    const int left, top;  // device pixels
+    const Size size;
+
+private:
+    std::vector<float> values;
+};
+
+/// Which cells each pixel of one axis shows: from…to, half open, in cells; empty outside the map.
+struct Span {
+    double from, to;
+};
+
+std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, double low, double high,
+                        std::size_t cells) {
+    std::vector<Span> made;
+    const auto cell_at = [&](float px) {
+        const double share = (static_cast<double>(px) - axis.from) / (static_cast<double>(axis.to) - axis.from);
+        const double part =
+            axis.logarithmic ? std::log(axis.low / low * std::pow(axis.high / axis.low, share)) / std::log(high / low)
+                             : (axis.low + share * (axis.high - axis.low) - low) / (high - low);
+        return part * static_cast<double>(cells);
+    };
+    const auto count = static_cast<double>(cells);
+    for (int i = 0; i < pixels; ++i) {
+        const float begin = first + static_cast<float>(i) / scale, end = first + static_cast<float>(i + 1) / scale;
+        const double a = cell_at(begin), b = cell_at(end), middle = cell_at((begin + end) / 2);
+        if (!(middle >= 0 && middle < count)) {
+            made.push_back({0, 0});
+        } else if (std::abs(b - a) <= 1) {
+            // a cell as large as the pixel or larger: the one below its centre
+            made.push_back({std::floor(middle), std::floor(middle) + 1});
+        } else {
+            made.push_back({std::clamp(std::min(a, b), 0.0, count), std::clamp(std::max(a, b), 0.0, count)});
+        }
+    }
+    return made;
+}
+
+}  // namespace
+
+Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale) {
+    CoverageRaster coverage(area, scale);
+    const float reach = std::max(radius * scale, 0.5f);
+    for (const Point& point : points) {
+        const float x = point.x * scale - static_cast<float>(coverage.left);
+        const float y = point.y * scale - static_cast<float>(coverage.top);
+        const int right = std::min(static_cast<int>(std::ceil(x + reach)), coverage.size.width - 1);
+        const int bottom = std::min(static_cast<int>(std::ceil(y + reach)), coverage.size.height - 1);
+        for (int row = std::max(static_cast<int>(y - reach) - 1, 0); row <= bottom; ++row) {
+            for (int column = std::max(static_cast<int>(x - reach) - 1, 0); column <= right; ++column) {
+                const float dx = static_cast<float>(column) + 0.5f - x, dy = static_cast<float>(row) + 0.5f - y;
+                const float part = 0.5f + reach - std::sqrt(dx * dx + dy * dy);
+                if (part > 0) coverage.cover(column, row, std::min(part, 1.0f));
+            }
+        }
+    }
+    return coverage.image(color, scale);
+}
+
+Image band_image(const Band& band, Color color, const Area& area, float scale) {
+    CoverageRaster coverage(area, scale);
+    for (std::size_t i = 0; i + 1 < band.x.size(); ++i) {
+        const std::size_t a = band.x[i] <= band.x[i + 1] ? i : i + 1, b = 2 * i + 1 - a;
+        const double from = band.x[a] * scale - coverage.left, to = band.x[b] * scale - coverage.left;
+        const double sum = from + to + band.low[a] + band.low[b] + band.high[a] + band.high[b];
+        if (!std::isfinite(sum)) continue;
+        const int end = static_cast<int>(std::min(std::ceil(to - 0.5), static_cast<double>(coverage.size.width)));
+        for (int column = static_cast<int>(std::ceil(std::clamp(from - 0.5, 0.0, 1e9))); column < end; ++column) {
+            // both edges at the middle of the pixel's column
+            const double part = to > from ? (column + 0.5 - from) / (to - from) : 0;
+            const auto edge = [&](const std::vector<double>& y) {
+                const double at = std::lerp(y[a], y[b], part) * scale - coverage.top;
+                return static_cast<float>(std::clamp(at, 0.0, static_cast<double>(coverage.size.height)));
+            };
+            const float low = edge(band.low), high = edge(band.high);
+            const float upper = std::min(low, high), lower = std::max(low, high);
+            for (int row = static_cast<int>(upper);
+                 row < std::min(static_cast<int>(std::ceil(lower)), coverage.size.height); ++row) {
+                const auto pixel = static_cast<float>(row);
+                coverage.cover(column, row, std::min(lower, pixel + 1) - std::max(upper, pixel));
+            }
+        }
+    }
+    return coverage.image(color, scale);
+}
+
+Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
+                Color none, float scale) {
+    const Size size{std::max(1, static_cast<int>(std::lround(area.width() * scale))),
+                    std::max(1, static_cast<int>(std::lround(area.height() * scale)))};
+    // what is averaged
+    std::vector<float> values = map.values;
+    if (map.logarithmic)
+        for (float& value : values) value = std::log(value);
+    const Axis shares{.low = map.logarithmic ? std::log(scale_of_colors.low) : scale_of_colors.low,
+                      .high = map.logarithmic ? std::log(scale_of_colors.high) : scale_of_colors.high};
+    const auto across = spans(x, area.left, size.width, scale, map.x_low, map.x_high, map.columns);
+    const auto down = spans(y, area.top, size.height, scale, map.y_low, map.y_high, map.rows);
+    auto pixels = std::make_shared<Picture>(size);
+    for (int row = 0; row < size.height; ++row) {
+        for (int column = 0; column < size.width; ++column) {
+            const Span& h = across[static_cast<std::size_t>(column)];
+            const Span& v = down[static_cast<std::size_t>(row)];
+            if (h.from == h.to || v.from == v.to) continue;
+            // the mean of what has a value; where most has none, none
+            double sum = 0, weight = 0, blank = 0;
+            for (auto j = static_cast<std::size_t>(v.from); static_cast<double>(j) < v.to; ++j) {
+                const auto top = static_cast<double>(j);
+                const double tall = std::min(top + 1, v.to) - std::max(top, v.from);
+                for (auto i = static_cast<std::size_t>(h.from); static_cast<double>(i) < h.to; ++i) {
+                    const auto left = static_cast<double>(i);
+                    const double part = tall * (std::min(left + 1, h.to) - std::max(left, h.from));
+                    const auto value = static_cast<double>(values[j * map.columns + i]);
+                    if (std::isfinite(value)) {
+                        sum += part * value;
+                        weight += part;
+                    } else {
+                        blank += part;
+                    }
+                }
+            }
+            const Color color = weight > blank ? map_color(shares.share(sum / weight)) : none;
+            std::uint8_t* rgba = pixels->at(column, row);
+            rgba[0] = byte_of(color.r), rgba[1] = byte_of(color.g), rgba[2] = byte_of(color.b), rgba[3] = 255;
+        }
+    }
+    return {area.left, area.top, area.right, area.bottom, std::move(pixels)};
+}
+
+}  // namespace doppel

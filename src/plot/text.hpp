@@ -1,0 +1,32 @@
+#pragma once
+
+#include "plot/style.hpp"
+
+#include <string_view>
+
+namespace doppel {
+
+/// Where the ink of a line of text may be, with the tallest accents and the deepest tails of the font.
+Area text_area(const Label& label);
+
+/// `text` in lines no wider than `width` px, broken at spaces and at '\n'; a word that is wider itself is broken
+/// anywhere.
+std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width);
+
+/// Lines of one kind below one another.
+struct TextBlock {
+    std::vector<std::string> lines;
+    float size = 16;  // px an em
+    Weight weight = Weight::regular;
+    Color color;
+
+    float line_height() const { return 1.36f * size; }
+    float height() const { return line_height() * static_cast<float>(lines.size()); }
+    /// With its top left corner at `at`.
+    void draw(Point at, DisplayList& list) const;
+};
+
+/// One line in as much as `width` px: shrunk to three quarters, but not below 9 px, if need be, then broken.
+TextBlock fitted_block(std::string_view text, float size, Weight weight, Color color, float width);
+
+}  // namespace doppel

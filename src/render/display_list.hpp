@@ -1,0 +1,89 @@
+#pragma once
+
+#include "image/color.hpp"
+#include "image/picture.hpp"
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace doppel {
+
+/// A place in the picture, px from its top left corner; y points down. Pixel centres lie at halves.
+struct Point {
+    float x = 0, y = 0;
+};
+
+/// A filled rectangle with round corners. Its edges are at exactly left, top, right, bottom.
+struct Box {
+    float left = 0, top = 0, right = 0, bottom = 0;  // px
+    float corner = 0;                                // radius, px
+    Color color;
+};
+
+/// All points within `radius` of the segment from…to: a rod, a line, or a disc where both ends are one.
+struct Capsule {
+    Point from, to;
+    float radius = 1;  // px
+    Color color;
+    float glow = 0;  // px that a soft glow reaches beyond the edge; 0 = none
+};
+
+/// A circle drawn with a pen: `width` px wide, half of it on either side of `radius`.
+struct Ring {
+    Point center;
+    float radius = 1, width = 1;  // px
+    Color color;
+};
+
+// GCC 12 takes the moved-from rest of a variant for uninitialised (PR 105562 and kin)
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+/// A path whose opacity and width vary along it. It never adds to itself: where it crosses or joins itself the more
+/// opaque part shows.
+struct Stroke {
+    struct Vertex {
+        Point at;
+        float alpha = 1;  // times color.a
+        float width = 1;  // times Stroke::width
+        float glow = 1;   // times Stroke::glow
+        float bend = 0;   // px that the way to the next vertex swerves to the right, along a parabola; up to 1/16 of it
+        bool joint = false;  // drawn as a vertex, even where the path could go on as well without it
+    };
+    std::vector<Vertex> vertices;
+    float width = 1;  // px
+    Color color;
+    float glow = 0;  // px that a soft glow reaches beyond the edge; 0 = none
+};
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+
+enum class Align { left, center, right };
+enum class Weight { regular, bold };
+
+/// One line of words (UTF-8), its baseline at anchor.y, aligned to anchor.x.
+struct Label {
+    std::string text;
+    Point anchor;
+    float size = 16;  // px an em
+    Align align = Align::left;
+    Weight weight = Weight::regular;
+    Color color;
+};
+
+/// A picture stretched over a rectangle, whose edges are rounded to whole pixels. Each pixel takes the colour below its
+/// centre, so that what is enlarged stays crisp. Lists share the pixels, which must not change.
+struct Image {
+    float left = 0, top = 0, right = 0, bottom = 0;  // px
+    std::shared_ptr<const Picture> pixels;           // with opacity
+};
+
+/// What to draw, back to front.
+using Item = std::variant<Box, Capsule, Ring, Stroke, Label, Image>;
+using DisplayList = std::vector<Item>;
+
+}  // namespace doppel

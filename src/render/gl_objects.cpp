@@ -1,0 +1,99 @@
+#include "render/gl_objects.hpp"
+
+#include "base/error.hpp"
+#include "embedded/render.hpp"
+
+namespace doppel::gl {
+namespace {
+
+std::string_view shader_source(const std::string& name) {
+    for (const EmbeddedFile& file : render_files()) {
+        if (file.name == name) return file.contents;
+    }
+    throw io_failed("the shader {} was not built in", name);
+}
+
+/// What the driver says of a shader or program.
+template <class GetLog>
+std::string log(GetLog get, GLuint number) {
+    std::string text(1024, '\0');
+    GLsizei length = 0;
+    get(number, static_cast<GLsizei>(text.size()), &length, text.data());
+    text.resize(static_cast<std::size_t>(length));
+    return text;
+}
+
+/// Compiles a shader into the program, which keeps it.
+void attach(GLuint program, GLenum type, const std::string& name) {
+    const std::string_view source = shader_source(name);
+    const char* text = source.data();
+    const auto length = static_cast<GLint>(source.size());
+    const GLuint shader = CreateShader(type);
+    ShaderSource(shader, 1, &text, &length);
+    CompileShader(shader);
+    AttachShader(program, shader);
+    DeleteShader(shader);
+    GLint compiled = GL_FALSE;
+    GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (!compiled) throw io_failed("shaders/{}: {}", name, log(GetShaderInfoLog, shader));
+}
+
+std::string name_of(GLenum error) {
+    switch (error) {
+        case GL_INVALID_ENUM:
+            return "GL_INVALID_ENUM";
+        case GL_INVALID_VALUE:
+            return "GL_INVALID_VALUE";
+        case GL_INVALID_OPERATION:
+            return "GL_INVALID_OPERATION";
+        case GL_INVALID_FRAMEBUFFER_OPERATION:
+            return "GL_INVALID_FRAMEBUFFER_OPERATION";
+        default:
+            return fmt::format("error {:#06x}", error);
+    }
+}
+
+}  // namespace
+
+void check_errors(const std::string& what) {
+    const GLenum first = GetError();
+    if (first == GL_NO_ERROR) return;
+    bool no_memory = false;
+    // a driver may keep several, but a lost context reports one for ever
+    GLenum error = first;
+    for (int k = 0; k < 16 && error != GL_NO_ERROR; ++k, error = GetError()) no_memory |= error == GL_OUT_OF_MEMORY;
+    if (no_memory) throw io_failed("OpenGL has no memory for {}", what);
+    throw io_failed("OpenGL failed at {}: {}", what, name_of(first));
+}
+
+Canvas::Canvas(Size size) {
+    const auto what = fmt::format("a picture of {} × {} px", size.width, size.height);
+    check_errors("what came before " + what);
+    BindTexture(GL_TEXTURE_2D, pixels_);
+    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, pixels_, 0);
+    check_errors(what);
+    if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw io_failed("OpenGL has no memory for {}", what);
+}
+
+void Canvas::put(const Picture& picture, const Rect& r) {
+    BindTexture(GL_TEXTURE_2D, pixels_);
+    TexSubImage2D(GL_TEXTURE_2D, 0, r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                  picture.at(r.left, r.top));
+}
+
+Program::Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[6])
+    : number_(CreateProgram()) {
+    attach(number_, GL_VERTEX_SHADER, vertex);
+    attach(number_, GL_FRAGMENT_SHADER, fragment);
+    for (GLuint location = 0; location < 6; ++location) BindAttribLocation(number_, location, inputs[location]);
+    LinkProgram(number_);
+    GLint linked = GL_FALSE;
+    GetProgramiv(number_, GL_LINK_STATUS, &linked);
+    if (!linked) throw io_failed("shaders/{} and {}: {}", vertex, fragment, log(GetProgramInfoLog, number_));
+}
+
+}  // namespace doppel::gl

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "image/picture.hpp"
+#include "render/gl_api.hpp"
+
+#include <string>
+
+namespace doppel::gl {
+
+/// Throws Error (exit 4) where OpenGL has reported an error since it was asked last. `what` it was told to do: "a
+/// canvas of 64 × 64 px".
+void check_errors(const std::string& what);
+
+/// A thing of OpenGL's, known by its number, that lives as long as this. Its context must be current at both ends.
+template <auto& generate, auto& destroy>
+class Object {
+public:
+    Object() { generate(1, &number_); }
+    ~Object() { destroy(1, &number_); }
+    Object(const Object&) = delete;
+    Object& operator=(const Object&) = delete;
+    operator GLuint() const { return number_; }
+
+private:
+    GLuint number_ = 0;
+};
+
+using Buffer = Object<GenBuffers, DeleteBuffers>;
+using Texture = Object<GenTextures, DeleteTextures>;
+using VertexArray = Object<GenVertexArrays, DeleteVertexArrays>;
+
+/// RGBA pixels to draw to, all zero at first. Row 0 is the top of the picture. Throws Error where there is no memory.
+class Canvas {
+public:
+    explicit Canvas(Size size);
+    operator GLuint() const { return framebuffer_; }
+
+    /// Puts back what the picture shows within `r`, from memory; binds the canvas's texture. The unpack row length must
+    /// be the picture's.
+    void put(const Picture& picture, const Rect& r);
+
+private:
+    Texture pixels_;
+    Object<GenFramebuffers, DeleteFramebuffers> framebuffer_;
+};
+
+/// The shaders NAME.vert and NAME.frag of the folder shaders/, linked.
+class Program {
+public:
+    /// `inputs` of the vertex shader, in the order of their locations.
+    Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[6]);
+    ~Program() { DeleteProgram(number_); }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    operator GLuint() const { return number_; }
+
+private:
+    GLuint number_;
+};
+
+}  // namespace doppel::gl

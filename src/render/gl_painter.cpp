@@ -1,0 +1,235 @@
+#include "render/gl_painter.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace doppel::gl {
+namespace {
+
+constexpr std::size_t most_quads = 16384;  // of one call: what 16-bit indices reach
+constexpr const char* inputs[6] = {"at", "place_of", "shape_of", "more_of", "bow_of", "tint_of"};
+
+/// The texture that is bound shows its texels as they are.
+void set_crisp() {
+    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+/// The corners of a primitive that turns, one after another.
+std::array<Point, 4> outline(const Primitive& primitive) {
+    const float room = 0.05f;  // px, so that rounding loses none
+    const Point x{primitive.axis.x * (primitive.half.x + room), primitive.axis.y * (primitive.half.x + room)};
+    const Point y{-primitive.axis.y * (primitive.half.y + room), primitive.axis.x * (primitive.half.y + room)};
+    const auto corner = [&](float along, float across) {
+        return Point{primitive.origin.x + along * x.x + across * y.x, primitive.origin.y + along * x.y + across * y.y};
+    };
+    return {corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
+}
+
+}  // namespace
+
+Painter::Painter(Size size)
+    : programs_{Program("quad.vert", "shape.frag", inputs), Program("quad.vert", "glyph.frag", inputs),
+                Program("quad.vert", "mask.frag", inputs), Program("quad.vert", "image.frag", inputs)},
+      cover_("quad.vert", "cover.frag", inputs) {
+    // the same for good: pixels from the top left, and the corners of each quad make two triangles
+    for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &programs_[3], &cover_}) {
+        UseProgram(*program);
+        Uniform2f(GetUniformLocation(*program, "picture"), static_cast<float>(size.width),
+                  static_cast<float>(size.height));
+    }
+    Viewport(0, 0, size.width, size.height);
+    Enable(GL_BLEND);
+    BindVertexArray(vertex_array_);
+    std::vector<std::uint16_t> indices;
+    for (std::size_t first = 0; first < 4 * most_quads; first += 4) {
+        for (const std::size_t corner : {0, 1, 2, 2, 1, 3}) {
+            indices.push_back(static_cast<std::uint16_t>(first + corner));
+        }
+    }
+    BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
+    BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint16_t)), indices.data(),
+               GL_STATIC_DRAW);
+
+    BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
+    const auto input = [](GLuint location, GLint count, GLenum type, std::size_t offset) {
+        EnableVertexAttribArray(location);
+        VertexAttribPointer(location, count, type, GL_TRUE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
+    };
+    input(0, 2, GL_FLOAT, offsetof(Vertex, at));
+    input(1, 4, GL_FLOAT, offsetof(Vertex, origin));
+    input(2, 4, GL_FLOAT, offsetof(Vertex, shape));
+    input(3, 4, GL_FLOAT, offsetof(Vertex, more));
+    input(4, 2, GL_FLOAT, offsetof(Vertex, bow));
+    input(5, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
+
+    BindTexture(GL_TEXTURE_2D, atlas_);
+    set_crisp();
+    PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    check_errors("the shaders and the buffers of their input");
+}
+
+void Painter::paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
+    plan(items, places);
+    vertices_.clear();
+    for (std::size_t r = 0; r < used_runs_; ++r) {
+        Run& run = runs_[r];
+        run.begin = vertices_.size() / 4;
+        for (const std::size_t p : run.parts) {
+            for (std::size_t i = items.parts[p].begin; i < items.parts[p].end; ++i) {
+                add(items.primitives[i], items.bounds[i], places);
+            }
+        }
+        run.end = vertices_.size() / 4;
+    }
+    upload_vertices();
+    upload(atlas);
+    upload(items.images);
+    for (std::size_t r = 0; r < used_runs_; ++r) draw(runs_[r]);
+}
+
+/// Shares out the parts among few runs. A part may be drawn earlier than its turn if it meets nothing on the way.
+void Painter::plan(const RenderList& items, const std::vector<Rect>& places) {
+    used_runs_ = 0;
+    const auto meet = [](const Rect& a, const Rect& b) { return !common(a, b).empty(); };
+    for (std::size_t p = 0; p < items.parts.size(); ++p) {
+        const RenderList::Part& part = items.parts[p];
+        if (std::none_of(places.begin(), places.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
+        const Picture* image = items.primitives[part.begin].image;
+        std::size_t home = used_runs_;
+        for (std::size_t r = used_runs_; r-- > 0;) {
+            const bool met = meet(runs_[r].bounds, part.bounds);
+            // the masks of two strokes must not mix
+            if (runs_[r].kind == part.kind && runs_[r].image == image && !(met && part.kind == Kind::mask)) home = r;
+            if (met || used_runs_ - r > 16) break;
+        }
+        if (home == used_runs_) {
+            if (++used_runs_ > runs_.size()) runs_.emplace_back();
+            runs_[home].kind = part.kind;
+            runs_[home].image = image;
+            runs_[home].bounds = {};
+            runs_[home].parts.clear();
+        }
+        runs_[home].bounds = united(runs_[home].bounds, part.bounds);
+        runs_[home].parts.push_back(p);
+    }
+}
+
+/// What of the primitive lies within the places. A pixel that it touches is drawn once, whichever way.
+void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places) {
+    for (const Rect& place : places) {
+        const Rect seen = common(bounds, place);
+        if (seen.empty()) continue;
+        const auto left = static_cast<float>(seen.left), right = static_cast<float>(seen.right);
+        const auto top = static_cast<float>(seen.top), bottom = static_cast<float>(seen.bottom);
+        outline_ = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
+        if (primitive.half.x > 0) {
+            // along its own axes fewer pixels lie around what it shows
+            const auto corners = outline(primitive);
+            outline_.assign(corners.begin(), corners.end());
+            if (seen != bounds) clip(left, right, top, bottom);
+        }
+        // a fan, two triangles at a time
+        for (std::size_t i = 2; i < outline_.size(); i += 2)
+            for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
+                vertices_.push_back({outline_[corner], primitive.origin, primitive.axis, primitive.shape,
+                                     primitive.more, primitive.bow, primitive.tint});
+    }
+}
+
+/// Keeps what of the convex outline lies within (Sutherland & Hodgman 1974). The cuts lie at edges of pixels exactly.
+void Painter::clip(float left, float right, float top, float bottom) {
+    const auto cut = [&](float Point::*across, float Point::*along, float edge, float side) {
+        clipped_.clear();
+        for (std::size_t i = 0; i < outline_.size(); ++i) {
+            const Point &from = outline_[i], &to = outline_[(i + 1) % outline_.size()];
+            const float before = side * (from.*across - edge), after = side * (to.*across - edge);  // ≥ 0 within
+            if (before >= 0) clipped_.push_back(from);
+            if ((before >= 0) == (after >= 0)) continue;
+            Point at;
+            at.*across = edge;
+            at.*along = from.*along + (to.*along - from.*along) * (before / (before - after));
+            clipped_.push_back(at);
+        }
+        std::swap(outline_, clipped_);
+    };
+    cut(&Point::x, &Point::y, left, 1);
+    cut(&Point::x, &Point::y, right, -1);
+    cut(&Point::y, &Point::x, top, 1);
+    cut(&Point::y, &Point::x, bottom, -1);
+}
+
+void Painter::upload_vertices() {
+    const std::size_t needed = vertices_.size() * sizeof(Vertex);
+    if (needed > vertex_room_) {
+        vertex_room_ = needed + needed / 2;
+        BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertex_room_), nullptr, GL_DYNAMIC_DRAW);
+        check_errors(fmt::format("the outlines of {} shapes", vertices_.size() / 4));
+    }
+    BufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(needed), vertices_.data());
+}
+
+void Painter::upload(const GlyphAtlas& atlas) {
+    if (atlas.count() == atlas_glyphs_) return;
+    PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    BindTexture(GL_TEXTURE_2D, atlas_);
+    TexImage2D(GL_TEXTURE_2D, 0, GL_R8, GlyphAtlas::width, atlas.height(), 0, GL_RED, GL_UNSIGNED_BYTE,
+               atlas.values().data());
+    check_errors(fmt::format("an atlas of {} glyphs", atlas.count()));
+    atlas_glyphs_ = atlas.count();
+}
+
+void Painter::upload(const std::vector<std::shared_ptr<const Picture>>& images) {
+    std::erase_if(images_, [&](const Loaded& loaded) {
+        return std::find(images.begin(), images.end(), loaded.pixels) == images.end();
+    });
+    GLint most = 0;
+    GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+    for (const auto& pixels : images) {
+        const auto is_it = [&](const Loaded& loaded) { return loaded.pixels == pixels; };
+        if (std::any_of(images_.begin(), images_.end(), is_it)) continue;
+        const Size size = pixels->size;
+        if (size.width > most || size.height > most) {
+            throw io_failed("OpenGL takes images of up to {} px a side; {} × {} px is too large", most, size.width,
+                            size.height);
+        }
+        PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+        images_.push_back({pixels, std::make_unique<Texture>()});
+        BindTexture(GL_TEXTURE_2D, *images_.back().texture);
+        set_crisp();
+        TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   pixels->rgba.data());
+        check_errors(fmt::format("an image of {} × {} px", size.width, size.height));
+    }
+}
+
+void Painter::draw(const Run& run) {
+    const auto draw_quads = [&](const Program& program) {
+        UseProgram(program);
+        for (std::size_t begin = run.begin; begin < run.end; begin += most_quads) {
+            const std::size_t count = std::min(run.end - begin, most_quads);
+            DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_SHORT, nullptr,
+                                   static_cast<GLint>(4 * begin));
+        }
+    };
+    if (run.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
+    for (const Loaded& loaded : images_) {
+        if (loaded.pixels.get() == run.image) BindTexture(GL_TEXTURE_2D, *loaded.texture);
+    }
+    if (run.kind == Kind::mask) {
+        BlendEquation(GL_MIN);
+        ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+        draw_quads(programs_[static_cast<std::size_t>(run.kind)]);
+        BlendEquation(GL_FUNC_ADD);
+        ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        BlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ZERO);
+        draw_quads(cover_);
+    } else {
+        BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+        draw_quads(programs_[static_cast<std::size_t>(run.kind)]);
+    }
+}
+
+}  // namespace doppel::gl

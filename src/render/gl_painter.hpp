@@ -1,0 +1,67 @@
+#pragma once
+
+#include "render/gl_objects.hpp"
+#include "render/render_list.hpp"
+
+#include <cstdint>
+
+namespace doppel::gl {
+
+/// Draws render lists onto the canvas that is bound.
+///
+/// A canvas's alpha is 1 at rest. While a stroke is drawn it holds how transparent the stroke is there: segments keep
+/// the smallest value, so that they do not add up where they meet; then the cover blends the colour and restores the 1,
+/// so that covering a pixel again changes nothing.
+class Painter {
+public:
+    explicit Painter(Size size);
+
+    /// Draws what of the render list lies within the `places`, which must not overlap. Throws Error where an image is
+    /// larger than OpenGL takes.
+    void paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas);
+
+private:
+    struct Vertex {
+        Point at, origin, axis;
+        std::array<float, 4> shape;
+        std::array<float, 4> more;
+        std::array<float, 2> bow;
+        std::array<std::uint8_t, 4> tint;
+    };
+    /// Parts drawn together.
+    struct Run {
+        Kind kind;
+        const Picture* image;
+        Rect bounds;             // of all its parts
+        std::size_t begin, end;  // in quads
+        std::vector<std::size_t> parts;
+    };
+    /// An image among OpenGL's textures.
+    struct Loaded {
+        std::shared_ptr<const Picture> pixels;
+        std::unique_ptr<Texture> texture;
+    };
+
+    void plan(const RenderList& items, const std::vector<Rect>& places);
+    void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places);
+    void clip(float left, float right, float top, float bottom);
+    void upload_vertices();
+    void upload(const GlyphAtlas& atlas);
+    void upload(const std::vector<std::shared_ptr<const Picture>>& images);
+    void draw(const Run& run);
+
+    std::array<Program, 4> programs_;  // by kind
+    Program cover_;
+    VertexArray vertex_array_;
+    Buffer vertex_buffer_, index_buffer_;
+    std::size_t vertex_room_ = 0;  // in the buffer, bytes
+    Texture atlas_;
+    std::size_t atlas_glyphs_ = 0;
+    std::vector<Loaded> images_;
+    std::vector<Vertex> vertices_;
+    std::vector<Point> outline_, clipped_;  // of what is added
+    std::vector<Run> runs_;                 // kept for their memory; those in use come first
+    std::size_t used_runs_ = 0;
+};
+
+}  // namespace doppel::gl

@@ -1,0 +1,137 @@
+#include "base/error.hpp"
+#include "render/dirty_regions.hpp"
+#include "render/gl_context.hpp"
+#include "render/gl_painter.hpp"
+#include "render/renderer.hpp"
+
+#include <algorithm>
+#include <new>
+#include <optional>
+#include <utility>
+
+namespace doppel {
+
+/// What the renderer is made of: a context, a canvas, the backdrop, and the render list of the last picture.
+class Renderer::Machine {
+public:
+    Machine(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop)
+        : size_(size), context_(make_context(gl)) {
+        check_size();
+        atlas_.emplace(limit(GL_MAX_TEXTURE_SIZE));
+        canvas_.emplace(size);
+        painter_.emplace(size);
+        picture_ = Picture(size);
+        if (stop) throw interrupted();
+        backdrop_ = Picture(size);
+        gl::PixelStorei(GL_PACK_ROW_LENGTH, size.width);
+
+        gl::ClearColor(0, 0, 0, 1);
+        gl::Clear(GL_COLOR_BUFFER_BIT);
+        make_render_list(backdrop, size, *atlas_, now_);
+        for (const auto& places : turns({all_of(size)})) {
+            if (stop) throw interrupted();
+            paint(places, backdrop_);
+        }
+    }
+
+    ~Machine() { context_->make_current(); }
+    Machine(const Machine&) = delete;
+    Machine& operator=(const Machine&) = delete;
+
+    const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop) {
+        context_->make_current();
+        make_render_list(list, size_, *atlas_, now_);
+        changed_ = first_ ? std::vector{all_of(size_)} : dirty_regions(last_, now_);
+        first_ = true;  // until this one is whole
+
+        // each switch between putting back, drawing and reading makes OpenGL finish what it has in hand: one of each a
+        // turn. Putting back from memory is a mere copy; a blit would draw, and finish, for every rectangle.
+        for (const auto& places : turns(changed_)) {
+            if (stop) throw interrupted();
+            gl::PixelStorei(GL_UNPACK_ROW_LENGTH, size_.width);
+            for (const Rect& r : places) canvas_->put(backdrop_, r);
+            paint(places, picture_);
+        }
+        std::swap(last_, now_);
+        first_ = false;
+        return picture_;
+    }
+
+    const std::vector<Rect>& changed() const { return changed_; }
+
+    std::string description() const {
+        context_->make_current();
+        const auto text = [](GLenum name) { return reinterpret_cast<const char*>(gl::GetString(name)); };
+        return fmt::format("{}, {}, OpenGL {}", context_->library(), text(GL_RENDERER), text(GL_VERSION));
+    }
+
+private:
+    static Error interrupted() { return {ExitCode::interrupted, "interrupted"}; }
+
+    /// What to draw at once: all of it, or of a large picture band after band, so that whoever wants to stop need not
+    /// wait long.
+    static std::vector<std::vector<Rect>> turns(const std::vector<Rect>& places) {
+        constexpr long most = 16'000'000;  // px
+        long pixels = 0;
+        for (const Rect& r : places) pixels += long{r.right - r.left} * (r.bottom - r.top);
+        if (pixels <= most) return {places};
+        std::vector<std::vector<Rect>> bands;
+        for (const Rect& r : places) {
+            const int rows = std::max(1, static_cast<int>(most / std::max(1, r.right - r.left)));
+            for (int top = r.top; top < r.bottom; top += rows)
+                bands.push_back({{r.left, top, r.right, std::min(top + rows, r.bottom)}});
+        }
+        return bands;
+    }
+
+    /// Draws the render list in hand within `places`, and reads them.
+    void paint(const std::vector<Rect>& places, Picture& into) {
+        painter_->paint(now_, places, *atlas_);
+        for (const Rect& r : places)
+            gl::ReadPixels(r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                           into.at(r.left, r.top));
+        gl::check_errors(fmt::format("drawing a picture of {} × {} px", size_.width, size_.height));
+    }
+
+    static int limit(GLenum name) {
+        GLint value = 0;
+        gl::GetIntegerv(name, &value);
+        return value;
+    }
+
+    void check_size() const {
+        const int most = limit(GL_MAX_TEXTURE_SIZE);
+        if (size_.width < 1 || size_.height < 1 || size_.width > most || size_.height > most) {
+            throw io_failed("OpenGL draws pictures of 1 to {} px a side; {} × {} px is none", most, size_.width,
+                            size_.height);
+        }
+    }
+
+    Size size_;
+    std::unique_ptr<Context> context_;
+    std::optional<GlyphAtlas> atlas_;
+    std::optional<gl::Canvas> canvas_;
+    std::optional<gl::Painter> painter_;
+    Picture backdrop_, picture_;
+    RenderList last_, now_;  // of the last picture; of the one in hand, kept for its memory
+    bool first_ = true;
+    std::vector<Rect> changed_;
+};
+
+Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop) try
+    : machine_(std::make_unique<Machine>(size, backdrop, gl, stop)) {
+} catch (const std::bad_alloc&) {
+    throw io_failed("there is no memory for a picture of {} × {} px", size.width, size.height);
+}
+Renderer::~Renderer() = default;
+const Picture& Renderer::draw(const DisplayList& list, const std::atomic<bool>& stop) {
+    return machine_->draw(list, stop);
+}
+const std::vector<Rect>& Renderer::changed() const {
+    return machine_->changed();
+}
+std::string Renderer::description() const {
+    return machine_->description();
+}
+
+}  // namespace doppel

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "image/picture.hpp"
+#include "render/display_list.hpp"
+#include "render/gl.hpp"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// Draws display lists into pictures of one size, without a display (OSMesa or EGL).
+///
+/// A picture is a backdrop, which stays, with a list on top, which is new every time. Only the rectangles that the last
+/// list or this one touches are drawn and read back; the pixels are the same as if everything had been drawn anew.
+class Renderer {
+public:
+    /// Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size is to be had, 130 as
+    /// draw().
+    explicit Renderer(Size size, const DisplayList& backdrop = {}, Gl gl = Gl::automatic,
+                      const std::atomic<bool>& stop = false);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    /// The backdrop with `list` on top. The picture belongs to the renderer and lasts until the next draw(). Throws
+    /// Error: exit 4 where OpenGL fails, exit 130 soon after `stop` is set, which it looks at between parts of a large
+    /// picture.
+    const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop = false);
+
+    /// Where the last picture differs from the one before it; the whole picture after the first draw().
+    const std::vector<Rect>& changed() const;
+
+    /// What draws, for the manifest: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3 Mesa 22.3.6".
+    std::string description() const;
+
+private:
+    class Machine;
+    std::unique_ptr<Machine> machine_;
+};
+
+}  // namespace doppel

@@ -1,0 +1,75 @@
+#include "render/stroke.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace doppel {
+namespace {
+
+constexpr float hair = 1.0f / 10;  // px
+// of a parabola, at its ends: what lies beside a flat one is nearest to what it lies beside
+constexpr float steepest = 0.25f;
+
+/// A place in the axes of a chord: how far along from its start and how far to its right, px.
+Point local(const Chord& chord, Point at) {
+    const Point out{at.x - chord.from.x, at.y - chord.from.y};
+    return {chord.axis.x * out.x + chord.axis.y * out.y, chord.axis.x * out.y - chord.axis.y * out.x};
+}
+
+float part_of(const Chord& chord, float along) {
+    return chord.length > 0 ? std::clamp(along / chord.length, 0.f, 1.f) : 0;
+}
+
+/// A parabola's height at a part of the way, where it is 1 in the middle.
+float height(float part) {
+    return 4 * part * (1 - part);
+}
+
+bool is_like(const Stroke::Vertex& from, const Stroke::Vertex& to, float part, const Stroke::Vertex& v) {
+    return std::abs(std::lerp(from.alpha, to.alpha, part) - v.alpha) <= 1.0f / 255 &&
+           std::abs(std::lerp(from.width, to.width, part) - v.width) <= 2 * hair &&
+           std::abs(std::lerp(from.glow, to.glow, part) - v.glow) <= 5 * hair;
+}
+
+/// The bend of the piece that passes all vertices between first and last, if there is one.
+std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_t first, std::size_t last,
+                             Bends bends) {
+    const Stroke::Vertex &from = path[first], &to = path[last];
+    const Chord chord(from.at, to.at);
+    // as high as one in the middle wants it
+    const Point middle = local(chord, path[(first + last) / 2].at);
+    const float scale = height(part_of(chord, middle.x));
+    const float bend = bends == Bends::yes && scale > 0.3f ? middle.y / scale : 0;
+    if (!(std::abs(bend) <= steepest / 4 * chord.length)) return {};
+
+    Point before;
+    for (std::size_t i = first + 1; i <= last; ++i) {
+        const Stroke::Vertex& v = path[i];
+        const Point at = local(chord, v.at), between{(before.x + at.x) / 2, (before.y + at.y) / 2};
+        const float part = part_of(chord, at.x);
+        const auto aside = [&](Point p) { return std::abs(p.y - bend * height(part_of(chord, p.x))); };
+        if (!(at.x >= before.x - hair && at.x <= chord.length + hair && aside(at) <= hair &&
+              aside(between) <= 2 * hair))
+            return {};
+        if (i < last && (v.joint || v.bend != 0 || !is_like(from, to, part, v))) return {};
+        before = at;
+    }
+    return bend;
+}
+
+}  // namespace
+
+StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t most) {
+    StrokePiece piece{first, first + 1, path[first].bend};
+    const std::size_t end = std::min(path.size() - 1, first + most);
+    if (path[first].bend != 0 || path[piece.last].joint) return piece;
+    while (piece.last < end) {
+        const auto bend = bend_of(path, first, piece.last + 1, bends);
+        if (!bend) break;
+        piece = {first, piece.last + 1, *bend};
+    }
+    return piece;
+}
+
+}  // namespace doppel

@@ -1,0 +1,50 @@
+#include "base/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+#include <vector>
+
+namespace doppel {
+namespace text_test {
+
+std::vector<char32_t> characters(std::string_view text) {
+    std::vector<char32_t> all;
+    while (!text.empty()) all.push_back(next_character(text));
+    return all;
+}
+
+TEST(Text, IsReadCharacterByCharacter) {
+    EXPECT_EQ(characters("aé€😀"), (std::vector<char32_t>{'a', 0xe9, 0x20ac, 0x1f600}));
+    // cut short, too long, half a surrogate pair, beyond Unicode: a byte each
+    EXPECT_EQ(characters("\xc3"), (std::vector<char32_t>{0xfffd}));
+    EXPECT_EQ(characters("\xc0\xaf"), (std::vector<char32_t>{0xfffd, 0xfffd}));
+    EXPECT_EQ(characters("\xed\xa0\x80z"), (std::vector<char32_t>{0xfffd, 0xfffd, 0xfffd, 'z'}));
+    EXPECT_EQ(characters("\xf4\x90\x80\x80").size(), 4u);
+}
+
+TEST(Text, IsUtf8OrNot) {
+    EXPECT_TRUE(is_utf8(""));
+    EXPECT_TRUE(is_utf8("90°, λ, 😀, \xef\xbf\xbd"));  // U+FFFD itself is well-formed
+    for (const char* text : {"\xff", "a\x80", "\xc3", "\xed\xa0\x80", "\xc0\xaf"}) EXPECT_FALSE(is_utf8(text)) << text;
+}
+
+TEST(Text, OnOneLineIsShownAndNotObeyed) {
+    EXPECT_EQ(on_one_line("plain, 90° · λ"), "plain, 90° · λ");
+    EXPECT_EQ(on_one_line("a\nb\r\tc\x1b[31md\x7f"), "a b  c [31md ");
+    EXPECT_EQ(on_one_line("\xc2\x9b"
+                          "31m"),
+              " 31m");  // C1's own escape
+    EXPECT_EQ(on_one_line("a\xe2\x80\xae"
+                          "b\xe2\x80\xa8"
+                          "c"),
+              "a b c");  // right to left from here; a new line
+    EXPECT_EQ(on_one_line("\x9b"
+                          "1m"),
+              "\xef\xbf\xbd"
+              "1m");  // the same escape as a single byte
+    EXPECT_EQ(on_one_line(std::string_view("\0", 1)), " ");
+}
+
+}  // namespace text_test
+}  // namespace doppel

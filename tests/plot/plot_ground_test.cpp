@@ -1,0 +1,97 @@
+#include "plot/plot.hpp"
+#include "render/renderer.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace doppel {
+namespace plot_ground_test {
+
+// Lines for others to lie on, and words where curves are many.
+
+constexpr const Theme& light = themes[1];
+constexpr Size size{800, 500};
+
+std::set<std::string> words_in(const DisplayList& list) {
+    std::set<std::string> words;
+    for (const Item& item : list)
+        if (const auto* label = std::get_if<Label>(&item)) words.insert(label->text);
+    return words;
+}
+
+/// The share of the pixels of that colour.
+double share_of(const Picture& picture, Color color) {
+    long count = 0;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            const std::uint8_t* pixel = picture.at(x, y);
+            count += std::abs(pixel[0] - 255 * color.r) <= 1 && std::abs(pixel[1] - 255 * color.g) <= 1 &&
+                     std::abs(pixel[2] - 255 * color.b) <= 1;
+        }
+    return static_cast<double>(count) / (size.width * size.height);
+}
+
+Figure level_line(Ground ground) {
+    Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}};
+    plot.curves = {{.label = "ground", .x = {0, 10}, .y = {0.5, 0.5}, .ground = ground}};
+    return {.panels = {plot}};
+}
+
+TEST(Plot, AGroundIsPaleAndHasNoWords) {
+    const auto pale = [](Color color, float share) { return mixed(light.background, color, share); };
+    Renderer renderer(size);
+    const auto band = compose(level_line(Ground::band), size, light);
+    EXPECT_EQ(words_in(band).count("ground"), 0u);
+    // 6 lines wide over some 90 % of the width: 6 × 3.2 × 5/9 px of 500
+    EXPECT_NEAR(share_of(renderer.draw(band), pale(light.open, 0.22f)), 0.9 * 6 * 3.2 * 5 / 9 / 500, 0.005);
+    const auto line = compose(level_line(Ground::line), size, light);
+    EXPECT_EQ(words_in(line).count("ground"), 0u);
+    const double thin = share_of(renderer.draw(line), pale(light.palette[0], 0.3f));
+    EXPECT_GT(thin, 0.0005);
+    EXPECT_LT(thin, 0.003);
+}
+
+/// `count` steep lines side by side, too close for words between them.
+Figure fan(int count) {
+    Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}};
+    for (int i = 0; i < count; ++i) {
+        const double foot = 0.2 + 9.6 * i / count;
+        plot.curves.push_back(
+            {.label = fmt::format("method {}", i), .x = {foot, foot + 0.2}, .y = {0.02, 0.98}, .hue = i});
+    }
+    return {.panels = {plot}};
+}
+
+TEST(Plot, WordsOfManyCurvesStandUponThem) {
+    constexpr int count = 16;
+    const auto list = compose(fan(count), size, light);
+    const auto words = words_in(list);
+    std::vector<const Label*> labels;
+    for (const Item& item : list)
+        if (const auto* label = std::get_if<Label>(&item); label && label->text.starts_with("method "))
+            labels.push_back(label);
+    ASSERT_EQ(labels.size(), static_cast<std::size_t>(count));
+    // in the curves' colours: in a legend they would be in that of text
+    for (const auto* label : labels) EXPECT_NE(label->color, light.text) << label->text;
+}
+
+TEST(Plot, AMarkAmongManyCurvesIsLedTo) {
+    auto figure = fan(12);
+    auto& curves = figure.panels[0].curves;
+    figure.panels[0].y.high = 2;
+    curves.insert(curves.begin(), {.label = "where the others stand", .x = {5}, .y = {0.9}, .mark = Mark::points});
+    const auto list = compose(figure, size, light);
+    EXPECT_EQ(words_in(list).count("where the others stand"), 1u);
+    const auto thin = std::count_if(list.begin(), list.end(), [](const Item& item) {
+        const auto* capsule = std::get_if<Capsule>(&item);
+        return capsule && capsule->from.y != capsule->to.y && capsule->from.x == capsule->to.x &&
+               capsule->radius <= 0.5f;
+    });
+    EXPECT_EQ(thin, 1);
+}
+
+}  // namespace plot_ground_test
+}  // namespace doppel

@@ -1,0 +1,209 @@
+#include "image/colormap.hpp"
+#include "plot/plot.hpp"
+#include "render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace doppel {
+namespace plot_pixels_test {
+
+constexpr const Theme &dark = themes[0], &light = themes[1];
+
+/// A bare panel: x from 0 to 10, y from 0 to 1, and where it lies, from its first image.
+struct Bare {
+    Figure figure;
+    Size size{400, 300};
+    Image area(const DisplayList& list) const {
+        for (const Item& item : list)
+            if (const auto* image = std::get_if<Image>(&item)) return *image;
+        return {};
+    }
+};
+
+Bare bare_map(std::size_t columns, std::size_t rows, bool blank = false) {
+    HeatMap map{
+        .columns = columns, .rows = rows, .x_low = 0, .x_high = 10, .y_low = 0, .y_high = 1, .low = 0.0, .high = 1.0};
+    for (std::size_t i = 0; i < columns * rows; ++i)
+        map.values.push_back(blank ? std::nanf("") : static_cast<float>(i % 11) / 10);
+    Bare bare;
+    bare.figure.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .map = map}};
+    return bare;
+}
+
+void expect_color(const Picture& picture, float x, float y, Color color, int tolerance = 1) {
+    const std::uint8_t* pixel = picture.at(static_cast<int>(x), static_cast<int>(y));
+    EXPECT_NEAR(pixel[0], 255 * color.r, tolerance) << x << " " << y;
+    EXPECT_NEAR(pixel[1], 255 * color.g, tolerance) << x << " " << y;
+    EXPECT_NEAR(pixel[2], 255 * color.b, tolerance) << x << " " << y;
+}
+
+TEST(Plot, MapCellsHaveTheirColours) {
+    const Bare bare = bare_map(7, 5);
+    const DisplayList list = compose(bare.figure, bare.size, light);
+    Renderer renderer(bare.size);
+    const Picture& picture = renderer.draw(list);
+    const Image area = bare.area(list);
+    ASSERT_GT(area.right - area.left, 200);
+    for (int row = 0; row < 5; ++row)
+        for (int column = 0; column < 7; ++column)
+            expect_color(picture, area.left + (static_cast<float>(column) + 0.5f) / 7 * (area.right - area.left),
+                         area.bottom - (static_cast<float>(row) + 0.5f) / 5 * (area.bottom - area.top),
+                         map_color((row * 7 + column) % 11 / 10.0));
+    // and what has no value the colour for that
+    const Bare blank = bare_map(3, 3, true);
+    const DisplayList none = compose(blank.figure, blank.size, dark);
+    const Image where = blank.area(none);
+    expect_color(renderer.draw(none), where.left + 50, where.top + 50, dark.none);
+}
+
+TEST(Plot, SmallMapCellsAreAveraged) {
+    Bare bare = bare_map(4000, 3);
+    for (std::size_t i = 0; i < bare.figure.panels[0].map->values.size(); ++i)
+        bare.figure.panels[0].map->values[i] = i % 2 ? 1.0f : 0.2f;
+    const DisplayList list = compose(bare.figure, bare.size, light);
+    const Image area = bare.area(list);
+    const Picture& pixels = *area.pixels;
+    EXPECT_EQ(pixels.size.width, static_cast<int>(area.right - area.left));
+    EXPECT_EQ(pixels.size.height, static_cast<int>(area.bottom - area.top));
+    for (int x = 0; x < pixels.size.width; ++x) {
+        // some 12 cells a pixel: the mean, 0.6, within half a cell's weight
+        EXPECT_GT(pixels.at(x, 5)[1], 255 * map_color(0.56).g);
+        EXPECT_LT(pixels.at(x, 5)[1], 255 * map_color(0.64).g);
+    }
+}
+
+TEST(Plot, ACurvePassesWhereItsValuesAre) {
+    for (const bool logarithmic : {false, true}) {
+        Bare bare = bare_map(1, 1, true);
+        Plot& plot = bare.figure.panels[0];
+        if (logarithmic) plot.y = {.low = 1e-4, .high = 1, .logarithmic = true}, plot.map->y_low = 1e-4;
+        const Image area = bare.area(compose(bare.figure, bare.size, light));
+        plot.curves = {
+            {.x = {0, 10}, .y = logarithmic ? std::vector{1e-4, 1.0} : std::vector{0.0, 1.0}, .quiet = true}};
+        Renderer renderer(bare.size);
+        const Picture& picture = renderer.draw(compose(bare.figure, bare.size, light));
+        // on either axis a straight line from corner to corner; over a map quiet is white
+        for (const float part : {0.1f, 0.35f, 0.5f, 0.81f})
+            expect_color(picture, area.left + part * (area.right - area.left),
+                         area.bottom - part * (area.bottom - area.top), rgb(0xffffff), 40);
+        expect_color(picture, area.left + 0.2f * (area.right - area.left), area.top + 0.2f * (area.bottom - area.top),
+                     light.none);
+    }
+}
+
+struct Reach {
+    float left = 1e9f, top = 1e9f, right = -1e9f, bottom = -1e9f;
+};
+
+/// How far all strokes in a colour reach, px.
+Reach reach(const DisplayList& list, Color color) {
+    Reach all;
+    for (const Item& item : list) {
+        const auto* stroke = std::get_if<Stroke>(&item);
+        if (!stroke || !(stroke->color == color)) continue;
+        for (const auto& vertex : stroke->vertices) {
+            all.left = std::min(all.left, vertex.at.x), all.right = std::max(all.right, vertex.at.x);
+            all.top = std::min(all.top, vertex.at.y), all.bottom = std::max(all.bottom, vertex.at.y);
+        }
+    }
+    return all;
+}
+
+TEST(Plot, CurvesAreCutAtThePanel) {
+    Bare bare = bare_map(1, 1, true);
+    const Image area = bare.area(compose(bare.figure, bare.size, light));
+    Curve wild{.hue = 3};
+    std::mt19937 random(5);
+    for (int i = 0; i < 2000; ++i) {
+        wild.x.push_back(std::normal_distribution<double>(5, 9)(random));
+        wild.y.push_back(std::pow(10, std::normal_distribution<double>(0, 60)(random)));
+    }
+    bare.figure.panels[0].curves = {wild};
+    const Reach held = reach(compose(bare.figure, bare.size, light), dark.palette[3]);
+    EXPECT_GE(held.left, area.left - 0.01f);
+    EXPECT_GE(held.top, area.top - 0.01f);
+    EXPECT_LE(held.right, area.right + 0.01f);
+    EXPECT_LE(held.bottom, area.bottom + 0.01f);
+    EXPECT_GT(held.right - held.left, 0.99f * (area.right - area.left));
+
+    // in by the bottom after a third of the way, out by the top after two
+    bare.figure.panels[0].curves = {{.x = {0, 10}, .y = {-1, 2}, .hue = 3}};
+    const Reach cut = reach(compose(bare.figure, bare.size, light), dark.palette[3]);
+    EXPECT_NEAR(cut.left, std::lerp(area.left, area.right, 1 / 3.0f), 0.01f);
+    EXPECT_NEAR(cut.right, std::lerp(area.left, area.right, 2 / 3.0f), 0.01f);
+}
+
+TEST(Plot, ManyPointsAreThinnedWithoutATrace) {
+    const Size size{400, 300};
+    Figure dense, sparse;
+    dense.panels = {{.x = {.low = 0, .high = 1}, .y = {.low = -2, .high = 2}}};
+    Curve wave{.hue = 1};
+    constexpr int points = 100000;
+    for (int i = 0; i <= points; ++i) {
+        wave.x.push_back(static_cast<double>(i) / points);
+        wave.y.push_back(std::sin(40 * wave.x.back()) + 0.4 * std::sin(3000 * wave.x.back()));
+    }
+    sparse = dense;
+    dense.panels[0].curves = {wave};
+    // as many pieces as may pass for a curve each: nothing is left out of any
+    for (int from = 0; from < points; from += 500) {
+        Curve piece{.hue = 1};
+        for (int i = from; i <= from + 500; ++i) {
+            piece.x.push_back(wave.x[static_cast<std::size_t>(i)]);
+            piece.y.push_back(wave.y[static_cast<std::size_t>(i)]);
+        }
+        sparse.panels[0].curves.push_back(piece);
+    }
+    const DisplayList list = compose(dense, size, light);
+    std::size_t vertices = 0;
+    for (const Item& item : list)
+        if (const auto* stroke = std::get_if<Stroke>(&item)) vertices += stroke->vertices.size();
+    EXPECT_LT(vertices, 8u * 400 + 10);
+    Renderer a(size), b(size);
+    const Picture thin = a.draw(list), full = b.draw(compose(sparse, size, light));
+    int differ = 0;
+    for (std::size_t i = 0; i < thin.rgba.size(); ++i) differ += std::abs(thin.rgba[i] - full.rgba[i]) > 60;
+    EXPECT_LT(differ, 60);  // channels by more than 60 of 255, of 480 000; measured 16
+}
+
+TEST(Plot, WhatIsNoNumberInterruptsTheLine) {
+    Figure figure;
+    Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 1e-3, .high = 1, .logarithmic = true}};
+    plot.curves = {{.x = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .y = {.1, .1, -1, .1, .1, std::nan(""), .1, 0, .1}}};
+    figure.panels = {plot};
+    int strokes_up = 0, dots = 0;
+    for (const Item& item : compose(figure, {400, 300}, light)) {
+        if (std::holds_alternative<Capsule>(item)) ++dots;
+        const auto* stroke = std::get_if<Stroke>(&item);
+        if (!stroke) continue;
+        strokes_up += static_cast<int>(std::count_if(stroke->vertices.begin(), stroke->vertices.end(),
+                                                     [](const auto& v) { return v.alpha == 0; }));
+    }
+    EXPECT_EQ(strokes_up, 2 + 1) << "two pieces: up, down, up";
+    EXPECT_EQ(dots, 2) << "what stands alone between gaps shows as a dot";
+}
+
+TEST(Plot, ABandIsTintedBetweenItsEdges) {
+    Figure figure;
+    Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}};
+    plot.curves = {{.x = {0, 10}, .y = {0.5, 0.5}, .uncertainty = {0.25, 0.25}, .hue = 1}};
+    figure.panels = {plot};
+    const DisplayList list = compose(figure, {400, 300}, light);
+    const auto found =
+        std::find_if(list.begin(), list.end(), [](const Item& item) { return std::holds_alternative<Image>(item); });
+    ASSERT_NE(found, list.end());
+    const Picture& pixels = *std::get<Image>(*found).pixels;
+    const int x = pixels.size.width / 2, h = pixels.size.height;
+    EXPECT_NEAR(pixels.at(x, h / 2)[3], 51, 1);
+    EXPECT_NEAR(pixels.at(x, h / 4 + 2)[3], 51, 1);
+    EXPECT_NEAR(pixels.at(x, h * 3 / 4 - 2)[3], 51, 1);
+    EXPECT_EQ(pixels.at(x, h / 4 - 2)[3], 0);
+    EXPECT_EQ(pixels.at(x, h * 3 / 4 + 2)[3], 0);
+}
+
+}  // namespace plot_pixels_test
+}  // namespace doppel

@@ -1,0 +1,197 @@
+#include "plot/plot.hpp"
+
+#include "base/error.hpp"
+#include "plot/plot_figures.hpp"
+#include "render/font.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace doppel {
+namespace plot_test {
+
+constexpr const Theme &dark = themes[0], &light = themes[1];
+
+struct Words {
+    float left, top, right, bottom;
+    std::string text;
+};
+
+/// Where all words of a list stand: from a capital's top to a comma's tail.
+std::vector<Words> words_of(const DisplayList& list) {
+    std::vector<Words> all;
+    for (const Item& item : list) {
+        const auto* label = std::get_if<Label>(&item);
+        if (!label || label->text.empty()) continue;
+        const float width = text_width(label->text, label->size, label->weight);
+        const float before = label->align == Align::left ? 0 : label->align == Align::center ? width / 2 : width;
+        const float left = label->anchor.x - before;
+        all.push_back({left, label->anchor.y - 0.76f * label->size, left + width, label->anchor.y + 0.23f * label->size,
+                       label->text});
+    }
+    return all;
+}
+
+/// No words touch others or leave the picture.
+void expect_legible(const DisplayList& list, Size size, float slack = 0.01f) {
+    const std::vector<Words> all = words_of(list);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Words& a = all[i];
+        EXPECT_TRUE(a.left >= -slack && a.top >= -slack && a.right <= static_cast<float>(size.width) + slack &&
+                    a.bottom <= static_cast<float>(size.height) + slack)
+            << '"' << a.text << "\" leaves the picture: " << a.left << " " << a.top << " " << a.right << " "
+            << a.bottom;
+        for (std::size_t j = 0; j < i; ++j) {
+            const Words& b = all[j];
+            const bool apart = a.left >= b.right - slack || b.left >= a.right - slack || a.top >= b.bottom - slack ||
+                               b.top >= a.bottom - slack;
+            EXPECT_TRUE(apart) << '"' << a.text << "\" and \"" << b.text << '"';
+        }
+    }
+}
+
+bool says(const DisplayList& list, const std::string& text) {
+    const auto all = words_of(list);
+    return std::any_of(all.begin(), all.end(), [&](const Words& words) { return words.text == text; });
+}
+
+TEST(Plot, WordsNeverTouchAndNeverLeaveThePicture) {
+    int number = 0;
+    for (const Figure& figure : all_figures()) {
+        for (const Size size : {Size{480, 270}, {800, 600}, {1280, 720}, {1600, 900}, {900, 1600}}) {
+            SCOPED_TRACE(testing::Message() << "figure " << number << ", " << size.width << " × " << size.height);
+            expect_legible(compose(figure, size, size.width == 800 ? dark : light), size);
+        }
+        ++number;
+    }
+}
+
+TEST(Plot, WordsNeverTouchWhateverTheCurvesDo) {
+    std::mt19937 random(11);
+    const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
+    for (int trial = 0; trial < 150; ++trial) {
+        Plot plot{.x = {.label = "time, s"}, .y = {.label = "what is measured, J", .logarithmic = trial % 3 == 0}};
+        for (int c = 0; c < 2 + trial % 7; ++c) {
+            Curve walk{
+                .label = std::string("walk ") + std::string(random() % 9, 'n'), .mark = Mark(random() % 3), .hue = c};
+            double value = between(1, 100);
+            for (int i = 0; i < 5 + trial; ++i) {
+                walk.x.push_back(i);
+                walk.y.push_back(value *= between(0.8, 1.25));
+            }
+            plot.curves.push_back(walk);
+        }
+        plot.rules = {{Rule::Way::vertical, between(0, 5), "a moment"},
+                      {Rule::Way::horizontal, between(1, 100), "a limit"}};
+        const Size size{320 + 10 * trial, 240 + 4 * trial};
+        SCOPED_TRACE(trial);
+        expect_legible(compose({.title = "Walks", .panels = {plot}}, size, dark), size);
+    }
+}
+
+TEST(Plot, BothThemesHaveOneLayout) {
+    for (const Figure& figure : all_figures()) {
+        const auto a = words_of(compose(figure, {640, 360}, dark)), b = words_of(compose(figure, {640, 360}, light));
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            EXPECT_EQ(a[i].text, b[i].text);
+            EXPECT_EQ(a[i].left, b[i].left);
+        }
+    }
+}
+
+TEST(Plot, ScaleTwoDoublesEveryLength) {
+    for (const Figure& figure : all_figures()) {
+        const DisplayList once = compose(figure, {800, 450}, light), twice = compose(figure, {1600, 900}, light, 2);
+        ASSERT_EQ(once.size(), twice.size());
+        for (std::size_t i = 0; i < once.size(); ++i) {
+            ASSERT_EQ(once[i].index(), twice[i].index());
+            if (const auto* label = std::get_if<Label>(&once[i])) {
+                const auto& other = std::get<Label>(twice[i]);
+                EXPECT_EQ(2 * label->anchor.x, other.anchor.x);
+                EXPECT_EQ(2 * label->anchor.y, other.anchor.y);
+                EXPECT_EQ(2 * label->size, other.size);
+            }
+            if (const auto* stroke = std::get_if<Stroke>(&once[i])) {
+                const auto& other = std::get<Stroke>(twice[i]);
+                ASSERT_EQ(stroke->vertices.size(), other.vertices.size());
+                EXPECT_EQ(2 * stroke->width, other.width);
+                EXPECT_EQ(2 * stroke->vertices.back().at.x, other.vertices.back().at.x);
+            }
+            if (const auto* image = std::get_if<Image>(&once[i])) {
+                const auto& other = std::get<Image>(twice[i]);
+                EXPECT_NEAR(2 * image->right, other.right, 1.01);  // drawn for the finer pixels
+                if (image->pixels->size.width > 1) {
+                    EXPECT_NEAR(2 * image->pixels->size.width, other.pixels->size.width, 2);
+                }
+            }
+        }
+    }
+}
+
+TEST(Plot, NamesAllThatIsNamed) {
+    const DisplayList list = compose(sweep(), {1600, 900}, light);
+    for (const char* text :
+         {"Chaos sets in near 63°", "by release angle", "Explicit Euler.", "exponent", "parted", "to compare with",
+          "first chaos", "regular", "release angle θ1, °", "Lyapunov exponent λ, 1/s",
+          "pairs parted within twenty seconds, %", "0", "45", "90", "135", "180"})
+        EXPECT_TRUE(says(list, text)) << text;
+    const DisplayList eight = compose(convergence(), {480, 270}, dark);
+    for (int order = 1; order <= 8; ++order) EXPECT_TRUE(says(eight, "order " + std::to_string(order))) << order;
+}
+
+TEST(Plot, ATableKeepsAllItsWords) {
+    for (const Size size : {Size{480, 270}, {1600, 900}, {300, 900}}) {
+        std::string all, expected;
+        const auto add = [](std::string& to, const std::string& text) {
+            std::copy_if(text.begin(), text.end(), std::back_inserter(to), [](char c) { return c != ' '; });
+        };
+        Figure figure = audit();
+        figure.title = figure.subtitle = "";
+        figure.captions.clear();
+        for (const Words& words : words_of(compose(figure, size, light))) add(all, words.text);
+        for (std::size_t c = 0; c < 4; ++c) {
+            add(expected, figure.table->columns[c].heading);
+            for (const auto& row : figure.table->rows) add(expected, row[c].text);
+        }
+        std::sort(all.begin(), all.end());
+        std::sort(expected.begin(), expected.end());
+        EXPECT_EQ(all, expected) << size.width;
+    }
+}
+
+TEST(Plot, SaysWhatCannotBeDrawn) {
+    const auto refused = [](auto change) {
+        Figure figure = sweep();
+        change(figure);
+        EXPECT_THROW(compose(figure, {480, 270}, light), Error);
+    };
+    refused([](Figure& f) { f.panels[0].curves[0].y.pop_back(); });
+    refused([](Figure& f) { f.panels[0].curves[0].uncertainty.pop_back(); });
+    refused([](Figure& f) { f.panels[0].x.every = 0; });
+    refused([](Figure& f) { f.panels[0].y = {.low = 0, .high = 1, .logarithmic = true}; });
+    refused([](Figure& f) { f.panels[0].right.reset(); });
+    refused([](Figure& f) { f.panels[0].map = HeatMap{.columns = 2, .rows = 2, .values = {1, 2, 3}}; });
+    refused([](Figure& f) { f.table = PlotTable{}; });
+    EXPECT_THROW(compose(sweep(), {480, 270}, light, 0), Error);
+}
+
+TEST(Plot, ManyPanelsInASmallPictureKeepTheirCurves) {
+    Figure figure{.title = "twelve"};
+    for (int i = 0; i < 12; ++i)
+        figure.panels.push_back({.title = "panel",
+                                 .x = {.label = "x"},
+                                 .y = {.label = "y"},
+                                 .curves = {Curve{.x = {0, 1, 2}, .y = {0, 1, 0}}}});
+    for (const Size size : {Size{1600, 900}, Size{480, 270}, Size{320, 180}}) {
+        const auto list = compose(figure, size, themes[1]);
+        const auto curves = std::count_if(list.begin(), list.end(),
+                                          [](const Item& item) { return std::holds_alternative<Stroke>(item); });
+        EXPECT_EQ(curves, 12) << size.width;
+    }
+}
+
+}  // namespace plot_test
+}  // namespace doppel

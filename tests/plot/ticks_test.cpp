@@ -1,0 +1,141 @@
+#include "plot/ticks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+namespace doppel {
+namespace ticks_test {
+
+/// What a person reads: "−1.5 × 10⁻⁷", "10⁻⁴", "0.30".
+double read(std::string text) {
+    const auto replace = [&](std::string_view from, std::string_view to) {
+        for (std::size_t at; (at = text.find(from)) != std::string::npos;) text.replace(at, from.size(), to);
+    };
+    replace("−", "-");
+    replace("⁻", "-");
+    const std::string_view raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    const std::string before = text;
+    for (int digit = 0; digit < 10; ++digit) replace(raised[digit], std::to_string(digit));
+    if (text == before) return std::stod(text);
+    const std::size_t cross = text.find(" × 10");
+    const std::string power = text.substr(cross == std::string::npos ? 2 : cross + 6);
+    return (cross == std::string::npos ? 1.0 : std::stod(text.substr(0, cross))) * std::pow(10.0, std::stoi(power));
+}
+
+void expect_sound(const Axis& axis, const TickWords& words, const std::vector<Tick>& ticks) {
+    const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
+    std::set<std::string> texts;
+    const Tick* before = nullptr;
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+        ASSERT_GE(ticks[i].value, low);
+        ASSERT_LE(ticks[i].value, high);
+        ASSERT_TRUE(i == 0 || ticks[i].value > ticks[i - 1].value);
+        if (ticks[i].text.empty()) continue;
+        ASSERT_TRUE(texts.insert(ticks[i].text).second) << ticks[i].text;
+        if (before) {
+            const float apart = std::abs(axis.at(ticks[i].value) - axis.at(before->value));
+            const float need = (words.length(before->text) + words.length(ticks[i].text)) / 2 + words.gap;
+            ASSERT_GE(apart, need) << before->text << " " << ticks[i].text;
+            const double step = ticks[i].value - before->value;
+            ASSERT_NEAR(read(ticks[i].text), ticks[i].value, std::abs(step) / 2) << ticks[i].text;
+            ASSERT_NEAR(read(before->text), before->value, std::abs(step) / 2) << before->text;
+        }
+        before = &ticks[i];
+    }
+}
+
+TEST(ChartTicks, AreSoundOverAnyLinearRange) {
+    std::mt19937 random(2026);
+    const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
+    for (int trial = 0; trial < 4000; ++trial) {
+        const double size = std::pow(10, trial % 4 == 0 ? between(-300, 300) : between(-12, 12));
+        const double middle = trial % 3 == 0 ? 0 : size * std::pow(10, between(-2, 6)) * (random() % 2 ? 1 : -1);
+        Axis axis{middle - size * between(0, 1), middle + size * between(0.01, 1), 0,
+                  static_cast<float>(between(60, 1500))};
+        if (random() % 3 == 0) std::swap(axis.low, axis.high);
+        const TickWords words{.size = 12, .gap = 8, .spacing = 30, .across = random() % 2 == 0};
+        const auto ticks = chart_ticks(axis, words);
+        ASSERT_NO_FATAL_FAILURE(expect_sound(axis, words, ticks)) << axis.low << " … " << axis.high;
+        const auto span = std::abs(axis.high - axis.low);
+        // equal steps, to the rounding of the values themselves
+        for (std::size_t i = 2; i < ticks.size(); ++i)
+            ASSERT_NEAR(ticks[i].value - ticks[i - 1].value, ticks[1].value - ticks[0].value, 1e-9 * span);
+        // five times what a mark needs is room for two, whatever the range
+        ASSERT_TRUE(words.across || axis.to < 5 * 30 || ticks.size() >= 2) << axis.low << " … " << axis.high;
+    }
+}
+
+TEST(ChartTicks, AreSoundOverAnyLogarithmicRange) {
+    std::mt19937 random(7);
+    const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
+    for (int trial = 0; trial < 4000; ++trial) {
+        const double low = std::pow(10, trial % 4 == 0 ? between(-300, 290) : between(-14, 4));
+        const double decades = trial % 4 == 0 ? between(0, 300) : between(0.05, 20);
+        const double high = std::pow(10, std::min(std::log10(low) + decades, 305.0));
+        Axis axis{low, high, 0, static_cast<float>(between(60, 1500)), true};
+        if (random() % 3 == 0) std::swap(axis.low, axis.high);
+        const TickWords words{.size = 12, .gap = 8, .spacing = 30, .across = random() % 2 == 0};
+        const auto ticks = chart_ticks(axis, words);
+        ASSERT_NO_FATAL_FAILURE(expect_sound(axis, words, ticks)) << low << " … " << high;
+        if (!words.across && axis.to > 6 * 30 && decades > 2.1) {
+            const auto named = std::count_if(ticks.begin(), ticks.end(), [](const Tick& t) { return !t.text.empty(); });
+            ASSERT_GE(named, 2) << low << " … " << high;
+        }
+    }
+}
+
+std::vector<std::string> texts(const Axis& axis, std::optional<double> every = {},
+                               TickWords words = {.across = false}) {
+    std::vector<std::string> all;
+    for (const Tick& tick : chart_ticks(axis, words, every))
+        if (!tick.text.empty()) all.push_back(tick.text);
+    return all;
+}
+
+using Texts = std::vector<std::string>;
+
+TEST(ChartTicks, ReadAsPeopleWrite) {
+    EXPECT_EQ(texts({0, 0.5, 0, 300}), (Texts{"0.0", "0.1", "0.2", "0.3", "0.4", "0.5"}));
+    EXPECT_EQ(texts({-1, 1, 0, 300}), (Texts{"−1.0", "−0.5", "0.0", "0.5", "1.0"}));
+    EXPECT_EQ(texts({0, 180, 0, 500}, 45), (Texts{"0", "45", "90", "135", "180"}));
+    EXPECT_EQ(texts({0, 180, 0, 130}, 45), (Texts{"0", "90", "180"}));
+    EXPECT_EQ(texts({0, 3e-7, 0, 170}), (Texts{"0", "1 × 10⁻⁷", "2 × 10⁻⁷", "3 × 10⁻⁷"}));
+    EXPECT_EQ(texts({1e-4, 1e-1, 0, 300, true}), (Texts{"10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"}));
+    EXPECT_EQ(texts({1e-16, 1, 0, 300, true}), (Texts{"10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"}));
+    EXPECT_EQ(texts({0.1, 2, 0, 400, true}), (Texts{"0.1", "0.2", "0.5", "1", "2"}));
+}
+
+TEST(ChartTicks, DegradeWhereNothingCanBeTold) {
+    EXPECT_TRUE(texts({1, 1, 0, 300}).empty());
+    EXPECT_TRUE(texts({1e10, 1e10 + 1e-300, 0, 300}).empty());
+    EXPECT_TRUE(texts({0, 1, 0, 0}).empty());
+    EXPECT_TRUE(texts({0, std::nan(""), 0, 100}).empty());
+    EXPECT_GE(texts({-1.7e308, 1.7e308, 0, 300}).size(), 2u);
+    EXPECT_GE(texts({1e10, 1e10 + 1e-3, 0, 300}).size(), 2u);
+}
+
+TEST(Axis, MapsItsEndsAndKeepsToThem) {
+    const Axis inverted{10, -10, 100, 300}, decades{1e-300, 1e300, 0, 600, true}, huge{-1.7e308, 1.7e308, 0, 2};
+    EXPECT_FLOAT_EQ(inverted.at(10), 100);
+    EXPECT_FLOAT_EQ(inverted.at(-5), 250);
+    EXPECT_FLOAT_EQ(inverted.at(-50), 300);
+    EXPECT_FLOAT_EQ(decades.at(1), 300);
+    EXPECT_FLOAT_EQ(decades.at(0), 0);
+    EXPECT_FLOAT_EQ(huge.at(0), 1);
+    EXPECT_FLOAT_EQ((Axis{3, 3, 0, 10}.at(3)), 5);
+}
+
+TEST(RoundTicks, StayAsTheFilmsHaveThem) {
+    const auto ticks = round_ticks({0, 30, 0, 1600}, 90);
+    ASSERT_EQ(ticks.size(), 16u);
+    EXPECT_EQ(ticks[1].text, "2");
+    EXPECT_EQ(round_ticks({0, 1, 0, 1000}, 90)[3].text, "0.3");
+    EXPECT_TRUE(round_ticks({5, 5, 0, 100}, 10).empty());
+    EXPECT_TRUE(round_ticks({1e10, 1e10 + 1e-300, 0, 100}, 10).empty());
+}
+
+}  // namespace ticks_test
+}  // namespace doppel

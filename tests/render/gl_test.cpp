@@ -1,0 +1,186 @@
+#include "render/gl.hpp"
+
+#include "base/error.hpp"
+#include "image/golden.hpp"
+#include "image/theme.hpp"
+#include "render/pixels.hpp"
+#include "plot/plot_figures.hpp"
+#include "render/gl_context.hpp"
+#include "render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <thread>
+
+namespace doppel {
+namespace gl_test {
+
+constexpr Size size{480, 270};
+
+/// Every kind of item, with opaque and translucent colours, edges at fractions of a pixel and an image of both.
+DisplayList rich_list(int variant) {
+    auto pixels = std::make_shared<Picture>(Size{7, 5});
+    for (std::size_t i = 0; i < pixels->rgba.size(); ++i) pixels->rgba[i] = static_cast<std::uint8_t>(i * 37 % 256);
+    DisplayList list{background(size, rgb(0x11151d)), Image{300, 20, 420, 110, pixels}};
+    const auto shift = static_cast<float>(variant) * 3.7f;
+    for (int i = 0; i < 12; ++i) {
+        const float x = 30.3f + 37.1f * static_cast<float>(i) + shift, y = 60 + 15.7f * static_cast<float>(i % 5);
+        const Color color{0.1f + 0.07f * static_cast<float>(i), 0.9f - 0.05f * static_cast<float>(i), 0.5f,
+                          i % 2 ? 1.0f : 0.6f};
+        list.push_back(Box{x, y, x + 21.5f, y + 17.25f, static_cast<float>(i), color});
+        list.push_back(Capsule{{x, y}, {x + 30, y + 90}, 0.7f + 0.5f * static_cast<float>(i), color});
+        list.push_back(Ring{{x, 180}, 5.0f + 3 * static_cast<float>(i), 0.8f + 0.3f * static_cast<float>(i), color});
+        list.push_back(Label{"Öl " + std::to_string(i),
+                             {x, 230},
+                             11.0f + static_cast<float>(i),
+                             Align::center,
+                             i % 3 ? Weight::regular : Weight::bold,
+                             color});
+    }
+    Stroke trail{.vertices = {}, .width = 5.5f, .color = rgb(0xffa640)};
+    for (int i = 0; i < 200; ++i) {
+        const float t = 0.11f * static_cast<float>(i);
+        trail.vertices.push_back({{240 + 200 * std::sin(t) + shift, 135 + 110 * std::sin(1.7f * t)}, t / 22});
+    }
+    list.push_back(trail);
+    return list;
+}
+
+Picture drawn(Gl gl, const DisplayList& list) {
+    Renderer renderer(size, {}, gl);
+    return renderer.draw(list);
+}
+
+/// The error (exit 4) with which making a context fails.
+std::string fault_of(Gl gl, const GlLibraries& libraries) {
+    try {
+        const auto context = make_context(gl, libraries);
+        return "none: " + context->library() + " draws";
+    } catch (const Error& fault) {
+        EXPECT_EQ(fault.code(), ExitCode::io_failed);
+        return fault.what();
+    }
+}
+
+TEST(Gl, HasANameForEach) {
+    EXPECT_EQ(gl_names(), (std::vector<std::string>{"auto", "osmesa", "egl"}));
+    EXPECT_EQ(gl_named("auto"), Gl::automatic);
+    EXPECT_EQ(gl_named("osmesa"), Gl::osmesa);
+    EXPECT_EQ(gl_named("egl"), Gl::egl);
+    try {
+        gl_named("glx");
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& fault) {
+        EXPECT_EQ(fault.code(), ExitCode::bad_input);
+        EXPECT_STREQ(fault.what(), "nothing that draws is called \"glx\"; there are auto, osmesa, egl");
+    }
+}
+
+TEST(Gl, SaysWhoDraws) {
+    EXPECT_EQ(Renderer({8, 8}, {}, Gl::osmesa).description().rfind("OSMesa, ", 0), 0u);
+    EXPECT_EQ(Renderer({8, 8}, {}, Gl::egl).description().rfind("EGL, ", 0), 0u);
+    EXPECT_EQ(Renderer({8, 8}).description().rfind("OSMesa, ", 0), 0u);
+}
+
+TEST(Gl, DrawsTheSameEitherWay) {
+    std::vector<DisplayList> lists{rich_list(0), rich_list(1)};
+    for (const auto& figure : {sweep(), convergence()}) lists.push_back(compose(figure, size, themes[0]));
+    for (const auto& list : lists) {
+        const auto verdict = compare_golden(drawn(Gl::osmesa, list), drawn(Gl::egl, list));
+        EXPECT_TRUE(verdict.passes) << verdict.why;  // measured, both llvmpipe of one Mesa: no pixel differs
+    }
+    EXPECT_FALSE(compare_golden(drawn(Gl::osmesa, lists[0]), drawn(Gl::egl, lists[1])).passes);
+}
+
+TEST(Gl, BothShareOneThread) {
+    const std::array lists{rich_list(0), rich_list(1)};
+    const std::array alone{drawn(Gl::osmesa, lists[0]), drawn(Gl::egl, lists[1])};
+    Renderer osmesa(size, {}, Gl::osmesa), egl(size, {}, Gl::egl);
+    for (int round = 0; round < 3; ++round) {
+        // half the time each draws what the other drew before
+        EXPECT_EQ(osmesa.draw(lists[0]).rgba, alone[0].rgba) << round;
+        EXPECT_EQ(egl.draw(lists[1]).rgba, alone[1].rgba) << round;
+        osmesa.draw(lists[1]);
+        egl.draw(lists[0]);
+        EXPECT_EQ(egl.description().rfind("EGL", 0), 0u);
+        EXPECT_EQ(osmesa.description().rfind("OSMesa", 0), 0u);
+    }
+}
+
+TEST(Gl, GoInAnyOrder) {
+    const auto list = rich_list(0);
+    const std::array alone{drawn(Gl::osmesa, list).rgba, drawn(Gl::egl, list).rgba};
+    for (const bool first_goes_first : {true, false}) {
+        for (const bool current_goes : {true, false}) {
+            std::array<std::optional<Renderer>, 2> renderers;
+            renderers[0].emplace(size, DisplayList{}, Gl::osmesa);
+            renderers[1].emplace(size, DisplayList{}, Gl::egl);
+            const std::size_t goes = first_goes_first ? 0 : 1, stays = 1 - goes;
+            renderers[current_goes ? goes : stays]->draw(list);
+            renderers[goes].reset();
+            EXPECT_EQ(renderers[stays]->draw(list).rgba, alone[stays]);
+            renderers[goes].emplace(size, DisplayList{}, goes == 0 ? Gl::osmesa : Gl::egl);
+            EXPECT_EQ(renderers[goes]->draw(list).rgba, alone[goes]);
+        }
+    }
+}
+
+TEST(Gl, BothDrawAtOnceInTwoThreads) {
+    const auto list = rich_list(0), other = rich_list(1);
+    const std::array alone{drawn(Gl::osmesa, list).rgba, drawn(Gl::egl, list).rgba};
+    std::array<int, 2> same{};
+    {
+        std::array<std::jthread, 2> threads;
+        for (std::size_t k = 0; k < 2; ++k) {
+            threads[k] = std::jthread([&, k] {
+                for (int round = 0; round < 3; ++round) {
+                    Renderer renderer(size, {}, k == 0 ? Gl::osmesa : Gl::egl);
+                    for (int i = 0; i < 3; ++i) {
+                        renderer.draw(other);
+                        same[k] += renderer.draw(list).rgba == alone[k];
+                    }
+                }
+            });
+        }
+    }
+    EXPECT_EQ(same, (std::array{9, 9}));
+}
+
+TEST(Gl, TakesEglWhereOsmesaIsMissing) {
+    EXPECT_EQ(make_context(Gl::automatic)->library(), "OSMesa");
+    EXPECT_EQ(make_context(Gl::automatic, {.osmesa = {"libnone.so.8"}})->library(), "EGL");
+    // a library that is another one is as good as none
+    EXPECT_EQ(make_context(Gl::automatic, {.osmesa = {"libEGL.so.1"}})->library(), "EGL");
+}
+
+TEST(Gl, LooksForALibraryUnderSeveralNames) {
+    EXPECT_EQ(make_context(Gl::osmesa, {.osmesa = {"libnone.so.9", "libOSMesa.so.8"}})->library(), "OSMesa");
+    EXPECT_EQ(make_context(Gl::egl, {.egl = {"libnone.so.9", "libEGL.so.1"}})->library(), "EGL");
+}
+
+TEST(Gl, NeverTakesTheOtherInPlaceOfWhatWasAskedFor) {
+    EXPECT_EQ(fault_of(Gl::osmesa, {.osmesa = {"libnone.so.8", "libnone.so"}}),
+              "OSMesa cannot draw here: there is no libnone.so.8 or libnone.so (in Debian: libosmesa6)");
+    EXPECT_EQ(fault_of(Gl::egl, {.egl = {"libnone.so.1"}}),
+              "EGL cannot draw here: there is no libnone.so.1 (in Debian: libegl1, libegl-mesa0, libgl1-mesa-dri)");
+}
+
+TEST(Gl, SaysOfBothWhyTheyCannotDraw) {
+    EXPECT_EQ(fault_of(Gl::automatic, {.osmesa = {"libnone.so.8", "libEGL.so.1"}, .egl = {"libnone.so.1"}}),
+              "OSMesa cannot draw here: libEGL.so.1 has no OSMesaCreateContextAttribs (in Debian: libosmesa6); "
+              "EGL cannot draw here: there is no libnone.so.1 (in Debian: libegl1, libegl-mesa0, libgl1-mesa-dri)");
+}
+
+TEST(Gl, AContextThatCannotBeMadeLeavesTheOthersAlone) {
+    const auto list = rich_list(0);
+    Renderer egl(size, {}, Gl::egl);
+    const auto before = egl.draw(list).rgba;
+    fault_of(Gl::osmesa, {.osmesa = {"libnone.so.8"}});
+    EXPECT_THROW(Renderer({0, 10}, {}, Gl::osmesa), Error);
+    egl.draw({});
+    EXPECT_EQ(egl.draw(list).rgba, before);
+}
+
+}  // namespace gl_test
+}  // namespace doppel

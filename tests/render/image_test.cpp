@@ -1,0 +1,83 @@
+#include "render/pixels.hpp"
+#include "render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace doppel {
+namespace image_test {
+
+constexpr Size size{160, 120};
+
+std::shared_ptr<Picture> noise(Size texels, unsigned seed, bool opaque = true) {
+    auto picture = std::make_shared<Picture>(texels);
+    std::mt19937 random(seed);
+    for (std::uint8_t& byte : picture->rgba) byte = static_cast<std::uint8_t>(random());
+    if (opaque)
+        for (std::size_t i = 3; i < picture->rgba.size(); i += 4) picture->rgba[i] = 255;
+    return picture;
+}
+
+class ImageTest : public testing::Test {
+protected:
+    Renderer renderer{size, {background(size, black)}};
+};
+
+TEST_F(ImageTest, IsDrawnTexelForTexel) {
+    const auto pixels = noise({70, 50}, 1);
+    const Picture& drawn = renderer.draw({Image{20, 30, 90, 80, pixels}});
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+            const bool inside = x >= 20 && x < 90 && y >= 30 && y < 80;
+            for (int c = 0; c < 3; ++c)
+                ASSERT_EQ(drawn.at(x, y)[c], inside ? pixels->at(x - 20, y - 30)[c] : 0) << x << " " << y;
+        }
+    }
+}
+
+TEST_F(ImageTest, StaysCrispWhereItIsEnlarged) {
+    const auto pixels = noise({4, 3}, 2);
+    const Picture& drawn = renderer.draw({Image{10, 10, 130, 100, pixels}});
+    for (int y = 10; y < 100; ++y)
+        for (int x = 10; x < 130; ++x)
+            for (int c = 0; c < 3; ++c) ASSERT_EQ(drawn.at(x, y)[c], pixels->at((x - 10) / 30, (y - 10) / 30)[c]);
+}
+
+TEST_F(ImageTest, IsAsOpaqueAsItsTexels) {
+    auto pixels = std::make_shared<Picture>(Size{2, 1});
+    pixels->rgba = {255, 255, 255, 128, 255, 255, 255, 0};
+    const Picture& drawn = renderer.draw({Image{0, 0, 160, 120, pixels}});
+    EXPECT_NEAR(drawn.at(40, 60)[0], 128, 1);
+    EXPECT_EQ(drawn.at(120, 60)[0], 0);
+}
+
+TEST_F(ImageTest, LiesBetweenWhatIsBelowAndAbove) {
+    const auto grey = std::make_shared<Picture>(Size{1, 1});
+    std::const_pointer_cast<Picture>(grey)->rgba = {100, 100, 100, 255};
+    const Label words{.text = "H", .anchor = {70, 90}, .size = 60, .color = white};
+    const Picture& drawn = renderer.draw({Box{0, 0, 160, 120, 0, white}, Image{20, 20, 140, 100, grey}, words});
+    EXPECT_EQ(drawn.at(5, 5)[0], 255);
+    EXPECT_EQ(drawn.at(30, 30)[0], 100);
+    EXPECT_EQ(drawn.at(78, 70)[0], 255) << "the stem of the H";
+}
+
+TEST_F(ImageTest, ShowsNewPixelsInItsPlaceAndTwoAtOnce) {
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        const DisplayList list{Image{10, 10, 60, 60, noise({25, 25}, seed)},
+                               Image{50, 40, 120, 110, noise({7, 9}, seed + 100, false)},
+                               Image{-20, 90, 30, 140, noise({5, 5}, 7)}};
+        Renderer anew(size, {background(size, black)});
+        ASSERT_EQ(renderer.draw(list).rgba, anew.draw(list).rgba) << seed;
+    }
+}
+
+TEST_F(ImageTest, WithoutPixelsIsNothing) {
+    const Picture& drawn =
+        renderer.draw({Image{10, 10, 60, 60, nullptr}, Image{10, 10, 60, 60, std::make_shared<Picture>()},
+                       Image{60, 10, 10, 60, noise({2, 2}, 1)}});
+    EXPECT_TRUE(extent(drawn).empty());
+}
+
+}  // namespace image_test
+}  // namespace doppel

@@ -1,0 +1,67 @@
+#include "image/matte.hpp"
+
+#include "render/pixels.hpp"
+#include "render/renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace doppel {
+namespace matte_test {
+
+/// A colour with opacity laid over a grey in sRGB, as viewers do.
+int over(int color, int opacity, int ground) {
+    return static_cast<int>(std::lround((color * opacity + ground * (255 - opacity)) / 255.0));
+}
+
+TEST(Matte, FindsTheColourAndOpacityThatWereLaidOver) {
+    Picture black({256, 3}), white({256, 3}), found({256, 3});
+    constexpr int color[3][3] = {{255, 166, 64}, {0, 0, 0}, {200, 200, 200}};
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 256; ++x)
+            for (int k = 0; k < 4; ++k) {
+                black.at(x, y)[k] = static_cast<std::uint8_t>(k == 3 ? 255 : over(color[y][k], x, 0));
+                white.at(x, y)[k] = static_cast<std::uint8_t>(k == 3 ? 255 : over(color[y][k], x, 255));
+            }
+    matte(black, white, {0, 0, 256, 3}, found);
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 256; ++x) {
+            const auto* pixel = found.at(x, y);
+            EXPECT_NEAR(pixel[3], x, 1) << y;  // measured 1: three roundings of three channels
+            for (int k = 0; k < 3; ++k) {
+                // what a viewer sees again, on both grounds
+                EXPECT_NEAR(over(pixel[k], pixel[3], 0), black.at(x, y)[k], 1);
+                EXPECT_NEAR(over(pixel[k], pixel[3], 255), white.at(x, y)[k], 2);
+            }
+        }
+}
+
+TEST(Matte, TouchesNothingOutsideItsRectangle) {
+    Picture black({4, 4}), white({4, 4}), found({4, 4});
+    std::fill(white.rgba.begin(), white.rgba.end(), std::uint8_t{255});
+    std::fill(found.rgba.begin(), found.rgba.end(), std::uint8_t{77});
+    matte(black, white, {1, 1, 3, 3}, found);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x)
+            EXPECT_EQ(found.at(x, y)[3], x >= 1 && x < 3 && y >= 1 && y < 3 ? 0 : 77) << x << ' ' << y;
+}
+
+TEST(Matte, OfADrawnPictureGivesItBackOnBlack) {
+    constexpr Size size{64, 64};
+    const Box left{
+        .left = 8, .top = 8, .right = 30, .bottom = 30, .corner = 6, .color = rgb(0xffa640).with_alpha(0.5f)};
+    const Capsule dot{.from = {44, 44}, .to = {50, 50}, .radius = 7.3f, .color = rgb(0x4fb0ff)};
+    Renderer on_black(size, {background(size, black)}), on_white(size, {background(size, white)});
+    const auto &dark = on_black.draw({left, dot}), &light = on_white.draw({left, dot});
+    Picture found(size);
+    matte(dark, light, {0, 0, size.width, size.height}, found);
+    EXPECT_EQ(found.at(2, 60)[3], 0);
+    EXPECT_EQ(found.at(47, 47)[3], 255);
+    for (std::size_t i = 0; i < found.rgba.size(); i += 4)
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_NEAR(over(found.rgba[i + k], found.rgba[i + 3], 0), dark.rgba[i + k], 1);
+}
+
+}  // namespace matte_test
+}  // namespace doppel

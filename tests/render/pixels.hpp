@@ -1,0 +1,46 @@
+#pragma once
+
+#include "image/picture.hpp"
+#include "render/display_list.hpp"
+
+#include <cmath>
+
+namespace doppel {
+
+constexpr Color black = rgb(0x000000), white = rgb(0xffffff);
+
+/// A background that covers all of the picture.
+inline Box background(Size size, Color color) {
+    return {.right = static_cast<float>(size.width), .bottom = static_cast<float>(size.height), .color = color};
+}
+
+/// White ink on black: how much there is, px², and where its middle lies, px.
+struct Ink {
+    double area = 0, x = 0, y = 0;
+};
+
+inline Ink ink(const Picture& picture) {
+    Ink sum;
+    for (int y = 0; y < picture.size.height; ++y) {
+        for (int x = 0; x < picture.size.width; ++x) {
+            const double covered = picture.at(x, y)[1] / 255.0;
+            sum.area += covered;
+            sum.x += covered * (x + 0.5);
+            sum.y += covered * (y + 0.5);
+        }
+    }
+    return {sum.area, sum.x / sum.area, sum.y / sum.area};
+}
+
+/// The smallest rectangle that holds all ink.
+inline Rect extent(const Picture& picture) {
+    Rect held;
+    for (int y = 0; y < picture.size.height; ++y) {
+        for (int x = 0; x < picture.size.width; ++x) {
+            if (picture.at(x, y)[1] > 0) held = united(held, {x, y, x + 1, y + 1});
+        }
+    }
+    return held;
+}
+
+}  // namespace doppel
