@@ -222,7 +222,7 @@ TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
     EXPECT_EQ(bytes_of(folder_ / record_), bytes);
 }
 
-// Recipes of the README, as shells run them.
+// Commands of README.md and docs/figures.md, as shells run them.
 
 const std::string settings = " --set sweep.to=20 --set scene.duration_s=0.5 --size 320x180 --progress none";
 
