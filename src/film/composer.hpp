@@ -2,7 +2,7 @@
 
 #include "film/layout.hpp"
 #include "film/shot.hpp"
-#include "render/trace.hpp"
+#include "render/stroke.hpp"
 
 #include <array>
 #include <deque>

@@ -1,5 +1,6 @@
 #include "film/composer.hpp"
 #include "render/font.hpp"
+#include "render/stroke.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,20 +10,15 @@
 namespace doppel {
 namespace {
 
-/// The part of from…to that is in the area, if any (Liang & Barsky 1984).
+/// The part of from…to that is in the area, if any.
 std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area& area) {
-    const Point along{to.x - from.x, to.y - from.y};
-    float first = 0, last = 1;                       // shares of the way
-    const auto keep = [&](float step, float room) {  // the side of a border where share · step ≤ room
-        if (step < 0) first = std::max(first, room / step);
-        if (step > 0) last = std::min(last, room / step);
-        return step != 0 || room >= 0;
+    const auto within = shares_within(area, from.x, from.y, to.x, to.y);
+    if (!within) return std::nullopt;
+    const auto at = [&](double share) {
+        return Point{static_cast<float>(std::lerp(from.x, to.x, share)),
+                     static_cast<float>(std::lerp(from.y, to.y, share))};
     };
-    const bool beside = keep(-along.x, from.x - area.left) && keep(along.x, area.right - from.x) &&
-                        keep(-along.y, from.y - area.top) && keep(along.y, area.bottom - from.y);
-    if (!beside || first > last) return std::nullopt;
-    const auto at = [&](float share) { return Point{from.x + share * along.x, from.y + share * along.y}; };
-    return std::pair{first > 0 ? at(first) : from, last < 1 ? at(last) : to};
+    return std::pair{at(within->from), at(within->to)};
 }
 
 float apart(Point a, Point b) {

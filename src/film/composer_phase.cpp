@@ -61,7 +61,7 @@ void Composer::compose_phase_backdrop(DisplayList& list) const {
                              Weight::regular,
                              theme.quiet_text});
     }
-    for (const auto& tick : round_ticks(phase.rate, 3 * size)) {
+    for (const auto& tick : axis_ticks(phase.rate, size, 3 * size, false)) {
         const float y = phase.rate.at(tick.value);
         list.push_back(Capsule{{area.left, y}, {area.right, y}, line / 2, theme.grid});
         list.push_back(Label{

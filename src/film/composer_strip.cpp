@@ -12,17 +12,6 @@
 namespace doppel {
 namespace {
 
-/// A line from a to b whose edges fall on pixels: exactly `width` px, not two half-covered rows.
-Box vertical_line(float x, float top, float bottom, float width, Color color) {
-    const float left = std::round(x - width / 2);
-    return {left, top, left + std::max(1.0f, std::round(width)), bottom, 0, color};
-}
-
-Box horizontal_line(float y, float left, float right, float width, Color color) {
-    const float top = std::round(y - width / 2);
-    return {left, top, right, top + std::max(1.0f, std::round(width)), 0, color};
-}
-
 void add_dashed_line(float x, const Area& area, float dash, float width, Color color, DisplayList& list) {
     for (float top = area.top; top < area.bottom; top += 2 * dash)
         list.push_back(vertical_line(x, top, std::min(top + dash, area.bottom), width, color));
@@ -101,11 +90,9 @@ void Composer::compose_strip_backdrop(const StripLayout& strip, DisplayList& lis
     const auto& style = layout_.style;
     const auto line = static_cast<float>(style.width.grid), size = static_cast<float>(style.font.axis);
     const auto& area = strip.area;
-    for (const auto& tick : round_ticks(strip.time, 90 * t))
+    for (const auto& tick : axis_ticks(strip.time, size, 90 * t, true))
         list.push_back(vertical_line(strip.time.at(tick.value), area.top, area.bottom, line, style.theme.grid));
-    const float label_px = (strip.kind == StripKind::distance ? 1.7f : 1.5f) * size;
-    const auto ticks =
-        strip.value.logarithmic ? decade_ticks(strip.value, label_px) : round_ticks(strip.value, label_px);
+    const auto ticks = axis_ticks(strip.value, size, (strip.kind == StripKind::distance ? 1.7f : 1.5f) * size, false);
     bool has_foot = false;
     for (const auto& tick : ticks) {
         const float y = strip.value.at(tick.value);
@@ -132,7 +119,8 @@ void Composer::compose_strip_backdrop(const StripLayout& strip, DisplayList& lis
 
 void Composer::compose_time_labels(const StripLayout& strip, DisplayList& list) const {
     const float t = layout_.text;
-    const auto ticks = round_ticks(strip.time, 90 * t);
+    const auto size = static_cast<float>(layout_.style.font.axis);
+    const auto ticks = axis_ticks(strip.time, size, 90 * t, true);
     for (const auto& tick : ticks) {
         const bool last = &tick == &ticks.back();
         const float x = strip.time.at(tick.value);
@@ -140,7 +128,7 @@ void Composer::compose_time_labels(const StripLayout& strip, DisplayList& list) 
         const bool at_edge = x > layout_.page.right - 30 * t;
         list.push_back(Label{last ? tick.text + " s" : tick.text,
                              {at_edge ? layout_.page.right : x, layout_.time_labels},
-                             static_cast<float>(layout_.style.font.axis),
+                             size,
                              at_edge ? Align::right : Align::center,
                              Weight::regular,
                              layout_.style.theme.quiet_text});

@@ -1,8 +1,7 @@
 #include "film/film.hpp"
 
 #include "base/clock.hpp"
-#include "image/matte.hpp"
-#include "image/reduce.hpp"
+#include "image/picture.hpp"
 #include "output/png.hpp"
 #include "output/video.hpp"
 #include "scene/version.hpp"

@@ -5,6 +5,8 @@
 #include "render/font.hpp"
 #include "scene/wording.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -189,6 +191,17 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Sur
 Point PendulumPanel::at(double x_m, double y_m) const {
     const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
+}
+
+std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across) {
+    const TickWords words{.size = size, .gap = 0, .spacing = spacing, .across = across};
+    if (axis.logarithmic) {
+        const float decade = std::abs(axis.to - axis.from) / static_cast<float>(std::log10(axis.high / axis.low));
+        return chart_ticks(axis, words, std::max(1.0f, std::ceil(spacing / decade)));
+    }
+    auto ticks = chart_ticks(axis, words);
+    for (auto& tick : ticks) tick.text = fmt::format("{:.6g}", tick.value);
+    return ticks;
 }
 
 Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {

@@ -2,7 +2,6 @@
 
 #include "film/style.hpp"
 #include "plot/axis.hpp"
-#include "render/area.hpp"
 #include "render/display_list.hpp"
 #include "scene/scene.hpp"
 
@@ -43,6 +42,9 @@ struct StripLayout {
     Area area;
     Axis time, value;
 };
+
+/// Ticks `spacing` px apart or more, in words of `size` px an em; whole numbers and the fewest decimals.
+std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
 
 /// Where everything of a film's picture goes: a function of the scene alone.
 struct Layout {

@@ -1,6 +1,6 @@
 #include "film/style.hpp"
 
-#include "image/colormap.hpp"
+#include "image/color.hpp"
 
 #include <algorithm>
 
