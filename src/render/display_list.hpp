@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -23,6 +24,11 @@ struct Box {
     float corner = 0;                                // radius, px
     Color color;
 };
+
+/// A whole picture in one colour.
+inline Box filled(Size size, Color color) {
+    return {0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, color};
+}
 
 /// A line whose edges fall on pixels: not two half-covered rows, and never thinner than a pixel.
 inline Box vertical_line(float x, float top, float bottom, float width, Color color) {
@@ -86,6 +92,11 @@ struct Label {
     Weight weight = Weight::regular;
     Color color;
 };
+
+inline Label label(std::string text, Point anchor, float size, Color color, Align align = Align::left,
+                   Weight weight = Weight::regular) {
+    return {std::move(text), anchor, size, align, weight, color};
+}
 
 /// A picture stretched over a rectangle, whose edges are rounded to whole pixels. Each pixel takes the colour below its
 /// centre, so that what is enlarged stays crisp. Lists share the pixels, which must not change.
