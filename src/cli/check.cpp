@@ -6,7 +6,7 @@
 #include "cli/options.hpp"
 #include "cli/print.hpp"
 #include "figure/computation.hpp"
-#include "film/schedule.hpp"
+#include "film/film.hpp"
 #include "scene/choice.hpp"
 #include "scene/outlook.hpp"
 #include "scene/wording.hpp"

@@ -2,7 +2,7 @@
 
 #include "figure/computation.hpp"
 #include "film/run.hpp"
-#include "render/gl.hpp"
+#include "render/renderer.hpp"
 
 #include <functional>
 #include <optional>

@@ -1,13 +1,12 @@
 #include "film/composer.hpp"
 
-#include "film/survey.hpp"
 #include "render/font.hpp"
+#include "scene/version.hpp"
 #include "scene/wording.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace doppel {
 namespace {
@@ -26,104 +25,138 @@ std::string speed_words(const Rational& speed) {
     return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
 }
 
-}  // namespace
+/// The background, the title, and what is said beside it: the speed and the time.
+class PageLayer final : public Layer {
+public:
+    explicit PageLayer(const FilmState& state) : state_(state) {}
 
-Composer::Composer(const Scene& scene, const std::atomic<bool>& stop)
-    : scene_(scene),
-      layout_(make_layout(scene, stop)),
-      heaviest_(std::max(*std::max_element(scene.a.mass.begin(), scene.a.mass.end()),
-                         *std::max_element(scene.b.mass.begin(), scene.b.mass.end()))),
-      energy_unit_(std::max(scene.a.energy_unit, scene.b.energy_unit)),
-      traces_(layout_.strips.size()) {}
+    void backdrop(DisplayList& list) const override {
+        const auto& font = style_.font;
+        const auto& theme = style_.theme;
+        if (const auto& video = state_.scene.preset.video; !video.transparent)
+            list.push_back(filled(video.size, theme.background));
+        // long words shrink until they fit beside the clock
+        const auto fitted = [&](const std::string& words, float y, double wanted, Weight weight, Color color,
+                                const std::string& beside, double beside_size) {
+            const float width = page_.width() - text_width(beside, px(beside_size)) - 30 * layout_.text;
+            const float size = fitting_size(words, px(wanted), weight, width);
+            list.push_back(label(words, {page_.left, y}, size, color, Align::left, weight));
+        };
+        const auto speed = speed_words(state_.scene.preset.video.speed);
+        const auto longest = clock(state_.scene, state_.scene.time(state_.scene.samples));
+        const float second = page_.top + 74 * layout_.text;
+        fitted(layout_.title, title_, font.title, Weight::bold, theme.text, longest, font.clock);
+        fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme.quiet_text, speed, font.subtitle);
+        list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme.quiet_text, Align::right));
+    }
 
-const PendulumPanel& Composer::panel_of(std::size_t side) const {
-    const auto shows = [&](const PendulumPanel& panel) {
-        return std::find(panel.sides.begin(), panel.sides.end(), side) != panel.sides.end();
-    };
-    return *std::find_if(layout_.panels.begin(), layout_.panels.end(), shows);
+    void frame(DisplayList& list) const override {
+        list.push_back(label(clock(state_.scene, state_.time()), {page_.right, title_}, px(style_.font.clock),
+                             style_.theme.text, Align::right));
+    }
+
+private:
+    const FilmState& state_;
+    const Layout& layout_ = state_.layout;
+    const Style& style_ = layout_.style;
+    const Area& page_ = layout_.page;
+    const float title_ = page_.top + 38 * layout_.text;  // baseline
+};
+
+/// A line of words on a card.
+struct CardLine {
+    std::string text;
+    double size;  // px
+    Weight weight = Weight::regular;
+    Color color;
+};
+
+/// The lines in the middle of the picture, on the background, all as opaque as the card.
+DisplayList card(const std::vector<CardLine>& lines, Size size, Color background, double opacity) {
+    const auto alpha = static_cast<float>(opacity);
+    constexpr double leading = 1.55;
+    double tall = 0;
+    for (const auto& line : lines) tall += leading * line.size;
+    DisplayList list{filled(size, background.with_alpha(alpha))};
+    const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
+    double y = (height - tall) / 2;
+    for (const auto& line : lines) {
+        y += leading * line.size;
+        const float fits = fitting_size(line.text, px(line.size), line.weight, 0.88f * width);
+        list.push_back(label(line.text, {width / 2, static_cast<float>(y - 0.35 * line.size)}, fits,
+                             line.color.with_alpha(alpha), Align::center, line.weight));
+    }
+    return list;
 }
 
-/// The background, the title, and what is said beside it.
-void Composer::compose_page(DisplayList& list) const {
-    const float t = layout_.text;
-    const auto& page = layout_.page;
-    const auto& style = layout_.style;
-    const auto& size = scene_.preset.video.size;
-    if (!scene_.preset.video.transparent)
-        list.push_back(
-            Box{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, style.theme.background});
-    // long words shrink until they fit beside the clock
-    const auto fitted = [&](const std::string& text, float y, double px, Weight weight, Color color,
-                            const std::string& beside, double beside_px) {
-        const float width = page.width() - text_width(beside, static_cast<float>(beside_px)) - 30 * t;
-        list.push_back(Label{text,
-                             {page.left, y},
-                             fitting_size(text, static_cast<float>(px), weight, width),
-                             Align::left,
-                             weight,
-                             color});
-    };
-    const auto speed = speed_words(scene_.preset.video.speed);
-    fitted(layout_.title, page.top + 38 * t, style.font.title, Weight::bold, style.theme.text,
-           clock(scene_, scene_.time(scene_.samples)), style.font.clock);
-    fitted(layout_.subtitle, page.top + 74 * t, style.font.subtitle, Weight::regular, style.theme.quiet_text, speed,
-           style.font.subtitle);
-    list.push_back(Label{speed,
-                         {page.right, page.top + 74 * t},
-                         static_cast<float>(style.font.subtitle),
-                         Align::right,
-                         Weight::regular,
-                         style.theme.quiet_text});
+}  // namespace
+
+bool FilmState::start_as_one() const {
+    return start_distance <= together_at;
+}
+
+Composer::Composer(const Scene& scene, const std::atomic<bool>& stop) : state_{scene, make_layout(scene, stop)} {
+    const auto& layout = state_.layout;
+    layers_.push_back(std::make_unique<PageLayer>(state_));
+    for (const auto& panel : layout.panels) layers_.push_back(make_pendulum_layer(state_, panel));
+    if (layout.phase) layers_.push_back(make_phase_layer(state_, *layout.phase));
+    for (std::size_t i = 0; i < layout.strips.size(); ++i) layers_.push_back(make_strip_layer(state_, i));
 }
 
 DisplayList Composer::backdrop() const {
     DisplayList list;
-    compose_page(list);
-    for (const auto& panel : layout_.panels) compose_panel_backdrop(panel, list);
-    if (layout_.phase) compose_phase_backdrop(list);
-    compose_horizon(list);
-    for (const auto& strip : layout_.strips) compose_strip_backdrop(strip, list);
-    if (!layout_.strips.empty()) compose_time_labels(layout_.strips.back(), list);
+    for (const auto& layer : layers_) layer->backdrop(list);
     return list;
 }
 
-bool Composer::start_as_one() const {
-    return start_distance_ <= together_at;
-}
-
 void Composer::add(const Shot& shot) {
-    now_ = shot;
-    const auto& moment = now_.moment;
-    const double time = now();
-    if (moment.sample == 0) start_distance_ = moment.distance;
-    largest_distance_ = std::max(largest_distance_, moment.distance);
-    for (std::size_t side = 0; side < 2; ++side) {
-        if (!layout_.panels.empty() && scene_.preset.video.trail_s > 0)
-            extend_trail(side, seen(side).bobs.back(), time);
-        if (layout_.phase) extend_phase(side, seen(side).bobs, time);
-    }
-    for (std::size_t i = 0; i < layout_.strips.size(); ++i) {
-        const auto& strip = layout_.strips[i];
-        const auto values = strip_values(strip.kind);
-        traces_[i].resize(values.size());
-        for (std::size_t k = 0; k < values.size(); ++k)
-            if (values[k].value) traces_[i][k].add({strip.time.at(time), strip.value.at(*values[k].value)});
-    }
-    if (start_as_one() && !parted_ && moment.distance >= parted_at) parted_ = time;
+    state_.shot = shot;
+    const auto& moment = shot.moment;
+    if (moment.sample == 0) state_.start_distance = moment.distance;
+    state_.largest_distance = std::max(state_.largest_distance, moment.distance);
+    if (state_.start_as_one() && !state_.parted && moment.distance >= parted_at) state_.parted = state_.time();
+    for (const auto& layer : layers_) layer->add();
 }
 
 DisplayList Composer::frame() const {
     DisplayList list;
-    list.push_back(Label{clock(scene_, now()),
-                         {layout_.page.right, layout_.page.top + 38 * layout_.text},
-                         static_cast<float>(layout_.style.font.clock),
-                         Align::right,
-                         Weight::regular,
-                         layout_.style.theme.text});
-    for (const auto& panel : layout_.panels) compose_panel(panel, list);
-    if (layout_.phase) compose_phase(list);
-    for (std::size_t i = 0; i < layout_.strips.size(); ++i) compose_strip(i, list);
+    for (const auto& layer : layers_) layer->frame(list);
     return list;
+}
+
+DisplayList Composer::title_card(double opacity) const {
+    const auto& layout = state_.layout;
+    const auto& font = layout.style.font;
+    const auto& theme = layout.style.theme;
+    const auto words = side_words(state_.scene);
+    return card({{layout.title, font.card, Weight::bold, theme.text},
+                 {layout.subtitle, 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
+                 {"", font.subtitle, Weight::regular, theme.text},
+                 {words[0].heading, 1.3 * font.heading, Weight::bold, theme.sides[0]},
+                 {words[1].heading, 1.3 * font.heading, Weight::bold, theme.sides[1]}},
+                state_.scene.preset.video.size, theme.background, opacity);
+}
+
+DisplayList Composer::end_card(double opacity) const {
+    const auto& layout = state_.layout;
+    const auto& font = layout.style.font;
+    const auto& theme = layout.style.theme;
+    const auto size = 1.3 * font.heading;
+    const auto outcome = !state_.start_as_one() ? "apart from the start"
+                         : state_.parted
+                             ? fmt::format("parted after {:.1f} s", *state_.parted)
+                             : fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
+    std::vector<CardLine> lines{{layout.title, 0.7 * font.card, Weight::bold, theme.text},
+                                {"", font.subtitle, Weight::regular, theme.text},
+                                {outcome, size, Weight::regular, theme.trace}};
+    if (state_.start_distance > 0)
+        lines.push_back({fmt::format("from a state-space distance of {} to {}", scientific(state_.start_distance),
+                                     scientific(state_.largest_distance)),
+                         size, Weight::regular, theme.text});
+    lines.push_back({"", font.subtitle, Weight::regular, theme.text});
+    lines.push_back({fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle, Weight::regular,
+                     theme.quiet_text});
+    return card(lines, state_.scene.preset.video.size, theme.background, opacity);
 }
 
 }  // namespace doppel

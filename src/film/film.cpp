@@ -1,8 +1,7 @@
 #include "film/film.hpp"
 
 #include "base/clock.hpp"
-#include "image/matte.hpp"
-#include "image/reduce.hpp"
+#include "image/picture.hpp"
 #include "output/png.hpp"
 #include "output/video.hpp"
 #include "scene/version.hpp"
@@ -34,7 +33,7 @@ Metadata metadata_of(const Preset& preset) {
 }
 
 DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
-    DisplayList list{Box{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, page}};
+    DisplayList list{filled(size, page)};
     list.insert(list.end(), backdrop.begin(), backdrop.end());
     return list;
 }
@@ -51,6 +50,23 @@ std::vector<long> spread(long first, long last, long stride, long count) {
 }
 
 }  // namespace
+
+Schedule schedule_of(const Scene& scene) {
+    const auto& video = scene.preset.video;
+    const auto frames = [&](const Rational& seconds) { return std::lround(seconds.value() * scene.fps.value()); };
+    return {.title = frames(video.title_card_s),
+            .hold_start = frames(video.hold_start_s),
+            .motion = scene.samples / scene.samples_per_frame + 1,
+            .hold_end = frames(video.hold_end_s),
+            .end = frames(video.end_card_s)};
+}
+
+double card_opacity(long k, long count, double fps, bool comes_up) {
+    const double fade = std::max(1.0, std::min(0.5 * fps, static_cast<double>(count) / 2));  // frames
+    const double left = static_cast<double>(comes_up ? k + 1 : count - k);
+    const double share = std::clamp(left / (fade + 1), 0.0, 1.0);
+    return share * share * (3 - 2 * share);
+}
 
 std::optional<long> poster_sample(const Scene& scene) {
     const auto& seconds = scene.preset.video.poster_s;

@@ -1,15 +1,32 @@
 #include "film/layout.hpp"
 
-#include "film/view.hpp"
+#include "film/bounds.hpp"
+#include "image/color.hpp"
 #include "numeric/state.hpp"
 #include "render/font.hpp"
 #include "scene/wording.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace doppel {
 namespace {
+
+Theme themed(const VideoSpec& video) {
+    auto theme = *std::find_if(themes.begin(), themes.end(), [&](const auto& t) { return t.name == video.theme; });
+    for (const auto& [name, color] : video.colors)
+        for (const auto& [known, member] : color_names)
+            if (known == name) theme.*member = color;
+    if (video.side_colors) theme.sides = *video.side_colors;
+    return theme;
+}
+
+bool is_dark(const Theme& theme) {
+    const auto& color = theme.background;
+    return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
+}
 
 /// The places that a mechanism visits as large as the panel allows, below the words.
 void place_mechanism(PendulumPanel& panel, float words_bottom, const View& view, float margin) {
@@ -63,14 +80,14 @@ float share_of(StripKind kind) {
 
 /// From the bottom up: words of the time axis, then the strips, each with a line of words above it. Returns where the
 /// room for panels ends.
-float place_strips(Layout& layout, const Scene& scene, float header, const std::optional<Survey>& seen) {
+float place_strips(Layout& layout, const Scene& scene, float header, const std::optional<MotionBounds>& seen) {
     const auto& video = scene.preset.video;
     float bottom = layout.page.bottom;
     if (video.strips.empty()) return bottom;
     const float t = layout.text;
     layout.time_labels = bottom - 4 * t;
     bottom -= 38 * t;
-    const float caption = std::round(19 * t + static_cast<float>(layout.style.font.strip));
+    const float caption = std::round(19 * t + px(layout.style.font.strip));
     const float room = bottom - header, captions = caption * static_cast<float>(video.strips.size());
     float shares = 0;
     for (const auto kind : video.strips) shares += share_of(kind);
@@ -153,15 +170,15 @@ std::vector<Area> words_in(const PendulumPanel& panel, const Layout& layout, flo
 }
 
 /// All alike, so that the pendulums are drawn to one scale.
-void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Survey>& seen) {
+void place_pendulums(Layout& layout, const Scene& scene, const std::optional<MotionBounds>& seen) {
     const float u = layout.unit;
     const auto& style = layout.style;
     const auto view = fitted_view(scene, seen);
     float widest = 0;
     for (const auto& panel : layout.panels)
         for (const auto& words : panel.words)
-            widest = std::max({widest, text_width(words.heading, static_cast<float>(style.font.heading), Weight::bold),
-                               text_width(words.note, static_cast<float>(style.font.note))});
+            widest = std::max({widest, text_width(words.heading, px(style.font.heading), Weight::bold),
+                               text_width(words.note, px(style.font.note))});
     for (auto& panel : layout.panels) {
         const auto words = words_in(panel, layout, widest);
         panel.center_x = view.x;
@@ -181,14 +198,43 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Sur
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
     if (style.width.rod > 0) layout.rod_radius = static_cast<float>(style.width.rod / 2);
-    if (style.width.bob > 0) layout.bob_radius = static_cast<float>(style.width.bob);
+    if (style.width.bob > 0) layout.bob_radius = px(style.width.bob);
 }
 
 }  // namespace
 
+Style make_style(const VideoSpec& video, float unit, float text) {
+    Style style{themed(video), video.widths, video.fonts, 0};
+    for (const auto& [name, member] : width_names) style.width.*member *= unit;
+    for (const auto& [name, member] : font_size_names) style.font.*member *= text;
+    // small pictures keep lines that can be seen
+    style.width.trail = std::max(style.width.trail, video.widths.trail > 0 ? 1.2 : 0);
+    style.width.trace = std::max(style.width.trace, video.widths.trace > 0 ? 1.2 : 0);
+    style.width.grid = std::max(style.width.grid, video.widths.grid > 0 ? 1.0 : 0);
+    style.width.mark = std::max(style.width.mark, video.widths.mark > 0 ? 1.0 : 0);
+    style.glow = unit * static_cast<float>(video.glow_px.value_or(style.theme.glow));
+    return style;
+}
+
+Color member_color(const Style& style, double share) {
+    // the end of the scale that would drown in the background is left out
+    return is_dark(style.theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
+}
+
 Point PendulumPanel::at(double x_m, double y_m) const {
     const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
+}
+
+std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across) {
+    const TickWords words{.size = size, .gap = 0, .spacing = spacing, .across = across};
+    if (axis.logarithmic) {
+        const float decade = std::abs(axis.to - axis.from) / static_cast<float>(std::log10(axis.high / axis.low));
+        return chart_ticks(axis, words, std::max(1.0f, std::ceil(spacing / decade)));
+    }
+    auto ticks = chart_ticks(axis, words);
+    for (auto& tick : ticks) tick.text = fmt::format("{:.6g}", tick.value);
+    return ticks;
 }
 
 Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
@@ -202,7 +248,7 @@ Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
     layout.page = {std::round(60 * u), std::round(28 * u), width - std::round(60 * u), height - std::round(26 * u)};
     layout.title = scene.preset.title;
     layout.subtitle = scene_words(scene);
-    const auto seen = survey(scene, stop);
+    const auto seen = motion_bounds(scene, stop);
 
     const float header = layout.page.top + 96 * t;
     const float bottom = place_strips(layout, scene, header, seen);

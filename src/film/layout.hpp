@@ -1,8 +1,7 @@
 #pragma once
 
-#include "film/style.hpp"
+#include "image/theme.hpp"
 #include "plot/axis.hpp"
-#include "render/area.hpp"
 #include "render/display_list.hpp"
 #include "scene/scene.hpp"
 
@@ -13,6 +12,25 @@
 #include <vector>
 
 namespace doppel {
+
+/// A length as pictures take it.
+inline float px(double length) {
+    return static_cast<float>(length);
+}
+
+/// How a film looks: the theme with what the preset changed, and sizes in px of the very picture.
+struct Style {
+    Theme theme;
+    Widths width;
+    FontSizes font;
+    float glow = 0;
+};
+
+/// `unit` = px of the picture to one of 1920×1080; `text` = the same for words.
+Style make_style(const VideoSpec& video, float unit, float text);
+
+/// The colour of an ensemble's member: from the first, 0, to the last, 1.
+Color member_color(const Style& style, double share);
 
 /// A panel of pendulums and how metres become pixels in it.
 struct PendulumPanel {
@@ -44,6 +62,9 @@ struct StripLayout {
     Axis time, value;
 };
 
+/// Ticks `spacing` px apart or more, in words of `size` px an em; whole numbers and the fewest decimals.
+std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
+
 /// Where everything of a film's picture goes: a function of the scene alone.
 struct Layout {
     float unit = 1;  // 1 px of a 1920×1080 picture
@@ -61,7 +82,7 @@ struct Layout {
     float time_labels = 0;      // their baseline, px
 };
 
-/// May run the scene beforehand (film/survey.hpp); throws Error (exit 130) soon after `stop` is set.
+/// May run the scene beforehand (film/bounds.hpp); throws Error (exit 130) soon after `stop` is set.
 Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false);
 
 }  // namespace doppel

@@ -1,12 +1,12 @@
 #include "film/run.hpp"
 
+#include "analysis/distance.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "film/film.hpp"
 #include "film/manifest.hpp"
-#include "film/rescue.hpp"
 #include "film/simulation.hpp"
-#include "film/table.hpp"
+#include "output/csv.hpp"
 #include "output/part_files.hpp"
 #include "scene/distance_check.hpp"
 
@@ -17,11 +17,118 @@
 namespace doppel {
 namespace {
 
+/// Angles and rates only where the masses hang in a chain.
+std::vector<std::string> columns(const Scene& scene) {
+    std::vector<std::string> names{"sample", "time_s"};
+    for (const auto* side : {&scene.a, &scene.b}) {
+        const char letter = side == &scene.a ? 'a' : 'b';
+        const auto add = [&](const std::string& name) { names.push_back(fmt::format("{}_{}", letter, name)); };
+        const auto bobs = side->mass.size();
+        for (std::size_t i = 1; side->has_angles && i <= bobs; ++i) add(fmt::format("theta{}_rad", i));
+        for (std::size_t i = 1; side->has_angles && i <= bobs; ++i) add(fmt::format("omega{}_rad_per_s", i));
+        for (std::size_t i = 1; i <= bobs; ++i) {
+            for (const char* place : {"x", "y"}) add(fmt::format("{}{}_m", place, i));
+            for (const char* velocity : {"vx", "vy"}) add(fmt::format("{}{}_m_per_s", velocity, i));
+        }
+        for (const char* name : {"energy_J", "energy_error", "length_error_m"}) add(name);
+    }
+    names.insert(names.end(), {"distance", "log_ratio"});
+    return names;
+}
+
+/// The table of a pair, a row a sample; the same columns for every model. Throws Error (exit 4), as Csv does.
+class PairTable {
+public:
+    PairTable(const FilePlace& place, const Scene& scene) : scene_(scene), csv_(place, columns(scene)) {}
+
+    /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers. Throws Error (exit 3) where the
+    /// distance is beyond the range of double.
+    void add(const Moment& moment, double start_distance);
+    void finish() { csv_.finish(); }
+
+private:
+    void add_side(const Side& side, const Observation& seen, std::optional<double> energy_error);
+
+    const Scene& scene_;
+    Csv csv_;
+};
+
+void PairTable::add(const Moment& moment, double start_distance) {
+    csv_.add(moment.sample);
+    csv_.add(scene_.time(moment.sample));
+    add_side(scene_.a, moment.a, moment.energy_error_a);
+    add_side(scene_.b, moment.b, moment.energy_error_b);
+    csv_.add(moment.distance);
+    if (const auto ratio = log_ratio(moment.distance, start_distance))
+        csv_.add(*ratio);
+    else
+        csv_.add_empty();
+    csv_.end_row();
+}
+
+void PairTable::add_side(const Side& side, const Observation& seen, std::optional<double> energy_error) {
+    if (side.has_angles) {
+        for (const auto& bob : seen.bobs) csv_.add(bob.theta);
+        for (const auto& bob : seen.bobs) csv_.add(bob.omega);
+    }
+    for (const auto& bob : seen.bobs)
+        for (const double value : {bob.x, bob.y, bob.vx, bob.vy}) csv_.add(value);
+    csv_.add(seen.energy);
+    if (energy_error)
+        csv_.add(*energy_error);
+    else
+        csv_.add_empty();
+    csv_.add(seen.length_error);
+}
+
 void watch_worst(WorstErrors& worst, const Moment& moment) {
     worst.energy_a = std::max(worst.energy_a, std::abs(moment.energy_error_a.value_or(0)));
     worst.energy_b = std::max(worst.energy_b, std::abs(moment.energy_error_b.value_or(0)));
     worst.length_a = std::max(worst.length_a, moment.a.length_error);
     worst.length_b = std::max(worst.length_b, moment.b.length_error);
+}
+
+/// Whether the side comes to `sample`; `effort` ← what it took.
+bool holds(const Scene& scene, const Side& side, const BreakDown& fault, const std::atomic<bool>& stop,
+           Effort& effort) {
+    SideRun run(scene, side, fault.side);
+    try {
+        for (long sample = 0; sample <= fault.sample; ++sample) {
+            run.next(stop);
+            effort = run.effort();
+        }
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::method_failed && error.code() != ExitCode::interrupted) throw;
+        return false;
+    }
+    return true;
+}
+
+/// What would have held where `fault` broke down, in words: with a fixed step, the first of its halves, quarters … that
+/// comes as far; of an adaptive method, the smallest step that it took. Gives up early where `stop` is set.
+std::string step_that_holds(const Scene& scene, const BreakDown& fault, const std::atomic<bool>& stop) {
+    auto side = fault.side == 'a' ? scene.a : scene.b;
+    Effort effort;
+    if (side.method.adaptive) {
+        holds(scene, side, fault, stop, effort);
+        if (effort.smallest_step == 0) return "not even a first step held";
+        return fmt::format("the smallest step that held was {:.3g} s; a smaller tolerance may hold",
+                           effort.smallest_step);
+    }
+    auto finest = side.step;                 // that was tried
+    constexpr long most_steps = 20'000'000;  // a few seconds for a double pendulum
+    for (int halvings = 1; halvings < 40 && !stop; ++halvings) {
+        const auto half = quotient(side.step, {2, 1});
+        if (!half) break;
+        side.step = *half;
+        side.motion.steps_per_sample *= 2;
+        const auto bobs = static_cast<long>(side.mass.size());
+        if (side.motion.steps_per_sample > most_steps / (bobs * std::max(1L, fault.sample))) break;
+        if (holds(scene, side, fault, stop, effort))
+            return fmt::format("halved until it held: step_s = \"{}\" comes further", side.step.text());
+        finest = side.step;
+    }
+    return fmt::format("no step down to {} s held", finest.text());
 }
 
 /// "NAME.failed.csv": what stays of a run that broke down.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/gl.hpp"
+#include "render/renderer.hpp"
 #include "scene/scene.hpp"
 
 #include <atomic>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "film/shot.hpp"
 #include "integrate/crowd.hpp"
 #include "output/queue.hpp"
+#include "scene/scene.hpp"
 
 #include <atomic>
 #include <exception>
@@ -10,8 +10,15 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace doppel {
+
+/// What there is to film at one sample: the pair, and of an ensemble where all its members are.
+struct Shot {
+    Moment moment;
+    std::vector<Bobs<double>> crowd;
+};
 
 /// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of shots ahead of who takes
 /// them.

@@ -1,6 +1,12 @@
 #include "image/picture.hpp"
 
+#include "base/error.hpp"
+
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace doppel {
 
@@ -12,6 +18,113 @@ Rect united(const Rect& a, const Rect& b) {
 
 Rect common(const Rect& a, const Rect& b) {
     return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
+}
+
+void matte(const Picture& black, const Picture& white, const Rect& within, Picture& into) {
+    for (int y = within.top; y < within.bottom; ++y)
+        for (int x = within.left; x < within.right; ++x) {
+            const auto *on_black = black.at(x, y), *on_white = white.at(x, y);
+            auto* pixel = into.at(x, y);
+            // on black: a·c, on white: a·c + (1 − a)·255
+            int lost = 255;
+            for (int k = 0; k < 3; ++k) lost = std::min(lost, std::max(on_white[k] - on_black[k], 0));
+            const int opacity = 255 - lost;
+            pixel[3] = static_cast<std::uint8_t>(opacity);
+            for (int k = 0; k < 3; ++k)
+                pixel[k] =
+                    opacity == 0
+                        ? 0
+                        : static_cast<std::uint8_t>(std::min(255, (2 * 255 * on_black[k] + opacity) / (2 * opacity)));
+        }
+}
+
+namespace {
+
+// IEC 61966-2-1, both ways, on 0…1.
+double to_linear(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+double to_srgb(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+const std::array<double, 256>& linear_of_bytes() {
+    static const auto table = [] {
+        std::array<double, 256> linear;
+        for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = to_linear(static_cast<double>(i) / 255);
+        return linear;
+    }();
+    return table;
+}
+
+/// Calls visit(i, share) for each of the old pixels that new pixel k covers along a side; the shares add up to 1.
+template <class Visit>
+void for_each_covered(int k, int new_length, int old_length, Visit&& visit) {
+    // in units of 1 / new_length of an old pixel all edges are whole numbers
+    const long begin = long{k} * old_length, end = begin + old_length;
+    for (long i = begin / new_length; i * new_length < end; ++i) {
+        const long covered = std::min(end, (i + 1) * new_length) - std::max(begin, i * new_length);
+        visit(static_cast<int>(i), static_cast<double>(covered) / old_length);
+    }
+}
+
+/// Adds `share` of a row of pixels: linear light, premultiplied, and opacity.
+void add_row(const Picture& picture, int row, double share, std::vector<double>& sums) {
+    const auto& linear = linear_of_bytes();
+    const std::uint8_t* pixel = picture.at(0, row);
+    for (std::size_t i = 0; i < sums.size(); i += 4, pixel += 4) {
+        const double weight = share * pixel[3] / 255;
+        for (std::size_t c = 0; c < 3; ++c) sums[i + c] += weight * linear[pixel[c]];
+        sums[i + 3] += weight;
+    }
+}
+
+}  // namespace
+
+Picture reduced(const Picture& picture, Size size) {
+    const auto [width, height] = picture.size;
+    if (size.width < 1 || size.height < 1 || size.width > width || size.height > height)
+        throw bad_input("a picture of {}x{} px cannot be reduced to {}x{}; 1x1 … {}x{} would do", width, height,
+                        size.width, size.height, width, height);
+    Picture small(size);
+    std::vector<double> sums(std::size_t{4} * width);
+    for (int y = 0; y < size.height; ++y) {
+        std::ranges::fill(sums, 0.0);
+        for_each_covered(y, size.height, height, [&](int row, double share) { add_row(picture, row, share, sums); });
+        for (int x = 0; x < size.width; ++x) {
+            std::array<double, 4> mean{};
+            for_each_covered(x, size.width, width, [&](int column, double share) {
+                for (std::size_t c = 0; c < 4; ++c) mean[c] += share * sums[std::size_t{4} * column + c];
+            });
+            std::uint8_t* pixel = small.at(x, y);
+            for (std::size_t c = 0; c < 3; ++c) pixel[c] = mean[3] > 0 ? byte_of(to_srgb(mean[c] / mean[3])) : 0;
+            pixel[3] = byte_of(mean[3]);
+        }
+    }
+    return small;
+}
+
+Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px, Color background) {
+    if (pictures.empty()) throw bad_input("a contact sheet needs pictures; there is none");
+    if (columns < 1 || gap_px < 0)
+        throw bad_input("a contact sheet needs columns ≥ 1 and a gap ≥ 0 px; they are {} and {}", columns, gap_px);
+    const auto [width, height] = pictures.front().size;
+    const int count = static_cast<int>(pictures.size()), across = std::min(columns, count);
+    const int rows = (count + columns - 1) / columns;
+    Picture sheet({gap_px + across * (width + gap_px), gap_px + rows * (height + gap_px)});
+    const std::array ground = {byte_of(background.r), byte_of(background.g), byte_of(background.b),
+                               byte_of(background.a)};
+    for (std::size_t i = 0; i < sheet.rgba.size(); ++i) sheet.rgba[i] = ground[i % 4];
+    for (int k = 0; k < count; ++k) {
+        const Picture& picture = pictures[static_cast<std::size_t>(k)];
+        if (picture.size != pictures.front().size)
+            throw bad_input("a contact sheet needs pictures of one size; number {} is {}x{}, the first {}x{}", k,
+                            picture.size.width, picture.size.height, width, height);
+        const int left = gap_px + k % columns * (width + gap_px), top = gap_px + k / columns * (height + gap_px);
+        for (int row = 0; row < height; ++row)
+            std::copy_n(picture.at(0, row), std::size_t{4} * width, sheet.at(left, top + row));
+    }
+    return sheet;
 }
 
 }  // namespace doppel

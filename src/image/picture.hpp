@@ -1,7 +1,10 @@
 #pragma once
 
+#include "image/color.hpp"
+
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace doppel {
@@ -38,5 +41,19 @@ struct Picture {
     const std::uint8_t* at(int x, int y) const { return &rgba[(std::size_t(y) * size.width + x) * 4]; }
     std::uint8_t* at(int x, int y) { return &rgba[(std::size_t(y) * size.width + x) * 4]; }
 };
+
+/// Undoes a background: from the same picture on black and on white, within the rectangle, the colours with their
+/// opacity (not premultiplied) that give both back where a viewer lays them over it in sRGB. Exact on black, and on
+/// white where all channels agree on the opacity; edges that were blended in linear light come out a little darker
+/// there. All of one size.
+void matte(const Picture& black, const Picture& white, const Rect& within, Picture& into);
+
+/// The picture made smaller: each new pixel is the mean, in linear light, of what it covers of the old ones, parts of
+/// pixels included, each weighted by its opacity. Throws Error (exit 2) where a side would grow, or be none.
+Picture reduced(const Picture& picture, Size size);
+
+/// Pictures of one size in rows of `columns`, `gap_px` of background between them and around all; in the last row
+/// some may be missing. Throws Error (exit 2) where there is none, their sizes differ, or columns < 1 or gap_px < 0.
+Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px, Color background);
 
 }  // namespace doppel

@@ -1,8 +1,8 @@
 #include "plot/axes.hpp"
 
+#include "plot/axis.hpp"
 #include "plot/curves.hpp"
 #include "plot/text.hpp"
-#include "plot/ticks.hpp"
 #include "render/font.hpp"
 
 #include <algorithm>
@@ -12,16 +12,6 @@ namespace doppel {
 namespace {
 
 constexpr float label_line = 1.4f;  // em of a label above the panel
-
-/// A line whose edges fall on pixels.
-Box upright(float x, float top, float bottom, float width, Color color) {
-    const float pen = std::max(1.0f, std::round(width)), left = std::round(x - pen / 2);
-    return {left, top, left + pen, bottom, 0, color};
-}
-Box level(float y, float left, float right, float width, Color color) {
-    const float pen = std::max(1.0f, std::round(width)), top = std::round(y - pen / 2);
-    return {left, top, right, top + pen, 0, color};
-}
 
 /// The one colour of the curves on a vertical axis; that of text where they have several.
 Color axis_color(const Plot& plot, bool right, const PlotStyle& style) {
@@ -65,9 +55,9 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
     for (const Tick& tick : x_ticks(x, plot.x, style)) {
         const float at = x.at(tick.value);
         const bool named = !tick.text.empty();
-        if (named && !plot.map) list.push_back(upright(at, area.top, area.bottom, style.hairline, style.theme.grid));
+        if (named && !plot.map) list.push_back(vertical_line(at, area.top, area.bottom, style.line, style.theme.grid));
         list.push_back(
-            upright(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.hairline, style.theme.frame));
+            vertical_line(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.line, style.theme.frame));
         if (!named) continue;
         const Label label{tick.text, {at, baseline}, em, Align::center, Weight::regular, style.theme.quiet_text};
         const Area box = text_area(label);
@@ -90,8 +80,8 @@ void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, con
     for (const Tick& tick : y_ticks(y, asked, style)) {
         const float place = y.at(tick.value), out = at + side * (tick.text.empty() ? 0.18f : 0.34f) * em;
         const bool named = !tick.text.empty();
-        if (named && grid) list.push_back(level(place, area.left, area.right, style.hairline, style.theme.grid));
-        list.push_back(level(place, std::min(at, out), std::max(at, out), style.hairline, style.theme.frame));
+        if (named && grid) list.push_back(horizontal_line(place, area.left, area.right, style.line, style.theme.grid));
+        list.push_back(horizontal_line(place, std::min(at, out), std::max(at, out), style.line, style.theme.frame));
         if (!named) continue;
         list.push_back(Label{tick.text,
                              {at + side * 0.55f * em, place + 0.36f * em},
@@ -132,10 +122,10 @@ void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right
     if (right) {
         const Color color = axis_color(plot, true, style);
         draw_y_axis(*right, *plot.right, area.right, 1, area, false, color, style, list);
-        list.push_back(upright(area.right, area.top, area.bottom, style.hairline, theme.frame));
+        list.push_back(vertical_line(area.right, area.top, area.bottom, style.line, theme.frame));
     }
-    list.push_back(upright(area.left, area.top, area.bottom, style.hairline, theme.frame));
-    list.push_back(level(area.bottom, area.left, area.right, style.hairline, theme.frame));
+    list.push_back(vertical_line(area.left, area.top, area.bottom, style.line, theme.frame));
+    list.push_back(horizontal_line(area.bottom, area.left, area.right, style.line, theme.frame));
 }
 
 float axis_labels_height(const Plot& plot, float width, const PlotStyle& style) {

@@ -1,12 +1,16 @@
 #include "plot/axis.hpp"
 
+#include "render/font.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string_view>
 
 namespace doppel {
+
 std::string power_of_ten(int exponent) {
     constexpr std::string_view digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     if (exponent == 0) return "1";
@@ -31,39 +35,183 @@ float Axis::at(double value) const {
     return static_cast<float>(from + (to - from) * std::clamp(reached, 0.0, 1.0));
 }
 
-std::vector<Tick> decade_ticks(const Axis& axis, float label_px) {
-    constexpr double slack = 1e-9;  // log10(0.001) may miss −3 by a rounding
-    const int first = static_cast<int>(std::ceil(std::log10(axis.low) - slack));
-    const int last = static_cast<int>(std::floor(std::log10(axis.high) + slack));
-    const float decade = std::abs(axis.to - axis.from) / static_cast<float>(std::log10(axis.high / axis.low));
-    const int every = std::max(1, static_cast<int>(std::ceil(label_px / decade)));
+namespace {
+
+/// multiple · 10^exponent
+struct Step {
+    long long multiple = 1;
+    int exponent = 0;
+
+    long double value() const { return static_cast<long double>(multiple) * std::pow(10.0L, exponent); }
+    /// The double nearest to k steps.
+    double times(long long k) const {
+        const auto whole = static_cast<long double>(k * multiple), power = std::pow(10.0L, std::abs(exponent));
+        return static_cast<double>(exponent < 0 ? whole / power : whole * power);
+    }
+};
+
+/// number · 10^exponent in digits
+std::string decimal(long long number, int exponent) {
+    if (number == 0) exponent = std::min(exponent, 0);
+    std::string digits = fmt::format("{}", std::abs(number));
+    if (exponent > 0) digits.append(static_cast<std::size_t>(exponent), '0');
+    if (exponent < 0) {
+        const auto decimals = static_cast<std::size_t>(-exponent);
+        if (digits.size() <= decimals) digits.insert(0, decimals + 1 - digits.size(), '0');
+        digits.insert(digits.size() - decimals, ".");
+    }
+    return number < 0 ? "−" + digits : digits;
+}
+
+/// The largest k with 10^k ≤ value.
+int decade_below(long double value) {
+    return static_cast<int>(std::floor(std::log10(value)));
+}
+
+/// The same for k steps of an axis that reaches to `most`.
+std::string tick_words(const Step& step, long long k, double most) {
+    const long long number = k * step.multiple;
+    if (number == 0) return step.exponent < 0 && most < 1e6 && most >= 1e-4 ? decimal(0, step.exponent) : "0";
+    if (most >= 1e-4 && most < 1e6) return decimal(number, step.exponent);
+    const int power = decade_below(most);
+    return fmt::format("{} × {}", decimal(number, step.exponent - power), power_of_ten(power));
+}
+
+/// Whether the words stand apart and the ticks too.
+bool fits(const std::vector<Tick>& ticks, const Axis& axis, const TickWords& words) {
+    const Tick* before = nullptr;
+    for (const Tick& tick : ticks) {
+        if (tick.text.empty()) continue;
+        if (before) {
+            const float distance = std::abs(axis.at(tick.value) - axis.at(before->value));
+            const float need = (words.length(before->text) + words.length(tick.text)) / 2 + words.gap;
+            if (tick.text == before->text || distance < std::max(need, words.spacing)) return false;
+        }
+        before = &tick;
+    }
+    return true;
+}
+
+/// All multiples of the step on the axis; none where they are too many to be told apart.
+std::vector<Tick> multiples(const Step& step, double low, double high) {
+    constexpr long double most = 1e15L;  // of a step, so that a double tells k from k + 1
+    const long double width = step.value(), from = std::ceil(low / width), to = std::floor(high / width);
+    if (!(std::abs(from) * step.multiple < most && std::abs(to) * step.multiple < most && to - from < 1000)) return {};
+    auto first = static_cast<long long>(from), last = static_cast<long long>(to);
+    // the division may have missed an end by a rounding
+    if (step.times(first - 1) >= low) --first;
+    if (step.times(last + 1) <= high) ++last;
+    while (first <= last && step.times(first) < low) ++first;
+    while (first <= last && step.times(last) > high) --last;
+    const double reach = std::max(std::abs(low), std::abs(high));
     std::vector<Tick> ticks;
-    for (int exponent = first; exponent <= last; ++exponent)
-        ticks.push_back({std::pow(10.0, exponent), exponent % every == 0 ? power_of_ten(exponent) : ""});
+    for (long long k = first; k <= last; ++k) ticks.push_back({step.times(k), tick_words(step, k, reach)});
     return ticks;
 }
 
-std::vector<Tick> round_ticks(const Axis& axis, float label_px) {
-    const double span = axis.high - axis.low;
-    const double least = span * std::max(1.0f, label_px) / std::max(1.0f, std::abs(axis.to - axis.from));
-    const double power = std::pow(10.0, std::floor(std::log10(least)));
-    double step = 10 * power;
-    for (const double nice : {1.0, 2.0, 5.0})
-        if (nice * power >= least) {
-            step = nice * power;
-            break;
+std::vector<Tick> linear_ticks(const Axis& axis, const TickWords& words) {
+    const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
+    const long double span = static_cast<long double>(high) - low;
+    const float room = std::abs(axis.to - axis.from);
+    if (!(span > 0 && room > 0)) return {};
+    // from the smallest step that could fit to the first that does
+    const long double least = span * std::max(1.0f, words.spacing) / room;
+    std::vector<Tick> best;
+    for (int exponent = decade_below(least); exponent <= decade_below(span) + 1; ++exponent) {
+        for (const long long nice : {1, 2, 5}) {
+            const Step step{nice, exponent};
+            if (step.value() < 0.999999L * least) continue;
+            auto ticks = multiples(step, low, high);
+            if (!fits(ticks, axis, words)) continue;
+            if (ticks.size() >= 2) return ticks;
+            if (ticks.size() > best.size()) best = std::move(ticks);
         }
+    }
+    return best;
+}
+
+/// Multiples of what was asked for, to ten digits; none where no two of them fit.
+std::vector<Tick> asked_ticks(const Axis& axis, const TickWords& words, double every) {
+    int exponent = decade_below(every) - 9;
+    auto number = static_cast<long long>(std::llround(every / std::pow(10.0L, exponent)));
+    for (; number % 10 == 0; number /= 10) ++exponent;
+    for (long long times = 1; times <= 64; times *= 2) {
+        auto ticks =
+            multiples({number * times, exponent}, std::min(axis.low, axis.high), std::max(axis.low, axis.high));
+        if (ticks.size() >= 2 && fits(ticks, axis, words)) return ticks;
+    }
+    return {};
+}
+
+/// 1, 2 and 5 times each decade, in words.
+std::vector<Tick> subdivided(double low, double high) {
     std::vector<Tick> ticks;
-    // none where no step is a number or the axis has no two values that it tells apart
-    if (!(span > 0 && std::isfinite(span) && std::isnormal(step) && axis.high + step > axis.high)) return ticks;
-    if (std::abs(axis.low) / step > 1e15 || std::abs(axis.high) / step > 1e15) return ticks;
-    const auto first = static_cast<long>(std::ceil(axis.low / step - 1e-9));
-    const auto last = static_cast<long>(std::floor(axis.high / step + 1e-9));
-    for (long k = first; k <= last; ++k) {
-        const double value = static_cast<double>(k) * step;
-        ticks.push_back({value, fmt::format("{:.6g}", value)});
+    const bool plain = low >= 1e-4 && high < 1e6;
+    for (int exponent = decade_below(low); exponent <= decade_below(high); ++exponent) {
+        for (const long long nice : {1, 2, 5}) {
+            const double value = Step{nice, exponent}.times(1);
+            if (value < low || value > high) continue;
+            ticks.push_back({value, plain       ? decimal(nice, exponent)
+                                    : nice == 1 ? power_of_ten(exponent)
+                                                : fmt::format("{} × {}", nice, power_of_ten(exponent))});
+        }
     }
     return ticks;
+}
+
+/// Every n-th decade in words, those between without; with ticks inside the decades where these are wide.
+std::vector<Tick> decades(const Axis& axis, double low, double high, int every) {
+    std::vector<Tick> ticks;
+    const int first = decade_below(low), last = decade_below(high);
+    const bool wide = std::abs(axis.to - axis.from) > 28 * static_cast<float>(last - first + 1);
+    for (int exponent = first; exponent <= last; ++exponent) {
+        for (long long within = 1; within <= (wide ? 9 : 1); ++within) {
+            const double value = Step{within, exponent}.times(1);
+            if (value < low || value > high) continue;
+            const bool named = within == 1 && exponent % every == 0;
+            ticks.push_back({value, named ? power_of_ten(exponent) : ""});
+        }
+    }
+    return ticks;
+}
+
+std::size_t named(const std::vector<Tick>& ticks) {
+    return static_cast<std::size_t>(
+        std::count_if(ticks.begin(), ticks.end(), [](const Tick& tick) { return !tick.text.empty(); }));
+}
+
+std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickWords& words, std::optional<double> every) {
+    const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
+    if (!(low > 0 && low < high)) return {};
+    if (every) return decades(axis, low, high, static_cast<int>(*every));
+    const double span = std::log10(high) - std::log10(low);
+    if (span < 2) {
+        auto ticks = subdivided(low, high);
+        if (ticks.size() >= 2 && fits(ticks, axis, words)) return ticks;
+    }
+    if (span >= 1) {
+        for (const int n : {1, 2, 3, 5, 10, 20, 30, 50, 100, 200}) {
+            auto ticks = decades(axis, low, high, n);
+            if (named(ticks) >= 2 && fits(ticks, axis, words)) return ticks;
+        }
+    }
+    return linear_ticks(axis, words);
+}
+
+}  // namespace
+
+float TickWords::length(const std::string& text) const {
+    return across ? text_width(text, size) : size;
+}
+
+std::vector<Tick> chart_ticks(const Axis& axis, const TickWords& words, std::optional<double> every) {
+    if (!std::isfinite(axis.low) || !std::isfinite(axis.high)) return {};
+    if (axis.logarithmic) return logarithmic_ticks(axis, words, every);
+    if (every) {
+        auto ticks = asked_ticks(axis, words, *every);
+        if (!ticks.empty()) return ticks;
+    }
+    return linear_ticks(axis, words);
 }
 
 }  // namespace doppel

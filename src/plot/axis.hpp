@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,22 @@ struct Axis {
 /// "10⁻⁴"; 1 and 10 are written as people write them.
 std::string power_of_ten(int exponent);
 
-/// Whole decades within the axis, in words "10⁻⁴", as many labelled as fit with `label_px` between them.
-std::vector<Tick> decade_ticks(const Axis& axis, float label_px);
+/// What the words at the ticks of an axis need.
+struct TickWords {
+    float size = 19;     // px an em
+    float gap = 12;      // px between words
+    float spacing = 40;  // px between ticks, at least
+    bool across = true;  // the axis is horizontal: words need their width, else their height
 
-/// Round values (1, 2, 5 times a power of ten), labels at least `label_px` apart.
-std::vector<Tick> round_ticks(const Axis& axis, float label_px);
+    /// px that `text` takes along the axis.
+    float length(const std::string& text) const;
+};
+
+/// Ticks of a chart, ascending, with distinct words that do not come closer than `gap`: multiples of `every` (or of
+/// twice, four times … as much) where it is given and two of them fit, else 1, 2 or 5 times a power of ten. On a
+/// logarithmic axis whole decades (and nameless ticks within), over less than two decades also their double and
+/// fivefold; where `every` is given, each so many decades are named. Never more digits than the step has; "1.5 × 10⁻⁷" below 0.0001 and from a million on; a true minus sign.
+/// None where a double cannot tell neighbours apart.
+std::vector<Tick> chart_ticks(const Axis& axis, const TickWords& words, std::optional<double> every = {});
 
 }  // namespace doppel

@@ -1,6 +1,7 @@
 #include "plot/curves.hpp"
 
 #include "plot/raster.hpp"
+#include "render/stroke.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,30 +31,21 @@ public:
     }
 
 private:
-    /// Liang & Barsky 1984: the part of from…to within all four edges.
     void cut(Place from, Place to) {
-        double begin = 0, end = 1;
-        const double dx = to.x - from.x, dy = to.y - from.y;
-        const auto edge = [&](double towards, double distance) {
-            if (towards == 0) return distance >= 0;
-            (towards < 0 ? begin : end) =
-                towards < 0 ? std::max(begin, distance / towards) : std::min(end, distance / towards);
-            return true;
-        };
-        const bool meets = edge(-dx, from.x - area_.left) && edge(dx, area_.right - from.x) &&
-                           edge(-dy, from.y - area_.top) && edge(dy, area_.bottom - from.y) && begin <= end;
-        if (!meets) {
+        const auto within = shares_within(area_, from.x, from.y, to.x, to.y);
+        if (!within) {
             joined_ = false;
             return;
         }
+        const double dx = to.x - from.x, dy = to.y - from.y;
         const auto at = [&](double part) {
             // within, though from far away the rounding is larger than the panel
             return Point{std::clamp(static_cast<float>(from.x + part * dx), area_.left, area_.right),
                          std::clamp(static_cast<float>(from.y + part * dy), area_.top, area_.bottom)};
         };
-        if (begin > 0 || !joined_) lines_.push_back({at(begin)});
-        lines_.back().push_back(at(end));
-        joined_ = end == 1;
+        if (within->from > 0 || !joined_) lines_.push_back({at(within->from)});
+        lines_.back().push_back(at(within->to));
+        joined_ = within->to == 1;
     }
 
     Area area_;

@@ -1,9 +1,8 @@
 #include "plot/panel.hpp"
 
 #include "plot/axes.hpp"
-#include "plot/bar.hpp"
+#include "plot/heat_map.hpp"
 #include "plot/labels.hpp"
-#include "plot/raster.hpp"
 #include "plot/text.hpp"
 #include "render/font.hpp"
 

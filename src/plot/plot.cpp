@@ -1,9 +1,8 @@
 #include "plot/plot.hpp"
 
 #include "base/error.hpp"
-#include "plot/bar.hpp"
+#include "plot/heat_map.hpp"
 #include "plot/panel.hpp"
-#include "plot/table.hpp"
 #include "plot/text.hpp"
 
 #include <algorithm>

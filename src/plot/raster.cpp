@@ -1,7 +1,5 @@
 #include "plot/raster.hpp"
 
-#include "image/colormap.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -41,37 +39,6 @@ public:
 private:
     std::vector<float> values;
 };
-
-/// Which cells each pixel of one axis shows: from…to, half open, in cells; empty outside the map.
-struct Span {
-    double from, to;
-};
-
-std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, double low, double high,
-                        std::size_t cells) {
-    std::vector<Span> made;
-    const auto cell_at = [&](float px) {
-        const double share = (static_cast<double>(px) - axis.from) / (static_cast<double>(axis.to) - axis.from);
-        const double part =
-            axis.logarithmic ? std::log(axis.low / low * std::pow(axis.high / axis.low, share)) / std::log(high / low)
-                             : (axis.low + share * (axis.high - axis.low) - low) / (high - low);
-        return part * static_cast<double>(cells);
-    };
-    const auto count = static_cast<double>(cells);
-    for (int i = 0; i < pixels; ++i) {
-        const float begin = first + static_cast<float>(i) / scale, end = first + static_cast<float>(i + 1) / scale;
-        const double a = cell_at(begin), b = cell_at(end), middle = cell_at((begin + end) / 2);
-        if (!(middle >= 0 && middle < count)) {
-            made.push_back({0, 0});
-        } else if (std::abs(b - a) <= 1) {
-            // a cell as large as the pixel or larger: the one below its centre
-            made.push_back({std::floor(middle), std::floor(middle) + 1});
-        } else {
-            made.push_back({std::clamp(std::min(a, b), 0.0, count), std::clamp(std::max(a, b), 0.0, count)});
-        }
-    }
-    return made;
-}
 
 }  // namespace
 
@@ -119,49 +86,6 @@ Image band_image(const Band& band, Color color, const Area& area, float scale) {
         }
     }
     return coverage.image(color, scale);
-}
-
-Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
-                Color none, float scale) {
-    const Size size{std::max(1, static_cast<int>(std::lround(area.width() * scale))),
-                    std::max(1, static_cast<int>(std::lround(area.height() * scale)))};
-    // what is averaged
-    std::vector<float> values = map.values;
-    if (map.logarithmic)
-        for (float& value : values) value = std::log(value);
-    const Axis shares{.low = map.logarithmic ? std::log(scale_of_colors.low) : scale_of_colors.low,
-                      .high = map.logarithmic ? std::log(scale_of_colors.high) : scale_of_colors.high};
-    const auto across = spans(x, area.left, size.width, scale, map.x_low, map.x_high, map.columns);
-    const auto down = spans(y, area.top, size.height, scale, map.y_low, map.y_high, map.rows);
-    auto pixels = std::make_shared<Picture>(size);
-    for (int row = 0; row < size.height; ++row) {
-        for (int column = 0; column < size.width; ++column) {
-            const Span& h = across[static_cast<std::size_t>(column)];
-            const Span& v = down[static_cast<std::size_t>(row)];
-            if (h.from == h.to || v.from == v.to) continue;
-            // the mean of what has a value; where most has none, none
-            double sum = 0, weight = 0, blank = 0;
-            for (auto j = static_cast<std::size_t>(v.from); static_cast<double>(j) < v.to; ++j) {
-                const auto top = static_cast<double>(j);
-                const double tall = std::min(top + 1, v.to) - std::max(top, v.from);
-                for (auto i = static_cast<std::size_t>(h.from); static_cast<double>(i) < h.to; ++i) {
-                    const auto left = static_cast<double>(i);
-                    const double part = tall * (std::min(left + 1, h.to) - std::max(left, h.from));
-                    const auto value = static_cast<double>(values[j * map.columns + i]);
-                    if (std::isfinite(value)) {
-                        sum += part * value;
-                        weight += part;
-                    } else {
-                        blank += part;
-                    }
-                }
-            }
-            const Color color = weight > blank ? map_color(shares.share(sum / weight)) : none;
-            std::uint8_t* rgba = pixels->at(column, row);
-            rgba[0] = byte_of(color.r), rgba[1] = byte_of(color.g), rgba[2] = byte_of(color.b), rgba[3] = 255;
-        }
-    }
-    return {area.left, area.top, area.right, area.bottom, std::move(pixels)};
 }
 
 }  // namespace doppel

@@ -1,13 +1,12 @@
 #pragma once
 
-#include "plot/axis.hpp"
 #include "plot/plot.hpp"
 #include "plot/style.hpp"
 
 namespace doppel {
 
-/// Parts of a chart that are cheaper, or only possible, pixel by pixel: images for the pixels that `scale` makes of
-/// each px.
+// Parts of a chart that are cheaper, or only possible, pixel by pixel: images for the pixels that `scale` makes of each
+// px.
 
 /// Discs around many points, which do not add up where they overlap; cut off at the edges of `area`.
 Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale);
@@ -17,10 +16,5 @@ struct Band {
     std::vector<double> x, low, high;
 };
 Image band_image(const Band& band, Color color, const Area& area, float scale);
-
-/// The map's cells in `area` as seen through the axes: crisp where they are larger than pixels, else averaged, the
-/// logarithm where the scale is logarithmic. Below zero on such a scale is as good as no value.
-Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
-                Color none, float scale);
 
 }  // namespace doppel

@@ -3,6 +3,7 @@
 #include "render/font.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace doppel {
 namespace {
@@ -77,6 +78,96 @@ TextBlock fitted_block(std::string_view text, float size, Weight weight, Color c
     const float shrunk =
         std::max(fitting_size(text, size, weight, width), std::max(0.75f * size, std::min(size, 9.0f)));
     return {wrapped(text, shrunk, weight, width), shrunk, weight, color};
+}
+
+namespace {
+
+struct Cell {
+    TextBlock block;
+    float left;  // px
+};
+struct Row {
+    std::vector<Cell> cells;
+    float height = 0;
+};
+
+Color tone_color(PlotTable::Tone tone, const Theme& theme) {
+    switch (tone) {
+        case PlotTable::Tone::quiet:
+            return theme.quiet_text;
+        case PlotTable::Tone::good:
+            return theme.good;
+        case PlotTable::Tone::bad:
+            return theme.bad;
+        case PlotTable::Tone::open:
+            return theme.open;
+        case PlotTable::Tone::plain:
+            break;
+    }
+    return theme.text;
+}
+
+bool is_verdict(PlotTable::Tone tone) {
+    return tone == PlotTable::Tone::good || tone == PlotTable::Tone::bad || tone == PlotTable::Tone::open;
+}
+
+/// All rows, the headings first, at this size of text.
+std::vector<Row> laid_out(const PlotTable& table, const Area& area, float size, const Theme& theme) {
+    float shares = 0;
+    for (const PlotTable::Column& column : table.columns) shares += column.share;
+    std::vector<Row> rows(1 + table.rows.size());
+    float left = area.left;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const float width = area.width() * table.columns[c].share / shares;
+        const float inner = std::max(width - (c + 1 < table.columns.size() ? 1.1f * size : 0), 1.0f);
+        const auto add = [&](Row& row, const std::string& text, Weight weight, Color color, float em) {
+            TextBlock block{wrapped(text, em, weight, inner), em, weight, color};
+            row.height = std::max(row.height, block.height());
+            row.cells.push_back({std::move(block), left});
+        };
+        add(rows[0], table.columns[c].heading, Weight::regular, theme.quiet_text, 0.9f * size);
+        for (std::size_t r = 0; r < table.rows.size(); ++r) {
+            if (c >= table.rows[r].size()) continue;
+            const PlotTable::Cell& cell = table.rows[r][c];
+            add(rows[r + 1], cell.text, is_verdict(cell.tone) ? Weight::bold : Weight::regular,
+                tone_color(cell.tone, theme), size);
+        }
+        left += width;
+    }
+    return rows;
+}
+
+float total(const std::vector<Row>& rows, float pad) {
+    float height = 0;
+    for (const Row& row : rows) height += row.height + 2 * pad;
+    return height;
+}
+
+}  // namespace
+
+float fitting_table_size(const PlotTable& table, const Area& area, const PlotStyle& style) {
+    const float largest = 1.1f * style.words;
+    float size = largest;
+    while (total(laid_out(table, area, size, style.theme), 0.42f * size) > area.height() && size > 0.1f * largest)
+        size *= 0.96f;
+    return size;
+}
+
+void draw_table(const PlotTable& table, const Area& area, const PlotStyle& style, DisplayList& list) {
+    if (table.columns.empty()) return;
+    const float size = fitting_table_size(table, area, style);
+    const std::vector<Row> rows = laid_out(table, area, size, style.theme);
+    // what room is left goes between the rows, but they stay a table
+    const float spare = (area.height() - total(rows, 0.42f * size)) / static_cast<float>(2 * rows.size());
+    const float pad = 0.42f * size + std::clamp(spare, 0.0f, 0.3f * size);
+    float top = area.top;
+    for (const Row& row : rows) {
+        for (const Cell& cell : row.cells) cell.block.draw({cell.left, top + pad}, list);
+        top += row.height + 2 * pad;
+        const float line = std::round(top);
+        list.push_back(Box{area.left, line, area.right, line + style.line, 0,
+                           &row == &rows.front() ? style.theme.frame : style.theme.grid});
+    }
 }
 
 }  // namespace doppel

@@ -3,8 +3,11 @@
 #include "image/color.hpp"
 #include "image/picture.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -21,6 +24,21 @@ struct Box {
     float corner = 0;                                // radius, px
     Color color;
 };
+
+/// A whole picture in one colour.
+inline Box filled(Size size, Color color) {
+    return {0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, color};
+}
+
+/// A line whose edges fall on pixels: not two half-covered rows, and never thinner than a pixel.
+inline Box vertical_line(float x, float top, float bottom, float width, Color color) {
+    const float left = std::round(x - width / 2);
+    return {left, top, left + std::max(1.0f, std::round(width)), bottom, 0, color};
+}
+inline Box horizontal_line(float y, float left, float right, float width, Color color) {
+    const float top = std::round(y - width / 2);
+    return {left, top, right, top + std::max(1.0f, std::round(width)), 0, color};
+}
 
 /// All points within `radius` of the segment from…to: a rod, a line, or a disc where both ends are one.
 struct Capsule {
@@ -75,6 +93,11 @@ struct Label {
     Color color;
 };
 
+inline Label label(std::string text, Point anchor, float size, Color color, Align align = Align::left,
+                   Weight weight = Weight::regular) {
+    return {std::move(text), anchor, size, align, weight, color};
+}
+
 /// A picture stretched over a rectangle, whose edges are rounded to whole pixels. Each pixel takes the colour below its
 /// centre, so that what is enlarged stays crisp. Lists share the pixels, which must not change.
 struct Image {
@@ -85,5 +108,21 @@ struct Image {
 /// What to draw, back to front.
 using Item = std::variant<Box, Capsule, Ring, Stroke, Label, Image>;
 using DisplayList = std::vector<Item>;
+
+/// A rectangle of a picture, px.
+struct Area {
+    float left = 0, top = 0, right = 0, bottom = 0;
+
+    float width() const { return right - left; }
+    float height() const { return bottom - top; }
+    bool overlaps(const Area& other) const {
+        return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+    }
+    bool holds(const Area& other) const {
+        return left <= other.left && other.right <= right && top <= other.top && other.bottom <= bottom;
+    }
+    bool holds(Point p) const { return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom; }
+    Area grown(float x, float y) const { return {left - x, top - y, right + x, bottom + y}; }
+};
 
 }  // namespace doppel

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace doppel {
@@ -60,6 +61,20 @@ std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_
 
 }  // namespace
 
+std::optional<Shares> shares_within(const Area& area, double x0, double y0, double x1, double y1) {
+    Shares within;
+    const double dx = x1 - x0, dy = y1 - y0;
+    // on the inner side of an edge where share · step ≤ room
+    const auto cut = [&](double step, double room) {
+        if (step < 0) within.from = std::max(within.from, room / step);
+        if (step > 0) within.to = std::min(within.to, room / step);
+        return step != 0 || room >= 0;
+    };
+    const bool meets = cut(-dx, x0 - area.left) && cut(dx, area.right - x0) && cut(-dy, y0 - area.top) &&
+                       cut(dy, area.bottom - y0) && within.from <= within.to;
+    return meets ? std::optional(within) : std::nullopt;
+}
+
 StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t most) {
     StrokePiece piece{first, first + 1, path[first].bend};
     const std::size_t end = std::min(path.size() - 1, first + most);
@@ -70,6 +85,44 @@ StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t firs
         piece = {first, piece.last + 1, *bend};
     }
     return piece;
+}
+
+namespace {
+constexpr float tolerance = 0.2f;  // px
+constexpr float any_slope = std::numeric_limits<float>::max();
+
+/// One that stays: what follows changes nothing before it.
+Stroke::Vertex vertex(Point at) {
+    return {.at = at, .joint = true};
+}
+}  // namespace
+
+void Trace::add(Point point) {
+    if (kept_.empty()) {
+        kept_.push_back(vertex(point));
+        steepest_ = any_slope;
+        flattest_ = -any_slope;
+        return;
+    }
+    const auto slope = [&](float dy) {
+        const Point from = kept_.back().at;
+        return (point.y + dy - from.y) / std::max(point.x - from.x, 1e-6f);
+    };
+    if (pending_ && (slope(0) > steepest_ || slope(0) < flattest_)) {
+        kept_.push_back(vertex(newest_));
+        steepest_ = any_slope;
+        flattest_ = -any_slope;
+    }
+    steepest_ = std::min(steepest_, slope(tolerance));
+    flattest_ = std::max(flattest_, slope(-tolerance));
+    newest_ = point;
+    pending_ = true;
+}
+
+std::vector<Stroke::Vertex> Trace::vertices() const {
+    auto all = kept_;
+    if (pending_) all.push_back(vertex(newest_));
+    return all;
 }
 
 }  // namespace doppel

@@ -85,7 +85,7 @@ struct Library {
 constexpr Library libraries[]{
     {"GL/", "render", "gl_"},
     {"EGL/", "render", "gl_"},
-    {"stb_truetype", "render", "glyphs"},
+    {"stb_truetype", "render", "font"},
     {"libavformat/", "output", "libav"},
     {"libavcodec/", "output", "libav"},
     {"libswscale/", "output", "libav"},

@@ -1,6 +1,6 @@
+#include "film/bounds.hpp"
 #include "film/run.hpp"
 #include "film/support.hpp"
-#include "film/survey.hpp"
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
 #include "render/font.hpp"

@@ -1,5 +1,4 @@
-#include "film/schedule.hpp"
-
+#include "film/film.hpp"
 #include "film/run.hpp"
 #include "film/support.hpp"
 #include "output/fixtures.hpp"

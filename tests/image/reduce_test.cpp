@@ -1,6 +1,5 @@
-#include "image/reduce.hpp"
-
 #include "base/error.hpp"
+#include "image/picture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
-#include "image/colormap.hpp"
-#include "plot/bar.hpp"
+#include "plot/heat_map.hpp"
+
+#include "image/color.hpp"
 #include "plot/plot.hpp"
 #include "plot/raster.hpp"
 

@@ -1,4 +1,4 @@
-#include "image/colormap.hpp"
+#include "image/color.hpp"
 #include "plot/plot.hpp"
 #include "render/renderer.hpp"
 

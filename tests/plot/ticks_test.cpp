@@ -1,4 +1,4 @@
-#include "plot/ticks.hpp"
+#include "plot/axis.hpp"
 
 #include <gtest/gtest.h>
 
@@ -128,13 +128,14 @@ TEST(Axis, MapsItsEndsAndKeepsToThem) {
     EXPECT_FLOAT_EQ((Axis{3, 3, 0, 10}.at(3)), 5);
 }
 
-TEST(RoundTicks, StayAsTheFilmsHaveThem) {
-    const auto ticks = round_ticks({0, 30, 0, 1600}, 90);
+TEST(ChartTicks, TakeTheSmallestStepThatLeavesTheSpacing) {
+    const TickWords words{.gap = 0, .spacing = 90};
+    const auto ticks = chart_ticks({0, 30, 0, 1600}, words);
     ASSERT_EQ(ticks.size(), 16u);
     EXPECT_EQ(ticks[1].text, "2");
-    EXPECT_EQ(round_ticks({0, 1, 0, 1000}, 90)[3].text, "0.3");
-    EXPECT_TRUE(round_ticks({5, 5, 0, 100}, 10).empty());
-    EXPECT_TRUE(round_ticks({1e10, 1e10 + 1e-300, 0, 100}, 10).empty());
+    EXPECT_EQ(chart_ticks({0, 1, 0, 1000}, words)[3].text, "0.3");
+    EXPECT_TRUE(chart_ticks({5, 5, 0, 100}, {.gap = 0, .spacing = 10}).empty());
+    EXPECT_TRUE(chart_ticks({1e10, 1e10 + 1e-300, 0, 100}, {.gap = 0, .spacing = 10}).empty());
 }
 
 }  // namespace ticks_test

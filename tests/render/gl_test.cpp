@@ -1,11 +1,9 @@
-#include "render/gl.hpp"
-
 #include "base/error.hpp"
 #include "image/golden.hpp"
 #include "image/theme.hpp"
-#include "render/pixels.hpp"
 #include "plot/plot_figures.hpp"
 #include "render/gl_context.hpp"
+#include "render/pixels.hpp"
 #include "render/renderer.hpp"
 
 #include <gtest/gtest.h>

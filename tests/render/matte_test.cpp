@@ -1,5 +1,4 @@
-#include "image/matte.hpp"
-
+#include "image/picture.hpp"
 #include "render/pixels.hpp"
 #include "render/renderer.hpp"
 

@@ -1,4 +1,4 @@
-#include "film/view.hpp"
+#include "film/bounds.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,33 @@
 
 namespace doppel {
 namespace {
+
+void include(Range& range, double value) {
+    range = {std::min(range.low, value), std::max(range.high, value)};
+}
+
+bool is_needed(const Scene& scene) {
+    const auto& video = scene.preset.video;
+    const bool is_mechanism = scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism;
+    const auto fits_itself = [&](StripKind kind) {
+        const bool by_formula = is_logarithmic(kind) && !(kind == StripKind::distance && is_mechanism);
+        return !by_formula && !video.ranges[static_cast<std::size_t>(kind)];
+    };
+    const bool view = video.pendulums && (is_mechanism || video.layout == Arrangement::phase);
+    return view || std::any_of(video.strips.begin(), video.strips.end(), fits_itself);
+}
+
+void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
+    for (const auto& bob : side.bobs) {
+        seen.left = std::min(seen.left, bob.x);
+        seen.right = std::max(seen.right, bob.x);
+        seen.bottom = std::min(seen.bottom, bob.y);
+        seen.top = std::max(seen.top, bob.y);
+    }
+    const auto link = static_cast<std::size_t>(scene.preset.video.phase_link - 1);
+    if (link < side.bobs.size()) seen.fastest = std::max(seen.fastest, std::abs(side.bobs[link].omega));
+    for (const double force : side.tension) include(seen.rod_force, force);
+}
 
 /// With a tenth of air; zero is on it.
 Range airy(const Range& seen) {
@@ -42,7 +69,7 @@ double farthest(const Scene& scene, const Moment& start) {
 }
 
 /// The distance axis where the preset names none: from the decade of the start to as far as the two can get.
-Range fitted_distance(const Scene& scene, const std::optional<Survey>& seen) {
+Range fitted_distance(const Scene& scene, const std::optional<MotionBounds>& seen) {
     const auto start = PairRun(scene).next(std::atomic<bool>(false));
     constexpr double decades = 1e60;  // the most an axis spans, whatever the masses and lengths
     const bool is_mechanism = scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism;
@@ -61,8 +88,35 @@ Range fitted_error(const Scene& scene) {
 
 }  // namespace
 
+std::optional<double> exponent_so_far(const Scene& scene, const Moment& moment, double start_distance) {
+    if (moment.sample == 0 || 20 * moment.sample < scene.samples) return std::nullopt;
+    if (!(moment.distance > 0 && start_distance > 0)) return std::nullopt;
+    return std::log(moment.distance / start_distance) / scene.time(moment.sample);
+}
+
+std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<bool>& stop) {
+    if (!is_needed(scene)) return std::nullopt;
+    PairRun pair(scene);
+    auto moment = pair.next(stop);
+    const auto& first = moment.a.bobs.front();
+    MotionBounds seen{first.x, first.x, first.y, first.y};
+    const double start_distance = moment.distance;
+    try {
+        for (;;) {
+            add(seen, scene, moment.a);
+            add(seen, scene, moment.b);
+            seen.largest_distance = std::max(seen.largest_distance, moment.distance);
+            if (const auto exponent = exponent_so_far(scene, moment, start_distance)) include(seen.exponent, *exponent);
+            if (moment.sample == scene.samples) break;
+            moment = pair.next(stop);
+        }
+    } catch (const BreakDown&) {  // the run itself will say so
+    }
+    return seen;
+}
+
 /// The circle that the outstretched chain reaches; of a mechanism, the places that it visits.
-View fitted_view(const Scene& scene, const std::optional<Survey>& seen) {
+View fitted_view(const Scene& scene, const std::optional<MotionBounds>& seen) {
     if (scene.a.motion.model != Model::mechanism && scene.b.motion.model != Model::mechanism) {
         const double across = 2 * std::max(scene.a.reach, scene.b.reach);
         return {.width = across, .height = across};
@@ -83,7 +137,7 @@ View fitted_view(const Scene& scene, const std::optional<Survey>& seen) {
     return std::isfinite(view.width + view.height) ? view : View{.width = 2, .height = 2, .is_circle = false};
 }
 
-Range fitted_range(StripKind kind, const Scene& scene, const std::optional<Survey>& seen) {
+Range fitted_range(StripKind kind, const Scene& scene, const std::optional<MotionBounds>& seen) {
     switch (kind) {
         case StripKind::distance:
             return fitted_distance(scene, seen);

@@ -7,7 +7,7 @@
 namespace doppel {
 
 /// How far a pair gets, from a run without pictures: what a picture needs to know that no formula gives.
-struct Survey {
+struct MotionBounds {
     double left, right, bottom, top;  // m, of all bobs of both sides at all samples
     double largest_distance = 0;      // state space
     double fastest = 0;               // rad/s, of the link that a phase panel shows
@@ -17,9 +17,22 @@ struct Survey {
 
 /// Of the whole motion, whichever frames are drawn: they are the same pixels alone as in the film. Nothing where
 /// formulas do. Ends without an error where a side breaks down; throws Error (exit 130) soon after `stop` is set.
-std::optional<Survey> survey(const Scene& scene, const std::atomic<bool>& stop);
+std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<bool>& stop);
 
 /// ln(d/d0) / t, 1/s: nothing in the first twentieth of the scene, when it says nothing yet, or where a distance is 0.
 std::optional<double> exponent_so_far(const Scene& scene, const Moment& moment, double start_distance);
+
+/// The part of the plane that the pendulums' panels show, m.
+struct View {
+    double x = 0, y = 0;   // its centre
+    double width, height;  // of a chain the circle that it reaches
+    bool is_circle = true;
+};
+
+/// The circle that the outstretched chain reaches; of a mechanism, the places that it visits.
+View fitted_view(const Scene& scene, const std::optional<MotionBounds>& seen);
+
+/// The axis of a strip where the preset names none.
+Range fitted_range(StripKind kind, const Scene& scene, const std::optional<MotionBounds>& seen);
 
 }  // namespace doppel

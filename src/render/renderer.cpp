@@ -1,8 +1,9 @@
+#include "render/renderer.hpp"
+
 #include "base/error.hpp"
 #include "render/dirty_regions.hpp"
 #include "render/gl_context.hpp"
 #include "render/gl_painter.hpp"
-#include "render/renderer.hpp"
 
 #include <algorithm>
 #include <new>

@@ -5,6 +5,11 @@
 
 namespace doppel {
 
+/// The map's cells in `area` as seen through the axes: crisp where they are larger than pixels, else averaged, the
+/// logarithm where the scale is logarithmic. Below zero on such a scale is as good as no value.
+Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
+                Color none, float scale);
+
 /// px that the bar of a map and its words take on the right of a panel `height` px high.
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
 
@@ -15,7 +20,7 @@ void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle&
 float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
 void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
 
-/// What stands for no value.
+/// The colour of what has no value.
 Color none_color(const HeatMap& map, const Theme& theme);
 
 }  // namespace doppel

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "film/layout.hpp"
+#include "film/simulation.hpp"
+
+#include <memory>
+#include <optional>
+
+namespace doppel {
+
+/// What the layers of a film's picture draw: the scene, where everything goes, and what came of the pair so far.
+struct FilmState {
+    const Scene& scene;
+    const Layout layout;
+    Shot shot{};  // added last
+    double start_distance = 0, largest_distance = 0;
+    std::optional<double> parted{};  // s
+
+    double time() const { return scene.time(shot.moment.sample); }
+    const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
+    const Observation& seen(std::size_t side) const { return side == 0 ? shot.moment.a : shot.moment.b; }
+    bool start_as_one() const;  // else there is no parting to speak of
+};
+
+/// A part of a film's picture. What it draws depends on the scene and on the shots so far, and on nothing else.
+class Layer {
+public:
+    virtual ~Layer() = default;
+
+    /// What never changes.
+    virtual void backdrop(DisplayList& list) const = 0;
+    /// The next shot, in order from sample 0, is that of the state.
+    virtual void add() {}
+    /// What lies on the backdrop at the shot added last.
+    virtual void frame(DisplayList& list) const = 0;
+};
+
+// `state` outlives the layers.
+
+/// The pendulums of a panel and their trails.
+std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel);
+/// The panel of phase space.
+std::unique_ptr<Layer> make_phase_layer(const FilmState& state, const PhasePanel& panel);
+/// A strip of the chart below, by its number from the top.
+std::unique_ptr<Layer> make_strip_layer(const FilmState& state, std::size_t index);
+
+}  // namespace doppel

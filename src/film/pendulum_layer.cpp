@@ -1,0 +1,258 @@
+#include "film/layer.hpp"
+#include "film/trail.hpp"
+#include "render/font.hpp"
+#include "render/stroke.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+/// The part of from…to that is in the area, if any.
+std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area& area) {
+    const auto within = shares_within(area, from.x, from.y, to.x, to.y);
+    if (!within) return std::nullopt;
+    const auto at = [&](double share) {
+        return Point{static_cast<float>(std::lerp(from.x, to.x, share)),
+                     static_cast<float>(std::lerp(from.y, to.y, share))};
+    };
+    return std::pair{at(within->from), at(within->to)};
+}
+
+float apart(Point a, Point b) {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+class PendulumLayer final : public Layer {
+public:
+    PendulumLayer(const FilmState& state, const PendulumPanel& panel)
+        : state_(state),
+          panel_(panel),
+          heaviest_(std::max(std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass))),
+          paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {}
+
+    void backdrop(DisplayList& list) const override;
+    void add() override {
+        if (state_.scene.preset.video.trail_s > 0)
+            for (const auto side : panel_.sides) extend(paths_[side], state_.seen(side).bobs.back());
+    }
+    void frame(DisplayList& list) const override;
+
+private:
+    /// That of a side's last bob.
+    struct Path {
+        Trail trail;
+        std::optional<std::pair<Bob<double>, double>> last{};  // and its time, s
+    };
+
+    void extend(Path& path, const Bob<double>& bob) const;
+    bool swing_as_one() const;
+    void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
+    void draw_crowd(DisplayList& list) const;
+    void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
+    void draw_tracks(std::size_t side, DisplayList& list) const;
+    void draw_pivots(std::size_t side, DisplayList& list) const;
+    void draw_disc(Point at, float radius, Color color, DisplayList& list, float glow = 0) const;
+    float bob_radius(const Bob<double>& bob) const;
+    Point at(const Bob<double>& bob) const { return panel_.at(bob.x, bob.y); }
+    Point at(const Place<double>& place) const { return panel_.at(place[0], place[1]); }
+
+    const FilmState& state_;
+    const PendulumPanel& panel_;
+    const Layout& layout_ = state_.layout;
+    const Style& style_ = layout_.style;
+    double heaviest_;  // kg
+    std::array<Path, 2> paths_;
+};
+
+void PendulumLayer::backdrop(DisplayList& list) const {
+    const float t = layout_.text, u = layout_.unit;
+    const auto& area = panel_.area;
+    if (!state_.scene.preset.video.transparent)
+        list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, style_.theme.panel});
+    if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), style_.theme.grid});
+    for (const auto side : panel_.sides) draw_tracks(side, list);
+
+    const float share = panel_.words.size() > 1 ? 0.48f : 1;  // of the width, where there are words in both corners
+    const float width = share * (area.width() - 56 * u);
+    for (const auto& words : panel_.words) {
+        const float x = words.align == Align::right ? area.right - 28 * u : area.left + 28 * u;
+        const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color) {
+            const float size = fitting_size(text, px(wanted), weight, width);
+            list.push_back(label(text, {x, area.top + y}, size, color, words.align, weight));
+        };
+        const auto color = state_.scene.crowd.empty() ? style_.theme.sides[words.side]
+                                                      : member_color(style_, static_cast<double>(words.side));
+        add(words.heading, 50 * t, style_.font.heading, Weight::bold, color);
+        add(words.note, 82 * t, style_.font.note, Weight::regular, style_.theme.quiet_text);
+    }
+}
+
+/// Adds the way from the last bob to this one: a cubic through both with their velocities, in pieces of a few pixels.
+void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
+    const float piece = std::max(8 * layout_.unit, 2.0f), least = std::max(1.5f * layout_.unit, 0.5f);  // px
+    const double now = state_.time();
+    const auto go_on = [&](Point to, double time) {
+        if (const auto end = path.trail.end(); !end || apart(to, *end) >= least) path.trail.add(to, time, now);
+    };
+    if (path.last) {
+        const auto& [from, from_time] = *path.last;
+        const double dt = now - from_time;
+        const int pieces = std::clamp(static_cast<int>(std::ceil(apart(at(from), at(bob)) / piece)), 1, 32);
+        for (int i = 1; i <= pieces; ++i) {
+            const double s = static_cast<double>(i) / pieces;
+            go_on(panel_.at(hermite(from.x, from.vx, bob.x, bob.vx, dt, s),
+                            hermite(from.y, from.vy, bob.y, bob.vy, dt, s)),
+                  from_time + s * dt);
+        }
+    } else {
+        go_on(at(bob), now);
+    }
+    path.last = {bob, now};
+}
+
+void PendulumLayer::frame(DisplayList& list) const {
+    const auto& theme = style_.theme;
+    if (!state_.shot.crowd.empty()) return draw_crowd(list);
+    const bool alone = panel_.sides.size() == 1;
+    // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
+    if (alone && !swing_as_one()) {
+        const std::size_t other = 1 - panel_.sides.front();
+        const Color ghost = mixed(theme.panel, theme.sides[other], 0.26f);
+        draw_lines(other, state_.seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
+        for (const auto& bob : state_.seen(other).bobs) draw_disc(at(bob), bob_radius(bob), ghost, list);
+    }
+    for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side)
+        paths_[*side].trail.draw(panel_.area, state_.time(), at(state_.seen(*side).bobs.back()), list);
+    for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side) draw_pendulum(*side, alone, list);
+}
+
+/// Whether the two cannot be told apart in this panel.
+bool PendulumLayer::swing_as_one() const {
+    const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
+        return a.mass == b.mass && apart(at(a), at(b)) < 0.1f;  // px
+    };
+    const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
+        return a.kind == b.kind && a.from == b.from && a.to == b.to;
+    };
+    return std::ranges::equal(state_.seen(0).bobs, state_.seen(1).bobs, same_bob) &&
+           std::ranges::equal(state_.scene.a.lines, state_.scene.b.lines, same_line);
+}
+
+/// Rods, then the pivot and the bobs, each on a rim that sets it off. Where two share a panel all of each has its hue.
+void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& list) const {
+    const auto& theme = style_.theme;
+    const auto& bobs = state_.seen(side).bobs;
+    const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme.sides[side], share); };
+    draw_lines(side, bobs, layout_.rod_radius, hued(theme.rod, 0.55f), list);
+    draw_pivots(side, list);
+    for (const auto& bob : bobs) {
+        const bool last = &bob == &bobs.back();
+        const float radius = last ? std::max(bob_radius(bob), layout_.last_bob_radius) : bob_radius(bob);
+        const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
+        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme.panel, list);
+        draw_disc(at(bob), radius, last ? theme.sides[side] : hued(theme.bob, 0.4f), list, last ? style_.glow : 0);
+    }
+}
+
+/// The members of an ensemble, the last one behind: fine rods that let each other shine through, and the last bobs.
+void PendulumLayer::draw_crowd(DisplayList& list) const {
+    const auto& crowd = state_.shot.crowd;
+    const auto count = crowd.size();
+    const auto color_of = [&](std::size_t k) {
+        return member_color(style_, static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(count - 1, 1)));
+    };
+    const float rod =
+        style_.width.rod > 0 ? layout_.rod_radius : std::max(0.5f * layout_.rod_radius, 0.6f * layout_.unit);
+    // the more there are, the more they let through
+    const float alpha = std::clamp(6 / std::sqrt(static_cast<float>(count)), 0.16f, 0.9f);
+    for (std::size_t k = count; k-- > 0;) draw_lines(0, crowd[k], rod, color_of(k).with_alpha(alpha), list);
+    draw_pivots(0, list);
+    for (std::size_t k = count; k-- > 0;)
+        draw_disc(at(crowd[k].back()), 0.45f * bob_radius(crowd[k].back()), color_of(k), list);
+}
+
+/// Rods, and springs as thin zigzags.
+void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color,
+                               DisplayList& list) const {
+    const auto end_at = [&](const End<double>& end) {
+        if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs[*bob]);
+        return at(std::get<Place<double>>(end));
+    };
+    const auto draw = [&](Point from, Point to, float width) {
+        if (const auto seen = clipped(from, to, panel_.area))
+            list.push_back(Capsule{seen->first, seen->second, width, color});
+    };
+    for (const auto& line : state_.side(side).lines) {
+        if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), radius);
+        if (line.kind != MechanismLine::Kind::spring) continue;
+        constexpr int turns = 16;
+        const Point from = end_at(line.from), to = end_at(line.to), along{to.x - from.x, to.y - from.y};
+        const float length = std::max(apart(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
+        Point last = from;
+        for (int i = 1; i <= turns; ++i) {
+            const float share = (static_cast<float>(i) - 0.5f) / turns, aside = i % 2 == 0 ? swing : -swing;
+            const Point next{from.x + share * along.x - aside * along.y, from.y + share * along.y + aside * along.x};
+            draw(last, next, 0.45f * radius);
+            last = next;
+        }
+        draw(last, to, 0.45f * radius);
+    }
+}
+
+/// Slots that bobs slide in.
+void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
+    const float width = px(style_.width.grid);
+    const auto& color = style_.theme.grid;
+    for (const auto& line : state_.side(side).lines) {
+        const auto *from = std::get_if<Place<double>>(&line.from), *to = std::get_if<Place<double>>(&line.to);
+        if (!from) continue;
+        const Point start = at(*from);
+        if (line.kind == MechanismLine::Kind::slot_circle)
+            list.push_back(Ring{start, panel_.px_per_m * static_cast<float>(line.radius), width, color});
+        if (line.kind != MechanismLine::Kind::slot_line || !to) continue;
+        // on beyond both ends, to the edges of the panel
+        const Point end = at(*to), along{end.x - start.x, end.y - start.y};
+        const float far = (panel_.area.width() + panel_.area.height()) / std::max(apart(start, end), 1e-3f);
+        if (const auto seen = clipped({start.x - far * along.x, start.y - far * along.y},
+                                      {start.x + far * along.x, start.y + far * along.y}, panel_.area))
+            list.push_back(Capsule{seen->first, seen->second, width / 2, color});
+    }
+}
+
+/// Where the fixed ends are.
+void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
+    const float radius = std::max(0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius);
+    for (const auto& line : state_.side(side).lines) {
+        using Kind = MechanismLine::Kind;
+        if (line.kind == Kind::slot_line || line.kind == Kind::slot_circle) continue;
+        const bool one_end = line.kind == Kind::anchor;
+        for (const auto* end : {&line.from, one_end ? nullptr : &line.to})
+            if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr)
+                draw_disc(at(*place), radius, style_.theme.pivot, list);
+    }
+}
+
+/// A disc that is at home in the panel; one that a blow-up threw out of it is not shown.
+void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& list, float glow) const {
+    if (panel_.area.holds(at))
+        list.push_back(Capsule{.from = at, .to = at, .radius = radius, .color = color, .glow = glow});
+}
+
+/// Area by mass, but never too small to see; px.
+float PendulumLayer::bob_radius(const Bob<double>& bob) const {
+    const auto share = static_cast<float>(std::sqrt(bob.mass / heaviest_));
+    return std::max(layout_.bob_radius * share, 1.6f * layout_.rod_radius);
+}
+
+}  // namespace
+
+std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel) {
+    return std::make_unique<PendulumLayer>(state, panel);
+}
+
+}  // namespace doppel

@@ -1,0 +1,126 @@
+#include "film/layer.hpp"
+#include "film/trail.hpp"
+#include "numeric/state.hpp"
+#include "render/font.hpp"
+#include "scene/wording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+double degrees(double rad) {
+    return rad * 180 / pi;
+}
+
+/// Where in the way between two samples θ1 passes a whole number of turns upwards, 0…1; nothing where it does not.
+std::optional<double> upward_passage(const Bob<double>& from, const Bob<double>& to, double dt) {
+    const double turns = std::floor(to.theta / (2 * pi));
+    if (!(turns > std::floor(from.theta / (2 * pi)))) return std::nullopt;
+    double low = 0, high = 1;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = (low + high) / 2;
+        const bool beyond = hermite(from.theta, from.omega, to.theta, to.omega, dt, middle) >= 2 * pi * turns;
+        (beyond ? high : low) = middle;
+    }
+    return high;
+}
+
+class PhaseLayer final : public Layer {
+public:
+    PhaseLayer(const FilmState& state, const PhasePanel& panel)
+        : state_(state), panel_(panel), trails_{Trail(state.scene, style_, 0), Trail(state.scene, style_, 1)} {}
+
+    void backdrop(DisplayList& list) const override;
+    void add() override {
+        for (std::size_t side = 0; side < 2; ++side)
+            video_.phase == PhaseKind::rate
+                ? trails_[side].add(at(state_.seen(side).bobs[link_]), state_.time(), state_.time())
+                : add_to_section(side);
+    }
+    void frame(DisplayList& list) const override;
+
+private:
+    Point at(double theta, double omega) const {
+        return {panel_.angle.at(degrees(std::remainder(theta, 2 * pi))), panel_.rate.at(degrees(omega))};
+    }
+    Point at(const Bob<double>& bob) const { return at(bob.theta, bob.omega); }
+    void add_to_section(std::size_t side);
+
+    const FilmState& state_;
+    const PhasePanel& panel_;
+    const VideoSpec& video_ = state_.scene.preset.video;
+    const Style& style_ = state_.layout.style;
+    const std::size_t link_ = static_cast<std::size_t>(video_.phase_link - 1);
+    std::array<Trail, 2> trails_;
+    std::array<std::optional<Bobs<double>>, 2> last_bobs_;  // of a section
+    std::array<std::vector<Point>, 2> section_;
+};
+
+void PhaseLayer::backdrop(DisplayList& list) const {
+    const auto& theme = style_.theme;
+    const float t = state_.layout.text, size = px(style_.font.axis), line = px(style_.width.grid);
+    const Area &area = panel_.area, around = state_.layout.panels.back().area;
+    if (!video_.transparent) {
+        // the panel that the axes lie in: as large as the pendulums', beside or below it
+        const bool below = area.top > around.bottom;
+        const float left = below ? around.left : area.left - std::round(96 * t),
+                    top = below ? area.top - std::round(66 * t) : around.top;
+        list.push_back(
+            Box{left, top, left + around.width(), top + around.height(), 14 * state_.layout.unit, theme.panel});
+    }
+    for (const double angle : {-180.0, -90.0, 0.0, 90.0, 180.0}) {
+        const float x = panel_.angle.at(angle);
+        list.push_back(Capsule{{x, area.top}, {x, area.bottom}, line / 2, theme.grid});
+        list.push_back(
+            label(fmt::format("{:g}°", angle), {x, area.bottom + 1.5f * size}, size, theme.quiet_text, Align::center));
+    }
+    for (const auto& tick : axis_ticks(panel_.rate, size, 3 * size, false)) {
+        const float y = panel_.rate.at(tick.value);
+        list.push_back(Capsule{{area.left, y}, {area.right, y}, line / 2, theme.grid});
+        list.push_back(label(tick.text, {area.left - 12 * t, y + 0.36f * size}, size, theme.quiet_text, Align::right));
+    }
+    const auto heading = fmt::format("ω{0} over θ{0}, °/s{1}", subscript(link_ + 1),
+                                     video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
+    const float fits = fitting_size(heading, px(style_.font.strip), Weight::regular, area.width() + 20 * t);
+    list.push_back(label(heading, {area.left, area.top - 20 * t}, fits, theme.text));
+}
+
+/// A point where the way from the last sample crosses the section.
+void PhaseLayer::add_to_section(std::size_t side) {
+    const auto& bobs = state_.seen(side).bobs;
+    if (const auto& last = last_bobs_[side]) {
+        const double dt = 1 / state_.scene.preset.sample_hz.value();
+        if (const auto share = upward_passage((*last)[0], bobs[0], dt)) {
+            const auto &from = (*last)[link_], &to = bobs[link_];
+            const double theta = hermite(from.theta, from.omega, to.theta, to.omega, dt, *share);
+            section_[side].push_back(at(theta, std::lerp(from.omega, to.omega, *share)));
+        }
+    }
+    last_bobs_[side] = bobs;
+}
+
+void PhaseLayer::frame(DisplayList& list) const {
+    const float dot = px(1.2 * style_.width.trace), head = std::max(2.3f * px(style_.width.trace), 2.0f);
+    for (std::size_t side = 2; side-- > 0;) {
+        const auto color = style_.theme.sides[side];
+        for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
+        if (video_.phase != PhaseKind::rate) continue;
+        // a path that leaves at ±180° comes back at the other end
+        trails_[side].draw(panel_.area, state_.time(), std::nullopt, list, panel_.area.width() / 2);
+        const Point now = at(state_.seen(side).bobs[link_]);
+        list.push_back(Capsule{now, now, head, color});
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<Layer> make_phase_layer(const FilmState& state, const PhasePanel& panel) {
+    return std::make_unique<PhaseLayer>(state, panel);
+}
+
+}  // namespace doppel

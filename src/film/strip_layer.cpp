@@ -1,0 +1,220 @@
+#include "film/bounds.hpp"
+#include "film/layer.hpp"
+#include "render/font.hpp"
+#include "render/stroke.hpp"
+#include "scene/wording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+void add_dashed_line(float x, const Area& area, float dash, float width, Color color, DisplayList& list) {
+    for (float top = area.top; top < area.bottom; top += 2 * dash)
+        list.push_back(vertical_line(x, top, std::min(top + dash, area.bottom), width, color));
+}
+
+/// The rods of a chain whose forces are shown: all of a short one, the first and the last of a long one.
+std::vector<std::size_t> shown_rods(std::size_t rods) {
+    constexpr std::size_t most = 3;
+    std::vector<std::size_t> shown;
+    for (std::size_t k = 0; k < rods; ++k)
+        if (rods <= most || k == 0 || k + 1 == rods) shown.push_back(k);
+    return shown;
+}
+
+/// What goes up in a strip: a line of its own for each.
+struct StripValue {
+    std::optional<double> value;
+    Color color;
+    double width = 0;    // px
+    std::string name{};  // empty where the heading says it all
+};
+
+class StripLayer final : public Layer {
+public:
+    StripLayer(const FilmState& state, std::size_t index) : state_(state), index_(index) {}
+
+    void backdrop(DisplayList& list) const override {
+        draw_horizon(list);
+        draw_axes(list);
+        if (index_ + 1 == layout_.strips.size()) draw_time_labels(list);
+    }
+    void add() override {
+        const auto now = values();
+        traces_.resize(now.size());
+        for (std::size_t k = 0; k < now.size(); ++k)
+            if (now[k].value) traces_[k].add({strip_.time.at(state_.time()), strip_.value.at(*now[k].value)});
+    }
+    void frame(DisplayList& list) const override;
+
+private:
+    std::vector<StripValue> values() const;
+    std::string heading() const;
+    void draw_axes(DisplayList& list) const;
+    void draw_horizon(DisplayList& list) const;
+    void draw_time_labels(DisplayList& list) const;
+    void draw_parting(float free_from, DisplayList& list) const;
+
+    const FilmState& state_;
+    const std::size_t index_;
+    const Layout& layout_ = state_.layout;
+    const Style& style_ = layout_.style;
+    const Theme& theme_ = style_.theme;
+    const StripLayout& strip_ = layout_.strips[index_];
+    const float size_ = px(style_.font.strip), heading_base_ = strip_.area.top - 12 * layout_.text;
+    // J: one for both sides, or the side that starts near E = 0 would look far worse
+    const double energy_unit_ = std::max(state_.scene.a.energy_unit, state_.scene.b.energy_unit);
+    std::vector<Trace> traces_;  // by value
+};
+
+std::string StripLayer::heading() const {
+    switch (strip_.kind) {
+        case StripKind::distance:
+            return "state-space distance";
+        case StripKind::exponent:
+            return "Lyapunov exponent so far, 1/s";
+        case StripKind::energy:
+            return "energy error, of the potential range";
+        case StripKind::rod_error:
+            return "worst rod error, m";
+        case StripKind::rod_force:
+            break;
+    }
+    return "force in the rods, N";
+}
+
+std::vector<StripValue> StripLayer::values() const {
+    const double width = style_.width.trace;
+    // of two lines the first is wider, so that it still shows where both run as one
+    const std::array widths{1.5 * width, 0.64 * width};
+    const auto& moment = state_.shot.moment;
+    if (strip_.kind == StripKind::distance) return {{moment.distance, theme_.trace, width}};
+    if (strip_.kind == StripKind::exponent)
+        return {{exponent_so_far(state_.scene, moment, state_.start_distance), theme_.trace, width}};
+    std::vector<StripValue> values;
+    for (std::size_t side = 0; side < 2; ++side) {
+        const auto& seen = state_.seen(side);
+        const auto color = theme_.sides[side];
+        if (strip_.kind == StripKind::rod_error) values.push_back({seen.length_error, color, widths[side]});
+        if (strip_.kind == StripKind::energy) {
+            // where damping takes energy no change of it is an error
+            const double error = std::abs(seen.energy_change) / energy_unit_;
+            values.push_back(
+                {state_.side(side).conserves_energy ? std::optional(error) : std::nullopt, color, widths[side]});
+        }
+        if (strip_.kind != StripKind::rod_force) continue;
+        const auto rods = shown_rods(seen.tension.size());
+        for (const auto rod : rods) {
+            // the inner rods paler
+            const float pale = rods.size() < 2 || rod + 1 == seen.tension.size() ? 0 : 0.6f;
+            values.push_back({seen.tension[rod], mixed(color, theme_.text, pale), 0.8 * width,
+                              fmt::format("{}{}", side == 0 ? "a" : "b", rod + 1)});
+        }
+    }
+    return values;
+}
+
+void StripLayer::draw_axes(DisplayList& list) const {
+    const float t = layout_.text, line = px(style_.width.grid), size = px(style_.font.axis);
+    const auto& area = strip_.area;
+    for (const auto& tick : axis_ticks(strip_.time, size, 90 * t, true))
+        list.push_back(vertical_line(strip_.time.at(tick.value), area.top, area.bottom, line, theme_.grid));
+    bool has_foot = false;
+    for (const auto& tick :
+         axis_ticks(strip_.value, size, (strip_.kind == StripKind::distance ? 1.7f : 1.5f) * size, false)) {
+        const float y = strip_.value.at(tick.value);
+        const bool border = y > area.bottom - 0.5f;
+        if (tick.text.empty() && !border) continue;
+        has_foot |= border;
+        list.push_back(horizontal_line(y, area.left, area.right, line, border ? theme_.frame : theme_.grid));
+        if (!tick.text.empty())
+            list.push_back(
+                label(tick.text, {area.left - 12 * t, y + 0.36f * size}, size, theme_.quiet_text, Align::right));
+    }
+    if (!has_foot) list.push_back(horizontal_line(area.bottom, area.left, area.right, line, theme_.frame));
+    list.push_back(label(heading(), {area.left, heading_base_}, size_, theme_.text));
+}
+
+void StripLayer::draw_time_labels(DisplayList& list) const {
+    const float t = layout_.text, size = px(style_.font.axis);
+    const auto ticks = axis_ticks(strip_.time, size, 90 * t, true);
+    for (const auto& tick : ticks) {
+        const bool last = &tick == &ticks.back();
+        const float x = strip_.time.at(tick.value);
+        // the last one carries the unit, and stays on the page
+        const bool at_edge = x > layout_.page.right - 30 * t;
+        list.push_back(label(last ? tick.text + " s" : tick.text,
+                             {at_edge ? layout_.page.right : x, layout_.time_labels}, size, theme_.quiet_text,
+                             at_edge ? Align::right : Align::center));
+    }
+}
+
+/// What lies beyond the time up to which the pair can be predicted is dimmed.
+void StripLayer::draw_horizon(DisplayList& list) const {
+    const auto horizon = state_.scene.horizon();
+    if (!horizon) return;
+    const float t = layout_.text, size = 0.9f * size_;
+    const auto& area = strip_.area;
+    const float x = strip_.time.at(*horizon);
+    list.push_back(Box{x, area.top, area.right, area.bottom, 0, theme_.panel});
+    add_dashed_line(x, area, 3 * t, px(style_.width.mark), theme_.quiet_text, list);
+    if (index_ > 0) return;
+    // at the foot: traces are high up by then
+    const auto words = fmt::format("predictable to {:.1f} s", *horizon);
+    const bool left = x - area.left > text_width(words, size) + 20 * t;
+    list.push_back(label(words, {x + (left ? -10 : 10) * t, area.bottom - 10 * t}, size, theme_.quiet_text,
+                         left ? Align::right : Align::left));
+}
+
+/// The moment of parting: a dashed line, and when it was above it, right of what is there already.
+void StripLayer::draw_parting(float free_from, DisplayList& list) const {
+    const float x = strip_.time.at(*state_.parted);
+    add_dashed_line(x, strip_.area, 6 * layout_.text, px(style_.width.mark), theme_.quiet_text, list);
+    const auto text = fmt::format("parted at {:.1f} s", *state_.parted);
+    const float half = text_width(text, size_) / 2;
+    const float center = std::clamp(x, free_from + half, std::max(free_from + half, strip_.area.right - half));
+    list.push_back(label(text, {center, heading_base_}, size_, theme_.text, Align::center));
+}
+
+void StripLayer::frame(DisplayList& list) const {
+    const float t = layout_.text, x = strip_.time.at(state_.time());
+    const auto now = values();
+
+    // the number now, or which line is which, beside the heading
+    float words = strip_.area.left + text_width(heading(), size_) + 18 * t;
+    const auto say = [&](const std::string& text, Color color, float room) {
+        list.push_back(label(text, {words, heading_base_}, size_, color));
+        words += std::max(room, text_width(text, size_) + 14 * t);
+    };
+    if (strip_.kind == StripKind::distance)
+        say(scientific(state_.shot.moment.distance), now[0].color, 110 * t);
+    else if (strip_.kind == StripKind::exponent && now[0].value)
+        say(fmt::format("{:.2f}", *now[0].value), now[0].color, 110 * t);
+    else if (strip_.kind == StripKind::exponent && state_.start_distance == 0)
+        say("none: both start alike", theme_.quiet_text, 0);
+    else if (strip_.kind == StripKind::energy && !state_.scene.a.conserves_energy && !state_.scene.b.conserves_energy)
+        say("none: damping takes energy", theme_.quiet_text, 0);
+    for (const auto& value : now)
+        if (!value.name.empty()) say(value.name, value.color, 0);
+
+    if (state_.parted && index_ == 0) draw_parting(words, list);
+    list.push_back(vertical_line(x, strip_.area.top, strip_.area.bottom, px(style_.width.mark), theme_.cursor));
+    for (std::size_t k = 0; k < now.size(); ++k)
+        list.push_back(Stroke{.vertices = traces_[k].vertices(), .width = px(now[k].width), .color = now[k].color});
+    if (now.size() != 1 || !now[0].value) return;
+    const Point head{x, strip_.value.at(*now[0].value)};
+    list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});
+}
+
+}  // namespace
+
+std::unique_ptr<Layer> make_strip_layer(const FilmState& state, std::size_t index) {
+    return std::make_unique<StripLayer>(state, index);
+}
+
+}  // namespace doppel

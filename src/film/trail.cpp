@@ -1,0 +1,116 @@
+#include "film/trail.hpp"
+
+#include "render/stroke.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+// What fades would have to be drawn anew at every sample. Instead the points of a trail fade in groups, each by steps
+// of 3 % of the light, and hardly ever two at once.
+constexpr long group = 24;      // samples
+constexpr double steps = 32;    // from full light to none
+constexpr double fading = 1.6;  // the light is this power of the freshness
+
+}  // namespace
+
+Trail::Trail(const Scene& scene, const Style& style, std::size_t side)
+    : sample_hz_(scene.preset.sample_hz.value()),
+      trail_s_(scene.preset.video.trail_s),
+      pen_{.vertices = {}, .width = px(style.width.trail), .color = style.theme.sides[side], .glow = style.glow} {}
+
+std::optional<Point> Trail::end() const {
+    return points_.empty() ? std::nullopt : std::optional(points_.back().at);
+}
+
+/// Whole groups go when they have faded.
+void Trail::add(Point at, double time, double now) {
+    const long g = static_cast<long>(std::floor(time * sample_hz_ + 1e-6)) / group;
+    if (!points_.empty() && points_.back().group != g) {
+        simplify(points_);
+        // the new group goes on from where the last one ends
+        TrailPoint first = points_.back();
+        first.group = g;
+        points_.push_back(first);
+    }
+    points_.push_back({at, time, g});
+    while (end_of(points_.front().group) < now - trail_s_) points_.pop_front();
+}
+
+/// Keeps of the newest group only the points between which it bends evenly.
+void Trail::simplify(Points& points) const {
+    std::size_t begin = points.size() - 1;
+    while (begin > 0 && points[begin - 1].group == points.back().group) --begin;
+    std::vector<Stroke::Vertex> path;
+    for (std::size_t i = begin; i < points.size(); ++i) {
+        // light falls with time: evenly, in short
+        const double part = (points[i].time - points[begin].time) / trail_s_;
+        path.push_back(
+            {.at = points[i].at, .alpha = static_cast<float>(part), .bend = points[i].bend, .joint = points[i].joint});
+    }
+    std::size_t kept = begin;
+    for (std::size_t i = 0; i < path.size(); ++kept) {
+        const auto piece = i + 1 < path.size() ? next_piece(path, i, Bends::yes) : StrokePiece{i, i + 1};
+        points[kept] = points[begin + i];
+        points[kept].bend = piece.bend;
+        points[kept].joint = true;
+        i = piece.last;
+    }
+    points.resize(kept);
+}
+
+/// When the last sample of a group is over, s.
+double Trail::end_of(long g) const {
+    return static_cast<double>((g + 1) * group) / sample_hz_;
+}
+
+/// For what time a group's points look their age: not yet that of the next step.
+double Trail::faded_until(long g, double now) const {
+    const double end = end_of(g);
+    const double light = std::pow(std::max(1 - (now - end) / trail_s_, 0.0), fading);
+    return end + (1 - std::pow(std::ceil(steps * light) / steps, 1 / fading)) * trail_s_;
+}
+
+void Trail::draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, float jump) const {
+    if (!(trail_s_ > 0)) return;
+    Points piece;
+    for (const auto& point : points_) {
+        if (!piece.empty() && std::abs(point.at.x - piece.back().at.x) > jump) {
+            draw_piece(std::move(piece), area, now, list);
+            piece.clear();
+        }
+        piece.push_back(point);
+    }
+    if (piece.empty()) return;
+    if (head) piece.push_back({*head, now, piece.back().group});
+    draw_piece(std::move(piece), area, now, list);
+}
+
+void Trail::draw_piece(Points points, const Area& area, double now, DisplayList& list) const {
+    simplify(points);
+    Stroke stroke = pen_;
+    std::optional<long> last_group;
+    double until = 0;
+    for (const auto& point : points) {
+        if (!area.holds(point.at)) {
+            if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
+            stroke = pen_;
+            continue;
+        }
+        if (point.group != last_group) until = faded_until(point.group, now);
+        last_group = point.group;
+        const double freshness = std::clamp(1 - (until - point.time) / trail_s_, 0.0, 1.0);
+        constexpr double thinnest = 0.55;
+        stroke.vertices.push_back({.at = point.at,
+                                   .alpha = static_cast<float>(std::pow(freshness, fading)),
+                                   .width = static_cast<float>(thinnest + (1 - thinnest) * freshness),
+                                   .glow = static_cast<float>(std::pow(freshness, 4)),
+                                   .bend = point.bend,
+                                   .joint = point.joint});
+    }
+    if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
+}
+
+}  // namespace doppel

@@ -1,0 +1,194 @@
+#include "plot/heat_map.hpp"
+
+#include "image/color.hpp"
+#include "plot/axis.hpp"
+#include "plot/text.hpp"
+#include "render/font.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+void set_pixel(Picture& picture, int x, int y, Color color) {
+    std::uint8_t* rgba = picture.at(x, y);
+    rgba[0] = byte_of(color.r), rgba[1] = byte_of(color.g), rgba[2] = byte_of(color.b), rgba[3] = 255;
+}
+
+constexpr float heading_width = 7.5f;  // em
+
+/// A bar before it has a place: top 0, left 0.
+struct Bar {
+    Axis axis;  // from its bottom up, px below the top of the panel
+    std::vector<Tick> ticks;
+    std::vector<std::string> none;  // lines
+    float thickness, words_left, width, none_top;
+};
+
+Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
+    Bar bar;
+    const float em = style.tick;
+    bar.thickness = std::round(0.95f * em);
+    bar.words_left = bar.thickness + 0.5f * em;
+    bar.axis = fitted_scale(map);
+    float none_height = 0;
+    if (!map.none_label.empty()) {
+        bar.none = wrapped(map.none_label, em, Weight::regular, 6.2f * em);
+        none_height = 1.2f * em * static_cast<float>(bar.none.size());
+    }
+    bar.none_top = height - none_height;
+    bar.axis.from = std::round(bar.none.empty() ? height : std::max(bar.none_top - 0.8f * em, 0.3f * height));
+    bar.axis.to = 0;
+    bar.ticks = chart_ticks(bar.axis, {.size = em, .gap = 0.6f * em, .spacing = 2.4f * em, .across = false});
+    float widest = 0;
+    for (const Tick& tick : bar.ticks) widest = std::max(widest, text_width(tick.text, em));
+    for (const std::string& line : bar.none) widest = std::max(widest, text_width(line, em));
+    bar.width = bar.words_left + widest;
+    return bar;
+}
+
+Image colors(const Bar& bar, float left, float top, float scale) {
+    const int rows = std::max(1, static_cast<int>(std::lround(bar.axis.from * scale)));
+    auto pixels = std::make_shared<Picture>(Size{1, rows});
+    for (int row = 0; row < rows; ++row) {
+        set_pixel(*pixels, 0, row, map_color(1 - (row + 0.5) / rows));
+    }
+    return {left, top, left + bar.thickness, top + bar.axis.from, std::move(pixels)};
+}
+
+/// The label of a bar by itself, in lines above it.
+TextBlock bar_heading(const HeatMap& map, const PlotStyle& style) {
+    return {wrapped(map.label, style.tick, Weight::regular, heading_width * style.tick), style.tick, Weight::regular,
+            style.theme.text};
+}
+
+float below_heading(const HeatMap& map, float height, const PlotStyle& style) {
+    return std::max(height - bar_heading(map, style).height() - style.tick, 1.0f);
+}
+
+/// Which cells each pixel of one axis shows: from…to, half open, in cells; empty outside the map.
+struct Span {
+    double from, to;
+};
+
+std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, double low, double high,
+                        std::size_t cells) {
+    std::vector<Span> made;
+    const auto cell_at = [&](float px) {
+        const double share = (static_cast<double>(px) - axis.from) / (static_cast<double>(axis.to) - axis.from);
+        const double part =
+            axis.logarithmic ? std::log(axis.low / low * std::pow(axis.high / axis.low, share)) / std::log(high / low)
+                             : (axis.low + share * (axis.high - axis.low) - low) / (high - low);
+        return part * static_cast<double>(cells);
+    };
+    const auto count = static_cast<double>(cells);
+    for (int i = 0; i < pixels; ++i) {
+        const float begin = first + static_cast<float>(i) / scale, end = first + static_cast<float>(i + 1) / scale;
+        const double a = cell_at(begin), b = cell_at(end), middle = cell_at((begin + end) / 2);
+        if (!(middle >= 0 && middle < count)) {
+            made.push_back({0, 0});
+        } else if (std::abs(b - a) <= 1) {
+            // a cell as large as the pixel or larger: the one below its centre
+            made.push_back({std::floor(middle), std::floor(middle) + 1});
+        } else {
+            made.push_back({std::clamp(std::min(a, b), 0.0, count), std::clamp(std::max(a, b), 0.0, count)});
+        }
+    }
+    return made;
+}
+
+}  // namespace
+
+Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
+                Color none, float scale) {
+    const Size size{std::max(1, static_cast<int>(std::lround(area.width() * scale))),
+                    std::max(1, static_cast<int>(std::lround(area.height() * scale)))};
+    // what is averaged
+    std::vector<float> values = map.values;
+    if (map.logarithmic)
+        for (float& value : values) value = std::log(value);
+    const Axis shares{.low = map.logarithmic ? std::log(scale_of_colors.low) : scale_of_colors.low,
+                      .high = map.logarithmic ? std::log(scale_of_colors.high) : scale_of_colors.high};
+    const auto across = spans(x, area.left, size.width, scale, map.x_low, map.x_high, map.columns);
+    const auto down = spans(y, area.top, size.height, scale, map.y_low, map.y_high, map.rows);
+    auto pixels = std::make_shared<Picture>(size);
+    for (int row = 0; row < size.height; ++row) {
+        for (int column = 0; column < size.width; ++column) {
+            const Span& h = across[static_cast<std::size_t>(column)];
+            const Span& v = down[static_cast<std::size_t>(row)];
+            if (h.from == h.to || v.from == v.to) continue;
+            // the mean of what has a value; where most has none, none
+            double sum = 0, weight = 0, blank = 0;
+            for (auto j = static_cast<std::size_t>(v.from); static_cast<double>(j) < v.to; ++j) {
+                const auto top = static_cast<double>(j);
+                const double tall = std::min(top + 1, v.to) - std::max(top, v.from);
+                for (auto i = static_cast<std::size_t>(h.from); static_cast<double>(i) < h.to; ++i) {
+                    const auto left = static_cast<double>(i);
+                    const double part = tall * (std::min(left + 1, h.to) - std::max(left, h.from));
+                    const auto value = static_cast<double>(values[j * map.columns + i]);
+                    if (std::isfinite(value)) {
+                        sum += part * value;
+                        weight += part;
+                    } else {
+                        blank += part;
+                    }
+                }
+            }
+            set_pixel(*pixels, column, row, weight > blank ? map_color(shares.share(sum / weight)) : none);
+        }
+    }
+    return {area.left, area.top, area.right, area.bottom, std::move(pixels)};
+}
+
+Color none_color(const HeatMap& map, const Theme& theme) {
+    return map.none_is_bad ? theme.bad : theme.none;
+}
+
+float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
+    float widest = 0;
+    for (const std::string& line : bar_heading(map, style).lines)
+        widest = std::max(widest, text_width(line, style.tick));
+    return 1.2f * style.tick + std::max(widest, make_bar(map, below_heading(map, height, style), style).width);
+}
+
+void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
+    bar_heading(map, style).draw({std::round(left + 1.2f * style.tick), area.top}, list);
+    Area below = area;
+    below.top = std::round(area.bottom - below_heading(map, area.height(), style));
+    draw_bar(map, below, left, style, list);
+}
+
+float bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
+    return 1.2f * style.tick + make_bar(map, height, style).width;
+}
+
+void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
+    const Bar bar = make_bar(map, area.height(), style);
+    const float em = style.tick, start = std::round(left + 1.2f * em), ticks_left = start + bar.thickness;
+    list.push_back(colors(bar, start, area.top, style.scale));
+    const auto words = [&](const std::string& text, float middle) {
+        list.push_back(Label{text,
+                             {start + bar.words_left, area.top + middle + 0.36f * em},
+                             em,
+                             Align::left,
+                             Weight::regular,
+                             style.theme.quiet_text});
+    };
+    for (const Tick& tick : bar.ticks) {
+        if (tick.text.empty()) continue;
+        const float y = bar.axis.at(tick.value);
+        list.push_back(
+            horizontal_line(area.top + y, ticks_left, ticks_left + 0.25f * em, style.line, style.theme.frame));
+        words(tick.text, y);
+    }
+    // centred on the tick as all words are, so none is above the panel by more than half a line
+    if (bar.none.empty()) return;
+    const float top = std::round(area.top + bar.none_top + 0.1f * em);
+    list.push_back(
+        Box{start, top, start + bar.thickness, top + std::round(0.95f * em), 0, none_color(map, style.theme)});
+    for (std::size_t i = 0; i < bar.none.size(); ++i)
+        words(bar.none[i], bar.none_top + (0.6f + 1.2f * static_cast<float>(i)) * em);
+}
+
+}  // namespace doppel
