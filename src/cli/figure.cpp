@@ -51,9 +51,8 @@ std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
 std::optional<Shard> shard_of(const FigureCommandOptions& options) {
     if (options.shard.empty()) return std::nullopt;
     const auto parts = two_numbers(options.shard, '/');
-    constexpr long most = 100'000;
-    if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > most)
-        throw bad_input("--shard wants I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", most, options.shard);
+    if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > most_parts)
+        throw bad_input("--shard wants I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", most_parts, options.shard);
     if (options.merge) throw bad_input("--shard makes a part and --merge joins them; give one");
     return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
 }

@@ -1,5 +1,8 @@
-#include "figure/claims.hpp"
+#include "figure/audit.hpp"
+
 #include "figure/kinds.hpp"
+#include "scene/assemble.hpp"
+#include "scene/scene.hpp"
 
 namespace doppel {
 namespace {
@@ -9,15 +12,11 @@ std::string words(Verdict verdict) {
     return all[static_cast<int>(verdict)];
 }
 
-/// The study's claims, one by one, put to the test: a page.
+/// The study's claims, measured one by one: a table.
 class Audit final : public FigureWork {
 public:
     std::size_t trials() const override { return claims().size(); }
     std::string unit() const override { return "claims"; }
-
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = claims()[first + i].measure(stop);
-    }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
         return numbers.size() == claims()[trial].numbers && all_finite(numbers);
@@ -27,11 +26,8 @@ public:
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const auto& claim = claims()[i];
-            table.add(claim.words);
-            table.add(claim.found(numbers[i]));
-            table.add(words(claim.verdict(numbers[i])));
-            table.end_row();
+            const auto judgement = claims()[i].judge(numbers[i]);
+            add_row(table, claims()[i].words, judgement.found, words(judgement.verdict));
         }
     }
 
@@ -40,11 +36,9 @@ public:
         constexpr Tone tones[] = {Tone::good, Tone::bad, Tone::open};
         PlotTable page{.columns = {{"the study", 0.33f}, {"measured", 0.54f}, {"verdict", 0.13f}}, .rows = {}};
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const auto& claim = claims()[i];
-            const auto verdict = claim.verdict(numbers[i]);
-            page.rows.push_back({{std::string(claim.words)},
-                                 {claim.found(numbers[i])},
-                                 {words(verdict), tones[static_cast<int>(verdict)]}});
+            const auto [verdict, found] = claims()[i].judge(numbers[i]);
+            page.rows.push_back(
+                {{std::string(claims()[i].words)}, {found}, {words(verdict), tones[static_cast<int>(verdict)]}});
         }
         figure.table = std::move(page);
     }
@@ -52,14 +46,76 @@ public:
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
         for (std::size_t i = 0; i < numbers.size(); ++i)
-            all.push_back({std::string(claims()[i].key), words(claims()[i].verdict(numbers[i]))});
+            all.push_back({std::string(claims()[i].key), words(claims()[i].judge(numbers[i]).verdict)});
         return all;
     }
 
     std::string resolved() const override { return ""; }
+
+private:
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+        return claims()[trial].measure(stop);
+    }
 };
 
 }  // namespace
+
+SideSpec side(std::vector<Quad> angle_deg, ModelChoice model) {
+    SideSpec spec;
+    spec.mass_kg.assign(angle_deg.size(), 1);
+    spec.length_m.assign(angle_deg.size(), 1);
+    spec.omega_deg_per_s.assign(angle_deg.size(), 0);
+    spec.angle_deg = std::move(angle_deg);
+    spec.model = model;
+    return spec;
+}
+
+SideSpec exactly(SideSpec spec) {
+    spec.integrator = "taylor";
+    spec.precision = Precision::in_quad;
+    spec.tolerance = parse_quad("1e-26");
+    return spec;
+}
+
+std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, const std::atomic<bool>& stop) {
+    const auto scene = make_scene({.name = "audit", .duration_s = *reduced(count, 120), .a = a, .b = b});
+    PairRun run(scene);
+    std::vector<double> all;
+    for (long n = 0; n <= count; ++n) all.push_back(run.next(stop).distance);
+    return all;
+}
+
+std::vector<double> averages(const std::vector<SideTwins>& sides, const TwinSide& method,
+                             const std::atomic<bool>& stop) {
+    std::vector<Twins> twins;
+    for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});
+    std::vector<double> found(twins.size());
+    average_log_ratios(twins, {.a = method, .b = method}, found, stop);
+    return found;
+}
+
+SideTwins angle_twins(int theta1_deg, int theta2_deg) {
+    return {side({theta1_deg, theta2_deg}), side({theta1_deg + parse_quad("0.003"), theta2_deg})};
+}
+
+SideTwins mass_twins(int theta1_deg, int theta2_deg, double ratio) {
+    auto twins = std::pair{side({theta1_deg, theta2_deg}), side({theta1_deg, theta2_deg})};
+    twins.first.mass_kg[0] = ratio;
+    twins.second.mass_kg[0] = ratio + 0.01;
+    return twins;
+}
+
+SideSpec with_droplet(SideSpec spec, bool droplet) {
+    spec.model = ModelChoice::mechanism;
+    if (droplet)
+        spec.forces.push_back({.name = {},
+                               .kind = "droplet",
+                               .particle = {},
+                               .position_m = std::array<Quad, 2>{1609, 0},
+                               .mass_kg = parse_quad("0.000034"),
+                               .constant = parse_quad("6.674e-11")});
+    return spec;
+}
 
 std::shared_ptr<const FigureWork> read_audit(FigureReader&) {
     return std::make_shared<Audit>();

@@ -22,6 +22,11 @@ struct PairLadder {
     bool adaptive() const { return find_method(method_a)->adaptive; }
 };
 
+/// The numbers of a trial; distance and step NaN where the run broke down.
+struct RungRow {
+    double step, distance, steps;
+};
+
 /// How far the two sides of a pair part, over finer and finer steps: what is left of truncation, and what of rounding.
 class Convergence final : public FigureWork {
 public:
@@ -43,14 +48,10 @@ public:
 
     std::size_t trials() const override { return ladders_.back().first + ladders_.back().second.rungs; }
 
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = part(first + i, stop);
-    }
-
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        if (numbers.size() != 3 || !is_count(numbers[2])) return false;
-        const bool broke_down = std::isnan(numbers[0]) && std::isnan(numbers[1]);
-        return broke_down || all_finite(numbers);
+        if (numbers.size() != numbers_in<RungRow>) return false;
+        const auto [step, distance, steps] = row_of<RungRow>(numbers);
+        return is_count(steps) && (all_finite(numbers) || (std::isnan(step) && std::isnan(distance)));
     }
 
     std::vector<std::string> columns() const override { return {"method", "precision", "step_s", "distance", "steps"}; }
@@ -58,13 +59,9 @@ public:
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (const auto& [begin, ladder] : ladders_)
             for (std::size_t rung = 0; rung < ladder.rungs; ++rung) {
-                const auto& trial = numbers[begin + rung];
-                table.add(ladder.name());
-                table.add(ladder.precision == Precision::in_double ? "double" : "quad");
-                table.add_or_empty(trial[0]);
-                table.add_or_empty(trial[1]);
-                table.add(static_cast<long>(trial[2]));
-                table.end_row();
+                const auto [step, distance, steps] = row_of<RungRow>(numbers[begin + rung]);
+                add_row(table, ladder.name(), ladder.precision == Precision::in_double ? "double" : "quad", step,
+                        distance, steps);
             }
     }
 
@@ -80,8 +77,9 @@ public:
                 .hue = static_cast<int>(std::find(methods_.begin(), methods_.end(), ladder.name()) - methods_.begin()),
                 .dashed = in_double};
             for (std::size_t rung = 0; rung < ladder.rungs; ++rung) {
-                curve.x.push_back(numbers[begin + rung][0]);
-                curve.y.push_back(numbers[begin + rung][1]);
+                const auto row = row_of<RungRow>(numbers[begin + rung]);
+                curve.x.push_back(row.step);
+                curve.y.push_back(row.distance);
             }
             plot.curves.push_back(std::move(curve));
         }
@@ -92,37 +90,36 @@ public:
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
-        if (std::any_of(numbers.begin(), numbers.end(), [](const auto& trial) { return trial[1] > 0; }))
+        if (std::any_of(numbers.begin(), numbers.end(),
+                        [](const auto& trial) { return row_of<RungRow>(trial).distance > 0; }))
             return std::nullopt;
         return fmt::format(
-            "the two sides never part, or every run broke down within {} s: there is no distance to "
-            "draw",
+            "the two sides never part, or every run broke down within {} s: there is no distance to draw",
             pair_.duration_s.value());
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        std::array<double, 2> floors{nan_value, nan_value};
+        double least_in_double = nan_value, least_in_quad = nan_value;
         for (const auto& [begin, ladder] : ladders_) {
             const bool in_double = ladder.precision == Precision::in_double;
+            auto& least = in_double ? least_in_double : least_in_quad;
             for (std::size_t rung = 0; rung < ladder.rungs; ++rung)
-                floors[in_double ? 0 : 1] = std::fmin(floors[in_double ? 0 : 1], numbers[begin + rung][1]);
+                least = std::fmin(least, row_of<RungRow>(numbers[begin + rung]).distance);
             if (!in_double) all.push_back({"slope_" + ladder.name(), slope(numbers, begin, ladder)});
         }
-        all.push_back({"least_distance_in_double", floors[0]});
-        all.push_back({"least_distance_in_quad", floors[1]});
+        all.push_back({"least_distance_in_double", least_in_double});
+        all.push_back({"least_distance_in_quad", least_in_quad});
         return all;
     }
 
     std::string resolved() const override {
-        std::vector<std::string> quoted;
-        for (const auto& method : methods_) quoted.push_back(toml_text(method));
         const auto mark = mark_step_ ? fmt::format("mark_step_s = \"{}\"\n", mark_step_->text()) : "";
         return resolved_pair(pair_) +
                fmt::format(
-                   "\n[convergence]\nmethods = [{}]\nhalvings = {}\nquad_halvings = {}\n"
+                   "\n[convergence]\nmethods = {}\nhalvings = {}\nquad_halvings = {}\n"
                    "decades = {}\nquad_decades = {}\n",
-                   fmt::join(quoted, ", "), halvings_, quad_halvings_, decades_, quad_decades_) +
+                   toml_list(methods_), halvings_, quad_halvings_, decades_, quad_decades_) +
                mark;
     }
 
@@ -130,9 +127,9 @@ private:
     /// The order that the distances tell: with steps between the two finest, with tolerances over the middle third.
     static double slope(std::span<const TrialNumbers> numbers, std::size_t begin, const PairLadder& ladder) {
         const std::size_t fine_rung = ladder.adaptive() ? 2 * ladder.rungs / 3 : ladder.rungs - 1;
-        const auto& fine = numbers[begin + fine_rung];
-        const auto& coarse = numbers[begin + (ladder.adaptive() ? ladder.rungs / 3 : ladder.rungs - 2)];
-        return std::log(coarse[1] / fine[1]) / std::log(coarse[0] / fine[0]);
+        const auto fine = row_of<RungRow>(numbers[begin + fine_rung]);
+        const auto coarse = row_of<RungRow>(numbers[begin + (ladder.adaptive() ? ladder.rungs / 3 : ladder.rungs - 2)]);
+        return std::log(coarse.distance / fine.distance) / std::log(coarse.step / fine.step);
     }
 
     /// What the ladders come to, in words.
@@ -149,14 +146,14 @@ private:
         }
         return fmt::format(
             "The distance falls by the power of each method's order; slopes in quad: {}. The least is {} in double and "
-            "{} in "
-            "quad.",
+            "{} in quad.",
             slopes, scientific(least_double), scientific(least_quad));
     }
 
     void add_ladder(TomlReader& table, const std::string& name, Precision precision) {
         const auto slash = name.find('/');
-        PairLadder ladder{name.substr(0, slash), slash == std::string::npos ? name : name.substr(slash + 1), precision, 0};
+        PairLadder ladder{name.substr(0, slash), slash == std::string::npos ? name : name.substr(slash + 1), precision,
+                          0};
         const auto *a = find_method(ladder.method_a), *b = find_method(ladder.method_b);
         if (!a || !b || a->adaptive != b->adaptive)
             throw table.fault("methods",
@@ -171,16 +168,10 @@ private:
 
     /// Faults are told at once.
     static void check_methods(const TomlReader& table, const Scene& scene) {
-        for (const auto* side : {&scene.a, &scene.b}) {
-            const auto model = side->motion.model;
-            const auto& method = side->method;
-            if (model == Model::angles        ? method.angles
-                : model == Model::constraints ? method.constraints
-                                              : method.mechanism)
-                continue;
-            throw table.fault("methods", "must serve the sides' models; \"{}\" does not serve {}", method.name,
-                              name_of(model));
-        }
+        for (const auto* side : {&scene.a, &scene.b})
+            if (!serves(side->method, side->motion.model))
+                throw table.fault("methods", "must serve the sides' models; \"{}\" does not serve {}",
+                                  side->method.name, name_of(side->motion.model));
     }
 
     /// The pair at one rung: the sample's interval halved again and again, or the tolerance a tenth each time.
@@ -211,18 +202,17 @@ private:
         return {ladder, trial - begin};
     }
 
-    /// Mean step, greatest distance, and steps of both sides.
-    TrialNumbers part(std::size_t trial, const std::atomic<bool>& stop) const {
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto scene = make_scene(pair_of(trial));
         PairRun run(scene);
         double most = 0;
         try {
             for (long n = 0; n <= scene.samples; ++n) most = std::fmax(most, run.next(stop).distance);
         } catch (const BreakDown&) {
-            return {nan_value, nan_value, 0};
+            return numbers_of(RungRow{nan_value, nan_value, 0});
         }
         const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
-        return {2 * pair_.duration_s.value() / steps, most, steps};
+        return numbers_of(RungRow{2 * pair_.duration_s.value() / steps, most, steps});
     }
 
     static constexpr std::size_t first_decade = 3;
@@ -231,7 +221,7 @@ private:
     Preset pair_;
     std::vector<std::string> methods_{"euler", "midpoint", "rk4", "gauss6/rattle6", "dop853"};
     int halvings_ = 10, quad_halvings_ = 6, decades_ = 11, quad_decades_ = 24;
-    std::optional<Rational> mark_step_;                    // a line at it
+    std::optional<Rational> mark_step_;                        // a line at it
     std::vector<std::pair<std::size_t, PairLadder>> ladders_;  // each with its first trial
 };
 

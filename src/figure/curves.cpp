@@ -1,6 +1,6 @@
 #include "analysis/distance.hpp"
 #include "figure/kinds.hpp"
-#include "figure/pair_words.hpp"
+#include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
@@ -61,20 +61,6 @@ public:
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
     std::string unit() const override { return "pairs"; }
-
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const auto scene = make_scene(pair_of(first + i));
-            PairRun run(scene);
-            numbers[i].assign(static_cast<std::size_t>(samples_) + 1, nan_value);
-            double start = 0;
-            for (std::size_t n = 0; n < numbers[i].size(); ++n) {
-                const double distance = run.next(stop).distance;
-                if (n == 0) start = distance;
-                numbers[i][n] = quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(nan_value);
-            }
-        }
-    }
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
         return numbers.size() == static_cast<std::size_t>(samples_) + 1 &&
@@ -148,6 +134,19 @@ public:
     }
 
 private:
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+        const auto scene = make_scene(pair_of(trial));
+        PairRun run(scene);
+        TrialNumbers values;
+        double start = 0;
+        for (long n = 0; n <= samples_; ++n) {
+            const double distance = run.next(stop).distance;
+            if (n == 0) start = distance;
+            values.push_back(quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(nan_value));
+        }
+        return values;
+    }
+
     double time(long sample) const {
         const auto& rate = curves_.front().pair.sample_hz;
         return static_cast<double>(sample) * static_cast<double>(rate.denominator) /

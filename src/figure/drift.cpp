@@ -1,7 +1,8 @@
-#include "figure/drift_growth.hpp"
-#include "figure/drift_run.hpp"
+#include "analysis/drift.hpp"
+
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
+#include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
 #include "scene/wording.hpp"
 
@@ -13,22 +14,29 @@
 namespace doppel {
 namespace {
 
-// what a trial's numbers begin with; then the energy errors and the length errors of all points
-enum DriftEntry : std::size_t { setting, evaluations, cpu, broken, points };
+/// What a trial's numbers begin with; the energy errors and the length errors of all points follow.
+struct RunRow {
+    double setting, evaluations_per_s, cpu_s, broken_at_s;
+};
 
-/// How a kind of growth looks: one hue for all its curves, and its law beside their names.
+/// How a kind of growth is called, and looks: one hue for all its curves, and its law beside their names.
 struct GrowthLook {
     Growth::Kind kind;
+    std::string_view words, law;
     int hue;
-    std::string_view law;
 };
-constexpr std::array looks{GrowthLook{Growth::Kind::bounded, 1, ""}, GrowthLook{Growth::Kind::root, 2, " ∝ √t"},
-                           GrowthLook{Growth::Kind::linear, 0, " ∝ t"}, GrowthLook{Growth::Kind::steeper, 3, " ∝ t²"},
-                           GrowthLook{Growth::Kind::breakdown, 6, ""}};
+constexpr std::array looks{GrowthLook{Growth::Kind::bounded, "stays bounded", "", 1},
+                           GrowthLook{Growth::Kind::root, "grows like √t", " ∝ √t", 2},
+                           GrowthLook{Growth::Kind::linear, "grows linearly", " ∝ t", 0},
+                           GrowthLook{Growth::Kind::steeper, "grows like t²", " ∝ t²", 3},
+                           GrowthLook{Growth::Kind::breakdown, "breaks down", "", 6}};
+
+const GrowthLook& look_of(const Growth& growth) {
+    return *std::find_if(looks.begin(), looks.end(), [&](const auto& look) { return look.kind == growth.kind; });
+}
 
 /// Of errors that each are the worst since the one before.
-std::vector<double> worst_so_far(std::span<const double> errors) {
-    std::vector<double> worst(errors.begin(), errors.end());
+std::vector<double> worst_so_far(std::vector<double> worst) {
     for (std::size_t i = 1; i < worst.size(); ++i)
         if (!std::isnan(worst[i])) worst[i] = std::fmax(worst[i], worst[i - 1]);
     return worst;
@@ -37,8 +45,8 @@ std::vector<double> worst_so_far(std::span<const double> errors) {
 /// What a method makes of energy and rods over a long time, every method at the same cost.
 class Drift final : public FigureWork {
 public:
-    explicit Drift(FigureReader& reader) {
-        spec_.release = reader.release();
+    explicit Drift(FigureReader& reader) : release_(reader.release()) {
+        spec_.release = chain_of(release_);
         auto table = reader.table("drift");
         read_times(table);
         table.read_positive("evaluations_per_s", spec_.evaluations_per_s);
@@ -68,18 +76,10 @@ public:
     std::size_t trials() const override { return runs_.size(); }
     std::string unit() const override { return "motions"; }
 
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const auto run = drift(spec_, runs_[first + i], stop);
-            numbers[i] = {run.setting, run.evaluations_per_s, run.cpu_s, run.broken_at_s};
-            for (const auto* errors : {&run.energy_error, &run.length_error})
-                numbers[i].insert(numbers[i].end(), errors->begin(), errors->end());
-        }
-    }
-
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        return numbers.size() == points + 2 * spec_.times_s.size() && all_finite(numbers.first(broken)) &&
-               finite_or_none(numbers.subspan(broken));
+        constexpr std::size_t finite = 3;  // all of a RunRow but its last
+        return numbers.size() == numbers_in<RunRow> + 2 * spec_.times_s.size() && all_finite(numbers.first(finite)) &&
+               finite_or_none(numbers.subspan(finite));
     }
 
     std::vector<std::string> columns() const override {
@@ -87,17 +87,13 @@ public:
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (std::size_t run = 0; run < runs_.size(); ++run)
-            for (std::size_t i = 0; i < spec_.times_s.size(); ++i) {
-                if (std::isnan(energy(numbers[run])[i])) continue;
-                table.add(runs_[run].name);
-                table.add(model_words(runs_[run]));
-                table.add(numbers[run][setting]);
-                table.add(time(numbers[run], i));
-                table.add(energy(numbers[run])[i]);
-                table.add(rods(numbers[run])[i]);
-                table.end_row();
-            }
+        for (std::size_t r = 0; r < runs_.size(); ++r) {
+            const auto run = run_of(numbers[r]);
+            for (std::size_t i = 0; i < spec_.times_s.size(); ++i)
+                if (!std::isnan(run.energy_error[i]))
+                    add_row(table, runs_[r].name, model_words(runs_[r]), run.setting, time(run, i), run.energy_error[i],
+                            run.length_error[i]);
+        }
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
@@ -111,7 +107,7 @@ public:
                       .high = 100,
                       .logarithmic = true};
             for (const std::size_t run : longest_first(numbers))
-                if (shows(run, of_rods)) add_curves(numbers[run], run, of_rods, plot);
+                if (shows(run, of_rods)) add_curves(run_of(numbers[run]), curve_words(run), of_rods, plot);
             if (plot.curves.empty()) continue;
             figure.panels.push_back(std::move(plot));
             figure.captions.push_back(growth_caption(numbers, of_rods));
@@ -120,8 +116,8 @@ public:
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         for (const auto& trial : numbers)
-            for (const auto& errors : {energy(trial), rods(trial)})
-                if (std::any_of(errors.begin(), errors.end(), [](double x) { return x > 0; })) return std::nullopt;
+            if (std::any_of(trial.begin() + numbers_in<RunRow>, trial.end(), [](double x) { return x > 0; }))
+                return std::nullopt;
         return fmt::format(
             "no method makes an error, or none came as far as {} s, the first point: more evaluations_per_s take it "
             "further",
@@ -130,37 +126,33 @@ public:
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        for (std::size_t run = 0; run < runs_.size(); ++run) {
-            const auto& trial = numbers[run];
-            auto name = fmt::format("{}_{}", runs_[run].name, model_words(runs_[run]));
+        for (std::size_t r = 0; r < runs_.size(); ++r) {
+            const auto run = run_of(numbers[r]);
+            auto name = fmt::format("{}_{}", runs_[r].name, model_words(runs_[r]));
             std::replace(name.begin(), name.end(), ' ', '_');
-            all.push_back({name + "_setting", trial[setting]});
-            all.push_back({name + "_evaluations_per_s", trial[evaluations]});
-            all.push_back({name + "_cpu_s", trial[cpu]});
+            all.push_back({name + "_setting", run.setting});
+            all.push_back({name + "_evaluations_per_s", run.evaluations_per_s});
+            all.push_back({name + "_cpu_s", run.cpu_s});
             for (const bool of_rods : {false, true}) {
-                if (of_rods && runs_[run].model == Model::angles) continue;
-                const auto found = growth(trial, of_rods);
+                if (of_rods && runs_[r].model == Model::angles) continue;
+                const auto found = growth(run, of_rods);
                 const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
-                all.push_back({quantity + "growth", std::string(growth_words(found.kind))});
+                all.push_back({quantity + "growth", std::string(look_of(found).words)});
                 all.push_back({quantity + "exponent", found.exponent});
                 if (found.broken_at_s > 0) all.push_back({quantity + "doubling_s", found.doubling_s});
             }
-            if (trial[broken] > 0) all.push_back({name + "_broken_at_s", trial[broken]});
+            if (run.broken_at_s > 0) all.push_back({name + "_broken_at_s", run.broken_at_s});
         }
         return all;
     }
 
     std::string resolved() const override {
-        const auto list = [](const std::vector<std::string>& names) {
-            std::vector<std::string> quoted;
-            for (const auto& name : names) quoted.push_back(toml_text(name));
-            return fmt::format("{}", fmt::join(quoted, ", "));
-        };
-        return resolved_release(spec_.release) +
+        return resolved_release(release_) +
                fmt::format(
-                   "\n[drift]\nduration_s = {}\npoints_per_decade = {}\nevaluations_per_s = {}\nmethods = [{}]\n"
-                   "projected = [{}]\n",
-                   spec_.times_s.back(), points_per_decade_, spec_.evaluations_per_s, list(methods_), list(projected_));
+                   "\n[drift]\nduration_s = {}\npoints_per_decade = {}\nevaluations_per_s = {}\nmethods = {}\n"
+                   "projected = {}\n",
+                   spec_.times_s.back(), points_per_decade_, spec_.evaluations_per_s, toml_list(methods_),
+                   toml_list(projected_));
     }
 
 private:
@@ -192,21 +184,26 @@ private:
         return run.projected ? "projected constraints" : std::string(name_of(run.model));
     }
 
-    std::span<const double> energy(const TrialNumbers& trial) const {
-        return std::span(trial).subspan(points, spec_.times_s.size());
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+        const auto run = drift(spec_, runs_[trial], stop);
+        auto numbers = numbers_of(RunRow{run.setting, run.evaluations_per_s, run.cpu_s, run.broken_at_s});
+        for (const auto* errors : {&run.energy_error, &run.length_error})
+            numbers.insert(numbers.end(), errors->begin(), errors->end());
+        return numbers;
     }
-    std::span<const double> rods(const TrialNumbers& trial) const {
-        return std::span(trial).subspan(points + spec_.times_s.size());
+    DriftRun run_of(const TrialNumbers& trial) const {
+        const auto row = row_of<RunRow>(trial);
+        const auto energy = trial.begin() + numbers_in<RunRow>;
+        const auto rods = energy + static_cast<std::ptrdiff_t>(spec_.times_s.size());
+        return {row.setting, row.evaluations_per_s, row.cpu_s, row.broken_at_s, {energy, rods}, {rods, trial.end()}};
     }
+
     /// Of a point, or of the breakdown that came before it, s.
-    double time(const TrialNumbers& trial, std::size_t point) const {
-        return std::fmin(spec_.times_s[point], trial[broken]);
+    double time(const DriftRun& run, std::size_t point) const {
+        return std::fmin(spec_.times_s[point], run.broken_at_s);
     }
-    std::vector<double> worst(const TrialNumbers& trial, bool of_rods) const {
-        return worst_so_far(of_rods ? rods(trial) : energy(trial));
-    }
-    Growth growth(const TrialNumbers& trial, bool of_rods) const {
-        return growth_of(spec_.times_s, worst(trial, of_rods), trial[broken]);
+    Growth growth(const DriftRun& run, bool of_rods) const {
+        return growth_of(spec_.times_s, worst_so_far(of_rods ? run.length_error : run.energy_error), run.broken_at_s);
     }
 
     /// The energy in the best model that a method serves; the rods in all that have any.
@@ -223,22 +220,24 @@ private:
         std::vector<std::size_t> order(runs_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
-            return time(numbers[one], spec_.times_s.size() - 1) > time(numbers[other], spec_.times_s.size() - 1);
+            const auto end = [&](std::size_t r) {
+                return std::fmin(spec_.times_s.back(), row_of<RunRow>(numbers[r]).broken_at_s);
+            };
+            return end(one) > end(other);
         });
         return order;
     }
 
     /// A line, and a mark where it breaks down.
-    void add_curves(const TrialNumbers& trial, std::size_t run, bool of_rods, Plot& plot) const {
-        const auto found = growth(trial, of_rods);
-        const auto& look =
-            *std::find_if(looks.begin(), looks.end(), [&](const auto& l) { return l.kind == found.kind; });
-        Curve curve{.label = curve_words(run), .hue = look.hue};
+    void add_curves(const DriftRun& run, const std::string& name, bool of_rods, Plot& plot) const {
+        const auto found = growth(run, of_rods);
+        const auto& look = look_of(found);
+        Curve curve{.label = name, .hue = look.hue};
         curve.label += look.law;
-        const auto errors = worst(trial, of_rods);
+        const auto errors = worst_so_far(of_rods ? run.length_error : run.energy_error);
         for (std::size_t i = 0; i < errors.size(); ++i) {
             if (!(errors[i] > 0)) continue;
-            curve.x.push_back(time(trial, i));
+            curve.x.push_back(time(run, i));
             curve.y.push_back(errors[i]);
         }
         if (curve.x.empty()) return;
@@ -253,8 +252,8 @@ private:
         std::string exceptions;
         for (std::size_t run = 0; run < runs_.size(); ++run) {
             constexpr double within = 0.02;
-            const double taken = numbers[run][evaluations];
-            if (numbers[run][broken] > 0 || std::abs(taken / spec_.evaluations_per_s - 1) < within) continue;
+            const auto [setting, taken, cpu_s, broken_at_s] = row_of<RunRow>(numbers[run]);
+            if (broken_at_s > 0 || std::abs(taken / spec_.evaluations_per_s - 1) < within) continue;
             exceptions += fmt::format("{} {} in {} {:.0f}", exceptions.empty() ? ";" : ",", curve_words(run),
                                       name_of(runs_[run].model), taken);
         }
@@ -268,7 +267,7 @@ private:
         for (const auto& look : looks) {
             std::string names;
             for (std::size_t run = 0; run < runs_.size(); ++run) {
-                const auto found = growth(numbers[run], of_rods);
+                const auto found = growth(run_of(numbers[run]), of_rods);
                 if (!shows(run, of_rods) || found.kind != look.kind) continue;
                 names += fmt::format("{} {}", names.empty() ? ":" : ",", curve_words(run));
                 if (found.kind == Growth::Kind::breakdown)
@@ -277,12 +276,12 @@ private:
                     names += fmt::format(" ({:.2f})", found.exponent);
                 if (found.doubling_s > 0) names += fmt::format(" (doubling in {} s)", roughly(found.doubling_s));
             }
-            if (!names.empty())
-                words += fmt::format("{} {}{}", words.empty() ? "" : ";", growth_words(look.kind), names);
+            if (!names.empty()) words += fmt::format("{} {}{}", words.empty() ? "" : ";", look.words, names);
         }
         return fmt::format("{}{}.", of_rods ? "The rods’ error" : "The energy’s error", words);
     }
 
+    SideSpec release_;
     DriftSpec spec_;
     int points_per_decade_ = 10;
     std::vector<std::string> methods_, projected_;

@@ -2,6 +2,7 @@
 #include "figure/kinds.hpp"
 #include "integrate/flip_reference.hpp"
 #include "integrate/flips.hpp"
+#include "numeric/nan.hpp"
 #include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
 #include "scene/wording.hpp"
@@ -13,6 +14,11 @@
 
 namespace doppel {
 namespace {
+
+/// A release drawn at random: the time to its flip in the map, and by the reference, s; infinite for none.
+struct CheckRow {
+    double time, reference;
+};
 
 /// The time to the first flip over all releases θ1 × θ2. A trial is a row of the map; one of the last trials follows
 /// some releases, drawn by lot, by a method ten thousand times finer, to say how far the map can be believed.
@@ -47,15 +53,10 @@ public:
         return trial < map_trials_ ? columns_ * (is_mirrored(trial) ? 2 : 1) : 0;
     }
 
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i)
-            numbers[i] = first + i < map_trials_ ? row(first + i, stop) : checks(first + i - map_trials_, stop);
-    }
-
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
         // a time, or infinity for no flip
         const auto count = trial < map_trials_ ? static_cast<std::size_t>(columns_)
-                                               : static_cast<std::size_t>(2 * checks_of(trial - map_trials_));
+                                               : checks_of(trial - map_trials_) * numbers_in<CheckRow>;
         return numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), [](double t) { return t >= 0; });
     }
 
@@ -64,11 +65,8 @@ public:
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (int r = 0; r < rows_; ++r)
             for (int c = 0; c < columns_; ++c) {
-                table.add(angle_deg(c, columns_));
-                table.add(angle_deg(r, rows_));
                 const double time = at(numbers, r, c);
-                std::isfinite(time) ? table.add(time) : table.add_empty();
-                table.end_row();
+                add_row(table, angle_deg(c, columns_), angle_deg(r, rows_), std::isfinite(time) ? time : nan_value);
             }
     }
 
@@ -90,7 +88,7 @@ public:
         for (int r = 0; r < rows_; ++r)
             for (int c = 0; c < columns_; ++c) {
                 const double time = at(numbers, r, c);
-                map.values.push_back(static_cast<float>(std::isfinite(time) ? time : std::nan("")));
+                map.values.push_back(static_cast<float>(std::isfinite(time) ? time : nan_value));
             }
         plot.map = std::move(map);
         plot.curves.push_back(forbidden_outline());
@@ -98,10 +96,8 @@ public:
         const auto found = check_findings(numbers);
         figure.captions.push_back(fmt::format(
             "{} × {} releases from rest. Inside the line no rod has the energy to flip. Taylor series of order 16 in "
-            "SIMD "
-            "lanes at tolerance {}: of {} releases drawn by lot, {} flip within 0.01 s of a reference at 10⁻¹⁴ (so of "
-            "all, with "
-            "95 % confidence, {:.1f} % at least), half of them within {} s.",
+            "SIMD lanes at tolerance {}: of {} releases drawn by lot, {} flip within 0.01 s of a reference at 10⁻¹⁴ "
+            "(so of all, with 95 % confidence, {:.1f} % at least), half of them within {} s.",
             columns_, rows_, scientific(spec_.tolerance), checked_, found.agreeing,
             100 * share_at_least(found.agreeing, checked_), scientific(found.median)));
     }
@@ -151,6 +147,10 @@ private:
                static_cast<int>(trial) != rows_ - 1 - static_cast<int>(trial);
     }
 
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+        return trial < map_trials_ ? row(trial, stop) : checks(trial - map_trials_, stop);
+    }
+
     TrialNumbers row(std::size_t trial, const std::atomic<bool>& stop) const {
         std::vector<Release> releases;
         const double theta2 = radians(angle_deg(static_cast<int>(trial), rows_));
@@ -167,15 +167,16 @@ private:
     }
 
     /// How many releases the trial of checks follows.
-    int checks_of(std::size_t trial) const { return std::min(a_check, checked_ - static_cast<int>(trial) * a_check); }
+    std::size_t checks_of(std::size_t trial) const {
+        return static_cast<std::size_t>(std::min(a_check, checked_ - static_cast<int>(trial) * a_check));
+    }
 
     /// For some releases drawn by lot from those with the energy to flip: the map's time, and the reference's.
     TrialNumbers checks(std::size_t trial, const std::atomic<bool>& stop) const {
         std::mt19937_64 lot(trial);
         const auto drawn = [&] { return 360.0 * (static_cast<double>(lot() >> 11) * 0x1p-53) - 180; };
         TrialNumbers numbers;
-        const int count = checks_of(trial);
-        while (static_cast<int>(numbers.size()) < 2 * count) {
+        for (auto left = checks_of(trial); left > 0;) {
             const auto p = released(drawn(), drawn());
             if (flip_is_forbidden(p)) continue;
             if (stop) throw Error(ExitCode::interrupted, "interrupted");
@@ -183,7 +184,8 @@ private:
             std::array<double, 1> time;
             first_flips(pendulum_, releases, spec_, time, stop);
             constexpr double finer = 1e-14;
-            numbers.insert(numbers.end(), {time[0], reference_flip(p, spec_.duration, finer)});
+            append(numbers, CheckRow{time[0], reference_flip(p, spec_.duration, finer)});
+            --left;
         }
         return numbers;
     }
@@ -197,8 +199,7 @@ private:
         std::vector<double> errors;
         int agreeing = 0;
         for (std::size_t trial = map_trials_; trial < numbers.size(); ++trial)
-            for (std::size_t i = 0; i < numbers[trial].size(); i += 2) {
-                const double ours = numbers[trial][i], reference = numbers[trial][i + 1];
+            for (const auto& [ours, reference] : rows_of<CheckRow>(numbers[trial])) {
                 const bool both = std::isfinite(ours) && std::isfinite(reference);
                 if (both) errors.push_back(std::abs(ours - reference));
                 agreeing += both ? errors.back() <= near : std::isfinite(ours) == std::isfinite(reference);

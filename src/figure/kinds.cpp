@@ -1,5 +1,6 @@
 #include "figure/kinds.hpp"
 
+#include "scene/resolved.hpp"
 #include "scene/side_reader.hpp"
 
 #include <algorithm>
@@ -23,6 +24,30 @@ SideSpec FigureReader::release() {
     auto system = table("system");
     read_release(system, side);
     return side;
+}
+
+const MethodEntry& method_named(const TomlReader& table, const std::string& name) {
+    if (const auto* method = find_method(name)) return *method;
+    throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
+}
+
+const ReleaseParameter& read_parameter(TomlReader& table, std::span<const std::string_view> names) {
+    static constexpr std::array<ReleaseParameter, 4> all{
+        {{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& s, const Quad& x) { s.angle_deg[0] = x; }, 30, false},
+         {"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& s, const Quad& x) { s.angle_deg[1] = x; }, 30, false},
+         {"mass_ratio", "mass ratio m₁/m₂", 2, [](SideSpec& s, const Quad& x) { s.mass_kg[0] = x * s.mass_kg[1]; }, 0,
+          true},
+         {"length_ratio", "length ratio l₁/l₂", 2,
+          [](SideSpec& s, const Quad& x) { s.length_m[0] = x * s.length_m[1]; }, 0, true}}};
+    std::string name(names.front());
+    table.read_choice("parameter", name, names);
+    return *std::find_if(all.begin(), all.end(), [&](const auto& parameter) { return parameter.name == name; });
+}
+
+std::string toml_list(const std::vector<std::string>& texts) {
+    std::vector<std::string> quoted;
+    for (const auto& text : texts) quoted.push_back(toml_text(text));
+    return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names) {

@@ -1,7 +1,9 @@
 #pragma once
 
-#include "figure/peer.hpp"
+#include "analysis/external_method.hpp"
 #include "figure/work.hpp"
+#include "integrate/methods.hpp"
+#include "integrate/motion.hpp"
 #include "scene/preset_tables.hpp"
 
 #include <memory>
@@ -15,7 +17,7 @@ struct FigureReader {
     std::string name;  // of the preset
     const TomlDocument& document;
     TomlReader &top, &scene, &chart;  // of [chart], a kind may take keys of its own
-    std::span<const Peer> peers = {};
+    std::span<const ExternalMethod> external_methods = {};
 
     TomlReader table(std::string_view key) { return document.table(top, key); }
     /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_tables.hpp).
@@ -23,6 +25,28 @@ struct FigureReader {
     /// The chain that [system] describes, where the figure itself knows how to step it.
     SideSpec release();
 };
+
+/// Whether the method can step the model.
+inline bool serves(const MethodEntry& method, Model model) {
+    return model == Model::angles ? method.angles : model == Model::constraints ? method.constraints : method.mechanism;
+}
+
+/// Throws Error (exit 2) where no method has that name, one of `methods`.
+const MethodEntry& method_named(const TomlReader& table, const std::string& name);
+
+/// What sweeps and maps vary in a release.
+struct ReleaseParameter {
+    std::string_view name, label;  // the column's, the axis's
+    std::size_t links;             // that it takes, at least
+    void (*set)(SideSpec&, const Quad&);
+    double every;   // between ticks; 0 = as fits
+    bool is_ratio;  // > 0
+};
+/// `parameter`, one of these, of which the first is the default. Throws Error (exit 2).
+const ReleaseParameter& read_parameter(TomlReader& table, std::span<const std::string_view> names);
+
+/// ["a", "b"]
+std::string toml_list(const std::vector<std::string>& texts);
 
 /// Throws Error (exit 2) where one of the names of a key is there twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);

@@ -6,12 +6,20 @@
 #include "scene/resolved.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace doppel {
 namespace {
+
+/// CPU time of an Euler step of a chain, ns: one of these for every chain is the first trial.
+struct CostRow {
+    double angles, constraints;
+};
+/// The largest exponent of a chain, 1/s: the other trials.
+struct ExponentRow {
+    double value, uncertainty;
+};
 
 /// Chains of more and more links, all released alike: their largest exponent, and what a step costs.
 class Links final : public FigureWork {
@@ -33,19 +41,9 @@ public:
     std::string unit() const override { return "chains"; }
     double units(std::size_t trial) const override { return trial == 0 ? 0 : 1; }
 
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            if (first + i == 0) {
-                numbers[i] = step_costs(stop);
-                continue;
-            }
-            const auto exponent = largest_exponent(chain_of(chain(first + i - 1)).cast<double>(), spec_, stop);
-            numbers[i] = {exponent.value, exponent.uncertainty};
-        }
-    }
-
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        return numbers.size() == (trial == 0 ? 2 * chains() : 2) && all_finite(numbers);
+        return numbers.size() ==
+               (trial == 0 ? chains() * numbers_in<CostRow> : numbers_in<ExponentRow>)&&all_finite(numbers);
     }
 
     std::vector<std::string> columns() const override {
@@ -53,11 +51,10 @@ public:
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        const auto costs = rows_of<CostRow>(numbers[0]);
         for (std::size_t i = 0; i < chains(); ++i) {
-            table.add(static_cast<long>(links(i)));
-            for (const double x : numbers[i + 1]) table.add(x);
-            for (const std::size_t model : {0, 1}) table.add(numbers[0][2 * i + model]);
-            table.end_row();
+            const auto exponent = row_of<ExponentRow>(numbers[i + 1]);
+            add_row(table, links(i), exponent.value, exponent.uncertainty, costs[i].angles, costs[i].constraints);
         }
     }
 
@@ -67,21 +64,24 @@ public:
         plot.y = {.label = "largest Lyapunov exponent, 1/s", .low = 0};
         plot.right = PlotAxis{.label = "an Euler step, ns", .low = 0};
         Curve exponents{.label = "exponent", .mark = Mark::both};
-        std::array<Curve, 2> costs{Curve{.label = "a step in angles", .hue = 1, .right = true},
-                                   Curve{.label = "a step in constraints", .hue = 2, .right = true}};
+        Curve angles{.label = "a step in angles", .hue = 1, .right = true};
+        Curve constraints{.label = "a step in constraints", .hue = 2, .right = true};
+        const auto costs = rows_of<CostRow>(numbers[0]);
         for (std::size_t i = 0; i < chains(); ++i) {
-            for (auto* curve : {&exponents, &costs[0], &costs[1]}) curve->x.push_back(static_cast<double>(links(i)));
-            exponents.y.push_back(numbers[i + 1][0]);
-            exponents.uncertainty.push_back(numbers[i + 1][1]);
-            for (const std::size_t model : {0, 1}) costs[model].y.push_back(numbers[0][2 * i + model]);
+            for (auto* curve : {&exponents, &angles, &constraints}) curve->x.push_back(static_cast<double>(links(i)));
+            const auto exponent = row_of<ExponentRow>(numbers[i + 1]);
+            exponents.y.push_back(exponent.value);
+            exponents.uncertainty.push_back(exponent.uncertainty);
+            angles.y.push_back(costs[i].angles);
+            constraints.y.push_back(costs[i].constraints);
         }
-        plot.curves = {std::move(exponents), std::move(costs[0]), std::move(costs[1])};
+        plot.curves = {std::move(exponents), std::move(angles), std::move(constraints)};
         figure.panels.push_back(std::move(plot));
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
-        return {{"exponent_per_s_of_the_longest", numbers.back()[0]},
-                {"constraints_step_ns_a_link_of_the_longest", numbers[0].back() / to_}};
+        return {{"exponent_per_s_of_the_longest", row_of<ExponentRow>(numbers.back()).value},
+                {"constraints_step_ns_a_link_of_the_longest", rows_of<CostRow>(numbers[0]).back().constraints / to_}};
     }
 
     std::string resolved() const override {
@@ -93,6 +93,12 @@ private:
     std::size_t chains() const { return static_cast<std::size_t>(to_ - from_) + 1; }
     std::size_t links(std::size_t chain) const { return static_cast<std::size_t>(from_) + chain; }
 
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+        if (trial == 0) return step_costs(stop);
+        const auto exponent = largest_exponent(chain_of(chain(trial - 1)).cast<double>(), spec_, stop);
+        return numbers_of(ExponentRow{exponent.value, exponent.uncertainty});
+    }
+
     SideSpec chain(std::size_t number) const {
         auto side = release_;
         for (auto* values : {&side.mass_kg, &side.length_m, &side.angle_deg, &side.omega_deg_per_s})
@@ -100,8 +106,8 @@ private:
         return side;
     }
 
-    /// One explicit Euler step at the study's 30 kHz of every chain, in angles and in constraints, alone in double, ns
-    /// of CPU: the least of some rounds, so that what else the machine does leaves no mark.
+    /// A CostRow of each chain: one explicit Euler step at the study's 30 kHz in double, the least of some rounds, so
+    /// that other load on the machine does not count.
     TrialNumbers step_costs(const std::atomic<bool>& stop) const {
         constexpr int rounds = 12;
         std::vector<std::unique_ptr<Motion>> motions;

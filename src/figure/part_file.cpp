@@ -1,13 +1,14 @@
 #include "figure/part_file.hpp"
 
 #include "base/error.hpp"
-#include "figure/line_reader.hpp"
 #include "output/sha256.hpp"
 #include "scene/manifest_json.hpp"
 #include "scene/version.hpp"
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
+#include <memory>
 #include <string_view>
 
 namespace doppel {
@@ -18,7 +19,48 @@ namespace fs = std::filesystem;
 constexpr std::string_view mark = "doppel trials";  // what such a file calls itself
 constexpr int format = 2;                           // of its lines; 1 had no checksums
 constexpr std::size_t longest_header = 1 << 16, longest_line = std::size_t{1} << 32;
+constexpr std::size_t most_trials = 100'000'000;
 constexpr std::size_t checksum_digits = 16, name_digits = 12;
+
+/// Reads a file line by line: a regular one, and no link.
+class LineReader {
+public:
+    explicit LineReader(const fs::path& path) : path_(path) {
+        const auto folder = Folder::at(path.has_parent_path() ? path.parent_path() : ".");
+        const auto name = path.filename().string();
+        const auto kind = folder.entry(name).kind;
+        if (kind == Entry::Kind::link) throw fault("is a symbolic link");
+        if (kind != Entry::Kind::file && kind != Entry::Kind::none) throw fault("is no regular file");
+        auto file = open_file({folder, name});
+        file_.reset(fdopen(file.number(), "rb"));
+        if (!file_) throw cannot(path, "read");
+        file.release();
+    }
+
+    /// The next line, without its end. False after the last; what has no end, because its writer was killed, or is
+    /// longer than `most` bytes, is none; `line` then holds its beginning. Throws Error (exit 4).
+    bool next(std::string& line, std::size_t most) {
+        line.clear();
+        for (int c = 0; (c = getc_unlocked(file_.get())) != EOF && line.size() <= most;) {
+            if (c == '\n') return true;
+            line += static_cast<char>(c);
+        }
+        if (std::ferror(file_.get())) throw cannot(path_, "read");
+        return false;
+    }
+
+    /// "PATH: WHY; what to do about it" (exit 4).
+    Error fault(std::string_view why) const {
+        return io_failed("{}: {}; remove it, or give another folder with --out", path_.string(), why);
+    }
+
+private:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    fs::path path_;
+    std::unique_ptr<std::FILE, Close> file_;
+};
 
 Json json_of(const PartHeader& header) {
     return {{"file", mark},
@@ -64,7 +106,6 @@ std::size_t count(const Json& json, const char* key, std::size_t most) {
 }
 
 PartHeader header_from(const Json& json) {
-    constexpr std::size_t most_trials = 100'000'000, most_parts = 100'000;
     const auto of = count(json, "of", most_parts);
     return {json.at("figure"),
             json.at("version"),
@@ -89,6 +130,43 @@ PartHeader read_header(const std::string& line, const LineReader& file) {
 /// "fig8." or "fig8.3-of-8."
 std::string stem(const PartHeader& header) {
     return header.of == 1 ? header.figure + "." : fmt::format("{}.{}-of-{}.", header.figure, header.shard, header.of);
+}
+
+/// The files NAME.I-of-N.shard of a folder, or what else begins and ends like them.
+std::vector<fs::path> shards_in(const fs::path& folder, const std::string& name) {
+    std::vector<fs::path> found;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const auto file = entry.path().filename().string();
+        if (file.starts_with(name + ".") && file.ends_with(".shard")) found.push_back(entry.path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+void check_header(const fs::path& path, const PartHeader& found, const PartHeader& wanted) {
+    const auto refuse = [&](std::string_view what, const std::string& is, const std::string& ours) {
+        throw bad_input("{} was made with another {}: {}, not {}; compute it again with --shard {}/{}", path.string(),
+                        what, is, ours, found.shard, found.of);
+    };
+    const auto short_hash = [](const std::string& hash) { return hash.substr(0, 12); };
+    if (found.figure != wanted.figure) refuse("figure", found.figure, wanted.figure);
+    if (found.version != wanted.version) refuse("version", found.version, wanted.version);
+    if (found.revision != wanted.revision) refuse("revision", found.revision, wanted.revision);
+    if (found.preset != wanted.preset || found.trials != wanted.trials)
+        refuse("preset, or other --set", short_hash(found.preset), short_hash(wanted.preset));
+}
+
+/// Those of the parts that are not there, as many as one can read.
+void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) {
+    constexpr std::size_t most_named = 5;
+    const auto missing = static_cast<std::size_t>(std::count(parts.begin(), parts.end(), fs::path()));
+    if (missing == 0) return;
+    std::vector<std::string> named;
+    for (std::size_t i = 0; named.size() < std::min(missing, most_named); ++i)
+        if (parts[i].empty()) named.push_back(fmt::format("{}/{}", i + 1, parts.size()));
+    throw bad_input("{}: missing parts: {}{}", folder.string(), fmt::join(named, ", "),
+                    missing > most_named ? fmt::format(" … {} in all", missing) : "");
 }
 
 }  // namespace
@@ -140,10 +218,10 @@ void PartFile::take(const FigureWork& work, KnownTrials& into) {
 }
 
 PartFile read_part_file(const fs::path& path) {
-    LineReader file(path, "remove it, or give another folder with --out");
+    LineReader file(path);
     PartFile part;
     std::string header, line;
-    if (!file.next(header, longest_header)) header = file.rest();
+    file.next(header, longest_header);
     part.header = read_header(header, file);
     for (std::size_t number = 2; file.next(line, longest_line); ++number) {
         PartFile::Trial trial{};
@@ -169,6 +247,41 @@ void PartWriter::add(std::size_t trial, const TrialNumbers& numbers) {
     auto line = fmt::format("{}", trial);
     for (const double x : numbers) fmt::format_to(std::back_inserter(line), ",{}", x);
     file_.write(fmt::format("{};{}\n", line, checksum(header_, line)));
+}
+
+KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, const std::atomic<bool>& stop) {
+    const auto files = shards_in(folder, figure.name);
+    if (files.empty())
+        throw bad_input("{} holds no part of {}; make them with the same command, --shard I/N in place of --merge",
+                        folder.string(), figure.name);
+    const auto wanted = header_of(figure);
+    KnownTrials all(wanted.trials);
+    std::vector<fs::path> parts;  // by their numbers; empty where not seen yet
+    for (const auto& path : files) {
+        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        auto part = read_part_file(path);
+        const auto& header = part.header;
+        check_header(path, header, wanted);
+        const auto of = static_cast<std::size_t>(header.of);
+        if (parts.empty()) parts.resize(of);
+        if (of != parts.size())
+            throw bad_input("{} is one of {} parts and {} one of {}; remove those that do not belong", path.string(),
+                            of, files.front().string(), parts.size());
+        auto& seen = parts[static_cast<std::size_t>(header.shard) - 1];
+        if (!seen.empty())
+            throw bad_input("{} and {} are both part {}/{}; remove one of them", seen.string(), path.string(),
+                            header.shard, of);
+        seen = path;
+        part.take(*figure.work, all);
+        const auto refuse = [&](const std::string& why) {
+            throw io_failed("{} {}; compute it again with --shard {}/{}", path.string(), why, header.shard, of);
+        };
+        if (part.damaged_line > 0) refuse(fmt::format("is damaged in line {}", part.damaged_line));
+        for (std::size_t trial = header.first(); trial < header.last(); ++trial)
+            if (all[trial].empty()) refuse(fmt::format("is not whole: trial {} is missing", trial));
+    }
+    check_complete(parts, folder);
+    return all;
 }
 
 }  // namespace doppel

@@ -3,11 +3,15 @@
 #include "figure/preset.hpp"
 #include "output/output_file.hpp"
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace doppel {
+
+/// The most parts that a figure is shared out to.
+inline constexpr int most_parts = 100'000;
 
 /// What a file of trials' numbers belongs to. Files go together where all of it agrees.
 struct PartHeader {
@@ -70,5 +74,11 @@ private:
     OutputFile file_;
     std::string header_;
 };
+
+/// The numbers of a figure from its shards in `folder`, each of which must be there once, whole and of this figure.
+/// Throws Error: exit 2 where parts are missing, there twice or belong to something else, exit 4 where one cannot be
+/// read or is damaged, exit 130 soon after `stop` is set.
+KnownTrials merged_parts(const FigurePreset& figure, const std::filesystem::path& folder,
+                         const std::atomic<bool>& stop);
 
 }  // namespace doppel

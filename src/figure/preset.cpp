@@ -48,7 +48,7 @@ std::string FigurePreset::resolved() const {
 }
 
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
-                         std::span<const Peer> peers) {
+                         std::span<const ExternalMethod> external_methods) {
     const auto document = parse_document(source, overrides);
     FigurePreset figure;
     figure.name = figure.title = source.name;
@@ -64,7 +64,7 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     if (figure.kind == pair_kind)
         throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");
-    FigureReader reader{source.name, document, top, scene, chart, peers};
+    FigureReader reader{source.name, document, top, scene, chart, external_methods};
     for (const auto& kind : figure_kinds())
         if (kind.name == figure.kind) figure.work = kind.read(reader);
     if (!top.has("subtitle")) figure.subtitle = figure.work->subtitle();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "figure/peer.hpp"
+#include "analysis/external_method.hpp"
 #include "figure/work.hpp"
 #include "scene/preset.hpp"
 
@@ -33,8 +33,8 @@ struct FigurePreset {
     std::string resolved() const;
 };
 
-/// Errors as read_preset()'s. Charts of work against precision show `peers`, which outlive the figure, as well.
+/// Errors as read_preset()'s. Work–precision diagrams also show `external_methods`, which outlive the figure.
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {},
-                         std::span<const Peer> peers = {});
+                         std::span<const ExternalMethod> external_methods = {});
 
 }  // namespace doppel

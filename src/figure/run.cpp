@@ -4,12 +4,12 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/parallel_for.hpp"
-#include "figure/manifest.hpp"
-#include "figure/merge.hpp"
+#include "integrate/ensemble.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"
 #include "output/queue.hpp"
 #include "render/renderer.hpp"
+#include "scene/manifest_json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,25 +50,60 @@ KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atom
 
 namespace {
 
-/// Draws and writes figures whose numbers are there; the renderer serves all pictures of one size.
-class Press {
+/// What a manifest tells besides the figure.
+struct FigureRecord {
+    int jobs = 1;
+    double compute_wall_s = 0, compute_cpu_s = 0;  // other figures may have been computed meanwhile
+    double draw_cpu_s = 0;                         // picture and table
+    std::string gl;
+};
+
+void write_manifest(PartFiles& parts, const FigurePreset& figure, const KnownTrials& trials,
+                    const FigureRecord& record) {
+    Json findings = Json::object();
+    for (const auto& finding : figure.work->findings(trials))
+        std::visit([&](const auto& value) { findings[finding.key] = value; }, finding.value);  // not a number: null
+
+    Json manifest = {
+        {"doppel", program_json()},
+        {"figure", figure.name},
+        {"kind", figure.kind},
+        {"title", figure.title},
+        {"captions", figure.captions},
+        {"erratum", figure.erratum},
+        {"findings", findings},
+        {"resolved_preset", json_of_toml(figure.resolved())},
+        {"trials", trials.size()},
+        {"threads", record.jobs},
+        {"register_width", Ensemble::widths().back()},
+        {"libraries", {{"gl", record.gl}, {"compiler", __VERSION__}}},
+        {"time",
+         {{"compute_wall_s", record.compute_wall_s},
+          {"compute_cpu_s", record.compute_cpu_s},
+          {"draw_cpu_s", record.draw_cpu_s}}},
+    };
+    doppel::write_manifest(parts, figure.name + ".json", std::move(manifest));
+}
+
+/// Draws and writes figures whose numbers are known; the renderer serves all pictures of one size.
+class FigureWriter {
 public:
-    Press(const FigureOptions& options, int jobs, const std::atomic<bool>& stop)
+    FigureWriter(const FigureOptions& options, int jobs, const std::atomic<bool>& stop)
         : options_(options), jobs_(jobs), stop_(stop) {}
 
-    /// Makes the renderer for the first picture while others compute.
-    void warm_up(const FigurePreset& figure) {
+    /// Makes the renderer for the first picture while the numbers are computed.
+    void prepare(const FigurePreset& figure) {
         if (!options_.shard)
             renderer_for(figure.picture_size()).draw(compose({.title = "0"}, figure.picture_size(), themes[0]), stop_);
     }
 
-    RunResult print(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials, FigureRecord facts,
-                    PartFiles& files) {
+    RunResult write(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials,
+                    FigureRecord record, PartFiles& files) {
         if (options_.shard) {
             PartWriter(files.file(shard_name(header)), header, trials).close();
             return {.files = files.publish()};
         }
-        facts.jobs = jobs_;
+        record.jobs = jobs_;
         const auto png = figure.name + ".png", csv = figure.name + ".csv";
         const auto finish = [&] {
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
@@ -78,15 +113,15 @@ public:
             check_stop();
             write_png(files.file(png), picture, {}, stop_);
             files.finished(png);
-            facts.gl = renderer.description();
+            record.gl = renderer.description();
             check_stop();
             Csv table(files.file(csv), figure.work->columns());
             figure.work->write_rows(trials, table);
             table.finish();
             files.finished(csv);
-            facts.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+            record.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
             check_stop();
-            write_figure_manifest(files, figure, trials, facts);
+            write_manifest(files, figure, trials, record);
             check_stop();
             return files.publish();
         };
@@ -115,34 +150,34 @@ PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) 
 }
 
 /// The computation of every figure, and the threads at work on them.
-class Workshop {
+class Scheduler {
 public:
     /// `files` of each figure: where the record of its trials goes.
-    Workshop(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
-             const std::vector<std::unique_ptr<PartFiles>>& files, const std::atomic<bool>& stop,
-             const FigureReport& report)
+    Scheduler(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
+              const std::vector<std::unique_ptr<PartFiles>>& files, const std::atomic<bool>& stop,
+              const FigureReport& report)
         : stop_(stop) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const auto& figure = figures[k];
             const auto header = header_for(figure, options);
             const auto& folder = files[k]->folder();
-            const auto record = resume_name(header);
+            const auto name = resume_name(header);
             if (const auto others = other_resumes(folder.path(), header);
-                !others.empty() && folder.entry(record).kind == Entry::Kind::none)
+                !others.empty() && folder.entry(name).kind == Entry::Kind::none)
                 report.note(k, fmt::format("leaves {}{} alone, of another preset or version", others.front().string(),
                                            others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-            files[k]->note_part(record);
+            files[k]->note_part(name);
             computations_.push_back(std::make_unique<Computation>(
-                figure, header, FilePlace(folder, record), jobs,
+                figure, header, FilePlace(folder, name), jobs,
                 ComputationReport{[&report, k](const FigureProgress& p) { report.progress(k, p); },
                                   [&report, k](const std::string& s) { report.note(k, s); }}));
             auto& groups = figure.work->measures_time() ? timed_groups_ : groups_;
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
         }
-        thread_ = start_thread([this, jobs] { work(jobs); });
+        thread_ = start_thread([this, jobs] { run(jobs); });
     }
-    ~Workshop() {
+    ~Scheduler() {
         closing_ = true;
         finished_.abandon();
     }
@@ -160,17 +195,17 @@ public:
 private:
     using Group = std::pair<std::size_t, std::size_t>;  // figure, group of it
 
-    void work(int jobs) {
+    void run(int jobs) {
         try {
-            parallel_for(groups_.size(), jobs, [&](std::size_t i) { work_on(groups_[i]); });
-            for (const auto& group : timed_groups_) work_on(group);
+            parallel_for(groups_.size(), jobs, [&](std::size_t i) { run_group(groups_[i]); });
+            for (const auto& group : timed_groups_) run_group(group);
         } catch (...) {
             fault_ = std::current_exception();
         }
         finished_.close();
     }
 
-    void work_on(const Group& place) {
+    void run_group(const Group& place) {
         if (closing_) return;
         const auto [figure, group] = place;
         if (computations_[figure]->compute(group, stop_)) finished_.push(figure);
@@ -190,13 +225,13 @@ private:
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report) {
     const int jobs = options.jobs > 0 ? options.jobs : cores();
-    Press press(options, jobs, stop);
+    FigureWriter writer(options, jobs, stop);
     if (options.merge) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
             const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
             PartFiles files(options.out / figures[k].name);
-            auto result = press.print(figures[k], header_of(figures[k]), trials, {}, files);
+            auto result = writer.write(figures[k], header_of(figures[k]), trials, {}, files);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
         }
@@ -205,16 +240,16 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     std::vector<std::unique_ptr<PartFiles>> files;  // now: a folder that cannot be made is told at once
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name, run));
-    Workshop workshop(figures, options, jobs, files, stop, report);
-    if (!figures.empty()) press.warm_up(figures.front());
-    while (const auto k = workshop.next()) {
-        auto& computation = workshop.computation(*k);
-        FigureRecord facts{.compute_cpu_s = computation.cpu_s()};
+    Scheduler scheduler(figures, options, jobs, files, stop, report);
+    if (!figures.empty()) writer.prepare(figures.front());
+    while (const auto k = scheduler.next()) {
+        auto& computation = scheduler.computation(*k);
+        FigureRecord record{.compute_cpu_s = computation.cpu_s()};
         const double start = computation.start_s() > 0 ? computation.start_s() : seconds_of(CLOCK_MONOTONIC);
-        facts.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+        record.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         RunResult result;
         try {
-            result = press.print(figures[*k], computation.header(), computation.take(), facts, *files[*k]);
+            result = writer.write(figures[*k], computation.header(), computation.take(), record, *files[*k]);
         } catch (const Error& fault) {
             throw computation.with_record(fault);
         }

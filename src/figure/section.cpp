@@ -19,6 +19,14 @@ std::string color_words(std::size_t orbits) {
         orbits % colors == 0 ? fmt::format("{}", orbits / colors) : "several", colors);
 }
 
+/// A crossing of θ1 = 0. The numbers of an orbit: how many there are, then these.
+struct CrossingRow {
+    double theta2, p2, time_s;
+};
+std::vector<CrossingRow> crossings_of(const TrialNumbers& orbit) {
+    return rows_of<CrossingRow>(std::span(orbit).subspan(1));
+}
+
 /// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy.
 class Section final : public FigureWork {
 public:
@@ -41,19 +49,10 @@ public:
     std::size_t trials() const override { return energies_.size() * orbits(); }
     std::string unit() const override { return "orbits"; }
 
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const auto& release = releases_[(first + i) / orbits()][(first + i) % orbits()];
-            const auto points = poincare_section(release, spec_, stop);
-            numbers[i].push_back(static_cast<double>(points.size()));
-            for (const auto& point : points)
-                numbers[i].insert(numbers[i].end(), {point.theta2, point.p2, point.time_s});
-        }
-    }
-
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
         return !numbers.empty() && is_count(numbers[0]) && numbers[0] <= spec_.crossings &&
-               numbers.size() == 1 + 3 * static_cast<std::size_t>(numbers[0]) && all_finite(numbers);
+               numbers.size() == 1 + numbers_in<CrossingRow> * static_cast<std::size_t>(numbers[0]) &&
+               all_finite(numbers);
     }
 
     std::vector<std::string> columns() const override {
@@ -62,12 +61,8 @@ public:
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (std::size_t i = 0; i < numbers.size(); ++i)
-            for (std::size_t k = 1; k < numbers[i].size(); k += 3) {
-                table.add(energies_[i / orbits()]);
-                table.add(static_cast<long>(i % orbits()));
-                for (const std::size_t entry : {2, 0, 1}) table.add(numbers[i][k + entry]);
-                table.end_row();
-            }
+            for (const auto& crossing : crossings_of(numbers[i]))
+                add_row(table, energies_[i / orbits()], i % orbits(), crossing.time_s, crossing.theta2, crossing.p2);
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
@@ -78,11 +73,10 @@ public:
             plot.y = {.label = "p₂, N m s"};
             plot.square = true;
             for (std::size_t orbit = 0; orbit < orbits(); ++orbit) {
-                const auto& points = numbers[panel * orbits() + orbit];
                 Curve curve{.mark = Mark::points, .hue = static_cast<int>(orbit)};
-                for (std::size_t k = 1; k < points.size(); k += 3) {
-                    curve.x.push_back(points[k]);
-                    curve.y.push_back(points[k + 1]);
+                for (const auto& crossing : crossings_of(numbers[panel * orbits() + orbit])) {
+                    curve.x.push_back(crossing.theta2);
+                    curve.y.push_back(crossing.p2);
                 }
                 plot.curves.push_back(std::move(curve));
             }
@@ -105,6 +99,13 @@ public:
     }
 
 private:
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+        const auto points = poincare_section(releases_[trial / orbits()][trial % orbits()], spec_, stop);
+        TrialNumbers numbers{static_cast<double>(points.size())};
+        for (const auto& point : points) append(numbers, CrossingRow{point.theta2, point.p2, point.time_s});
+        return numbers;
+    }
+
     std::size_t orbits() const { return static_cast<std::size_t>(orbits_); }
 
     SideSpec release_;

@@ -31,15 +31,8 @@ public:
     std::size_t trials() const override { return 1; }
     std::string unit() const override { return "spectra"; }
 
-    void compute(std::size_t, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (const auto& sample : lyapunov_spectrum(chain_of(release_).cast<double>(), spec_, stop)) {
-            numbers[0].push_back(sample.time_s);
-            numbers[0].insert(numbers[0].end(), sample.exponents.begin(), sample.exponents.end());
-        }
-    }
-
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        return numbers.size() == samples() * (exponents() + 1) && all_finite(numbers);
+        return numbers.size() == static_cast<std::size_t>(spec_.samples) * (exponents() + 1) && all_finite(numbers);
     }
 
     std::vector<std::string> columns() const override {
@@ -50,10 +43,10 @@ public:
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (std::size_t n = 0; n < samples(); ++n) {
-            for (std::size_t i = 0; i <= exponents(); ++i) table.add(entry(numbers, n, i));
-            table.add(sum(numbers, n));
-            table.end_row();
+        for (const auto& sample : samples_of(numbers)) {
+            table.add(sample.time_s);
+            for (const double exponent : sample.exponents) table.add(exponent);
+            add_row(table, sum(sample));
         }
     }
 
@@ -61,32 +54,33 @@ public:
         Plot plot;
         plot.x = {.label = "time, s", .logarithmic = true};
         plot.y = {.label = "exponents so far, 1/s"};
-        constexpr const char* subscripts[] = {"₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈"};
-        for (std::size_t i = 1; i <= exponents(); ++i) {
-            Curve curve{.label = fmt::format("λ{}", subscripts[i - 1]), .hue = static_cast<int>(i) - 1};
-            for (std::size_t n = 0; n < samples(); ++n) {
-                curve.x.push_back(entry(numbers, n, 0));
-                curve.y.push_back(entry(numbers, n, i));
+        const auto samples = samples_of(numbers);
+        for (std::size_t i = 0; i < exponents(); ++i) {
+            Curve curve{.label = "λ" + subscript(i + 1), .hue = static_cast<int>(i)};
+            for (const auto& sample : samples) {
+                curve.x.push_back(sample.time_s);
+                curve.y.push_back(sample.exponents[i]);
             }
             plot.curves.push_back(std::move(curve));
         }
         plot.rules.push_back({Rule::Way::horizontal, 0, ""});
         figure.panels.push_back(std::move(plot));
         std::string words;
-        for (std::size_t i = 1; i <= exponents(); ++i)
-            words += fmt::format("{}{}{:.4f}", i == 1 ? "" : ", ", entry(numbers, samples() - 1, i) < 0 ? "−" : "+",
-                                 std::abs(entry(numbers, samples() - 1, i)));
-        figure.captions.push_back(fmt::format(
-            "After {} s: {} 1/s. Their sum is 0 within {}, and the pairs are ± within {} 1/s.", spec_.duration_s, words,
-            scientific(std::abs(sum(numbers, samples() - 1))), scientific(mismatch(numbers))));
+        const auto& last = samples.back();
+        for (const double exponent : last.exponents)
+            words += fmt::format("{}{}{:.4f}", words.empty() ? "" : ", ", exponent < 0 ? "−" : "+", std::abs(exponent));
+        figure.captions.push_back(
+            fmt::format("After {} s: {} 1/s. Their sum is 0 within {}, and the pairs are ± within {} 1/s.",
+                        spec_.duration_s, words, scientific(std::abs(sum(last))), scientific(pair_mismatch(last))));
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        for (std::size_t i = 1; i <= exponents(); ++i)
-            all.push_back({fmt::format("exponent{}_per_s", i), entry(numbers, samples() - 1, i)});
-        all.push_back({"sum_per_s", sum(numbers, samples() - 1)});
-        all.push_back({"pair_mismatch_per_s", mismatch(numbers)});
+        const auto last = samples_of(numbers).back();
+        for (std::size_t i = 0; i < exponents(); ++i)
+            all.push_back({fmt::format("exponent{}_per_s", i + 1), last.exponents[i]});
+        all.push_back({"sum_per_s", sum(last)});
+        all.push_back({"pair_mismatch_per_s", pair_mismatch(last)});
         return all;
     }
 
@@ -97,20 +91,28 @@ public:
 
 private:
     std::size_t exponents() const { return 2 * release_.links(); }
-    std::size_t samples() const { return static_cast<std::size_t>(spec_.samples); }
-    /// Entry 0 of a sample is its time, the others are the exponents.
-    double entry(std::span<const TrialNumbers> numbers, std::size_t sample, std::size_t i) const {
-        return numbers[0][sample * (exponents() + 1) + i];
+
+    TrialNumbers compute_trial(std::size_t, const std::atomic<bool>& stop) const override {
+        TrialNumbers numbers;
+        for (const auto& sample : lyapunov_spectrum(chain_of(release_).cast<double>(), spec_, stop)) {
+            numbers.push_back(sample.time_s);
+            numbers.insert(numbers.end(), sample.exponents.begin(), sample.exponents.end());
+        }
+        return numbers;
     }
-    double sum(std::span<const TrialNumbers> numbers, std::size_t sample) const {
-        double total = 0;
-        for (std::size_t i = 1; i <= exponents(); ++i) total += entry(numbers, sample, i);
-        return total;
+    /// As many numbers to a sample: its time, then the exponents.
+    std::vector<SpectrumSample> samples_of(std::span<const TrialNumbers> numbers) const {
+        std::vector<SpectrumSample> samples;
+        for (auto at = numbers[0].begin(); at != numbers[0].end();) {
+            const double time = *at++;
+            const auto end = at + static_cast<std::ptrdiff_t>(exponents());
+            samples.push_back({time, {at, end}});
+            at = end;
+        }
+        return samples;
     }
-    double mismatch(std::span<const TrialNumbers> numbers) const {
-        SpectrumSample last{entry(numbers, samples() - 1, 0), {}};
-        for (std::size_t i = 1; i <= exponents(); ++i) last.exponents.push_back(entry(numbers, samples() - 1, i));
-        return pair_mismatch(last);
+    static double sum(const SpectrumSample& sample) {
+        return std::accumulate(sample.exponents.begin(), sample.exponents.end(), 0.0);
     }
 
     SideSpec release_;

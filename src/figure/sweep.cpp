@@ -2,7 +2,7 @@
 #include "analysis/exponent.hpp"
 #include "analysis/twins.hpp"
 #include "figure/kinds.hpp"
-#include "figure/pair_words.hpp"
+#include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
@@ -14,38 +14,20 @@
 namespace doppel {
 namespace {
 
-/// What a sweep goes over: the columns' name, how people call it, and what it changes in a side.
-struct SweepParameter {
-    std::string_view name, label;
-    std::size_t links;  // that it takes
-    void (*set)(SideSpec&, const Quad&);
-    double every;  // between ticks; 0 = as fits
-    bool positive = false;
+/// The numbers of a trial; without the exponent, the first alone.
+struct SweepRow {
+    double average, exponent, uncertainty;
 };
-
-constexpr std::array sweep_parameters{
-    SweepParameter{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& side, const Quad& x) { side.angle_deg[0] = x; },
-                   30},
-    SweepParameter{"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& side, const Quad& x) { side.angle_deg[1] = x; },
-                   30},
-    SweepParameter{"mass_ratio", "mass ratio m₁/m₂", 2,
-                   [](SideSpec& side, const Quad& x) { side.mass_kg[0] = x * side.mass_kg[1]; }, 0, true},
-    SweepParameter{"length_ratio", "length ratio l₁/l₂", 2,
-                   [](SideSpec& side, const Quad& x) { side.length_m[0] = x * side.length_m[1]; }, 0, true}};
 
 /// The study's sweeps: twins released over a range of one parameter, and how far apart they come on average.
 class Sweep final : public FigureWork {
 public:
     explicit Sweep(FigureReader& reader) : pair_(reader.pair()) {
         auto table = reader.table("sweep");
-        std::vector<std::string_view> names;
-        for (const auto& parameter : sweep_parameters) names.push_back(parameter.name);
-        std::string name(names.front());
-        table.read_choice("parameter", name, names);
-        for (const auto& parameter : sweep_parameters)
-            if (parameter.name == name) parameter_ = &parameter;
+        constexpr std::array<std::string_view, 4> parameters{"theta1_deg", "theta2_deg", "mass_ratio", "length_ratio"};
+        parameter_ = &read_parameter(table, parameters);
         if (pair_.a.links() < parameter_->links || !pair_.a.particles.empty())
-            throw table.fault("parameter", "\"{}\" takes a chain of {} links", name, parameter_->links);
+            throw table.fault("parameter", "\"{}\" takes a chain of {} links", parameter_->name, parameter_->links);
         table.read_number("from", from_);
         table.read_number("to", to_);
         table.read_positive("step", step_);
@@ -107,9 +89,12 @@ public:
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (std::size_t i = 0; i < trials_; ++i) {
-            table.add(static_cast<double>(value(i)));
-            for (const double x : numbers[i]) table.add_or_empty(x);
-            table.end_row();
+            const auto row = row_of_trial(numbers[i]);
+            const auto parameter = static_cast<double>(value(i));
+            if (exponent_)
+                add_row(table, parameter, row.average, row.exponent, row.uncertainty);
+            else
+                add_row(table, parameter, row.average);
         }
     }
 
@@ -120,11 +105,11 @@ public:
                   .high = static_cast<double>(to_)};
         if (parameter_->every > 0) plot.x.every = parameter_->every;
         plot.y = {.label = fmt::format("average of ln(d/d₀) over {} s", pair_.duration_s.value()), .low = 0};
-        plot.curves.push_back(curve(numbers, 0, exponent_ ? "average of ln(d/d₀)" : ""));
+        plot.curves.push_back(curve(numbers, &SweepRow::average, exponent_ ? "average of ln(d/d₀)" : ""));
         if (exponent_) {
             plot.right = PlotAxis{.label = "largest Lyapunov exponent, 1/s", .low = 0};
-            auto exponents = curve(numbers, 1, "Lyapunov exponent");
-            exponents.uncertainty = curve(numbers, 2, "").y;
+            auto exponents = curve(numbers, &SweepRow::exponent, "Lyapunov exponent");
+            exponents.uncertainty = curve(numbers, &SweepRow::uncertainty, "").y;
             exponents.hue = 1;
             exponents.right = true;
             figure.captions.push_back(exponent_words(numbers, exponents));
@@ -136,8 +121,8 @@ public:
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         if (exponent_ || broken_down(numbers) < trials_) return std::nullopt;
         return fmt::format(
-            "every one of the {} pairs broke down within {} s; take a finer step or tolerance, or a "
-            "shorter scene.duration_s",
+            "every one of the {} pairs broke down within {} s; take a finer step or tolerance, or a shorter "
+            "scene.duration_s",
             trials_, pair_.duration_s.value());
     }
 
@@ -145,9 +130,10 @@ public:
         std::vector<Finding> all;
         double least = nan_value, most = nan_value, regular = 0;
         for (const auto& trial : numbers) {
-            least = std::fmin(least, trial[0]);
-            most = std::fmax(most, trial[0]);
-            if (exponent_ && is_regular({trial[1], trial[2]})) ++regular;
+            const auto row = row_of_trial(trial);
+            least = std::fmin(least, row.average);
+            most = std::fmax(most, row.average);
+            if (exponent_ && is_regular({row.exponent, row.uncertainty})) ++regular;
         }
         all.push_back({"least_average_log_ratio", least});
         all.push_back({"greatest_average_log_ratio", most});
@@ -167,6 +153,10 @@ public:
     }
 
 private:
+    SweepRow row_of_trial(const TrialNumbers& numbers) const {
+        return exponent_ ? row_of<SweepRow>(numbers) : SweepRow{numbers[0], nan_value, nan_value};
+    }
+
     /// Finds the number of trials.
     void check_range(const TomlReader& table) {
         constexpr long most = 10'000'000;
@@ -181,10 +171,10 @@ private:
         trials_ = static_cast<std::size_t>(whole) + 1;
         constexpr double most_degrees = 1e6;  // as of [system] angle_deg
         for (const auto& [key, end] : {std::pair{"from", from_}, {"to", to_}, {"difference", Quad(to_ + difference_)}})
-            if (!parameter_->positive && abs(end) > most_degrees)
+            if (!parameter_->is_ratio && abs(end) > most_degrees)
                 throw table.fault(key, "must keep all angles from -{0} to {0}°; one is {1}", most_degrees,
                                   text_of(end));
-        if (!parameter_->positive) return;
+        if (!parameter_->is_ratio) return;
         if (from_ <= 0) throw table.fault("from", "must be > 0, as ratios are; it is {}", text_of(from_));
         if (from_ + difference_ <= 0)
             throw table.fault("difference", "must leave the twin's ratio > 0; it is {}", text_of(difference_));
@@ -226,15 +216,16 @@ private:
         // what sets all twins apart is told by itself
         parameter_->set(scene.preset.b, from_);
         const auto apart = text_of(difference_ < 0 ? Quad(-difference_) : difference_);
-        if (parameter_->positive) {
+        if (parameter_->is_ratio) {
             std::string label(parameter_->label);
             label.insert(label.find(" ratio") + 6, "s");
-            return pair_words(scene, {}, difference_ == 0 ? "" : fmt::format("{} apart by {}", label, apart));
+            return pair_subtitle(scene, {}, difference_ == 0 ? "" : fmt::format("{} apart by {}", label, apart));
         }
-        return pair_words(scene, parameter_->links - 1, difference_ == 0 ? "" : fmt::format("twins {}° apart", apart));
+        return pair_subtitle(scene, parameter_->links - 1,
+                             difference_ == 0 ? "" : fmt::format("twins {}° apart", apart));
     }
 
-    /// One of the twins' averages by the sample loop of the films: any model, method and precision.
+    /// A twins' average by the sample loop of the films: any model, method and precision.
     double watched_average(std::size_t trial, const std::atomic<bool>& stop) const {
         const auto scene = make_scene(twins(trial), stop);
         PairRun run(scene);
@@ -258,10 +249,11 @@ private:
         long regular = 0;
         std::string equilibria;
         for (std::size_t i = 0; i < trials_; ++i) {
-            regular += is_regular({numbers[i][1], numbers[i][2]});
-            if (numbers[i][1] == 0 || numbers[i][2] != 0) continue;
+            const auto row = row_of_trial(numbers[i]);
+            regular += is_regular({row.exponent, row.uncertainty});
+            if (row.exponent == 0 || row.uncertainty != 0) continue;
             equilibria += fmt::format(" At {:g}{}, an unstable equilibrium, it is {:.2f} 1/s.", exponents.x[i],
-                                      parameter_->positive ? "" : "°", numbers[i][1]);
+                                      parameter_->is_ratio ? "" : "°", row.exponent);
             exponents.y[i] = nan_value;
         }
         return fmt::format(
@@ -270,17 +262,17 @@ private:
             regular, trials_, equilibria);
     }
 
-    Curve curve(std::span<const TrialNumbers> numbers, std::size_t column, std::string label) const {
+    Curve curve(std::span<const TrialNumbers> numbers, double SweepRow::*number, std::string label) const {
         Curve made{.label = std::move(label)};
         for (std::size_t i = 0; i < trials_; ++i) {
             made.x.push_back(static_cast<double>(value(i)));
-            made.y.push_back(numbers[i][column]);
+            made.y.push_back(row_of_trial(numbers[i]).*number);
         }
         return made;
     }
 
     Preset pair_;
-    const SweepParameter* parameter_ = nullptr;
+    const ReleaseParameter* parameter_ = nullptr;
     Quad from_ = 0, to_ = 180, step_ = 1, difference_ = 0;
     std::size_t trials_ = 0;
     bool exponent_ = false;

@@ -4,12 +4,15 @@
 #include "plot/plot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
+#include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -28,9 +31,60 @@ inline bool finite_or_none(std::span<const double> numbers) {
     return std::none_of(numbers.begin(), numbers.end(), [](double x) { return std::isinf(x); });
 }
 
-/// Whether it is a number of things: whole, and small enough that a double knows it.
+/// Whether it is a whole number ≥ 0, small enough to be exact in a double.
 inline bool is_count(double x) {
     return x >= 0 && x <= 0x1p53 && x == std::floor(x);
+}
+
+/// A part of a trial's numbers with names: a struct of doubles and nothing else.
+template <class Row>
+concept NumberRow = std::is_trivially_copyable_v<Row> && sizeof(Row) % sizeof(double) == 0;
+
+template <NumberRow Row>
+inline constexpr std::size_t numbers_in = sizeof(Row) / sizeof(double);
+
+/// The first row of the numbers, which hold one.
+template <NumberRow Row>
+Row row_of(std::span<const double> numbers) {
+    std::array<double, numbers_in<Row>> first;
+    std::copy_n(numbers.begin(), first.size(), first.begin());
+    return std::bit_cast<Row>(first);
+}
+
+/// All rows of the numbers, whose count is a multiple of a row's.
+template <NumberRow Row>
+std::vector<Row> rows_of(std::span<const double> numbers) {
+    std::vector<Row> rows;
+    for (; !numbers.empty(); numbers = numbers.subspan(numbers_in<Row>)) rows.push_back(row_of<Row>(numbers));
+    return rows;
+}
+
+template <NumberRow Row>
+void append(TrialNumbers& numbers, const Row& row) {
+    for (const double value : std::bit_cast<std::array<double, numbers_in<Row>>>(row)) numbers.push_back(value);
+}
+
+template <NumberRow Row>
+TrialNumbers numbers_of(const Row& row) {
+    TrialNumbers numbers;
+    append(numbers, row);
+    return numbers;
+}
+
+/// Adds a whole row to the table: text, whole numbers, and doubles, whose cell is empty where one is NaN.
+template <class... Cells>
+void add_row(Csv& table, const Cells&... cells) {
+    const auto add = [&](const auto& cell) {
+        using Cell = std::decay_t<decltype(cell)>;
+        if constexpr (std::is_same_v<Cell, double>)
+            table.add_or_empty(cell);
+        else if constexpr (std::is_integral_v<Cell>)
+            table.add(static_cast<long>(cell));
+        else
+            table.add(std::string_view(cell));
+    };
+    (add(cells), ...);
+    table.end_row();
 }
 
 /// What a figure has to say about itself beside its table: a key of the manifest.
@@ -39,8 +93,8 @@ struct Finding {
     std::variant<double, std::string, bool> value;
 };
 
-/// What a figure computes: trials that know nothing of each other, and what becomes of their numbers. They may be
-/// computed in any order, by any thread, in several runs on several machines; the numbers are the same to the bit.
+/// What a figure computes and shows: independent trials, and what becomes of their numbers. They may be computed in any
+/// order, by any thread, in several runs on several machines; the numbers are the same to the bit.
 class FigureWork {
 public:
     virtual ~FigureWork() = default;
@@ -56,7 +110,9 @@ public:
 
     /// Trials first, first + 1 … one for each of `numbers`. Throws Error: exit 3 where a method breaks down and nothing
     /// is left to show, exit 130 soon after `stop` is set.
-    virtual void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const = 0;
+    virtual void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
+        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = compute_trial(first + i, stop);
+    }
 
     /// Whether the numbers can be those of the trial: as many as it has, and infinite or NaN only where they may be.
     /// Those of a file are asked, and those just computed.
@@ -80,6 +136,10 @@ public:
     virtual std::string resolved() const = 0;
     /// The keys of [chart] among it.
     virtual std::string resolved_chart() const { return {}; }
+
+protected:
+    /// One trial, of a kind that computes no two together.
+    virtual TrialNumbers compute_trial(std::size_t /*trial*/, const std::atomic<bool>& /*stop*/) const { return {}; }
 };
 
 }  // namespace doppel

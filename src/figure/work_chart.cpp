@@ -1,5 +1,4 @@
-#include "figure/work_chart.hpp"
-
+#include "figure/work_precision.hpp"
 #include "numeric/nan.hpp"
 #include "scene/wording.hpp"
 
@@ -38,28 +37,28 @@ Look look_of(std::string_view method) {
 }
 
 /// What of a ladder is shown.
-ErrorRange range_of(const WorkPanel& panel) {
+ErrorRange range_of(const WorkDiagram& diagram) {
     constexpr double at_floor = 10;
-    return {std::isnan(panel.floor) ? 0 : at_floor * panel.floor, most_shown};
+    return {std::isnan(diagram.floor) ? 0 : at_floor * diagram.floor, most_shown};
 }
 
-Curve curve_of(const Ladder& ladder, const WorkPanel& panel, bool best) {
-    const auto& [model, method, peer] = ladder.contender;
+Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
+    const auto& [model, method, external] = ladder.solver;
     const auto look = look_of(method);
-    Curve curve{.label = !best  ? ""
-                         : peer ? peer->name
-                                : method,
+    Curve curve{.label = !best      ? ""
+                         : external ? external->name
+                                    : method,
                 .hue = look.hue,
                 .dashed = look.dashed && best,
-                .quiet = peer != nullptr,
+                .quiet = external != nullptr,
                 .ground = best ? Ground::none : Ground::line};
-    const auto useful = useful_rungs(ladder, panel.cost, range_of(panel));
+    const auto useful = useful_rungs(ladder, diagram.cost, range_of(diagram));
     const auto add = [&](double x, double y) {
         curve.x.push_back(x);
         curve.y.push_back(y);
     };
-    for (const std::size_t i : useful) add(cost_of(ladder.rungs[i], panel.cost), ladder.rungs[i].error);
-    if (panel.cost == Cost::evaluations || !best) return curve;
+    for (const std::size_t i : useful) add(cost_of(ladder.rungs[i], diagram.cost), ladder.rungs[i].error);
+    if (diagram.cost == Cost::evaluations || !best) return curve;
     // how far times spread, as level bars where they show
     constexpr double shows = 0.05;
     for (const std::size_t i : useful) {
@@ -73,9 +72,9 @@ Curve curve_of(const Ladder& ladder, const WorkPanel& panel, bool best) {
     return curve;
 }
 
-Curve front_curve(const WorkPanel& panel) {
+Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.ground = Ground::band};
-    for (const auto& point : front_of(panel.index, panel.ladders, panel.cost, range_of(panel))) {
+    for (const auto& point : front_of(diagram.index, diagram.ladders, diagram.cost, range_of(diagram))) {
         curve.x.push_back(point.cost);
         curve.y.push_back(point.error);
     }
@@ -83,13 +82,13 @@ Curve front_curve(const WorkPanel& panel) {
 }
 
 /// Where the published study stands.
-void add_study(const WorkPanel& panel, Plot& plot) {
-    for (const auto& ladder : panel.ladders) {
-        if (ladder.problem != panel.index || !ladder.contender.is_study()) continue;
+void add_study(const WorkDiagram& diagram, Plot& plot) {
+    for (const auto& ladder : diagram.ladders) {
+        if (ladder.problem != diagram.index || !ladder.solver.is_study()) continue;
         for (const auto& rung : ladder.rungs)
             if (rung.is_study())
                 plot.curves.push_back({.label = "the study: Euler, 30 kHz",
-                                       .x = {cost_of(rung, panel.cost)},
+                                       .x = {cost_of(rung, diagram.cost)},
                                        .y = {rung.error},
                                        .mark = Mark::points,
                                        .hue = look_of("euler").hue});
@@ -97,7 +96,7 @@ void add_study(const WorkPanel& panel, Plot& plot) {
 }
 
 /// Axes around what matters: from where a first method is of use, down to the floors where they are near.
-void fit(const WorkPanel& panel, Plot& plot) {
+void fit(const WorkDiagram& diagram, Plot& plot) {
     constexpr double of_use = 0.03, near = 100;
     double least = most_shown, cheapest = std::numeric_limits<double>::infinity();
     for (const auto& curve : plot.curves)
@@ -108,35 +107,35 @@ void fit(const WorkPanel& panel, Plot& plot) {
     if (std::isfinite(cheapest)) plot.x.low = 0.5 * cheapest;
     plot.y.low = least / 4;
     plot.y.high = 20 * most_shown;  // the study's words stand above
-    if (!(least < near * panel.floor)) return;
-    const double grown = panel.floor / rounding;
+    if (!(least < near * diagram.floor)) return;
+    const double grown = diagram.floor / rounding;
     const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);
-    plot.rules.push_back({.at = panel.floor, .label = "rounding of a double × " + times});
-    plot.y.low = std::fmin(least, panel.floor) / 20;
+    plot.rules.push_back({.at = diagram.floor, .label = "rounding of a double × " + times});
+    plot.y.low = std::fmin(least, diagram.floor) / 20;
     constexpr double in_sight = 1e-12;
-    if (panel.floor > in_sight) return;
+    if (diagram.floor > in_sight) return;
     plot.rules.push_back({.at = rounding, .label = "rounding of a double"});
     plot.y.low = rounding / 20;
 }
 
 }  // namespace
 
-Plot work_plot(const WorkPanel& panel) {
+Plot work_plot(const WorkDiagram& diagram) {
     Plot plot;
-    plot.title = panel.problem.title;
-    plot.x = {.label = panel.cost == Cost::time ? "CPU time, s" : "evaluations of the right-hand side",
+    plot.title = diagram.problem.title;
+    plot.x = {.label = diagram.cost == Cost::time ? "CPU time, s" : "evaluations of the right-hand side",
               .logarithmic = true};
-    plot.y = {.label = panel.problem.side.has_angles ? "angle error at the end, rad"
-                                                     : "error of place at the end, of the size",
+    plot.y = {.label = diagram.problem.has_angles() ? "angle error at the end, rad"
+                                                    : "error of place at the end, of the size",
               .logarithmic = true};
-    plot.curves.push_back(front_curve(panel));
-    add_study(panel, plot);
-    const auto best = best_models(panel.index, panel.ladders, panel.cost);
-    for (const auto& ladder : panel.ladders)
-        if (ladder.problem == panel.index && std::count(best.begin(), best.end(), &ladder) == 0)
-            plot.curves.push_back(curve_of(ladder, panel, false));
-    for (const auto* ladder : best) plot.curves.push_back(curve_of(*ladder, panel, true));
-    fit(panel, plot);
+    plot.curves.push_back(front_curve(diagram));
+    add_study(diagram, plot);
+    const auto best = best_models(diagram.index, diagram.ladders, diagram.cost);
+    for (const auto& ladder : diagram.ladders)
+        if (ladder.problem == diagram.index && std::count(best.begin(), best.end(), &ladder) == 0)
+            plot.curves.push_back(curve_of(ladder, diagram, false));
+    for (const auto* ladder : best) plot.curves.push_back(curve_of(*ladder, diagram, true));
+    fit(diagram, plot);
     return plot;
 }
 

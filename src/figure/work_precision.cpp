@@ -1,5 +1,5 @@
-#include "figure/kinds.hpp"
-#include "figure/work_chart.hpp"
+#include "figure/work_precision.hpp"
+
 #include "integrate/methods.hpp"
 #include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
 namespace doppel {
 namespace {
@@ -25,8 +27,13 @@ struct Accuracy {
 constexpr std::array<Accuracy, 4> accuracies{
     {{1e-3, "1e-3", "10⁻³"}, {1e-6, "1e-6", "10⁻⁶"}, {1e-9, "1e-9", "10⁻⁹"}, {1e-12, "1e-12", "10⁻¹²"}}};
 
-/// What the accuracy of every method costs on a few problems. The trials: the truth about each problem, then all
-/// ladders, and all of them again as often as they are to be timed, so that what else the machine does hits all alike.
+/// The numbers of a problem's own trial.
+struct ProblemRow {
+    double sensitivity, disagreement;
+};
+
+/// Error against cost of every method on a few problems. The trials: the reference solution of each problem, then all
+/// ladders, and all of them again for each repeat, so that other load on the machine affects all alike.
 class WorkPrecision final : public FigureWork {
 public:
     explicit WorkPrecision(FigureReader& reader) {
@@ -35,16 +42,16 @@ public:
         cost_ = cost == "time" ? Cost::time : Cost::evaluations;
         auto table = reader.table("work_precision");
         problems_ = read_problems(table);
-        truths_ = std::make_unique<Truths>(problems_.all.size());
+        references_ = std::make_unique<SharedReference[]>(problems_.all.size());
         table.read_whole("repeats", repeats_, 1, 99);
         table.read_whole("most_evaluations", most_evaluations_, 100, 1'000'000'000);
         table.read_positive("least_error", least_error_);
-        read_contenders(table);
-        for (const auto& peer : reader.peers) contenders_.push_back({Model::angles, "", &peer});
+        read_solvers(table);
+        for (const auto& method : reader.external_methods) solvers_.push_back({Model::angles, "", &method});
         table.finish();
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
-            for (const auto& contender : contenders_)
-                if (contender.serves(problems_.all[p])) ladders_.push_back({p, contender});
+            for (const auto& solver : solvers_)
+                if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
         if (ladders_.empty())
             throw table.fault("models", "must name one that serves; {} takes \"mechanism\"", problems_.all[0].name);
     }
@@ -56,13 +63,14 @@ public:
     std::string unit() const override { return "ladders"; }
     double units(std::size_t trial) const override { return trial < problems_.all.size() ? 0 : 1; }
 
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = computed(first + i, stop);
-    }
-
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        if (trial < problems_.all.size()) return numbers.size() == 2 && finite_or_none(numbers);
-        return is_ladder(numbers);
+        if (trial < problems_.all.size()) return numbers.size() == numbers_in<ProblemRow> && finite_or_none(numbers);
+        if (numbers.empty() || numbers.size() % numbers_in<Rung> != 0) return false;
+        const auto is_count_or_none = [](double x) { return std::isnan(x) || is_count(x); };
+        const auto rungs = rows_of<Rung>(numbers);
+        return std::all_of(rungs.begin(), rungs.end(), [&](const Rung& rung) {
+            return is_count_or_none(rung.evaluations) && is_count_or_none(rung.steps);
+        });
     }
 
     std::vector<std::string> columns() const override {
@@ -80,30 +88,32 @@ public:
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (const auto& ladder : merged_ladders(numbers))
-            for (const auto& rung : ladder.rungs) {
-                table.add(problems_.all[ladder.problem].name);
-                table.add(name_of(ladder.contender.model));
-                table.add(ladder.contender.name());
-                for (const double number : {rung.setting, rung.error, rung.energy_error, rung.length_error, rung.cpu_s})
-                    table.add_or_empty(number);
-                for (const double count : {rung.evaluations, rung.steps})
-                    std::isfinite(count) ? table.add(std::lround(count)) : table.add_empty();
-                table.end_row();
-            }
+            for (const auto& rung : ladder.rungs)
+                add_row(table, problems_.all[ladder.problem].name, name_of(ladder.solver.model), ladder.solver.name(),
+                        rung.setting, rung.error, rung.energy_error, rung.length_error, rung.cpu_s, rung.evaluations,
+                        rung.steps);
+    }
+
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        for (const auto& trial : numbers.subspan(problems_.all.size()))
+            for (const auto& rung : rows_of<Rung>(trial))
+                if (std::isfinite(rung.error)) return std::nullopt;
+        return "every run of every method broke down; raise work_precision.most_evaluations for finer settings";
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
         if (figure.subtitle.empty()) figure.subtitle = problems_.subtitle;
         const auto ladders = merged_ladders(numbers);
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
-            figure.panels.push_back(work_plot({p, problems_.all[p], 0x1p-53 * numbers[p][0], ladders, cost_}));
+            figure.panels.push_back(
+                work_plot({p, problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity, ladders, cost_}));
         const bool floors = std::any_of(figure.panels.begin(), figure.panels.end(),
                                         [](const Plot& plot) { return !plot.rules.empty(); });
         figure.captions.push_back(legend_words(floors));
         if (const auto words = winner_words(ladders); !words.empty())
             figure.captions.push_back(
                 fmt::format("The least {}: {}.", cost_ == Cost::time ? "time, µs" : "evaluations", words));
-        if (const auto words = peer_words(ladders); !words.empty())
+        if (const auto words = external_words(ladders); !words.empty())
             figure.captions.push_back(fmt::format("The best of the others takes so many times as much: {}.", words));
         if (cost_ == Cost::time) figure.captions.push_back(spread_words(ladders));
     }
@@ -113,8 +123,9 @@ public:
         const auto ladders = merged_ladders(numbers);
         for (std::size_t p = 0; p < problems_.all.size(); ++p) {
             const auto& name = problems_.all[p].name;
-            all.push_back({name + "_sensitivity", numbers[p][0]});
-            all.push_back({name + "_reference_disagreement", numbers[p][1]});
+            const auto problem = row_of<ProblemRow>(numbers[p]);
+            all.push_back({name + "_sensitivity", problem.sensitivity});
+            all.push_back({name + "_reference_disagreement", problem.disagreement});
             for (const auto& accuracy : accuracies) add_findings(ladders, p, accuracy, all);
         }
         if (cost_ == Cost::evaluations) return all;
@@ -125,14 +136,11 @@ public:
     }
 
     std::string resolved() const override {
-        std::vector<std::string> models, methods;
-        for (const auto model : models_) models.push_back(toml_text(std::string(name_of(model))));
-        for (const auto& method : methods_) methods.push_back(toml_text(method));
+        std::vector<std::string> models;
+        for (const auto model : models_) models.emplace_back(name_of(model));
         return fmt::format(
-            "\n[work_precision]\n{}models = [{}]\nmethods = [{}]\nrepeats = {}\nmost_evaluations = {}\nleast_error = "
-            "{}\n",
-            problems_.resolved, fmt::join(models, ", "), fmt::join(methods, ", "), repeats_, most_evaluations_,
-            least_error_);
+            "\n[work_precision]\n{}models = {}\nmethods = {}\nrepeats = {}\nmost_evaluations = {}\nleast_error = {}\n",
+            problems_.resolved, toml_list(models), toml_list(methods_), repeats_, most_evaluations_, least_error_);
     }
 
     std::string resolved_chart() const override {
@@ -141,9 +149,9 @@ public:
 
 private:
     int repeats() const { return cost_ == Cost::time ? repeats_ : 1; }
-    bool has_angles() const { return problems_.all.front().side.has_angles; }
+    bool has_angles() const { return problems_.all.front().has_angles(); }
 
-    void read_contenders(TomlReader& table) {
+    void read_solvers(TomlReader& table) {
         if (const auto names = table.read_texts("models")) {
             models_.clear();
             for (const auto& name : *names) {
@@ -158,33 +166,36 @@ private:
             methods_ = *names;
         else
             for (const auto& method : methods()) methods_.emplace_back(method.name);
-        for (const auto& name : methods_)
-            if (!find_method(name))
-                throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
+        for (const auto& name : methods_) method_named(table, name);
         check_distinct(table, "methods", methods_);
         for (const auto model : models_)
-            for (const auto& name : methods_) {
-                const auto& method = *find_method(name);
-                const bool serves = model == Model::angles        ? method.angles
-                                    : model == Model::constraints ? method.constraints
-                                                                  : method.mechanism;
-                if (serves) contenders_.push_back({model, name});
-            }
-        if (contenders_.empty())
+            for (const auto& name : methods_)
+                if (serves(*find_method(name), model)) solvers_.push_back({model, name});
+        if (solvers_.empty())
             throw table.fault(table.has("methods") ? "methods" : "models",
                               "must leave a method with a model that it serves");
     }
 
-    TrialNumbers computed(std::size_t trial, const std::atomic<bool>& stop) const {
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const std::size_t problems = problems_.all.size();
-        const std::size_t ladder = trial < problems ? 0 : (trial - problems) % ladders_.size();
-        const std::size_t p = trial < problems ? trial : ladders_[ladder].first;
-        const auto& problem = problems_.all[p];
-        const auto& truth = truths_->of(p, problem, stop);
-        if (trial < problems) return {truth.sensitivity, truth.reference.disagreement};
-        const bool first = trial - problems < ladders_.size();
-        return flattened(climb(problem, truth, ladders_[ladder].second,
-                               {most_evaluations_, least_error_, cost_ == Cost::time, first}, stop));
+        if (trial < problems) {
+            const auto& solution = reference(trial, stop);
+            return numbers_of(ProblemRow{solution.sensitivity, solution.reference.disagreement});
+        }
+        const auto& [p, solver] = ladders_[(trial - problems) % ladders_.size()];
+        const bool is_first = trial - problems < ladders_.size();
+        TrialNumbers numbers;
+        for (const auto& rung : run_ladder(problems_.all[p], reference(p, stop), solver,
+                                           {most_evaluations_, least_error_, cost_ == Cost::time, is_first}, stop))
+            append(numbers, rung);
+        return numbers;
+    }
+
+    /// Computed when it is first asked for, by any thread.
+    const ReferenceSolution& reference(std::size_t problem, const std::atomic<bool>& stop) const {
+        auto& [once, solution] = references_[problem];
+        std::call_once(once, [&] { solution = reference_solution(problems_.all[problem], stop); });
+        return solution;
     }
 
     std::vector<Ladder> merged_ladders(std::span<const TrialNumbers> numbers) const {
@@ -192,7 +203,7 @@ private:
         for (std::size_t i = 0; i < ladders_.size(); ++i) {
             std::vector<std::vector<Rung>> repeats;
             for (std::size_t trial = problems_.all.size() + i; trial < numbers.size(); trial += ladders_.size())
-                repeats.push_back(rungs_of(numbers[trial]));
+                repeats.push_back(rows_of<Rung>(numbers[trial]));
             all.push_back(merged(ladders_[i].first, ladders_[i].second, repeats));
         }
         return all;
@@ -201,33 +212,26 @@ private:
     void add_findings(const std::vector<Ladder>& ladders, std::size_t p, const Accuracy& accuracy,
                       std::vector<Finding>& all) const {
         const auto key = fmt::format("{}_{}_", problems_.all[p].name, accuracy.key);
-        const auto* best = cheapest(p, ladders, cost_, accuracy.error, false);
-        const auto* peer = cheapest(p, ladders, cost_, accuracy.error, true);
-        const auto words = [](const Ladder& l) {
-            return l.contender.peer ? l.contender.peer->name
-                                    : fmt::format("{}, {}", l.contender.method, name_of(l.contender.model));
-        };
+        const auto best = cheapest(p, ladders, cost_, accuracy.error, false);
+        const auto external = cheapest(p, ladders, cost_, accuracy.error, true);
         if (best) {
-            all.push_back({key + "best", words(*best)});
-            all.push_back({key + "cost", *cost_at(*best, cost_, accuracy.error)});
+            const auto& solver = best->ladder->solver;
+            all.push_back({key + "best", fmt::format("{}, {}", solver.method, name_of(solver.model))});
+            all.push_back({key + "cost", best->cost});
         }
-        if (peer) {
-            all.push_back({key + "best_peer", words(*peer)});
-            all.push_back({key + "peer_cost", *cost_at(*peer, cost_, accuracy.error)});
+        if (external) {
+            all.push_back({key + "best_peer", external->ladder->solver.external->name});
+            all.push_back({key + "peer_cost", external->cost});
         }
-        if (best && peer)
-            all.push_back(
-                {key + "peer_ratio", *cost_at(*peer, cost_, accuracy.error) / *cost_at(*best, cost_, accuracy.error)});
+        if (best && external) all.push_back({key + "peer_ratio", external->cost / best->cost});
     }
 
     std::string legend_words(bool floors) const {
         return fmt::format(
             "Each method by its best model on the problem, its other models faint; the pale band is the front: no "
-            "method "
-            "here errs less at less cost.{}{} Errors are those of the worst {} against Taylor series in quad, {}, "
-            "which "
-            "agree.",
-            contenders_.back().peer ? " In grey, methods of other libraries." : "",
+            "method here errs less at less cost.{}{} Errors are those of the worst {} against Taylor series in quad, "
+            "{}, which agree.",
+            solvers_.back().external ? " In grey, methods of other libraries." : "",
             floors ? " Dashed across: the rounding of a double, and what the motion makes of it." : "",
             has_angles() ? "angle" : "place, as a part of the mechanism's size,",
             problems_.all.front().plain ? "in angles and as particles on rods" : "at two tolerances");
@@ -240,11 +244,10 @@ private:
             std::vector<std::string> winners;
             std::string last;
             for (std::size_t p = 0; p < problems_.all.size(); ++p) {
-                const auto* best = cheapest(p, ladders, cost_, accuracy.error, false);
+                const auto best = cheapest(p, ladders, cost_, accuracy.error, false);
                 if (!best) continue;
-                const auto& method = best->contender.method;
-                winners.push_back((method == last ? "" : method + " ") +
-                                  cost_words(*cost_at(*best, cost_, accuracy.error)));
+                const auto& method = best->ladder->solver.method;
+                winners.push_back((method == last ? "" : method + " ") + cost_words(best->cost));
                 last = method;
             }
             if (winners.empty()) continue;
@@ -253,18 +256,15 @@ private:
         return words;
     }
 
-    /// How many times as long the best of the peers takes, at each accuracy a problem after the other; empty without
-    /// any.
-    std::string peer_words(const std::vector<Ladder>& ladders) const {
+    /// The cost of the best external method in units of that of our best, at each accuracy, problem by problem.
+    std::string external_words(const std::vector<Ladder>& ladders) const {
         std::string words;
         for (const auto& accuracy : accuracies) {
             std::vector<std::string> ratios;
             for (std::size_t p = 0; p < problems_.all.size(); ++p) {
-                const auto* ours = cheapest(p, ladders, cost_, accuracy.error, false);
-                const auto* peer = cheapest(p, ladders, cost_, accuracy.error, true);
-                if (ours && peer)
-                    ratios.push_back(fmt::format(
-                        "{:.1f}", *cost_at(*peer, cost_, accuracy.error) / *cost_at(*ours, cost_, accuracy.error)));
+                const auto ours = cheapest(p, ladders, cost_, accuracy.error, false);
+                const auto external = cheapest(p, ladders, cost_, accuracy.error, true);
+                if (ours && external) ratios.push_back(fmt::format("{:.1f}", external->cost / ours->cost));
             }
             if (!ratios.empty())
                 words += fmt::format("{}{} at {}", words.empty() ? "" : "; ", fmt::join(ratios, ", "), accuracy.words);
@@ -291,20 +291,23 @@ private:
         const auto [typical, worst] = spread_of(ladders);
         return fmt::format(
             "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
-            "± "
-            "{:.0f} %, shown as bars.",
+            "± {:.0f} %, shown as bars.",
             repeats_, 100 * typical, 100 * worst);
     }
 
     Cost cost_;
     WorkProblems problems_;
-    std::unique_ptr<Truths> truths_;
+    struct SharedReference {
+        std::once_flag once;
+        ReferenceSolution solution;
+    };
+    std::unique_ptr<SharedReference[]> references_;  // of each problem
     int repeats_ = 5, most_evaluations_ = 300'000;
     double least_error_ = 1e-16;
     std::vector<Model> models_{all_models.begin(), all_models.end()};
     std::vector<std::string> methods_;
-    std::vector<Contender> contenders_;
-    std::vector<std::pair<std::size_t, Contender>> ladders_;  // of a problem each
+    std::vector<Solver> solvers_;
+    std::vector<std::pair<std::size_t, Solver>> ladders_;  // the problem of each, and its solver
 };
 
 }  // namespace

@@ -1,9 +1,5 @@
-#include "figure/work_problem.hpp"
-
-#include "analysis/angle_error.hpp"
 #include "analysis/natural_units.hpp"
-#include "analysis/sensitivity.hpp"
-#include "numeric/nan.hpp"
+#include "figure/work_precision.hpp"
 #include "scene/assemble.hpp"
 #include "scene/choose.hpp"
 #include "scene/resolved.hpp"
@@ -37,6 +33,28 @@ std::string title_words(const std::string& name, const SideSpec& side, const Rat
     const auto seconds = fmt::format("{:.6g} s", duration.value());
     if (!side.particles.empty()) return fmt::format("{} · {}", name, seconds);
     return fmt::format("{} · {}{}, {}", name, release_words(side), side.is_mechanism() ? " and more" : "", seconds);
+}
+
+/// The release of a chain or mechanism as a problem. Throws Error (exit 2) where the system is faulty.
+WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational& duration) {
+    const bool plain = !spec.is_mechanism();
+    spec.model = plain ? ModelChoice::automatic : ModelChoice::mechanism;
+    spec.integrator = "taylor";
+    spec.precision = Precision::in_double;
+    spec.stabilise = Stabilise::none;
+    const auto side = make_side(spec, {1, 1});
+    WorkProblem problem{.name = name, .title = title_words(name, spec, duration), .plain = plain};
+    problem.motion = {
+        .chain = side.motion.chain, .parts = assembly_of(spec), .sample_interval = duration, .follows_turns = false};
+    problem.conserves_energy = problem.motion.parts->conserves_energy();
+    problem.energy_unit = side.energy_unit;
+    problem.size = side.reach;
+    const double gravity = std::abs(side.gravity);
+    if (side.motion.chain)
+        problem.natural_time = NaturalUnits(side.motion.chain->cast<double>()).time;
+    else
+        problem.natural_time = gravity > 0 ? std::sqrt(side.reach / gravity) : 1;
+    return problem;
 }
 
 WorkProblem standard_problem(const StandardProblem& standard) {
@@ -81,9 +99,8 @@ std::string numbers_words(const std::vector<double>& numbers) {
 /// What moves, in the words of a subtitle.
 std::string system_words(const WorkProblem& problem) {
     constexpr std::string_view computed = "double precision, one core";
-    const auto& side = problem.side;
-    if (!side.motion.chain) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
-    const auto chain = side.motion.chain->cast<double>();
+    if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
+    const auto chain = problem.motion.chain->cast<double>();
     const bool rests = std::all_of(chain.rate.begin(), chain.rate.end(), [](double rate) { return rate == 0; });
     return fmt::format("side a of {}{}: links of {} m and {} kg{}, g = {} m/s²; {}", problem.name,
                        rests ? ", released at rest" : "", numbers_words(chain.length), numbers_words(chain.mass),
@@ -118,56 +135,6 @@ WorkProblems read_scene(TomlReader& table) {
 }
 
 }  // namespace
-
-WorkProblem make_problem(const std::string& name, SideSpec side, const Rational& duration) {
-    const bool plain = !side.is_mechanism();
-    side.model = plain ? ModelChoice::automatic : ModelChoice::mechanism;
-    side.integrator = "taylor";
-    side.precision = Precision::in_double;
-    side.stabilise = Stabilise::none;
-    WorkProblem problem{.name = name,
-                        .title = title_words(name, side, duration),
-                        .duration = duration,
-                        .side = make_side(side, {1, 1}),
-                        .parts = assembly_of(side),
-                        .plain = plain,
-                        .natural_time = 1};
-    problem.conserves_energy = problem.parts.conserves_energy();
-    const double gravity = std::abs(problem.side.gravity);
-    if (problem.side.motion.chain)
-        problem.natural_time = NaturalUnits(problem.side.motion.chain->cast<double>()).time;
-    else if (gravity > 0)
-        problem.natural_time = std::sqrt(problem.side.reach / gravity);
-    return problem;
-}
-
-MotionSpec WorkProblem::motion(Model model) const {
-    MotionSpec spec;
-    spec.chain = side.motion.chain;
-    spec.model = model;
-    if (model == Model::mechanism) spec.parts = parts;
-    spec.sample_interval = duration;
-    spec.follows_turns = false;
-    return spec;
-}
-
-double WorkProblem::error(const Observation& seen, const Reference& truth) const {
-    return side.has_angles ? angle_error(seen.bobs, truth.end) : place_error(seen.bobs, truth.end) / side.reach;
-}
-
-const Truth& Truths::of(std::size_t index, const WorkProblem& problem, const std::atomic<bool>& stop) const {
-    // quad at its tolerance comes to some 1e-30 of the sensitivity; of that of a mechanism nothing is known
-    constexpr double allowed = 1e-26, allowed_blindly = 1e-15;
-    auto& found = found_[index];
-    std::call_once(found.once, [&] {
-        const auto spec = problem.motion(problem.plain ? Model::angles : Model::mechanism);
-        const double sensitivity =
-            problem.plain ? angle_sensitivity(spec.chain->cast<double>(), problem.duration.value(), stop) : nan_value;
-        const double most = problem.plain ? allowed * std::max(sensitivity, 1.0) : allowed_blindly;
-        found.truth = {reference_end(spec, problem.duration, most, stop), sensitivity};
-    });
-    return found.truth;
-}
 
 WorkProblems read_problems(TomlReader& table) {
     return table.has("scene") ? read_scene(table) : read_standard(table);

@@ -1,4 +1,4 @@
-#include "figure/drift_growth.hpp"
+#include "analysis/drift.hpp"
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #include "analysis/linear_stability.hpp"
-#include "figure/stability_runs.hpp"
+#include "analysis/energy_stability.hpp"
 #include "figure/support.hpp"
 #include "integrate/ensemble.hpp"
 #include "output/golden.hpp"

@@ -208,7 +208,7 @@ TEST(WorkPrecision, TimesItsRuns) {
 }
 
 /// Does nothing right, at leisure.
-class Idle final : public PeerSolver {
+class Idle final : public ExternalSolver {
 public:
     explicit Idle(double setting) : setting_(setting) {}
     void run() override {
@@ -224,7 +224,7 @@ private:
 };
 
 TEST(WorkPrecision, HasPeers) {
-    const std::vector<Peer> peers{{"idle", true, 1e-4, 1e-2, [](const Pendulum<double>&, double, double setting) {
+    const std::vector<ExternalMethod> peers{{"idle", true, 1e-4, 1e-2, [](const Pendulum<double>&, double, double setting) {
                                        return std::make_unique<Idle>(setting);
                                    }}};
     const auto figure = read_figure({"x", "presets/x.toml",
@@ -257,6 +257,26 @@ TEST(WorkPrecision, TakesAMechanism) {
         least = std::fmin(least, row.number("place_error"));
     }
     EXPECT_LT(least, 5e-16);  // measured 8.9e-17
+}
+
+TEST(WorkPrecision, FailsWhereEveryRunBreaksDown) {
+    const auto figure = figure_of("speed-accuracy", {by_evaluations, "work_precision.problems=[\"P3\"]",
+                                                     "work_precision.methods=[\"gauss4\", \"rattle\"]",
+                                                     "work_precision.most_evaluations=100"});
+    const auto trials = computed(figure);
+    for (const auto& row : rows_of(table_text(figure, trials)))
+        EXPECT_TRUE(std::isnan(row.number("angle_error_rad"))) << row.cells.at("method");
+    try {
+        compose_figure(figure, trials);
+        ADD_FAILURE() << "a diagram of nothing";
+    } catch (const Error& fault) {
+        EXPECT_EQ(fault.code(), ExitCode::method_failed);
+        EXPECT_NE(std::string(fault.what()).find("every run of every method broke down"), std::string::npos);
+    }
+    const std::string one_that_ends = "work_precision.methods=[\"gauss4\", \"taylor\"]";
+    const auto other = figure_of("speed-accuracy", {by_evaluations, "work_precision.problems=[\"P3\"]", one_that_ends,
+                                                    "work_precision.most_evaluations=100"});
+    EXPECT_EQ(other.work->nothing_to_draw(computed(other)), std::nullopt);
 }
 
 TEST(WorkPrecision, ReadsBackWhatItSaysOfItself) {

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "chain_rate.hpp"
-#include "figure/peer.hpp"
+#include "analysis/external_method.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -13,7 +13,7 @@ namespace doppel {
 
 /// What the solvers of all libraries have in common: a chain in angles, from its release over `seconds`.
 template <int N>
-class ChainSolver : public PeerSolver {
+class ChainSolver : public ExternalSolver {
 public:
     static constexpr long most_steps = 2'000'000;  // then a method has given up
     static constexpr double first_step = 0.01;     // s, for libraries that want to be told
@@ -57,9 +57,9 @@ protected:
 
 /// A peer whose solver is a class template over the number of links, made from (chain, seconds, setting, more …).
 template <template <int> class Solver, class... More>
-Peer peer_of(std::string name, bool adaptive, double least, double most, More... more) {
+ExternalMethod peer_of(std::string name, bool adaptive, double least, double most, More... more) {
     return {std::move(name), adaptive, least, most,
-            [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<PeerSolver> {
+            [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<ExternalSolver> {
                 if (chain.links() == 2) return std::make_unique<Solver<2>>(chain, seconds, setting, more...);
                 if (chain.links() == 3) return std::make_unique<Solver<3>>(chain, seconds, setting, more...);
                 return std::make_unique<Solver<Eigen::Dynamic>>(chain, seconds, setting, more...);

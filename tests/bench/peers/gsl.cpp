@@ -37,7 +37,7 @@ private:
 
 }  // namespace
 
-std::vector<Peer> gsl_peers() {
+std::vector<ExternalMethod> gsl_peers() {
     gsl_set_error_handler_off();  // it would end the program
     return {peer_of<GslSolver>("GSL rk8pd", true, 1e-14, 1e-1, gsl_odeiv2_step_rk8pd),
             peer_of<GslSolver>("GSL rkf45", true, 1e-13, 1e-1, gsl_odeiv2_step_rkf45),

@@ -105,7 +105,7 @@ private:
 
 }  // namespace
 
-std::vector<Peer> odeint_peers() {
+std::vector<ExternalMethod> odeint_peers() {
     return {peer_of<OfPair<Fehlberg>::Solver>("odeint rkf78", true, 1e-14, 1e-1),
             peer_of<OfPair<DormandPrince>::Solver>("odeint dopri5", true, 1e-13, 1e-1),
             peer_of<BulirschStoer>("odeint bulirsch_stoer", true, 1e-14, 1e-1),

@@ -1,19 +1,19 @@
 #pragma once
 
-#include "figure/peer.hpp"
+#include "analysis/external_method.hpp"
 
 #include <vector>
 
 namespace doppel {
 
 // One file each.
-std::vector<Peer> odeint_peers();    // Boost.odeint
-std::vector<Peer> gsl_peers();       // GNU Scientific Library, gsl_odeiv2
-std::vector<Peer> sundials_peers();  // SUNDIALS: CVODE and ARKODE
+std::vector<ExternalMethod> odeint_peers();    // Boost.odeint
+std::vector<ExternalMethod> gsl_peers();       // GNU Scientific Library, gsl_odeiv2
+std::vector<ExternalMethod> sundials_peers();  // SUNDIALS: CVODE and ARKODE
 
 /// The methods of other libraries that speed and accuracy are compared with, each set up as its documentation
 /// recommends: one tolerance, absolute and relative alike, or one step.
-inline std::vector<Peer> all_peers() {
+inline std::vector<ExternalMethod> all_peers() {
     auto all = odeint_peers();
     for (const auto& more : {gsl_peers(), sundials_peers()}) all.insert(all.end(), more.begin(), more.end());
     return all;

@@ -41,18 +41,18 @@ double angle_error(std::span<const double> state, const std::vector<double>& tru
     return worst;
 }
 
-double next_setting(const Peer& peer, double setting) {
+double next_setting(const ExternalMethod& peer, double setting) {
     return setting * (peer.adaptive ? std::sqrt(0.1) : std::sqrt(0.5));
 }
 
-Peer peer_named(std::string_view name) {
+ExternalMethod peer_named(std::string_view name) {
     for (const auto& peer : all_peers())
         if (peer.name == name) return peer;
     throw bad_input("there is no peer {}", name);
 }
 
 /// The least error on the way down the ladder, as soon as it is within `wanted`.
-double converged(const Peer& peer, const Problem& problem, double wanted) {
+double converged(const ExternalMethod& peer, const Problem& problem, double wanted) {
     const auto exact = truth(problem);
     double least = pi;
     for (double setting = peer.most; setting >= 0.99 * peer.least; setting = next_setting(peer, setting)) {

@@ -110,7 +110,7 @@ private:
 
 }  // namespace
 
-std::vector<Peer> sundials_peers() {
+std::vector<ExternalMethod> sundials_peers() {
     return {peer_of<Cvode>("CVODE adams", true, 1e-14, 1e-1), peer_of<Arkode>("ARKODE rkf78", true, 1e-14, 1e-1)};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "figure/work_ladder.hpp"
+#include "analysis/work_ladder.hpp"
 
 #include <optional>
 
@@ -9,7 +9,7 @@ namespace doppel {
 /// A ladder as measured: CPU times are medians over the repeats.
 struct Ladder {
     std::size_t problem;
-    Contender contender;
+    Solver solver;
     std::vector<Rung> rungs;
     std::vector<double> spread;  // of each rung's CPU time: half the range of its middle half, relative
 };
@@ -21,7 +21,7 @@ inline double cost_of(const Rung& rung, Cost cost) {
 }
 
 /// The ladder of several repeats, the first of which has everything.
-Ladder merged(std::size_t problem, const Contender& contender, const std::vector<std::vector<Rung>>& repeats);
+Ladder merged(std::size_t problem, const Solver& solver, const std::vector<std::vector<Rung>>& repeats);
 
 /// The errors that matter: larger ones tell nothing, and what is below `least` is at the floor.
 struct ErrorRange {
@@ -46,7 +46,12 @@ struct FrontPoint {
 std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>& all, Cost cost,
                                  const ErrorRange& range);
 
-/// The one that gets to `error` at the least cost, of ours or of the peers; null where none does.
-const Ladder* cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error, bool peers);
+/// The ladder that gets to `error` at the least cost, of Doppel's methods or of the external ones.
+struct Cheapest {
+    const Ladder* ladder;
+    double cost;
+};
+std::optional<Cheapest> cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error,
+                                 bool external);
 
 }  // namespace doppel

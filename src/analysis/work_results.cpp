@@ -1,8 +1,7 @@
-#include "figure/work_results.hpp"
+#include "analysis/work_results.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace doppel {
 namespace {
@@ -22,13 +21,13 @@ bool is_lucky(const Ladder& ladder, std::size_t i, const ErrorRange& range) {
 }
 
 bool is_same_method(const Ladder& one, const Ladder& other) {
-    return one.problem == other.problem && one.contender.name() == other.contender.name();
+    return one.problem == other.problem && one.solver.name() == other.solver.name();
 }
 
 }  // namespace
 
-Ladder merged(std::size_t problem, const Contender& contender, const std::vector<std::vector<Rung>>& repeats) {
-    Ladder ladder{problem, contender, repeats.front(), {}};
+Ladder merged(std::size_t problem, const Solver& solver, const std::vector<std::vector<Rung>>& repeats) {
+    Ladder ladder{problem, solver, repeats.front(), {}};
     for (std::size_t i = 0; i < ladder.rungs.size(); ++i) {
         std::vector<double> times;
         for (const auto& rungs : repeats)
@@ -97,7 +96,7 @@ std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>&
                                  const ErrorRange& range) {
     std::vector<FrontPoint> points, front;
     for (const auto& ladder : all) {
-        if (ladder.problem != problem || ladder.contender.peer) continue;
+        if (ladder.problem != problem || ladder.solver.external) continue;
         for (const std::size_t i : useful_rungs(ladder, cost, range))
             points.push_back({cost_of(ladder.rungs[i], cost), ladder.rungs[i].error});
     }
@@ -111,15 +110,13 @@ std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>&
     return front;
 }
 
-const Ladder* cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error, bool peers) {
-    const Ladder* best = nullptr;
-    double least = std::numeric_limits<double>::infinity();
+std::optional<Cheapest> cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error,
+                                 bool external) {
+    std::optional<Cheapest> best;
     for (const auto& ladder : all) {
-        if (ladder.problem != problem || (ladder.contender.peer != nullptr) != peers) continue;
-        if (const auto value = cost_at(ladder, cost, error); value && *value < least) {
-            best = &ladder;
-            least = *value;
-        }
+        if (ladder.problem != problem || (ladder.solver.external != nullptr) != external) continue;
+        if (const auto value = cost_at(ladder, cost, error); value && (!best || *value < best->cost))
+            best = {&ladder, *value};
     }
     return best;
 }

@@ -1,4 +1,4 @@
-#include "figure/stability_runs.hpp"
+#include "analysis/energy_stability.hpp"
 
 #include "base/error.hpp"
 #include "integrate/ensemble.hpp"

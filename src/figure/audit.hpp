@@ -1,15 +1,32 @@
 #pragma once
 
 #include "analysis/twins.hpp"
+#include "figure/work.hpp"
 #include "scene/preset.hpp"
 
-#include <atomic>
-#include <utility>
-#include <vector>
+#include <functional>
 
-namespace doppel::study {
+namespace doppel {
 
-// The study's releases, in its units, and what is measured of them (figure/claims.hpp).
+enum class Verdict { holds, fails, misprinted };
+struct Judgement {
+    Verdict verdict;
+    std::string found;  // in words
+};
+
+/// A claim of the study (Kao 2022), its measurement, and what the numbers then say.
+struct Claim {
+    std::string_view key;    // for the manifest
+    std::string_view words;  // the claim, in short
+    std::size_t numbers;     // that it comes to
+    std::function<TrialNumbers(const std::atomic<bool>& stop)> measure;
+    std::function<Judgement(const TrialNumbers& numbers)> judge;
+};
+
+/// All of them, in the order of the study.
+std::span<const Claim> claims();
+
+// The study's releases, in its units, and what is measured of them.
 
 using SideTwins = std::pair<SideSpec, SideSpec>;
 
@@ -31,4 +48,4 @@ std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, 
 std::vector<double> averages(const std::vector<SideTwins>& sides, const TwinSide& method,
                              const std::atomic<bool>& stop);
 
-}  // namespace doppel::study
+}  // namespace doppel

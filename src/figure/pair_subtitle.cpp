@@ -1,4 +1,4 @@
-#include "figure/pair_words.hpp"
+#include "figure/pair_subtitle.hpp"
 
 #include "scene/wording.hpp"
 
@@ -85,7 +85,7 @@ bool released_alike(const SideSpec& a, const SideSpec& b) {
            std::equal(a.particles.begin(), a.particles.end(), b.particles.begin(), b.particles.end(), same);
 }
 
-std::string pair_words(const Scene& scene, std::optional<std::size_t> swept_angle, const std::string& apart) {
+std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_angle, const std::string& apart) {
     std::vector<std::string> parts{system_words(scene)};
     const auto add = [&](std::string words) {
         if (!words.empty()) parts.push_back(std::move(words));

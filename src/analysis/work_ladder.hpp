@@ -1,0 +1,82 @@
+#pragma once
+
+#include "analysis/external_method.hpp"
+#include "analysis/reference.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace doppel {
+
+/// A motion to compute, and what its errors are measured by.
+struct WorkProblem {
+    std::string name, title;  // "P1", "P1 · 90°/90°, 10 s"
+    MotionSpec motion;        // what moves; one sample interval is the whole duration; method and model do not matter
+    bool plain = true;        // a chain under gravity and nothing else: every model serves
+    bool conserves_energy = true;
+    double natural_time = 1;  // s
+    double energy_unit = 1;   // J
+    double size = 1;          // m
+
+    double duration() const { return motion.sample_interval.value(); }  // s
+    bool has_angles() const { return motion.chain.has_value(); }
+    MotionSpec motion_in(Model model) const;
+    /// The error at the end: of the worst angle, rad, or the worst place as a part of the size.
+    double error(const Observation& end, const Reference& reference) const;
+};
+
+/// A problem's end to more digits than double has, and how sensitive it is.
+struct ReferenceSolution {
+    Reference reference;
+    double sensitivity;  // of its angles; NaN where it is no plain chain
+
+    /// The error that rounding alone makes in double; NaN where it is not known.
+    double floor() const { return 0x1p-53 * sensitivity; }
+};
+/// Throws as reference_end() does.
+ReferenceSolution reference_solution(const WorkProblem& problem, const std::atomic<bool>& stop);
+
+/// A method on a model, or one of another library, which outlives this.
+struct Solver {
+    Model model = Model::angles;
+    std::string method;
+    const ExternalMethod* external = nullptr;
+
+    std::string name() const { return external ? "peer:" + external->name : method; }
+    bool adaptive() const;
+    /// The method of the published study.
+    bool is_study() const { return method == "euler" && model == Model::angles; }
+    /// Whether it can compute the problem.
+    bool serves(const WorkProblem& problem) const { return problem.plain || (model == Model::mechanism && !external); }
+};
+
+inline constexpr double study_step = 1.0 / 30000;  // s
+
+/// What one setting of a method came to; NaN where a number could not be had.
+struct Rung {
+    double setting;                     // step, s, or tolerance
+    double error;                       // WorkProblem::error()
+    double energy_error, length_error;  // the worst on the way: relative; m
+    double cpu_s;                       // of one run
+    double evaluations, steps;
+
+    /// Whether it has the study's step, as nearly as whole steps allow.
+    bool is_study() const { return std::abs(setting / study_step - 1) < 1e-3; }
+};
+
+struct LadderSpec {
+    long most_evaluations;  // of a rung
+    double least_error;     // at which the ladder ends
+    bool timed = false;
+    bool watched = true;  // energies and lengths, in a run of their own
+};
+
+/// A solver's settings from coarse to fine: steps by factors of √2, 1/30000 s among them, or tolerances by half
+/// decades. The ladder ends where the errors are at the floor, fall below `least_error`, or another rung would take too
+/// many evaluations; never because of the time. The study's step is always among it. A rung that breaks down has no
+/// numbers. CPU times are those of the thread for the whole motion, without setting it up, after a run that warms the
+/// caches; short runs are repeated. Throws Error (exit 130) soon after `stop` is set.
+std::vector<Rung> run_ladder(const WorkProblem& problem, const ReferenceSolution& solution, const Solver& solver,
+                             const LadderSpec& spec, const std::atomic<bool>& stop);
+
+}  // namespace doppel
