@@ -1,7 +1,5 @@
 #include "figure/kinds.hpp"
 
-#include "scene/side_reader.hpp"
-
 #include <algorithm>
 #include <array>
 
