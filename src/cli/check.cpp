@@ -26,11 +26,11 @@ long frames_of(const Scene& scene) {
 
 /// "H.264 veryfast, crf 18", "PNG sequence", "GIF".
 std::string format_words(const VideoSpec& video) {
-    if (video.format == "png") return "PNG sequence";
-    if (video.format == "gif") return "GIF";
-    if (video.format == "apng") return "animated PNG";
-    const auto codec = video.format == "mp4" ? "H.264" : video.codec == "av1" ? "AV1" : "VP9";
-    return fmt::format("{} {}, crf {}, {}", codec, video.preset, video.crf, video.pixel_format);
+    if (video.format == FilmFormat::png) return "PNG sequence";
+    if (video.format == FilmFormat::gif) return "GIF";
+    if (video.format == FilmFormat::apng) return "animated PNG";
+    const auto codec = video.format == FilmFormat::mp4 ? "H.264" : video.codec == "av1" ? "AV1" : "VP9";
+    return fmt::format("{} {}, crf {}, {}", codec, video.preset, video.crf, name_of(video.pixel_format));
 }
 
 /// What a look at the beginning of a run tells of all of it.
@@ -99,13 +99,13 @@ double estimated_pictures(const Scene& scene) {
     const auto& video = scene.preset.video;
     const double megapixels = 1e-6 * video.size.width * video.size.height;
     const bool slow = video.preset.find("slow") != std::string::npos;
-    const double ms = video.format == "png"         ? 3.5
-                      : video.format == "webm"      ? 20
-                      : video.format != "mp4"       ? 10
-                      : video.preset == "ultrafast" ? 2
-                      : video.preset == "medium"    ? 6
-                      : slow                        ? 12
-                                                    : 3.6;
+    const double ms = video.format == FilmFormat::png    ? 3.5
+                      : video.format == FilmFormat::webm ? 20
+                      : video.format != FilmFormat::mp4  ? 10
+                      : video.preset == "ultrafast"      ? 2
+                      : video.preset == "medium"         ? 6
+                      : slow                             ? 12
+                                                         : 3.6;
     return 1e-3 * ms * megapixels * static_cast<double>(frames_of(scene));
 }
 

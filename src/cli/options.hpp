@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/preset.hpp"
 #include "film/run.hpp"
+#include "scene/preset.hpp"
 
 #include <CLI/App.hpp>
 

@@ -68,7 +68,7 @@ void add_render(CLI::App& app) {
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first of them is filmed
         for (const auto& scene : scenes)
-            if (scene.preset.video.format != "png") check_video(video_options(scene));
+            if (scene.preset.video.format != FilmFormat::png) check_video(video_options(scene));
         run_all(scenes, *options, run);
     });
 }

@@ -109,11 +109,9 @@ SideSpec with_droplet(SideSpec spec, bool droplet) {
     spec.model = ModelChoice::mechanism;
     if (droplet)
         spec.forces.push_back({.name = {},
-                               .kind = "droplet",
-                               .particle = {},
-                               .position_m = std::array<Quad, 2>{1609, 0},
-                               .mass_kg = parse_quad("0.000034"),
-                               .constant = parse_quad("6.674e-11")});
+                               .part = DropletSpec{.position_m = QuadPair{1609, 0},
+                                                   .mass_kg = parse_quad("0.000034"),
+                                                   .constant_m3_per_kg_s2 = parse_quad("6.674e-11")}});
     return spec;
 }
 

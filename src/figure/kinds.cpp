@@ -1,7 +1,6 @@
 #include "figure/kinds.hpp"
 
 #include "scene/resolved.hpp"
-#include "scene/side_reader.hpp"
 
 #include <algorithm>
 #include <array>

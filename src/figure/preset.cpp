@@ -2,8 +2,6 @@
 
 #include "figure/kinds.hpp"
 #include "scene/resolved.hpp"
-#include "scene/style_reader.hpp"
-#include "scene/video_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

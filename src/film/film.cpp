@@ -76,17 +76,15 @@ std::optional<long> poster_sample(const Scene& scene) {
 
 VideoOptions video_options(const Scene& scene) {
     const auto& video = scene.preset.video;
-    return {.format = video.format == "webm"   ? VideoFormat::webm
-                      : video.format == "gif"  ? VideoFormat::gif
-                      : video.format == "apng" ? VideoFormat::apng
-                                               : VideoFormat::mp4,
+    return {.format = video.format == FilmFormat::webm   ? VideoFormat::webm
+                      : video.format == FilmFormat::gif  ? VideoFormat::gif
+                      : video.format == FilmFormat::apng ? VideoFormat::apng
+                                                         : VideoFormat::mp4,
             .codec = video.codec,
             .size = video.size,
             .fps_numerator = static_cast<int>(scene.fps.numerator),
             .fps_denominator = static_cast<int>(scene.fps.denominator),
-            .pixel_format = video.pixel_format == "yuv444p"     ? PixelFormat::yuv444
-                            : video.pixel_format == "yuv420p10" ? PixelFormat::yuv420_10
-                                                                : PixelFormat::yuv420,
+            .pixel_format = video.pixel_format,
             .preset = video.preset,
             .crf = video.crf,
             .transparent = video.transparent,
@@ -97,7 +95,7 @@ Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunR
            const std::atomic<bool>& stop)
     : scene_(scene), schedule_(schedule_of(scene)), composer_(scene, stop), parts_(parts), stop_(stop) {
     const auto& video = scene.preset.video;
-    if (video.format == "png") {
+    if (video.format == FilmFormat::png) {
         film_name_ = "frames";
         const Folder& folder = parts.directory(film_name_);
         const auto place_of = [this, &folder](long k) {

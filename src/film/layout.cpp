@@ -16,9 +16,8 @@ namespace {
 
 Theme themed(const VideoSpec& video) {
     auto theme = *std::find_if(themes.begin(), themes.end(), [&](const auto& t) { return t.name == video.theme; });
-    for (const auto& [name, color] : video.colors)
-        for (const auto& [known, member] : color_names)
-            if (known == name) theme.*member = color;
+    for (std::size_t i = 0; i < color_names.size(); ++i)
+        if (video.colors[i]) theme.*color_names[i].member = *video.colors[i];
     if (video.side_colors) theme.sides = *video.side_colors;
     return theme;
 }
@@ -205,8 +204,8 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
 
 Style make_style(const VideoSpec& video, float unit, float text) {
     Style style{themed(video), video.widths, video.fonts, 0};
-    for (const auto& [name, member] : width_names) style.width.*member *= unit;
-    for (const auto& [name, member] : font_size_names) style.font.*member *= text;
+    for (const auto& width : width_names) style.width.*width.member *= unit;
+    for (const auto& size : font_size_names) style.font.*size.member *= text;
     // small pictures keep lines that can be seen
     style.width.trail = std::max(style.width.trail, video.widths.trail > 0 ? 1.2 : 0);
     style.width.trace = std::max(style.width.trace, video.widths.trace > 0 ? 1.2 : 0);

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-Place<Quad> place(const std::array<Quad, 2>& xy) {
+Place<Quad> place(const QuadPair& xy) {
     return {xy[0], xy[1]};
 }
 
@@ -19,17 +19,17 @@ public:
     Cast(std::vector<std::string> names, const Assembly<Quad>& assembly)
         : names_(std::move(names)), assembly_(assembly) {}
 
-    std::size_t index(const PartSpec& part, const std::string& name) const {
+    /// Of the particle that an entry, `what`, names.
+    std::size_t index(const std::string& what, const std::string& name) const {
         const auto found = std::find(names_.begin(), names_.end(), name);
         if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
         const auto meant = nearest(name, std::vector<std::string_view>(names_.begin(), names_.end()));
-        throw bad_input("{}{} names the particle \"{}\", which is not there{}", part.kind,
-                        part.name.empty() ? "" : fmt::format(" \"{}\"", part.name), name,
+        throw bad_input("{} names the particle \"{}\", which is not there{}", what, name,
                         meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
     }
-    End<Quad> end(const PartSpec& part, const EndSpec& spec) const {
-        if (const auto* name = std::get_if<std::string>(&spec)) return index(part, *name);
-        return place(std::get<std::array<Quad, 2>>(spec));
+    End<Quad> end(const std::string& what, const EndSpec& spec) const {
+        if (const auto* name = std::get_if<std::string>(&spec)) return index(what, *name);
+        return place(std::get<QuadPair>(spec));
     }
     Place<Quad> start(const End<Quad>& end) const {
         const auto* particle = std::get_if<std::size_t>(&end);
@@ -46,37 +46,65 @@ private:
     const Assembly<Quad>& assembly_;
 };
 
-/// From a particle to whatever is at the other end; a fixed end goes second.
-std::pair<std::size_t, End<Quad>> ends_of(const Cast& cast, const PartSpec& part) {
-    auto from = cast.end(part, *part.from), to = cast.end(part, *part.to);
-    if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
-    if (!std::holds_alternative<std::size_t>(from))
-        throw bad_input("a {} joins two fixed places; at least one end must be a particle", part.kind);
-    return {std::get<std::size_t>(from), to};
-}
+/// Makes one constraint or force of what a preset says of it.
+struct Maker {
+    const Cast& cast;
+    std::string_view kind;
+    std::string what;  // kind and name, for errors
 
-Constraint<Quad> constraint_of(const Cast& cast, const PartSpec& part) {
-    if (part.kind == "rod") {
-        const auto [a, b] = ends_of(cast, part);
+    /// From a particle to whatever is at the other end; a fixed end goes second.
+    std::pair<std::size_t, End<Quad>> ends(const auto& part) const {
+        auto from = cast.end(what, *part.from), to = cast.end(what, *part.to);
+        if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
+        if (!std::holds_alternative<std::size_t>(from))
+            throw bad_input("a {} joins two fixed places; at least one end must be a particle", kind);
+        return {std::get<std::size_t>(from), to};
+    }
+    /// The particle, and where it is held.
+    std::pair<std::size_t, Place<Quad>> held(const auto& part) const {
+        const auto particle = cast.index(what, part.particle);
+        return {particle, part.position_m ? place(*part.position_m) : cast.start(particle)};
+    }
+
+    Constraint<Quad> operator()(const AnchorSpec& part) const {
+        const auto [particle, at] = held(part);
+        return Anchor<Quad>{particle, at};
+    }
+    Constraint<Quad> operator()(const RodSpec& part) const {
+        const auto [a, b] = ends(part);
         return Rod<Quad>{a, b, part.length_m ? *part.length_m : cast.apart(a, b)};
     }
-    const auto particle = cast.index(part, part.particle);
-    const auto at = part.position_m ? place(*part.position_m) : cast.start(particle);
-    if (part.kind == "anchor") return Anchor<Quad>{particle, at};
-    if (part.kind == "slot-line") return SlotLine<Quad>{particle, at, place(part.direction)};
-    return SlotCircle<Quad>{particle, at, part.length_m ? *part.length_m : cast.apart(particle, at)};
-}
-
-Force<Quad> force_of(const Cast& cast, const PartSpec& part) {
-    const auto constant = part.constant.value_or(newton_constant<Quad>());
-    if (part.kind == "droplet") return Droplet<Quad>{place(*part.position_m), part.mass_kg, constant};
-    const auto [a, b] = ends_of(cast, part);
-    if (part.kind == "spring")
+    Constraint<Quad> operator()(const SlotLineSpec& part) const {
+        const auto [particle, at] = held(part);
+        return SlotLine<Quad>{particle, at, place(part.direction)};
+    }
+    Constraint<Quad> operator()(const SlotCircleSpec& part) const {
+        const auto [particle, at] = held(part);
+        return SlotCircle<Quad>{particle, at, part.radius_m ? *part.radius_m : cast.apart(particle, at)};
+    }
+    Force<Quad> operator()(const SpringSpec& part) const {
+        const auto [a, b] = ends(part);
         return Spring<Quad>{a, b, part.stiffness_N_per_m, part.length_m ? *part.length_m : cast.apart(a, b),
                             part.damping_N_s_per_m};
-    const auto* other = std::get_if<std::size_t>(&b);
-    if (!other) throw bad_input("an attraction is between two particles; a body that stays in place is a \"droplet\"");
-    return Attraction<Quad>{a, *other, constant};
+    }
+    Force<Quad> operator()(const AttractionSpec& part) const {
+        const auto [a, b] = ends(part);
+        const auto* other = std::get_if<std::size_t>(&b);
+        if (!other)
+            throw bad_input("an attraction is between two particles; a body that stays in place is a \"droplet\"");
+        return Attraction<Quad>{a, *other, part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>())};
+    }
+    Force<Quad> operator()(const DropletSpec& part) const {
+        return Droplet<Quad>{place(*part.position_m), part.mass_kg,
+                             part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>())};
+    }
+};
+
+auto made(const Cast& cast, const auto& spec) {
+    const auto kind = kind_name(spec);
+    return std::visit(
+        Maker{cast, kind, fmt::format("{}{}", kind, spec.name.empty() ? "" : fmt::format(" \"{}\"", spec.name))},
+        spec.part);
 }
 
 /// Bobs and rods of the chain.
@@ -116,9 +144,9 @@ Assembly<Quad> assembly_of(const SideSpec& spec) {
         names.push_back(particle.name);
     }
     const Cast cast(names, assembly);
-    for (const auto& part : spec.constraints) assembly.constraints.push_back(constraint_of(cast, part));
+    for (const auto& part : spec.constraints) assembly.constraints.push_back(made(cast, part));
     if (spec.gravity_m_per_s2 != 0) assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
-    for (const auto& part : spec.forces) assembly.forces.push_back(force_of(cast, part));
+    for (const auto& part : spec.forces) assembly.forces.push_back(made(cast, part));
     return assembly;
 }
 

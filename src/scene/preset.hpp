@@ -20,30 +20,80 @@ inline constexpr Rational usual_step{1, 30000};  // s, the study's
 inline const Quad usual_tolerance = parse_quad("1e-12"), usual_quad_tolerance = parse_quad("1e-28");
 
 enum class ModelChoice { automatic, angles, constraints, mechanism };
+template <>
+inline constexpr auto names_of<ModelChoice> = std::to_array<std::string_view>({"auto", "angles", "constraints",
+                                                                               "mechanism"});
+template <>
+inline constexpr auto names_of<Model> = std::to_array<std::string_view>({"angles", "constraints", "mechanism"});
+template <>
+inline constexpr auto names_of<Precision> = std::to_array<std::string_view>({"double", "quad"});
+template <>
+inline constexpr auto names_of<Stabilise> = std::to_array<std::string_view>({"none", "baumgarte", "projection"});
+
+using QuadPair = std::array<Quad, 2>;  // x and y
 
 /// An end of a rod or a spring: the name of a particle, or a fixed place, m.
-using EndSpec = std::variant<std::string, std::array<Quad, 2>>;
+using EndSpec = std::variant<std::string, QuadPair>;
 
 /// [[system.particle]]: a point mass and how it is released.
 struct ParticleSpec {
     std::string name;
     Quad mass_kg = 1;
-    std::array<Quad, 2> position_m{}, velocity_m_per_s{};
+    QuadPair position_m{}, velocity_m_per_s{};
 };
 
-/// [[system.constraint]] or [[system.force]]: what its kind needs; lengths and places that are not given are those of
-/// the start.
-struct PartSpec {
-    std::string name, kind;
-    std::string particle;                           // anchor, slots
-    std::optional<EndSpec> from, to;                // rod, spring, attraction
-    std::optional<std::array<Quad, 2>> position_m;  // anchor; a point of a straight slot; centre of a circle; droplet
-    std::array<Quad, 2> direction{1, 0};            // of a straight slot
-    std::optional<Quad> length_m;                   // rod, spring at rest; radius of a circle
-    Quad stiffness_N_per_m = 1, damping_N_s_per_m = 0;
-    Quad mass_kg = 1;              // droplet
-    std::optional<Quad> constant;  // attraction, droplet: G, m³/(kg s²)
+// Kinds of constraints and forces. Lengths and places that are not given are those of the start.
+struct AnchorSpec {
+    std::string particle;
+    std::optional<QuadPair> position_m;
 };
+struct RodSpec {
+    std::optional<EndSpec> from, to;
+    std::optional<Quad> length_m;
+};
+struct SlotLineSpec {
+    std::string particle;
+    std::optional<QuadPair> position_m;  // a point of the line
+    QuadPair direction{1, 0};
+};
+struct SlotCircleSpec {
+    std::string particle;
+    std::optional<QuadPair> position_m;  // the centre
+    std::optional<Quad> radius_m;
+};
+struct SpringSpec {
+    std::optional<EndSpec> from, to;
+    std::optional<Quad> length_m;  // at rest
+    Quad stiffness_N_per_m = 1, damping_N_s_per_m = 0;
+};
+struct AttractionSpec {
+    std::optional<EndSpec> from, to;
+    std::optional<Quad> constant_m3_per_kg_s2;  // G
+};
+struct DropletSpec {
+    std::optional<QuadPair> position_m;
+    Quad mass_kg = 1;
+    std::optional<Quad> constant_m3_per_kg_s2;  // G
+};
+
+/// [[system.constraint]]
+struct ConstraintSpec {
+    static constexpr std::array<std::string_view, 4> kinds{"anchor", "rod", "slot-line", "slot-circle"};
+    std::string name;
+    std::variant<AnchorSpec, RodSpec, SlotLineSpec, SlotCircleSpec> part;
+};
+
+/// [[system.force]]
+struct ForceSpec {
+    static constexpr std::array<std::string_view, 3> kinds{"spring", "attraction", "droplet"};
+    std::string name;
+    std::variant<SpringSpec, AttractionSpec, DropletSpec> part;
+};
+
+template <class Spec>
+std::string_view kind_name(const Spec& spec) {
+    return Spec::kinds[spec.part.index()];
+}
 
 /// One side of the pair, as [system] with [a] or [b] on top describes it. Numbers are those written, to 34 digits;
 /// angles stay in degrees.
@@ -58,13 +108,14 @@ struct SideSpec {
     bool integrator_from_command_line = false;
     std::optional<Rational> step_s;  // of methods with a fixed step
     std::optional<Quad> tolerance;   // of adaptive methods
-    std::optional<Quad> accuracy;    // rad; in place of integrator, step and tolerance (scene/choice.hpp)
+    std::optional<Quad> accuracy;    // rad; in place of integrator, step and tolerance (scene/method_choice.hpp)
     bool accuracy_from_command_line = false;
     Precision precision = Precision::in_double;
     Stabilise stabilise = Stabilise::none;
     Quad stabilise_rate_per_s = 10;       // Baumgarte's α = β
     std::vector<ParticleSpec> particles;  // in place of a chain
-    std::vector<PartSpec> constraints, forces;
+    std::vector<ConstraintSpec> constraints;
+    std::vector<ForceSpec> forces;
 
     /// How finely to step where nothing was given, too.
     Rational step() const { return step_s.value_or(usual_step); }
@@ -73,6 +124,8 @@ struct SideSpec {
     }
 
     std::size_t links() const { return mass_kg.size(); }
+    /// Where their number changes, all are released level, at rest.
+    void set_links(std::size_t links);
     /// Whether it takes more than a chain under gravity.
     bool is_mechanism() const { return !particles.empty() || !constraints.empty() || !forces.empty(); }
 };
@@ -121,6 +174,9 @@ bool is_figure(const PresetText& source);
 /// Reads and checks; unknown keys, wrong types and lengths, and values out of range are Errors (exit 2) with place,
 /// value found and what would be right.
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides = {});
+
+/// docs/presets.md: all tables and keys of a film's preset.
+std::string preset_reference();
 
 /// The key=value of --set. Throws Error (exit 2) where it is not of that form.
 Override parse_set(const std::string& argument);

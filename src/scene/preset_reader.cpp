@@ -1,8 +1,6 @@
 #include "integrate/methods.hpp"
 #include "scene/nearest.hpp"
-#include "scene/preset_tables.hpp"
-#include "scene/side_reader.hpp"
-#include "scene/video_reader.hpp"
+#include "scene/preset_fields.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +54,7 @@ Rational usual_gif_rate(const Rational& sampled, const Preset& preset, long samp
 void check_frames(Preset& preset, const TomlReader& video) {
     const long samples = product(preset.duration_s, preset.sample_hz)->numerator;  // check_clock() saw to it
     const auto sampled = product(preset.sample_hz, preset.video.speed);
-    if (sampled && !preset.video.fps && preset.video.format == "gif")
+    if (sampled && !preset.video.fps && preset.video.format == FilmFormat::gif)
         preset.video.fps = usual_gif_rate(*sampled, preset, samples, video);
     const auto fps = preset.video.fps ? preset.video.fps : sampled;
     constexpr double most_fps = 1000;
@@ -82,7 +80,7 @@ void check_frames(Preset& preset, const TomlReader& video) {
 /// What layouts and strips ask of the system.
 void check_layout(const Preset& preset, const TomlReader& video) {
     const auto layout = preset.video.layout;
-    const auto name = arrangement_names[static_cast<std::size_t>(layout)];
+    const auto name = name_of(layout);
     const bool chains = preset.a.particles.empty() && preset.b.particles.empty();
     if (!chains && (layout == Arrangement::ensemble || layout == Arrangement::phase))
         throw video.fault("layout", "\"{}\" is of chains; the sides are mechanisms of particles", name);
@@ -129,13 +127,12 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
 
 std::string read_kind(TomlReader& scene) {
     std::string kind(pair_kind);
-    scene.read_choice("kind", kind, scene_kinds);
+    scene.read(kind_field, kind);
     return kind;
 }
 
 void read_clock(TomlReader& scene, Preset& preset) {
-    scene.read_positive_ratio("duration_s", preset.duration_s);
-    scene.read_positive_ratio("sample_hz", preset.sample_hz);
+    clock_fields(scene, preset);
 }
 
 void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/preset.hpp"
 #include "scene/toml_document.hpp"
 
 #include <array>
@@ -8,7 +9,8 @@
 
 namespace doppel {
 
-// What presets of films and of figures have in common. All throw Error (exit 2) as TomlReader does.
+// Tables of presets, for films and figures. Each function leaves alone what the table does not say, and throws Error
+// (exit 2) as TomlReader does.
 
 /// `kind` of [scene]: of a film, and of the figures (figure/kinds.cpp).
 inline constexpr std::string_view pair_kind = "pair";
@@ -22,10 +24,23 @@ std::string read_kind(TomlReader& scene);
 /// `duration_s` and `sample_hz` of [scene].
 void read_clock(TomlReader& scene, Preset& preset);
 
+/// [system], [a] or [b].
+void read_side(TomlReader& table, SideSpec& side);
+
+/// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say.
+void read_release(TomlReader& table, SideSpec& side);
+
 /// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier.
 void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset);
 
 /// Steps and samples must fall on each other exactly.
 void check_clock(const Preset& preset, const TomlReader& scene);
+
+/// [video].
+void read_video(TomlReader& table, VideoSpec& video);
+/// `size`: any that a picture may have.
+void read_picture_size(TomlReader& table, Size& into);
+/// `theme`, the name of one of themes.
+void read_theme(TomlReader& table, std::string& into);
 
 }  // namespace doppel

@@ -1,8 +1,8 @@
 #include "scene/resolved.hpp"
 
-#include "integrate/methods.hpp"
+#include "scene/preset_fields.hpp"
 
-#include <fmt/format.h>
+#include <cmath>
 
 namespace doppel {
 
@@ -24,90 +24,68 @@ std::string toml_ratio(const Rational& value) {
     return value.is_whole() ? value.text() : fmt::format("\"{}\"", value.text());
 }
 
+std::string toml_value(const Color& color) {
+    const auto channel = [](float x) { return static_cast<int>(std::lround(x * 255)); };
+    return fmt::format("\"#{:02x}{:02x}{:02x}\"", channel(color.r), channel(color.g), channel(color.b));
+}
+
+std::string toml_value(const Panels& panels) {
+    std::vector<std::string> names;
+    if (panels.pendulums) names.emplace_back("pendulums");
+    for (const auto strip : panels.strips) names.emplace_back(name_of(strip));
+    return toml_value(names);
+}
+
 namespace {
 
-std::string numbers(const std::vector<Quad>& values) {
-    std::vector<std::string> texts;
-    for (const auto& value : values) texts.push_back(text_of(value));
-    return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
-std::string pair_text(const std::array<Quad, 2>& xy) {
-    return fmt::format("[{}, {}]", text_of(xy[0]), text_of(xy[1]));
-}
-
-std::string end_text(const EndSpec& end) {
-    const auto* name = std::get_if<std::string>(&end);
-    return name ? toml_text(*name) : pair_text(std::get<std::array<Quad, 2>>(end));
-}
-
-std::string particle_toml(const std::string& side, const ParticleSpec& particle) {
-    return fmt::format("\n[[{}.particle]]\nname = {}\nmass_kg = {}\nposition_m = {}\nvelocity_m_per_s = {}\n", side,
-                       toml_text(particle.name), text_of(particle.mass_kg), pair_text(particle.position_m),
-                       pair_text(particle.velocity_m_per_s));
-}
-
-std::string part_toml(const std::string& side, const char* what, const PartSpec& part) {
-    auto text = fmt::format("\n[[{}.{}]]\nkind = {}\n", side, what, toml_text(part.kind));
-    const auto add = [&](std::string_view key, const std::string& value) {
-        text += fmt::format("{} = {}\n", key, value);
-    };
-    if (!part.name.empty()) add("name", toml_text(part.name));
-    if (!part.particle.empty()) add("particle", toml_text(part.particle));
-    if (part.from) add("from", end_text(*part.from));
-    if (part.to) add("to", end_text(*part.to));
-    if (part.position_m) add("position_m", pair_text(*part.position_m));
-    if (part.kind == "slot-line") add("direction", pair_text(part.direction));
-    if (part.length_m) add(part.kind == "slot-circle" ? "radius_m" : "length_m", text_of(*part.length_m));
-    if (part.kind == "spring") {
-        add("stiffness_N_per_m", text_of(part.stiffness_N_per_m));
-        add("damping_N_s_per_m", text_of(part.damping_N_s_per_m));
-    }
-    if (part.kind == "droplet") add("mass_kg", text_of(part.mass_kg));
-    if (part.constant) add("constant_m3_per_kg_s2", text_of(*part.constant));
-    return text;
-}
-
-std::string links_toml(const SideSpec& side) {
-    return fmt::format("links = {}\nmass_kg = {}\nlength_m = {}\n", side.links(), numbers(side.mass_kg),
-                       numbers(side.length_m));
-}
-
-std::string chain_toml(const SideSpec& side) {
-    return links_toml(side) + fmt::format("angle_deg = {}\nomega_deg_per_s = {}\n", numbers(side.angle_deg),
-                                          numbers(side.omega_deg_per_s));
-}
-
-std::string pace_toml(const SideSpec& side) {
-    return find_method(side.integrator)->adaptive ? fmt::format("tolerance = {}\n", text_of(side.allowed_error()))
-                                                  : fmt::format("step_s = {}\n", toml_ratio(side.step()));
+template <class Fields>
+std::string table_text(const std::string& name, const Fields& fields) {
+    TomlWriter writer;
+    fields(writer);
+    return fmt::format("\n{}\n{}", name, writer.text());
 }
 
 /// [a] or [b] with everything in it.
 std::string side_toml(const std::string& name, const SideSpec& side) {
-    constexpr const char* models[] = {"auto", "angles", "constraints", "mechanism"};
-    constexpr const char* precisions[] = {"double", "quad"};
-    constexpr const char* stabilise[] = {"none", "baumgarte", "projection"};
-    auto text = fmt::format("\n[{}]\n{}", name, side.particles.empty() ? chain_toml(side) : "");
-    text += fmt::format("gravity_m_per_s2 = {}\nmodel = \"{}\"\nprecision = \"{}\"\nstabilise = \"{}\"\n",
-                        text_of(side.gravity_m_per_s2), models[static_cast<int>(side.model)],
-                        precisions[static_cast<int>(side.precision)], stabilise[static_cast<int>(side.stabilise)]);
-    text += side.accuracy ? fmt::format("accuracy = {}\n", text_of(*side.accuracy))
-                          : fmt::format("integrator = \"{}\"\n{}", side.integrator, pace_toml(side));
-    if (side.stabilise == Stabilise::baumgarte)
-        text += fmt::format("stabilise_rate_per_s = {}\n", text_of(side.stabilise_rate_per_s));
-    for (const auto& particle : side.particles) text += particle_toml(name, particle);
-    for (const auto& part : side.constraints) text += part_toml(name, "constraint", part);
-    for (const auto& part : side.forces) text += part_toml(name, "force", part);
+    auto complete = side;
+    if (find_method(side.integrator)->adaptive)
+        complete.tolerance = side.allowed_error();
+    else
+        complete.step_s = side.step();
+    auto text = table_text(fmt::format("[{}]", name), [&](TomlWriter& writer) {
+        const auto& all = complete;
+        if (all.particles.empty()) chain_fields(writer, all);
+        gravity_field(writer, all);
+        writer(model_field, all.model);
+        writer(accuracy_field, all.accuracy);
+        if (!all.accuracy) method_fields(writer, all);
+        precision_fields(writer, all);
+    });
+    for (const auto& particle : side.particles)
+        text += table_text(fmt::format("[[{}.particle]]", name), [&](TomlWriter& writer) {
+            writer.add("name", toml_text(particle.name));
+            part_fields(writer, particle);
+        });
+    const auto add_parts = [&](const char* key, const auto& parts) {
+        for (const auto& spec : parts)
+            text += table_text(fmt::format("[[{}.{}]]", name, key), [&](TomlWriter& writer) {
+                const std::string kind(kind_name(spec));
+                writer.add("kind", toml_text(kind));
+                writer({.key = "name"}, spec.name);
+                std::visit([&](const auto& part) { part_fields(writer, part, kind); }, spec.part);
+            });
+    };
+    add_parts("constraint", side.constraints);
+    add_parts("force", side.forces);
     return text;
 }
 
 }  // namespace
 
 std::string resolved_pair(const Preset& preset) {
-    return fmt::format("duration_s = {}\nsample_hz = {}\n", toml_ratio(preset.duration_s),
-                       toml_ratio(preset.sample_hz)) +
-           resolved_sides(preset);
+    TomlWriter writer;
+    clock_fields(writer, preset);
+    return writer.text() + resolved_sides(preset);
 }
 
 std::string resolved_sides(const Preset& preset, const std::string& above) {
@@ -115,16 +93,29 @@ std::string resolved_sides(const Preset& preset, const std::string& above) {
 }
 
 std::string resolved_release(const SideSpec& side) {
-    return fmt::format("\n[system]\n{}gravity_m_per_s2 = {}\n", chain_toml(side), text_of(side.gravity_m_per_s2));
+    return table_text("[system]", [&](TomlWriter& writer) {
+        chain_fields(writer, side);
+        gravity_field(writer, side);
+    });
 }
 
 std::string resolved_chain(const SideSpec& side) {
-    return fmt::format("\n[system]\n{}gravity_m_per_s2 = {}\n", links_toml(side), text_of(side.gravity_m_per_s2));
+    return table_text("[system]", [&](TomlWriter& writer) {
+        link_fields(writer, side);
+        gravity_field(writer, side);
+    });
 }
 
 std::string resolved_toml(const Preset& preset) {
-    return fmt::format("title = {}\n\n[scene]\nkind = \"pair\"\n", toml_text(preset.title)) + resolved_pair(preset) +
-           resolved_video(preset.video);
+    return fmt::format("title = {}\n\n[scene]\nkind = \"{}\"\n", toml_text(preset.title), pair_kind) +
+           resolved_pair(preset) + table_text("[video]", [&](TomlWriter& writer) {
+               const auto& video = preset.video;
+               writer(size_field, video.size);
+               format_fields(writer, video);
+               time_fields(writer, video);
+               layout_fields(writer, video);
+               style_fields(writer, video);
+           });
 }
 
 }  // namespace doppel

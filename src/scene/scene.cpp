@@ -80,10 +80,6 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     return scene;
 }
 
-std::string_view name_of(Model model) {
-    return model == Model::angles ? "angles" : model == Model::constraints ? "constraints" : "mechanism";
-}
-
 Moment PairRun::next(const std::atomic<bool>& stop) {
     Moment now;
     now.sample = ++sample_;

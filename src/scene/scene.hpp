@@ -58,8 +58,6 @@ struct Scene {
 /// accuracy is out of reach; exit 130 soon after `stop` is set (choosing by accuracy takes runs of its own).
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 
-std::string_view name_of(Model model);  // as in presets: "angles", "constraints", "mechanism"
-
 /// Both sides and how they differ at one sample.
 struct Moment {
     long sample = 0;

@@ -1,6 +1,4 @@
-#include "scene/side_reader.hpp"
-
-#include "integrate/methods.hpp"
+#include "scene/preset_fields.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,37 +8,10 @@
 namespace doppel {
 namespace {
 
-using namespace std::string_view_literals;
-
-constexpr std::array model_names{"auto"sv, "angles"sv, "constraints"sv, "mechanism"sv};
-constexpr std::array precision_names{"double"sv, "quad"sv};
-constexpr std::array stabilise_names{"none"sv, "baumgarte"sv, "projection"sv};
-constexpr int most_links = 10'000;
-constexpr int most_angle = 1'000'000;  // degrees
-
-void read_chain(TomlReader& table, SideSpec& side) {
-    int links = static_cast<int>(side.links());
-    table.read_whole("links", links, 1, most_links);
-    if (const auto n = static_cast<std::size_t>(links); n != side.links()) {
-        side.mass_kg.assign(n, 1);
-        side.length_m.assign(n, 1);
-        side.angle_deg.assign(n, 90);
-        side.omega_deg_per_s.assign(n, 0);
-    }
-    table.read_positives("mass_kg", side.mass_kg, "one a link");
-    table.read_positives("length_m", side.length_m, "one a link");
-    table.read_numbers("angle_deg", side.angle_deg, "one a link");
-    for (const auto& angle : side.angle_deg)
-        if (abs(angle) > most_angle)
-            throw table.fault("angle_deg", "must be from -{0} to {0}: more leaves no digits to move by; one is {1}",
-                              most_angle, text_of(angle));
-    table.read_numbers("omega_deg_per_s", side.omega_deg_per_s, "one a link");
-}
-
 /// Whether an accuracy stands in place of integrator, step and tolerance: one from the command line for those of the
 /// preset, or they, from the command line, for its accuracy. Rivals given side by side are an error.
 bool read_accuracy(TomlReader& table, SideSpec& side) {
-    constexpr std::array rivals{"integrator"sv, "step_s"sv, "tolerance"sv};
+    constexpr std::array<std::string_view, 3> rivals{"integrator", "step_s", "tolerance"};
     const std::string_view* rival = nullptr;
     for (const auto& key : rivals)
         if (table.has(key) && !rival) rival = &key;
@@ -52,9 +23,7 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
             side.accuracy.reset();
             return false;
         }
-        table.read_positive("accuracy", side.accuracy.emplace());
-        if (*side.accuracy > 1)
-            throw table.fault("accuracy", "must be at most 1 rad; it is {}", text_of(*side.accuracy));
+        table(accuracy_field, side.accuracy);
         side.accuracy_from_command_line = ours;
     } else if (rival && !(side.accuracy_from_command_line && !table.from_command_line(*rival))) {
         side.accuracy.reset();
@@ -63,33 +32,6 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
     side.step_s.reset();
     side.tolerance.reset();
     return true;
-}
-
-/// Integrator, and the step or the tolerance that it goes by. An integrator from the command line drops what the preset
-/// says for another kind; rivals given side by side are an error.
-void read_method(TomlReader& table, SideSpec& side) {
-    std::vector<std::string_view> names;
-    for (const auto& method : methods()) names.push_back(method.name);
-    if (read_accuracy(table, side)) return;
-    table.read_choice("integrator", side.integrator, names);
-    if (table.has("integrator")) side.integrator_from_command_line = table.from_command_line("integrator");
-    const bool adaptive = find_method(side.integrator)->adaptive;
-
-    // true where the key counts
-    const auto takes = [&](std::string_view key, bool serves, const char* what) {
-        if (!table.has(key) || serves) return serves;
-        if (side.integrator_from_command_line && !table.from_command_line(key)) return false;
-        throw table.fault(key, "is for {}; \"{}\" goes by {}", what, side.integrator,
-                          adaptive ? "tolerance" : "step_s");
-    };
-    if (!takes("step_s", !adaptive, "methods with a fixed step"))
-        side.step_s.reset();
-    else if (table.has("step_s"))
-        table.read_positive_ratio("step_s", side.step_s.emplace());
-    if (!takes("tolerance", adaptive, "adaptive methods"))
-        side.tolerance.reset();
-    else if (table.has("tolerance"))
-        table.read_positive("tolerance", side.tolerance.emplace());
 }
 
 std::string served(const MethodEntry& method) {
@@ -113,88 +55,57 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
             throw entry.fault("name", "must differ from those before it; \"{}\" is there already", name);
         auto same = std::find_if(entries.begin(), entries.end(),
                                  [&](const Spec& spec) { return !name.empty() && spec.name == name; });
-        if (same == entries.end()) same = entries.insert(entries.end(), Spec{.name = name});
-        read(entry, *same);
+        const bool is_new = same == entries.end();
+        read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : *same, is_new);
         entry.finish();
     }
 }
 
-void read_particle(TomlReader& entry, ParticleSpec& particle) {
+void read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
     if (particle.name.empty()) throw entry.fault("name", "is missing; constraints and forces call a particle by it");
     entry.demand_drawable("name", particle.name);
-    entry.read_positive("mass_kg", particle.mass_kg);
-    entry.read_pair("position_m", particle.position_m);
-    entry.read_pair("velocity_m_per_s", particle.velocity_m_per_s);
+    part_fields(entry, particle);
 }
 
-void read_end(TomlReader& entry, std::string_view key, std::optional<EndSpec>& end) {
-    if (!entry.has(key)) return;
-    if (entry.is_text(key))
-        entry.read_text(key, end.emplace().emplace<std::string>());
-    else
-        entry.read_pair(key, end.emplace().emplace<std::array<Quad, 2>>());
+/// The variant's alternative of that number; what it has in common with the old one stays.
+template <std::size_t I = 0, class... Parts>
+void change_kind(std::variant<Parts...>& part, std::size_t kind) {
+    if (I != kind) {
+        if constexpr (I + 1 < sizeof...(Parts)) change_kind<I + 1>(part, kind);
+        return;
+    }
+    std::variant_alternative_t<I, std::variant<Parts...>> changed;
+    std::visit(
+        [&](const auto& old) {
+            if constexpr (requires { changed.from = old.from; }) changed.from = old.from, changed.to = old.to;
+            if constexpr (requires { changed.particle = old.particle; }) changed.particle = old.particle;
+            if constexpr (requires { changed.position_m = old.position_m; }) changed.position_m = old.position_m;
+        },
+        part);
+    part = changed;
 }
 
 /// The keys of one constraint or force: those of its kind, and no others.
-void read_part(TomlReader& entry, PartSpec& part, std::span<const std::string_view> kinds) {
-    if (part.kind.empty() && !entry.has("kind"))
-        throw entry.fault("kind", "is missing; there is \"{}\"", fmt::join(kinds, "\", \""));
-    entry.read_choice("kind", part.kind, kinds);
-    const auto is = [&](auto... names) { return ((part.kind == names) || ...); };
-    const auto read_positive = [&](std::string_view key, std::optional<Quad>& into) {
-        if (entry.has(key)) entry.read_positive(key, into.emplace());
-    };
-    const auto demand = [&](std::string_view key, bool given) {
-        if (!given) throw entry.fault(key, "is missing; a {} needs it", part.kind);
-    };
-    if (is("anchor", "slot-line", "slot-circle")) {
-        entry.read_text("particle", part.particle);
-        demand("particle", !part.particle.empty());
-    } else if (!is("droplet")) {
-        read_end(entry, "from", part.from);
-        read_end(entry, "to", part.to);
-        demand("from", part.from.has_value());
-        demand("to", part.to.has_value());
-    }
-    if (is("anchor", "slot-line", "slot-circle", "droplet")) {
-        if (entry.has("position_m")) entry.read_pair("position_m", part.position_m.emplace());
-        demand("position_m", part.position_m || is("anchor", "slot-line"));
-    }
-    if (is("slot-line")) entry.read_pair("direction", part.direction);
-    if (is("rod")) read_positive("length_m", part.length_m);
-    if (is("spring") && entry.has("length_m")) {
-        entry.read_number("length_m", part.length_m.emplace());
-        if (*part.length_m < 0) throw entry.fault("length_m", "must be ≥ 0; it is {}", text_of(*part.length_m));
-    }
-    if (is("slot-circle")) read_positive("radius_m", part.length_m);
-    if (is("spring")) {
-        entry.read_positive("stiffness_N_per_m", part.stiffness_N_per_m);
-        entry.read_number("damping_N_s_per_m", part.damping_N_s_per_m);
-        if (part.damping_N_s_per_m < 0)
-            throw entry.fault("damping_N_s_per_m", "must be ≥ 0; it is {}", text_of(part.damping_N_s_per_m));
-    }
-    if (is("droplet")) entry.read_positive("mass_kg", part.mass_kg);
-    if (is("attraction", "droplet")) read_positive("constant_m3_per_kg_s2", part.constant);
+template <class Spec>
+void read_part(TomlReader& entry, Spec& spec, bool is_new) {
+    if (is_new && !entry.has("kind"))
+        throw entry.fault("kind", "is missing; there is \"{}\"", fmt::join(Spec::kinds, "\", \""));
+    std::string kind(kind_name(spec));
+    entry.read_choice("kind", kind, Spec::kinds);
+    if (kind != kind_name(spec))
+        change_kind(spec.part, static_cast<std::size_t>(std::find(Spec::kinds.begin(), Spec::kinds.end(), kind) -
+                                                        Spec::kinds.begin()));
+    std::visit([&](auto& part) { part_fields(entry, part, kind); }, spec.part);
 }
 
 void read_mechanism(TomlReader& table, SideSpec& side) {
-    static constexpr std::array constraint_kinds{"anchor"sv, "rod"sv, "slot-line"sv, "slot-circle"sv};
-    static constexpr std::array force_kinds{"spring"sv, "attraction"sv, "droplet"sv};
     read_entries(table, "particle", side.particles, read_particle);
-    read_entries(table, "constraint", side.constraints,
-                 [](TomlReader& entry, PartSpec& part) { read_part(entry, part, constraint_kinds); });
-    read_entries(table, "force", side.forces,
-                 [](TomlReader& entry, PartSpec& part) { read_part(entry, part, force_kinds); });
+    read_entries(table, "constraint", side.constraints, read_part<ConstraintSpec>);
+    read_entries(table, "force", side.forces, read_part<ForceSpec>);
     if (side.particles.empty()) return;
     for (const auto* key : {"links", "mass_kg", "length_m", "angle_deg", "omega_deg_per_s"})
         if (table.has(key))
             throw table.fault(key, "describes a chain, and [[system.particle]] another system; give one");
-}
-
-void read_gravity(TomlReader& table, SideSpec& side) {
-    table.read_number("gravity_m_per_s2", side.gravity_m_per_s2);
-    if (side.gravity_m_per_s2 < 0 || (side.gravity_m_per_s2 == 0 && !side.is_mechanism()))
-        throw table.fault("gravity_m_per_s2", "must be > 0; it is {}", text_of(side.gravity_m_per_s2));
 }
 
 /// What the keys say together must be possible.
@@ -202,7 +113,7 @@ void check_choices(TomlReader& table, const SideSpec& side) {
     if (side.is_mechanism() && side.model != ModelChoice::automatic && side.model != ModelChoice::mechanism)
         throw table.fault("model",
                           "must be \"mechanism\" or \"auto\" with particles, constraints or forces; it is \"{}\"",
-                          model_names[static_cast<std::size_t>(side.model)]);
+                          name_of(side.model));
     if (side.stabilise != Stabilise::none && side.model == ModelChoice::angles)
         throw table.fault("stabilise", "is for constraints; in angles the rods keep their length by themselves");
     if (side.accuracy) return;
@@ -215,28 +126,37 @@ void check_choices(TomlReader& table, const SideSpec& side) {
                           (side.model == ModelChoice::mechanism && method.mechanism);
     if (!possible)
         throw table.fault(table.has("integrator") ? "integrator" : "model", "\"{}\" serves {}, not model = \"{}\"",
-                          side.integrator, served(method), model_names[static_cast<std::size_t>(side.model)]);
+                          side.integrator, served(method), name_of(side.model));
     if (side.stabilise != Stabilise::none && !method.angles)
         throw table.fault("stabilise", "is not for \"{}\", which keeps the constraints itself", side.integrator);
 }
 
 }  // namespace
 
+void SideSpec::set_links(std::size_t links) {
+    if (links == this->links()) return;
+    mass_kg.assign(links, 1);
+    length_m.assign(links, 1);
+    angle_deg.assign(links, 90);
+    omega_deg_per_s.assign(links, 0);
+}
+
 void read_release(TomlReader& table, SideSpec& side) {
-    read_chain(table, side);
-    read_gravity(table, side);
+    chain_fields(table, side);
+    gravity_field(table, side);
     table.finish();
 }
 
 void read_side(TomlReader& table, SideSpec& side) {
-    read_chain(table, side);
+    chain_fields(table, side);
     read_mechanism(table, side);
-    read_gravity(table, side);
-    table.read_enumerated("model", side.model, model_names);
-    read_method(table, side);
-    table.read_enumerated("precision", side.precision, precision_names);
-    table.read_enumerated("stabilise", side.stabilise, stabilise_names);
-    table.read_positive("stabilise_rate_per_s", side.stabilise_rate_per_s);
+    gravity_field(table, side);
+    table(model_field, side.model);
+    if (!read_accuracy(table, side)) {
+        if (table.has("integrator")) side.integrator_from_command_line = table.from_command_line("integrator");
+        method_fields(table, side);
+    }
+    precision_fields(table, side);
     check_choices(table, side);
     table.finish();
 }

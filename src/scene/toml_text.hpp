@@ -1,5 +1,7 @@
 #pragma once
 
+#include <toml++/toml.h>
+
 #include <cstddef>
 #include <map>
 #include <string>
@@ -33,5 +35,11 @@ private:
 /// The text behind every document that was read, by the path its nodes carry: numbers mean their decimals, which only
 /// the text still has.
 using TomlTexts = std::map<std::string, TomlText>;
+
+// Words for errors.
+
+std::string kind_of(const toml::node& node);  // "a whole number"
+std::string shown(const toml::node& node);    // the value as TOML writes it, on one line and not too long
+std::string found(const toml::node& node);    // "it is a whole number (3)"
 
 }  // namespace doppel

@@ -4,13 +4,14 @@
 #include "image/picture.hpp"
 #include "image/theme.hpp"
 #include "numeric/rational.hpp"
+#include "output/video.hpp"
+#include "scene/field.hpp"
 
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -23,14 +24,19 @@ struct Range {
 /// How the pendulums of a film are placed: each side in a panel, the twin as a shadow; both in one panel; many between
 /// the two, fanning out; both beside a panel of their phase space; panels one above the other.
 enum class Arrangement { side_by_side, overlay, ensemble, phase, portrait };
-inline constexpr std::array<std::string_view, 5> arrangement_names{"side-by-side", "overlay", "ensemble", "phase",
-                                                                   "portrait"};
+template <>
+inline constexpr auto names_of<Arrangement> = std::to_array<std::string_view>({"side-by-side", "overlay", "ensemble",
+                                                                               "phase", "portrait"});
 
 /// What a strip below the pendulums shows over time.
 enum class StripKind { distance, exponent, energy, rod_error, rod_force };
 inline constexpr std::size_t strip_kinds = 5;
-inline constexpr std::array<std::string_view, strip_kinds> strip_names{"distance", "exponent", "energy", "rod-error",
-                                                                       "rod-force"};
+template <>
+inline constexpr auto names_of<StripKind> = std::to_array<std::string_view>({"distance", "exponent", "energy",
+                                                                             "rod-error", "rod-force"});
+/// The keys of their axes.
+inline constexpr std::array<std::string_view, strip_kinds> range_keys{
+    "distance_range", "exponent_range", "energy_range", "rod_error_range", "rod_force_range"};
 /// Those whose axis goes by powers of ten.
 constexpr bool is_logarithmic(StripKind kind) {
     return kind != StripKind::exponent && kind != StripKind::rod_force;
@@ -39,7 +45,23 @@ constexpr bool is_logarithmic(StripKind kind) {
 /// What a phase panel shows: rates over angles as a path, or the points of a Poincaré section (θ1 passing the downward
 /// vertical upwards).
 enum class PhaseKind { rate, section };
-inline constexpr std::array<std::string_view, 2> phase_names{"rate", "section"};
+template <>
+inline constexpr auto names_of<PhaseKind> = std::to_array<std::string_view>({"rate", "section"});
+
+/// What a film is written as; png: a picture a frame.
+enum class FilmFormat { mp4, webm, gif, apng, png };
+template <>
+inline constexpr auto names_of<FilmFormat> = std::to_array<std::string_view>({"mp4", "webm", "gif", "apng", "png"});
+template <>
+inline constexpr auto names_of<PixelFormat> = std::to_array<std::string_view>({"yuv420p", "yuv444p", "yuv420p10"});
+
+/// A member of a group of keys that are alike.
+template <class Group, class Value>
+struct Member {
+    std::string_view key;
+    Value Group::*member;
+    std::string_view help;
+};
 
 /// Widths of what is drawn, px of a 1920×1080 picture. Finer lines than these lose their hue in 4:2:0 video.
 struct Widths {
@@ -47,56 +69,62 @@ struct Widths {
     double rod = 0, bob = 0;        // a rod's width, the radius of the heaviest bob; 0 = by the size of the panel
     double grid = 1.4, mark = 1.6;  // lines of charts; now, the parting, the horizon
 };
-inline constexpr std::array<std::pair<std::string_view, double Widths::*>, 6> width_names{{
-    {"trail", &Widths::trail},
-    {"trace", &Widths::trace},
-    {"rod", &Widths::rod},
-    {"bob", &Widths::bob},
-    {"grid", &Widths::grid},
-    {"mark", &Widths::mark},
+inline constexpr std::array<Member<Widths, double>, 6> width_names{{
+    {"trail", &Widths::trail, "the path behind the last bob"},
+    {"trace", &Widths::trace, "curves of strips"},
+    {"rod", &Widths::rod, "rods; 0 = by the size of the panel"},
+    {"bob", &Widths::bob, "radius of the heaviest bob; 0 = by the size of the panel"},
+    {"grid", &Widths::grid, "lines of charts"},
+    {"mark", &Widths::mark, "lines that mark now, the parting and the horizon"},
 }};
 
 /// Sizes of words, px an em in a 1920×1080 picture.
 struct FontSizes {
     double title = 40, subtitle = 22, clock = 40, heading = 31, note = 21, strip = 21, axis = 20, card = 84;
 };
-inline constexpr std::array<std::pair<std::string_view, double FontSizes::*>, 8> font_size_names{{
-    {"title", &FontSizes::title},
-    {"subtitle", &FontSizes::subtitle},
-    {"clock", &FontSizes::clock},
-    {"heading", &FontSizes::heading},
-    {"note", &FontSizes::note},
-    {"strip", &FontSizes::strip},
-    {"axis", &FontSizes::axis},
-    {"card", &FontSizes::card},
+inline constexpr std::array<Member<FontSizes, double>, 8> font_size_names{{
+    {"title", &FontSizes::title, "the title"},
+    {"subtitle", &FontSizes::subtitle, "the line below it"},
+    {"clock", &FontSizes::clock, "the time"},
+    {"heading", &FontSizes::heading, "what sets a side apart"},
+    {"note", &FontSizes::note, "the line below a heading"},
+    {"strip", &FontSizes::strip, "titles and values of strips"},
+    {"axis", &FontSizes::axis, "numbers of axes"},
+    {"card", &FontSizes::card, "the title on a card"},
 }};
 
-/// The colours of a theme that a preset may change, by name.
-inline constexpr std::array<std::pair<std::string_view, Color Theme::*>, 11> color_names{{
-    {"background", &Theme::background},
-    {"panel", &Theme::panel},
-    {"text", &Theme::text},
-    {"quiet_text", &Theme::quiet_text},
-    {"grid", &Theme::grid},
-    {"frame", &Theme::frame},
-    {"cursor", &Theme::cursor},
-    {"rod", &Theme::rod},
-    {"bob", &Theme::bob},
-    {"pivot", &Theme::pivot},
-    {"trace", &Theme::trace},
+/// The colours of a theme that a preset may change.
+inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
+    {"background", &Theme::background, "behind everything"},
+    {"panel", &Theme::panel, "behind the pendulums"},
+    {"text", &Theme::text, "titles and headings"},
+    {"quiet_text", &Theme::quiet_text, "notes and axes"},
+    {"grid", &Theme::grid, "lines of charts"},
+    {"frame", &Theme::frame, "borders of panels"},
+    {"cursor", &Theme::cursor, "the line that marks now"},
+    {"rod", &Theme::rod, "rods"},
+    {"bob", &Theme::bob, "bobs"},
+    {"pivot", &Theme::pivot, "pivots"},
+    {"trace", &Theme::trace, "curves of both sides together"},
 }};
+
+/// Whether a film shows the pendulums, and the strips below them.
+struct Panels {
+    bool pendulums = true;
+    std::vector<StripKind> strips{StripKind::distance, StripKind::energy};
+};
 
 /// [video]: what a film shows and how it is written. Sizes are for 1920×1080 and grow and shrink with the picture.
-struct VideoSpec {
+struct VideoSpec : Panels {
     Size size{1920, 1080};
     std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif about 30
     Rational speed{1, 1};         // seconds of motion shown a second
     Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // how long the first and the last frame stand
     Rational title_card_s{0, 1}, end_card_s{0, 1};  // 0 = none
 
-    std::string format = "mp4";  // one of video_formats
-    std::string codec;           // of webm; the usual one where empty
-    std::string pixel_format = "yuv420p";
+    FilmFormat format = FilmFormat::mp4;
+    std::string codec;  // of webm; the usual one where empty
+    PixelFormat pixel_format = PixelFormat::yuv420;
     bool transparent = false;  // no page, no panels; what is drawn alone
     std::string preset = "veryfast";
     int crf = 18;
@@ -106,21 +134,19 @@ struct VideoSpec {
     Arrangement layout = Arrangement::side_by_side;
     int members = 100;  // of an ensemble, the pair included
     PhaseKind phase = PhaseKind::rate;
-    int phase_link = 2;  // whose angle and rate
-    bool pendulums = true;
-    std::vector<StripKind> strips{StripKind::distance, StripKind::energy};
+    int phase_link = 2;                                    // whose angle and rate
     std::array<std::optional<Range>, strip_kinds> ranges;  // of strips; fitted to the scene where not given
 
     std::string theme = "dark";
-    std::vector<std::pair<std::string, Color>> colors;  // in place of the theme's, of color_names
+    std::array<std::optional<Color>, color_names.size()> colors;  // in place of the theme's
     std::optional<std::array<Color, 2>> side_colors;
     Widths widths;
     FontSizes fonts;
-    std::optional<double>
-        glow_px;           // how far the light of trails and bobs reaches; 0 = none; the theme's where not given
-    double trail_s = 2.5;  // s; 0 = none
-};
+    std::optional<double> glow_px;  // how far the light of trails and bobs reaches; the theme's where not given
+    double trail_s = 2.5;           // s; 0 = none
 
-inline constexpr std::array<std::string_view, 5> video_formats{"mp4", "webm", "gif", "apng", "png"};
+    /// Whether an encoder with a pixel format and a quality writes it.
+    bool is_encoded() const { return format == FilmFormat::mp4 || format == FilmFormat::webm; }
+};
 
 }  // namespace doppel

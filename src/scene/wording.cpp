@@ -61,21 +61,20 @@ std::vector<Statement> statements(const SideSpec& spec, const SideSpec& other, c
         say_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
         say_links("l", spec.length_m, other.length_m, " m", false, all);
     }
-    const auto place = [](const std::array<Quad, 2>& xy) {
-        return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1]));
-    };
+    const auto place = [](const QuadPair& xy) { return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1])); };
     for (const auto& particle : spec.particles) {
         all.push_back({fmt::format("{} at {} m", particle.name, place(particle.position_m))});
         all.push_back({fmt::format("{} {} m/s", particle.name, place(particle.velocity_m_per_s))});
         all.push_back({fmt::format("{} {} kg", particle.name, text_of(particle.mass_kg))});
     }
-    const auto is_droplet = [](const PartSpec& force) { return force.kind == "droplet"; };
+    const auto is_droplet = [](const ForceSpec& force) { return std::holds_alternative<DropletSpec>(force.part); };
     const auto droplet = std::find_if(spec.forces.begin(), spec.forces.end(), is_droplet);
-    if (droplet != spec.forces.end())
-        all.push_back(
-            {fmt::format("a droplet of {} kg at {} m", text_of(droplet->mass_kg), place(*droplet->position_m))});
-    else if (std::any_of(other.forces.begin(), other.forces.end(), is_droplet))
+    if (droplet != spec.forces.end()) {
+        const auto& body = std::get<DropletSpec>(droplet->part);
+        all.push_back({fmt::format("a droplet of {} kg at {} m", text_of(body.mass_kg), place(*body.position_m))});
+    } else if (std::any_of(other.forces.begin(), other.forces.end(), is_droplet)) {
         all.push_back({"no droplet"});
+    }
     all.push_back({fmt::format("g = {} m/s²", text_of(spec.gravity_m_per_s2))});
     all.push_back({model_words(side)});
     all.push_back({std::string(side.method.title)});

@@ -83,11 +83,10 @@ const std::vector<Kind> kinds{
      [](Lot& lot) {
          auto side = chain_by(lot, 1 + lot.of(3), 200);
          side.forces.push_back({.name = "",
-                                .kind = "spring",
-                                .particle = "",
-                                .from = EndSpec("bob1"),
-                                .to = EndSpec(std::array<Quad, 2>{Quad(1), Quad(-1)}),
-                                .stiffness_N_per_m = lot.between(1, 30)});
+                                .part = SpringSpec{.from = EndSpec("bob1"),
+                                                   .to = EndSpec(QuadPair{Quad(1), Quad(-1)}),
+                                                   .length_m = {},
+                                                   .stiffness_N_per_m = lot.between(1, 30)}});
          return side;
      }},
     {"light mass",

@@ -89,9 +89,9 @@ TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
     for (const char* format : {"gif", "apng", "png"}) {
         const auto set = fmt::format("video.format=\"{}\"", format);
         const auto video = read({set});
-        EXPECT_EQ(video.format, format);
+        EXPECT_EQ(name_of(video.format), format);
         EXPECT_EQ(video.codec, "");
-        EXPECT_EQ(video.pixel_format, "yuv420p");
+        EXPECT_EQ(video.pixel_format, PixelFormat::yuv420);
         EXPECT_EQ(video.crf, VideoSpec{}.crf);
         EXPECT_EQ(video.preset, VideoSpec{}.preset);
         // but not what is asked for beside it

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace doppel {
+
+/// The numbers that a key takes.
+struct Bounds {
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+    double low = -infinity, high = infinity;
+    bool is_open = false;        // without `low` itself
+    std::string_view zero, why;  // what 0 means; why there are bounds
+
+    bool has_low() const { return low > -infinity; }
+    bool has_high() const { return high < infinity; }
+};
+inline constexpr Bounds positive{.low = 0, .is_open = true}, not_negative{.low = 0};
+constexpr Bounds from_to(double low, double high, std::string_view zero = {}) {
+    return {.low = low, .high = high, .zero = zero};
+}
+
+/// The values beside which a key counts.
+struct Only {
+    bool holds = true;
+    std::string fault = {};  // the error for a key that does not count; where empty, it is read and not written
+    bool drops = false;      // the command line chose otherwise: what the file says is no error
+};
+
+/// One key of a table. Lists of fields (preset_fields.hpp) serve the reader, the resolved preset and docs/presets.md;
+/// type and default are those of the member that a list pairs it with.
+struct Field {
+    std::string_view key, help;
+    std::string_view unit = {};
+    Bounds bounds = {};
+    std::string_view absent = {};                  // what holds where an optional key is not given
+    std::string_view each = {};                    // what the numbers of an array are: "one a link"
+    std::span<const std::string_view> names = {};  // of a string: its choices
+    Only only = {};
+    std::string_view needed_by = {};  // an entry of this kind must have it
+};
+
+/// The names of an enumeration's values in presets, in their order.
+template <class Choice>
+inline constexpr auto names_of = nullptr;
+
+template <class Choice>
+requires std::is_enum_v<Choice>
+constexpr std::string_view name_of(Choice choice) {
+    return names_of<Choice>[static_cast<std::size_t>(choice)];
+}
+
+template <class T>
+constexpr bool is_optional = false;
+template <class T>
+constexpr bool is_optional<std::optional<T>> = true;
+
+}  // namespace doppel

@@ -1,0 +1,260 @@
+#include "scene/nearest.hpp"
+#include "scene/toml_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+std::string listed(std::span<const std::string_view> choices) {
+    std::string text;
+    for (std::size_t i = 0; i < choices.size(); ++i)
+        text += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ", choices[i]);
+    return text;
+}
+
+std::string written(double value) {
+    return fmt::format("{}", value);
+}
+
+std::string written(const Quad& value) {
+    return text_of(value);
+}
+
+}  // namespace
+
+bool TomlReader::counts(const Field& field) {
+    if (field.only.holds || field.only.fault.empty()) return true;
+    if (has(field.key) && (!field.only.drops || from_command_line(field.key)))
+        throw fault(field.key, "{}", field.only.fault);
+    return false;
+}
+
+void TomlReader::demand(const Field& field, bool given) const {
+    if (!given && !field.needed_by.empty()) throw fault(field.key, "is missing; a {} needs it", field.needed_by);
+}
+
+/// `element` = "[1]" of an array.
+template <class Number>
+void TomlReader::check(const Field& field, std::string_view element, const Number& value) const {
+    const auto& [low, high, is_open, zero, why] = field.bounds;
+    if (is_open ? value > low : value >= low)
+        if (value <= high) return;
+    const auto refuse = [&](const std::string& what) {
+        return bad_input("{}: {}{} must be {}; {} is {}", place(field.key), subject(field.key),
+                         why.empty() ? element : "", what, why.empty() ? "it" : "one", written(value));
+    };
+    // keys mostly name the unit
+    const auto unit = field.unit.empty() || field.key.ends_with(field.unit) ? "" : fmt::format(" {}", field.unit);
+    if (is_open && !(value > low)) throw refuse(fmt::format("> {}", low));
+    if (is_open) throw refuse(fmt::format("at most {}{}", high, unit));
+    if (!field.bounds.has_high()) throw refuse(fmt::format("≥ {}", low));
+    throw refuse(fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero), high, unit,
+                             why.empty() ? "" : fmt::format(": {}", why)));
+}
+
+void TomlReader::read(const Field& field, std::string& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    if (!node->is_string()) throw fault(field.key, "must be a string; {}", found(*node));
+    into = node->as_string()->get();
+    if (field.names.empty() || std::find(field.names.begin(), field.names.end(), into) != field.names.end()) return;
+    const auto meant = nearest(into, field.names);
+    throw fault(field.key, "must be {}; it is \"{}\"{}", listed(field.names), into,
+                meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
+}
+
+void TomlReader::read(const Field& field, int& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    if (!node->is_integer()) throw fault(field.key, "must be a whole number; {}", found(*node));
+    const auto value = node->as_integer()->get();
+    if (static_cast<double>(value) < field.bounds.low || static_cast<double>(value) > field.bounds.high)
+        throw fault(field.key, "must be from {} to {}; it is {}", field.bounds.low, field.bounds.high, value);
+    into = static_cast<int>(value);
+}
+
+void TomlReader::read(const Field& field, bool& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    if (!node->is_boolean()) throw fault(field.key, "must be true or false; {}", found(*node));
+    into = node->as_boolean()->get();
+}
+
+double TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, double) const {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    const auto name = fmt::format("{}{}", key, element);
+    if (!value) throw bad_input("{}: {} must be a number; {}", place(key), subject(name), found(node));
+    if (!std::isfinite(*value)) throw bad_input("{}: {} must be finite; it is {}", place(key), subject(name), *value);
+    return *value + 0.0;  // −0 is 0
+}
+
+Quad TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, Quad) const {
+    const double rounded = number(key, element, node, 0.0);
+    if (const auto* whole = node.as_integer()) return Quad(whole->get());
+    const auto& origin = node.source().path;
+    const auto text = texts_->find(origin ? *origin : path_);
+    if (text == texts_->end()) return Quad(rounded);
+    const auto& at = node.source().begin;
+    const Quad value = parse_quad(text->second.literal_at(at.line, at.column)) + 0;
+    // the literal found must be the number that was read, or its place was mistaken
+    constexpr double rounding = 1e-15, least = 1e-322;
+    if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))
+        throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", place(key), subject(key),
+                        rounded);
+    return value;
+}
+
+void TomlReader::read(const Field& field, double& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    into = number(field.key, "", *node, into);
+    check(field, "", into);
+}
+
+void TomlReader::read(const Field& field, Quad& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    into = number(field.key, "", *node, into);
+    check(field, "", into);
+}
+
+template <class Number>
+void TomlReader::read_array(const Field& field, const toml::node& node, std::span<Number> into) {
+    const auto& array = *node.as_array();
+    if (array.size() != into.size())
+        throw fault(field.key, "must have {} numbers, {}; it has {}: {}", into.size(), field.each, array.size(),
+                    shown(node));
+    const auto element = [](std::size_t i) { return fmt::format("[{}]", i); };
+    for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(field.key, element(i), *array.get(i), into[i]);
+    for (std::size_t i = 0; i < into.size(); ++i) check(field, element(i), into[i]);
+}
+
+void TomlReader::read(const Field& field, std::span<double> into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    if (!node->is_array())
+        throw fault(field.key, "must be an array of {} numbers, {}; {}", into.size(), field.each, found(*node));
+    read_array(field, *node, into);
+}
+
+void TomlReader::read(const Field& field, std::span<Quad> into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    if (node->is_array()) return read_array(field, *node, into);
+    if (!node->is_number())
+        throw fault(field.key, "must be a number, or an array of {} numbers, {}; {}", into.size(), field.each,
+                    found(*node));
+    std::fill(into.begin(), into.end(), number(field.key, "", *node, Quad()));
+    check(field, "[0]", into[0]);
+}
+
+void TomlReader::read(const Field& field, QuadPair& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    if (!node->is_array()) throw fault(field.key, "must be two numbers, [x, y]; {}", found(*node));
+    read_array({.key = field.key, .each = "x and y"}, *node, std::span<Quad>(into));
+}
+
+void TomlReader::read(const Field& field, EndSpec& into) {
+    if (is_text(field.key))
+        read(field, into.emplace<std::string>());
+    else
+        read(field, into.emplace<QuadPair>());
+}
+
+void TomlReader::read_whole_pair(const Field& field, std::string_view what, std::array<int, 2>& into) {
+    std::array<double, 2> pair{double(into[0]), double(into[1])};
+    read({.key = field.key, .each = field.each}, std::span<double>(pair));
+    for (const double number : pair)
+        if (number != std::floor(number) || number < field.bounds.low || number > field.bounds.high)
+            throw fault(field.key, "must be {} from {} to {}; it is [{}, {}]", what, field.bounds.low,
+                        field.bounds.high, pair[0], pair[1]);
+    into = {static_cast<int>(pair[0]), static_cast<int>(pair[1])};
+}
+
+void TomlReader::read(const Field& field, std::array<int, 2>& into) {
+    read_whole_pair(field, "two whole numbers", into);
+}
+
+void TomlReader::read(const Field& field, Size& into) {
+    std::array<int, 2> size{into.width, into.height};
+    read_whole_pair(field, "whole numbers", size);
+    into = {size[0], size[1]};
+}
+
+/// Bounds above 0: an axis by powers of ten.
+void TomlReader::read(const Field& field, Range& into) {
+    std::array<double, 2> ends{};
+    read(field, std::span<double>(ends));
+    if (field.bounds.is_open && (!(ends[1] >= 10 * ends[0]) || ends[1] / ends[0] > 1e60))
+        throw fault(field.key, "must rise by 1 to 60 powers of ten; it is [{}, {}]", ends[0], ends[1]);
+    if (!(ends[1] > ends[0]) || !std::isfinite(ends[1] - ends[0]))
+        throw fault(field.key, "must rise; it is [{}, {}]", ends[0], ends[1]);
+    into = {ends[0], ends[1]};
+}
+
+void TomlReader::read(const Field& field, Rational& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    std::optional<Rational> value;
+    if (const auto* text = node->as_string()) {
+        value = parse_rational(text->get());
+        if (!value)
+            throw fault(field.key, "must be a number or a fraction such as \"1/30000\"; it is {}", shown(*node));
+    } else if (const auto* whole = node->as_integer()) {
+        value = reduced(whole->get(), 1);
+    } else {
+        value = rational_from_decimal(number(field.key, "", *node, 0.0));
+    }
+    if (!value) throw fault(field.key, "has more digits than Doppel counts with; it is {}", shown(*node));
+    if (value->numerator < (field.bounds.is_open ? 1 : 0))
+        throw fault(field.key, "must be {} 0; it is {}", field.bounds.is_open ? ">" : "≥", shown(*node));
+    check(field, "", value->value());
+    into = *value;
+}
+
+void TomlReader::read(const Field& field, Color& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    const auto* text = node->as_string();
+    const auto color = text ? parse_color(text->get()) : std::nullopt;
+    if (!color) throw fault(field.key, "must be a colour such as \"#ff9f40\"; {}", found(*node));
+    into = *color;
+}
+
+void TomlReader::read(const Field& field, std::array<Color, 2>& into) {
+    const auto colors = read_texts(field.key);
+    if (!colors) return;
+    if (colors->size() != 2) throw fault(field.key, "must have 2 colours, a and b; it has {}", colors->size());
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto color = parse_color((*colors)[i]);
+        if (!color) throw fault(field.key, "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, (*colors)[i]);
+        into[i] = *color;
+    }
+}
+
+/// "pendulums" and the strips, in their order.
+void TomlReader::read(const Field& field, Panels& into) {
+    const auto panels = read_texts(field.key);
+    if (!panels) return;
+    const auto& names = names_of<StripKind>;
+    into = {false, {}};
+    for (const auto& panel : *panels) {
+        const auto strip = std::find(names.begin(), names.end(), panel);
+        if (panel == "pendulums") {
+            into.pendulums = true;
+        } else if (strip == names.end()) {
+            throw fault(field.key, "may hold \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
+                        panel);
+        } else if (const auto kind = static_cast<StripKind>(strip - names.begin());
+                   std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end()) {
+            into.strips.push_back(kind);
+        }
+    }
+    if (panels->empty())
+        throw fault(field.key, "must hold at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
+}
+
+}  // namespace doppel
