@@ -168,6 +168,18 @@ TEST(Section, CountsWholeTurns) {
     EXPECT_TRUE(poincare_section(p, {.crossings = 10, .longest_s = 50}, never).empty());
 }
 
+TEST(Section, HasTheOrderOfTimeOnOneStepToo) {
+    // as above; so coarse that the first step is of 7.6 s, three turns and a half
+    auto p = odd_one();
+    p.gravity = 0;
+    p.angle = {0, 0};
+    p.rate = {3, 3};
+    const auto points = poincare_section(p, {.crossings = 3, .tolerance = 1e-2}, never);
+    ASSERT_EQ(points.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(points[i].time_s, static_cast<double>(i + 1) * 2 * pi / 3, 1e-3) << i;  // measured 1.7e-4
+}
+
 TEST(Section, ReleasesLieOnItAndFillIt) {
     const auto p = odd_one();
     for (const double energy_J : {2.0, 100.0}) {  // below and above where the lower link can turn over

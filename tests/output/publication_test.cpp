@@ -152,6 +152,26 @@ TEST(Publication, IsAllNewOrAllOldWhereItsRecoveryIsKilledToo) {
     watch_calls({});
 }
 
+TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
+    const QuickFolder quick;
+    const auto folder = after_old_run(quick.path / "folder");
+    std::map<std::string, int> before,
+        after;  // calls before a name of the folder changes, and after the last that does
+    bool begun = false;
+    watch_calls([&](const std::string& call) {
+        const bool moves = call == "renameat2" || call == "renameat";
+        begun = begun || moves;
+        if (moves) after.clear();
+        ++(begun ? after : before)[call];
+        return 0;
+    });
+    run(folder, "new");
+    watch_calls({});
+    EXPECT_EQ(before["syncfs"], 1);  // the pictures
+    EXPECT_EQ(before["fsync"], 5);   // two files, the folder of pictures, the folder with their names, the list of them
+    EXPECT_EQ(after["fsync"], 1);    // the folder with their new names
+}
+
 TEST(Publication, WhereOneFileCannotTakeItsPlaceAllOldOnesStay) {
     const QuickFolder quick;
     for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)}) {
