@@ -204,6 +204,36 @@ TEST(Section, ReleasesLieOnItAndFillIt) {
     }
 }
 
+TEST(Section, ReleasesAreSpreadByMultiplesOfThePlasticNumber) {
+    // Roberts 2018: fractions of ½ + k/ρ and ½ + k/ρ², along θ2 and, there, along p2
+    auto p = odd_one();
+    for (const double gravity : {9.8, 0.5, 0.0}) {
+        p.gravity = gravity;
+        constexpr double energy_J = 4;
+        const double weight = 1.6 * gravity * 0.6, inertia = 1.6 * 0.6 * 0.6;
+        const double widest = weight > energy_J / 2 ? std::acos(1 - energy_J / weight) : pi;
+        const auto releases = releases_of_energy(p, energy_J, 5);
+        ASSERT_EQ(releases.size(), 5u);
+        for (std::size_t k = 0; k < 5; ++k) {
+            const double u = std::fmod(0.5 + static_cast<double>(k) * 0.7548776662466927, 1);
+            const double v = std::fmod(0.5 + static_cast<double>(k) * 0.5698402909980533, 1);
+            const auto y = Model::start(releases[k]);
+            State<double, 4> z;
+            Canonical<Model>(Model(releases[k])).momenta(y, z);
+            const double kinetic = energy_J - weight * (1 - std::cos(y[1]));
+            EXPECT_NEAR(y[1], widest * (2 * u - 1), 2e-14) << k;                            // measured 3e-15
+            EXPECT_NEAR(z[3], std::sqrt(2 * inertia * kinetic) * (2 * v - 1), 2e-14) << k;  // measured 2.7e-15
+        }
+    }
+}
+
+TEST(Section, OfOneCrossingIsTheFirst) {
+    const auto release = releases_of_energy(odd_one(), 15, 3)[2];
+    const auto one = poincare_section(release, {.crossings = 1}, never);
+    ASSERT_EQ(one.size(), 1u);
+    EXPECT_EQ(one[0].time_s, poincare_section(release, {.crossings = 3}, never)[0].time_s);
+}
+
 TEST(Section, RefusesWhatMakesNoSenseAndStopsWhenTold) {
     const auto code = [](const auto& what) {
         try {

@@ -33,7 +33,7 @@ def masked(text):
 
 
 SKIP = re.compile(r"^\s*#|static_assert|\btemplate\b|\brequires\b|\bconcept\b|\busing\b|\boperator\b|\bcase\b|\benum\b|"
-                  r"DOPPEL_|\.reserve\(|\balignas\b|^\s+\w+ \w+\[|\bif constexpr\b|\bdecltype\b|\bnoexcept\b|\bextern\b|std::array<")
+                  r"DOPPEL_|\.reserve\(|\balignas\b|^\s+(?!return)(?:[\w:]+ )+\w+\[|\bif constexpr\b|\bdecltype\b|\bnoexcept\b|\bextern\b|std::array<")
 STATEMENT = re.compile(r"^(\s+)([\w.\->\[\]()*:]+ (?:=|\+=|-=|\*=|/=) \S.*;|(?!return|throw|delete|co_)[a-zA-Z_][\w.:\->]*\([^{}]*\);)$")
 
 
@@ -60,7 +60,8 @@ def candidates(path):
         if not stripped.strip():
             continue
         ends, before = before, stripped[-1]
-        in_table = (in_table or "constexpr" in stripped) and before not in ";{"
+        opens = "constexpr" in stripped and (before not in ";{" or re.search(r"\w\{$", stripped))
+        in_table = opens or in_table and not re.search(r";$|\) (const |noexcept )*\{$", stripped)
         if in_table or SKIP.search(stripped):
             continue
         constant = re.match(r"^\s*(static |inline )*constexpr [\w:]+ \w+ = ", stripped)
@@ -258,7 +259,8 @@ def cover(tree, rooms, jobs):
                     reaches=[i for i, b in enumerate(bytes_) if b & 1], void=[i for i, b in enumerate(bytes_) if b == 2])
 
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        tests = known + list(pool.map(one, enumerate(work)))
+        tests = list(pool.map(one, enumerate(work)))
+    tests = (json.loads(path.read_text()) if path.exists() else []) + tests
     path.write_text(json.dumps(tests))
     void = {i for t in tests for i in t["void"]} - {i for t in tests for i in t["reaches"]}
     mutants = load(tree)
