@@ -217,6 +217,36 @@ TEST(Publication, WhereTheOldOnesCannotComeBackEitherTheNextRunSortsIt) {
     for (const auto& [name, bytes] : found) EXPECT_FALSE(name.ends_with(".part")) << name;
 }
 
+TEST(PartFiles, ARunThatCannotBeginLeavesNoFolder) {
+    const auto out = fresh_folder();
+    int failing = 0;
+    for (bool failed = true; failed;) {
+        watch_calls([&, calls = 0](const std::string& call) mutable {
+            return call == "openat" && calls++ == failing ? EMFILE : 0;
+        });
+        failed = false;
+        try {
+            PartFiles files(out / "a/b");
+        } catch (const Error& error) {
+            failed = true;
+            EXPECT_EQ(error.code(), ExitCode::io_failed);
+        }
+        watch_calls({});
+        EXPECT_TRUE(fs::is_empty(out)) << failing;
+        ++failing;
+    }
+    EXPECT_EQ(failing, 4);  // the folder, its lock, its files
+}
+
+TEST(PartFiles, AFolderThatCannotBeMadeIsNamed) {
+    const auto out = fresh_folder();
+    PartFiles files(out);
+    watch_calls([](const std::string& call) { return call == "mkdirat" ? ENOSPC : 0; });
+    expect_error(ExitCode::io_failed, {(out / "frames.part").string() + ": cannot be made: No space left on device"},
+                 [&] { files.directory("frames"); });
+    watch_calls({});
+}
+
 TEST(FolderLock, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
     const auto folder = fresh_folder();
     const auto no_locks = [](const std::string& call) { return call == "flock" ? ENOLCK : 0; };
