@@ -145,6 +145,39 @@ TEST(Exponent, UncertaintyHoldsNearStickyOrbitsToo) {
     }
 }
 
+TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
+    // how much the tangent grows in each of 16 s, from runs that end after it; then the errors of the mean of 16, 8 and 4
+    // blocks, independent within each
+    const auto p = from_rest({140, 0});
+    constexpr int parts = 16;
+    constexpr double transient_s = 10, end_s = transient_s + parts;
+    const auto run = [&](int seconds, int blocks) {
+        return largest_exponent(
+            p, {.duration_s = transient_s + seconds, .transient_s = transient_s, .tolerance = 1e-12, .blocks = blocks},
+            never);
+    };
+    std::vector<double> grown{run(1, 2).value};  // of ln|δ|, 1/s
+    double before = grown[0];
+    for (int seconds = 2; seconds <= parts; ++seconds) {
+        const double all = run(seconds, seconds).value * seconds;
+        grown.push_back(all - before);
+        before = all;
+    }
+    double greatest = 0;
+    for (const int blocks : {16, 8, 4}) {
+        const int length = parts / blocks;
+        double square = 0;
+        for (int k = 0; k < blocks; ++k) {
+            double block = 0;
+            for (int i = 0; i < length; ++i) block += grown[static_cast<std::size_t>(k * length + i)] / length;
+            square += std::pow(block - before / parts, 2);
+        }
+        greatest = std::max(greatest, std::sqrt(square / (blocks * (blocks - 1))));
+    }
+    const double expected = std::hypot(greatest, std::log(end_s / transient_s) / parts);
+    EXPECT_NEAR(run(parts, parts).uncertainty, expected, 1e-14);  // of 0.24; measured 3e-17
+}
+
 TEST(Exponent, ScalesWithTheUnits) {
     // four times the lengths: the same motion at half the speed; masses cancel
     auto p = from_rest({130, 20});

@@ -139,5 +139,15 @@ TEST(StepLimit, GoesByTheEnergyInEachMode) {
     EXPECT_GT(energy_left("adams", 1.03 * adams, std::lround(50 / (1.03 * adams))), 10);
 }
 
+TEST(StepLimit, OfAFewStepsOfAdamsIsThatOfTheStepper) {
+    const std::vector<Mode> alone{{.frequency = 1.0}};
+    for (const double seconds : {15.0, 20.0, 30.0}) {
+        const double limit = step_limit("adams", alone, seconds, 10).value();
+        const long steps = std::lround(seconds / limit);                            // 21, 38, 73
+        EXPECT_LT(energy_left("adams", (1 - 1e-5) * limit, steps), 10) << seconds;  // measured 9.997, 9.996, 9.993
+        EXPECT_GT(energy_left("adams", (1 + 1e-5) * limit, steps), 10) << seconds;  // measured 10.003, 10.005, 10.008
+    }
+}
+
 }  // namespace linear_stability_test
 }  // namespace doppel

@@ -64,6 +64,17 @@ TEST(ReferenceCourse, KnowsInItsOwnPrecisionHowFarItMayBeOff) {
     }
 }
 
+TEST(ReferenceCourse, OfARunWithStabilisedRodsIsThatOfTheTrueMotion) {
+    auto rods = in_double({30, 20});
+    rods.model = Model::constraints;
+    rods.method = "rk4";
+    const auto course = reference_course(rods, 10, 1, enough, never);
+    rods.stabilise = Stabilise::projection;
+    const auto same = reference_course(rods, 10, 1, enough, never);
+    ASSERT_EQ(same.seen.size(), 11u);
+    EXPECT_EQ(same.seen.back(), course.seen.back());
+}
+
 TEST(ReferenceCourse, EndsSomewhatBeyondWhatDoubleCanTell) {
     const auto wide = reference_course(in_double({150, 90}), 1000, 2, enough, never);
     EXPECT_LT(wide.seen.size(), 600u);

@@ -112,6 +112,16 @@ TEST(Reference, OfOneLinkAfterItsPeriod) {
     EXPECT_LT(static_cast<double>(abs(reference.end[0].omega)), 5e-32);                            // measured 6e-33
 }
 
+TEST(Reference, OfARunWithStabilisedRodsIsThatOfTheTrueMotion) {
+    auto rods = chain({30, 20});
+    rods.model = Model::constraints;
+    rods.method = "rk4";
+    const auto reference = reference_end(rods, {1, 1}, 1e-26, never);
+    rods.stabilise = Stabilise::projection;
+    const auto same = reference_end(rods, {1, 1}, 1e-26, never);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(same.end[i].theta, reference.end[i].theta);
+}
+
 TEST(Reference, RefusesWhereTheTwoDisagree) {
     try {
         reference_end(chain({90, 90}), {3, 1}, 1e-40, never);

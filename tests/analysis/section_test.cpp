@@ -168,6 +168,18 @@ TEST(Section, CountsWholeTurns) {
     EXPECT_TRUE(poincare_section(p, {.crossings = 10, .longest_s = 50}, never).empty());
 }
 
+TEST(Section, HasTheOrderOfTimeOnOneStepToo) {
+    // as above; so coarse that the first step is of 7.6 s, three turns and a half
+    auto p = odd_one();
+    p.gravity = 0;
+    p.angle = {0, 0};
+    p.rate = {3, 3};
+    const auto points = poincare_section(p, {.crossings = 3, .tolerance = 1e-2}, never);
+    ASSERT_EQ(points.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(points[i].time_s, static_cast<double>(i + 1) * 2 * pi / 3, 1e-3) << i;  // measured 1.7e-4
+}
+
 TEST(Section, ReleasesLieOnItAndFillIt) {
     const auto p = odd_one();
     for (const double energy_J : {2.0, 100.0}) {  // below and above where the lower link can turn over
@@ -190,6 +202,36 @@ TEST(Section, ReleasesLieOnItAndFillIt) {
         const double weight = 1.6 * 9.8 * 0.6;
         EXPECT_GT(widest, 0.9 * std::acos(std::max(-1.0, 1 - energy_J / weight)));
     }
+}
+
+TEST(Section, ReleasesAreSpreadByMultiplesOfThePlasticNumber) {
+    // Roberts 2018: fractions of ½ + k/ρ and ½ + k/ρ², along θ2 and, there, along p2
+    auto p = odd_one();
+    for (const double gravity : {9.8, 0.5, 0.0}) {
+        p.gravity = gravity;
+        constexpr double energy_J = 4;
+        const double weight = 1.6 * gravity * 0.6, inertia = 1.6 * 0.6 * 0.6;
+        const double widest = weight > energy_J / 2 ? std::acos(1 - energy_J / weight) : pi;
+        const auto releases = releases_of_energy(p, energy_J, 5);
+        ASSERT_EQ(releases.size(), 5u);
+        for (std::size_t k = 0; k < 5; ++k) {
+            const double u = std::fmod(0.5 + static_cast<double>(k) * 0.7548776662466927, 1);
+            const double v = std::fmod(0.5 + static_cast<double>(k) * 0.5698402909980533, 1);
+            const auto y = Model::start(releases[k]);
+            State<double, 4> z;
+            Canonical<Model>(Model(releases[k])).momenta(y, z);
+            const double kinetic = energy_J - weight * (1 - std::cos(y[1]));
+            EXPECT_NEAR(y[1], widest * (2 * u - 1), 2e-14) << k;                            // measured 3e-15
+            EXPECT_NEAR(z[3], std::sqrt(2 * inertia * kinetic) * (2 * v - 1), 2e-14) << k;  // measured 2.7e-15
+        }
+    }
+}
+
+TEST(Section, OfOneCrossingIsTheFirst) {
+    const auto release = releases_of_energy(odd_one(), 15, 3)[2];
+    const auto one = poincare_section(release, {.crossings = 1}, never);
+    ASSERT_EQ(one.size(), 1u);
+    EXPECT_EQ(one[0].time_s, poincare_section(release, {.crossings = 3}, never)[0].time_s);
 }
 
 TEST(Section, RefusesWhatMakesNoSenseAndStopsWhenTold) {

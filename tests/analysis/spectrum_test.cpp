@@ -60,6 +60,7 @@ TEST(Spectrum, OfChaosComesInPairsAndTwoVanish) {
     EXPECT_LT(std::abs(end.exponents[2]), 0.05);                            // measured 0.016
     EXPECT_LT(pair_mismatch(end), 0.002);                                   // measured 2e-4
     EXPECT_NEAR(pair_mismatch({1, {3, 2, -1.5, -2.75}}), 0.5, 1e-15);
+    EXPECT_NEAR(pair_mismatch({1, {3, 2, -1.5, -2}}), 1, 1e-15);
 }
 
 TEST(Spectrum, DoesNotDependOnHowOftenTheFrameIsSetUpright) {

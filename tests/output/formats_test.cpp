@@ -288,7 +288,8 @@ TEST(FormatsRefusals, AreMadeBeforeAnyWork) {
     refused({.format = F::apng, .size = {0, 1}}, {"0x1"});
     refused({.format = F::gif, .size = small, .fps_numerator = 60}, {"1/100 s", "60 frames/s", "at most 50 would do"});
     refused({.format = F::webm, .size = small, .fps_numerator = 3001, .fps_denominator = 3}, {"3001/3", "1000"});
-    refused({.format = F::apng, .size = small, .fps_numerator = 65537}, {"65535", "65537/1"});
+    refused({.format = F::apng, .size = small, .fps_numerator = 65536}, {"65535", "65536/1"});
+    refused({.format = F::apng, .size = small, .fps_numerator = 1, .fps_denominator = 65536}, {"65535", "1/65536"});
     refused({.format = F::mp4, .size = small, .fps_numerator = 0}, {"frames per second must be > 0"});
     refused({.format = F::mp4, .size = small, .transparent = true},
             {"H.264 has no transparency; webm of vp9 and apng"});
@@ -299,6 +300,7 @@ TEST(FormatsRefusals, AreMadeBeforeAnyWork) {
     refused({.format = F::webm, .size = small, .crf = 64}, {"crf of VP9 must be 0 … 63; it is 64"});
     for (const Kind& kind : kinds) EXPECT_NO_THROW(check_video(options_of(kind)));
     check_video({.format = F::mp4, .size = {641, 361}, .pixel_format = yuv444});
+    check_video({.format = F::apng, .size = small, .fps_numerator = 65535, .fps_denominator = 65534});
     check_video({.format = F::apng, .size = {641, 361}, .fps_numerator = 131072, .fps_denominator = 2048});
 }
 

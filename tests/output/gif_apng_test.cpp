@@ -114,6 +114,33 @@ TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
     EXPECT_EQ(bytes.back(), '\x3b');
 }
 
+TEST(Gif, WhatChangedStandsWhereItBelongs) {
+    // a square of one colour moves over another, and a line comes with it; only what changed is taken
+    const auto path = fresh_folder() / "x.gif";
+    const auto scene = [](int k) {
+        Picture picture(small);
+        for (int y = 0; y < small.height; ++y)
+            for (int x = 0; x < small.width; ++x) {
+                const bool square = x >= 31 + 5 * k && x < 60 + 5 * k && y >= 17 && y < 40, line = y == 60 + k;
+                const std::array<std::uint8_t, 4> colour{std::uint8_t(square ? 200 : 10), 90,
+                                                         std::uint8_t(line ? 240 : 30), 255};
+                std::ranges::copy(colour, picture.at(x, y));
+            }
+        return picture;
+    };
+    const auto sink = make_video_sink(path, {.format = VideoFormat::gif, .size = small, .fps_numerator = 25});
+    for (int k = 0; k < 6; ++k)
+        sink->take(scene(k), k == 0 ? whole(small)
+                                    : std::vector<Rect>{{26 + 5 * k, 17, 60 + 5 * k, 40}, {0, 59 + k, 160, 61 + k}});
+    sink->finish();
+    double worst = 1e9;
+    const Video video = read_video(path, [&](const Luma& frame) {
+        worst = std::min(worst, rgb_psnr(scene(static_cast<int>(frame.frame)), frame.picture));
+    });
+    EXPECT_EQ(video.times.size(), 6u);
+    EXPECT_EQ(worst, 1e9);  // no pixel differs
+}
+
 TEST(Gif, TheSameFramesGiveTheSameBytes) {
     const auto folder = fresh_folder();
     const VideoOptions options{.format = VideoFormat::gif, .size = small, .fps_numerator = 50};

@@ -295,6 +295,19 @@ TEST(PartFiles, WhatIsFinishedStaysWhereALaterStepFails) {
     EXPECT_EQ(listing(out), Names{"rescued.mp4"});
 }
 
+TEST(PartFiles, OneAloneIsKeptUnderAnotherName) {
+    const auto out = fresh_folder();
+    PartFiles files(out);
+    write_part(files, "x.csv", "table");
+    write_part(files, "x.mp4", "video");
+    write_picture(files, "0.png");
+    EXPECT_EQ(files.keep_only("x.csv", "x.failed.csv").path, out / "x.failed.csv.part");
+    EXPECT_EQ(listing(out), (Names{lock, "x.failed.csv.part"}));
+    EXPECT_EQ(files.publish(), std::vector<fs::path>{out / "x.failed.csv"});
+    EXPECT_EQ(listing(out), (Names{lock, "x.failed.csv"}));
+    EXPECT_EQ(bytes_of(out / "x.failed.csv"), "table");
+}
+
 TEST(PartFiles, HoldTheFolderForOneRunAtATime) {
     const auto out = fresh_folder();
     const auto pid = std::to_string(getpid());

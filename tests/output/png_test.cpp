@@ -163,6 +163,14 @@ TEST(Png, BelievesNoLengthBeyondItsFile) {
     const auto data = bytes.find("IDAT") - 4;
     refused(data, {"\x7f\0\0\0", 4}, fmt::format("the chunk at byte {} is longer than the file", data));
     refused(16, {"\0\0\x40\0\0\0\x40\0", 8}, "16384x16384 pixels cannot be in");
+    // 3 bytes a pixel: one pixel more than the file can hold, and as many
+    const auto in_a_row = [](std::size_t pixels) {
+        std::string number(4, 0);
+        for (int i = 0; i < 4; ++i) number[static_cast<std::size_t>(i)] = static_cast<char>(pixels >> (24 - 8 * i));
+        return number + std::string("\0\0\0\1", 4);
+    };
+    refused(16, in_a_row(344 * bytes.size() + 1), "pixels cannot be in");
+    refused(16, in_a_row(344 * bytes.size()), "not enough pixels");
     bytes.resize(data);
     bytes += {"\x7f\0\0\0IDAT", 8};  // and there the file ends
     refused(0, "", fmt::format("the chunk at byte {} is longer than the file", data));

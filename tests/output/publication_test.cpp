@@ -152,6 +152,26 @@ TEST(Publication, IsAllNewOrAllOldWhereItsRecoveryIsKilledToo) {
     watch_calls({});
 }
 
+TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
+    const QuickFolder quick;
+    const auto folder = after_old_run(quick.path / "folder");
+    std::map<std::string, int> before,
+        after;  // calls before a name of the folder changes, and after the last that does
+    bool begun = false;
+    watch_calls([&](const std::string& call) {
+        const bool moves = call == "renameat2" || call == "renameat";
+        begun = begun || moves;
+        if (moves) after.clear();
+        ++(begun ? after : before)[call];
+        return 0;
+    });
+    run(folder, "new");
+    watch_calls({});
+    EXPECT_EQ(before["syncfs"], 1);  // the pictures
+    EXPECT_EQ(before["fsync"], 5);   // two files, the folder of pictures, the folder with their names, the list of them
+    EXPECT_EQ(after["fsync"], 1);    // the folder with their new names
+}
+
 TEST(Publication, WhereOneFileCannotTakeItsPlaceAllOldOnesStay) {
     const QuickFolder quick;
     for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)}) {
@@ -195,6 +215,36 @@ TEST(Publication, WhereTheOldOnesCannotComeBackEitherTheNextRunSortsIt) {
     EXPECT_EQ(found.at("x.mp4"), found.at("frames/000000.png"));
     EXPECT_EQ(found.at("x.mp4") == "new", found == expected_new);
     for (const auto& [name, bytes] : found) EXPECT_FALSE(name.ends_with(".part")) << name;
+}
+
+TEST(PartFiles, ARunThatCannotBeginLeavesNoFolder) {
+    const auto out = fresh_folder();
+    int failing = 0;
+    for (bool failed = true; failed;) {
+        watch_calls([&, calls = 0](const std::string& call) mutable {
+            return call == "openat" && calls++ == failing ? EMFILE : 0;
+        });
+        failed = false;
+        try {
+            PartFiles files(out / "a/b");
+        } catch (const Error& error) {
+            failed = true;
+            EXPECT_EQ(error.code(), ExitCode::io_failed);
+        }
+        watch_calls({});
+        EXPECT_TRUE(fs::is_empty(out)) << failing;
+        ++failing;
+    }
+    EXPECT_EQ(failing, 4);  // the folder, its lock, its files
+}
+
+TEST(PartFiles, AFolderThatCannotBeMadeIsNamed) {
+    const auto out = fresh_folder();
+    PartFiles files(out);
+    watch_calls([](const std::string& call) { return call == "mkdirat" ? ENOSPC : 0; });
+    expect_error(ExitCode::io_failed, {(out / "frames.part").string() + ": cannot be made: No space left on device"},
+                 [&] { files.directory("frames"); });
+    watch_calls({});
 }
 
 TEST(FolderLock, WhereLocksAreUnknownALiveRunIsNotDisturbed) {

@@ -197,6 +197,11 @@ TEST(Samples, AreasAreCutToThePictureAndEvenWhereTheyMust) {
     EXPECT_TRUE(aligned(Samples::yuv420, {8, 0, 9, 2}, {8, 6}).empty());
 }
 
+TEST(Buffer, HasRoomForOneByte) {
+    Buffer buffer;
+    EXPECT_NE(buffer.make_room(1), nullptr);
+}
+
 TEST(Samples, WhatChangedKeepsItsMemory) {
     const Size size{64, 48};
     const Picture picture = noise(size, 5);

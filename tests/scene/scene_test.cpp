@@ -219,6 +219,36 @@ TEST(Size, OfOneParticleMakesItsErrorsThoseOfTheSamePendulum) {
     EXPECT_LT(particle.a.choice->estimated_error, 1e-6);
 }
 
+TEST(SideRun, BreaksDownAtTenTimesAllTheEnergyThereIs) {
+    // it starts with E = 0: as much kinetic energy as its potential energy is below that of the pivot
+    const double rate = std::sqrt(2 * 9.8 * std::cos(0.3)), degree = pi / 180;
+    const auto scene = scene_from(fmt::format(R"(
+[scene]
+sample_hz = 50
+[system]
+links = 1
+angle_deg = {}
+omega_deg_per_s = {}
+integrator = "euler"
+step_s = "1/50"
+)",
+                                              0.3 / degree, rate / degree));
+    const std::atomic<bool> never = false;
+    const auto motion = make_motion(scene.a.motion);
+    EXPECT_NEAR(motion->observe().energy, 0, 1e-14);             // measured 1.8e-15
+    const double most = 10 * (2 * 9.8 * 1 + 0.5 * rate * rate);  // the potential range, and the energy of motion
+    long sample = 0;
+    for (; motion->observe().energy_change <= most; ++sample) motion->advance(never);
+    SideRun run(scene, scene.a, 'a');
+    for (long n = 0; n < sample; ++n) run.next(never);
+    try {
+        run.next(never);
+        ADD_FAILURE();
+    } catch (const BreakDown& fault) {
+        EXPECT_EQ(fault.sample, sample);
+    }
+}
+
 TEST(Distance, OutOfRangeIsToldOfTheSideAndTheQuantity) {
     const auto fault = [](const std::vector<std::string>& arguments) {
         const auto scene = scene_of("butterfly", arguments);

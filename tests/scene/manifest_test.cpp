@@ -1,0 +1,31 @@
+#include "output/fixtures.hpp"
+#include "scene/manifest_json.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace manifest_test {
+
+using namespace test;
+
+TEST(Manifest, IsFinishedAsTheFilesThatItNames) {
+    const auto folder = fresh_folder();
+    {
+        PartFiles files(folder);
+        write_bytes(files.file("x.mp4").path, "video");
+        files.finished("x.mp4");
+        write_manifest(files, "x.json", {});
+        expect_error(ExitCode::io_failed, {(folder / "x.mp4.part").string(), (folder / "x.json.part").string()}, [&] {
+            files.keeping_finished([]() -> std::vector<std::filesystem::path> { throw std::runtime_error("no room"); });
+        });
+    }
+    // sha256sum of "video"
+    const auto manifest = Json::parse(bytes_of(folder / "x.json.part"));
+    EXPECT_EQ(
+        manifest,
+        Json::parse(
+            R"({"files": {"x.mp4": {"bytes": 5, "sha256": "0cab1c9617404faf2b24e221e189ca5945813e14d3f766345b09ca13bbe28ffc"}}})"));
+}
+
+}  // namespace manifest_test
+}  // namespace doppel
