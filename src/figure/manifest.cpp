@@ -1,6 +1,6 @@
 #include "figure/manifest.hpp"
 
-#include "integrate/ensemble.hpp"
+#include "integrate/widths.hpp"
 
 #include <cmath>
 
@@ -23,7 +23,7 @@ void write_figure_manifest(PartFiles& parts, const FigurePreset& figure, const K
         {"resolved_preset", json_of_toml(figure.resolved())},
         {"trials", trials.size()},
         {"threads", record.jobs},
-        {"register_width", Ensemble::widths().back()},
+        {"register_width", register_widths().back()},
         {"libraries", {{"gl", record.gl}, {"compiler", __VERSION__}}},
         {"time",
          {{"compute_wall_s", record.compute_wall_s},

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "film/shot.hpp"
-#include "integrate/crowd.hpp"
+#include "integrate/motion_batch.hpp"
 #include "output/queue.hpp"
 
 #include <atomic>
