@@ -1,7 +1,7 @@
 #include "analysis/energy_stability.hpp"
 
 #include "base/error.hpp"
-#include "integrate/ensemble.hpp"
+#include "integrate/batch.hpp"
 #include "numeric/nan.hpp"
 #include "physics/bob.hpp"
 
@@ -19,7 +19,7 @@ void take(double error, double& greatest) {
         greatest = nan_value;
 }
 
-double energy_of(const Pendulum<double>& p, const Ensemble& ensemble, std::size_t trial, Model model) {
+double energy_of(const Pendulum<double>& p, const Batch& ensemble, std::size_t trial, Model model) {
     const auto y = ensemble.state(trial);
     return energy(model == Model::angles ? bobs_of_angles(p, y) : bobs_of_particles(p, y), p.gravity);
 }
@@ -28,8 +28,7 @@ std::vector<double> side_by_side(const StabilityRun& run, std::span<const Pendul
                                  const std::atomic<bool>& stop) {
     std::vector<Pendulum<double>> pendulums;
     for (const auto& release : releases) pendulums.push_back(release.cast<double>());
-    const auto model = run.model == Model::angles ? EnsembleModel::angles : EnsembleModel::constraints;
-    Ensemble ensemble(pendulums, model, run.method, run.step(), run.width);
+    Batch ensemble(pendulums, run.model, run.method, run.step(), run.width);
     std::vector<double> start, scale, greatest(releases.size(), 0);
     for (std::size_t i = 0; i < pendulums.size(); ++i) {
         start.push_back(energy_of(pendulums[i], ensemble, i, run.model));
@@ -87,7 +86,7 @@ double released_energy(const Pendulum<double>& release) {
 
 std::vector<double> greatest_energy_errors(const StabilityRun& run, std::span<const Pendulum<Quad>> releases,
                                            const std::atomic<bool>& stop) {
-    if (Ensemble::serves(run.method)) return side_by_side(run, releases, stop);
+    if (Batch::serves(run.method)) return side_by_side(run, releases, stop);
     std::vector<double> errors;
     for (const auto& release : releases) errors.push_back(alone(run, release, stop));
     return errors;

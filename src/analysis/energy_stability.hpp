@@ -21,7 +21,7 @@ struct StabilityRun {
     long samples = 100;         // looks at the energy, evenly over the duration
     long steps_per_sample = 1;  // of methods with a fixed step
     Quad tolerance = 0;         // of adaptive ones
-    int width = 0;              // doubles to a register (integrate/ensemble.hpp); changes no bit
+    int width = 0;              // doubles to a register (integrate/batch.hpp); changes no bit
 
     /// s
     double step() const { return duration.value() / static_cast<double>(samples * steps_per_sample); }

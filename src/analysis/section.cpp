@@ -2,8 +2,8 @@
 
 #include "base/error.hpp"
 #include "integrate/taylor.hpp"
-#include "numeric/bernstein.hpp"
 #include "numeric/quad.hpp"
+#include "numeric/roots.hpp"
 #include "physics/canonical.hpp"
 
 #include <algorithm>
@@ -30,43 +30,30 @@ public:
     /// Another step; the crossings on it, in order.
     std::vector<SectionPoint> step() {
         stepper_.take_step();
-        const double start = stepper_.state()[0], end = stepper_.at(stepper_.step())[0];
-        const auto angle = angle_on_step(start);
+        const auto angle = stepper_.angle(0);
         const auto [least, greatest] = std::minmax_element(angle.b.begin(), angle.b.end());
         std::vector<SectionPoint> points;
-        for (double turns = std::floor(*least / (2 * pi)); turns <= std::ceil(*greatest / (2 * pi)); ++turns) {
-            auto beyond = angle;
-            for (double& value : beyond.b) value -= 2 * pi * turns;
-            // where one step ends and the next starts, both see the same
-            beyond.b.front() = start - 2 * pi * turns;
-            beyond.b.back() = end - 2 * pi * turns;
-            for (const auto& bracket : beyond.rises()) points.push_back(crossing(bracket, 2 * pi * turns));
-        }
+        for (double turns = std::floor(*least / (2 * pi)); turns <= std::ceil(*greatest / (2 * pi)); ++turns)
+            for (const auto& bracket : angle.rises(2 * pi * turns)) points.push_back(crossing(bracket, 2 * pi * turns));
         std::sort(points.begin(), points.end(), [](auto& one, auto& other) { return one.time_s < other.time_s; });
         time_ += stepper_.step();
         return points;
     }
 
 private:
-    /// θ1 on the step, from the series of ω1.
-    Bernstein angle_on_step(double start) const {
-        std::vector<double> coefficients{start};
-        for (int k = 0; k <= stepper_.order(); ++k) coefficients.push_back(stepper_.series().rate(k, 0) / (k + 1));
-        return Bernstein::of_powers(coefficients, stepper_.step());
-    }
+    /// θ1 above a level, rad, and its rate.
+    struct Height {
+        double value, rate;
+    };
 
-    /// Where θ1 rises through `level`, rad, within a bracket. Newton's method, kept within it.
-    SectionPoint crossing(const Bernstein::Bracket& bracket, double level) {
-        constexpr double close = 1e-15;  // rad, and relative
-        double low = bracket.low * stepper_.step(), high = bracket.high * stepper_.step(), at = 0.5 * (low + high);
-        for (int i = 0; i < 60; ++i) {
-            const auto& y = stepper_.at(at);
-            const double beyond = y[0] - level;
-            if (std::abs(beyond) <= close * (1 + std::abs(y[0]))) break;
-            (beyond < 0 ? low : high) = at;
-            at -= beyond / y[2];
-            if (!(at > low && at < high)) at = 0.5 * (low + high);
-        }
+    /// Where θ1 rises through `level`, rad, within a bracket.
+    SectionPoint crossing(const Bracket& bracket, double level) {
+        constexpr double rounding = 1e-15;  // rad, and relative
+        const double at = root(bracket, [&](double t) {
+            const auto& y = stepper_.at(t);
+            const bool is_there = std::abs(y[0] - level) <= rounding * (1 + std::abs(y[0]));
+            return Height{is_there ? 0 : y[0] - level, y[2]};
+        });
         canonical_.momenta(stepper_.at(at), z_);
         const double theta2 = std::remainder(z_[1], 2 * pi);
         return {theta2 == -pi ? pi : theta2, z_[3], z_[2], static_cast<double>(time_ + at)};
@@ -80,8 +67,8 @@ private:
 };
 
 /// Point number k of a sequence that fills the unit square evenly, however many are taken.
-/// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences: multiples of 1/ρ and 1/ρ², ρ³ = ρ
-/// + 1.
+/// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences: multiples of 1/ρ and 1/ρ², where
+///         ρ³ = ρ + 1.
 std::pair<double, double> spread(int k) {
     constexpr double rho = 1.324717957244746;
     const auto part = [](double x) { return x - std::floor(x); };

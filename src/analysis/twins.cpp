@@ -2,6 +2,7 @@
 
 #include "analysis/distance.hpp"
 #include "base/error.hpp"
+#include "integrate/widths.hpp"
 #include "numeric/nan.hpp"
 
 #include <algorithm>
@@ -12,9 +13,9 @@ namespace doppel {
 namespace {
 
 /// The pendulums of one side, or of both where they obey the same equations, each of them once.
-class Crowd {
+class SideBatch {
 public:
-    explicit Crowd(TwinSide side) : side_(std::move(side)) {}
+    explicit SideBatch(TwinSide side) : side_(std::move(side)) {}
 
     /// The number of this pendulum, which is new or was there.
     std::size_t add(const Pendulum<double>& pendulum) {
@@ -25,24 +26,24 @@ public:
     }
 
     void start(const TwinRun& run, int width) {
-        ensemble_.emplace(members_, side_.model, side_.method,
-                          run.sample_interval / static_cast<double>(side_.steps_per_sample), width);
+        batch_.emplace(members_, side_.model, side_.method,
+                       run.sample_interval / static_cast<double>(side_.steps_per_sample), width);
         seen_.resize(members_.size());
-        look();
+        update();
     }
 
     void advance() {
-        ensemble_->advance(side_.steps_per_sample);
-        look();
+        batch_->advance(side_.steps_per_sample);
+        update();
     }
 
     const Bobs<double>& seen(std::size_t member) const { return seen_[member]; }
 
 private:
-    void look() {
+    void update() {
         for (std::size_t i = 0; i < members_.size(); ++i) {
-            ensemble_->read(i, state_);
-            if (side_.model == EnsembleModel::angles)
+            batch_->read(i, state_);
+            if (side_.model == Model::angles)
                 place_angles(members_[i], state_, seen_[i]);
             else
                 place_particles(members_[i], state_, seen_[i]);
@@ -51,7 +52,7 @@ private:
 
     TwinSide side_;
     std::vector<Pendulum<double>> members_;
-    std::optional<Ensemble> ensemble_;
+    std::optional<Batch> batch_;
     State<double, Eigen::Dynamic> state_;
     std::vector<Bobs<double>> seen_;
 };
@@ -59,28 +60,28 @@ private:
 }  // namespace
 
 std::size_t twins_block(int width) {
-    return 2 * static_cast<std::size_t>(width == 0 ? Ensemble::widths().back() : width);
+    return 2 * static_cast<std::size_t>(width == 0 ? register_widths().back() : width);
 }
 
 void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
                         const std::atomic<bool>& stop, int width) {
-    std::vector<Crowd> crowds;
-    crowds.emplace_back(run.a);
-    if (run.b != run.a) crowds.emplace_back(run.b);
-    auto &crowd_a = crowds.front(), &crowd_b = crowds.back();
+    std::vector<SideBatch> batches;
+    batches.emplace_back(run.a);
+    if (run.b != run.a) batches.emplace_back(run.b);
+    auto &batch_a = batches.front(), &batch_b = batches.back();
     std::vector<std::pair<std::size_t, std::size_t>> members;
-    for (const auto& pair : twins) members.emplace_back(crowd_a.add(pair.a), crowd_b.add(pair.b));
-    for (auto& crowd : crowds) crowd.start(run, width);
+    for (const auto& pair : twins) members.emplace_back(batch_a.add(pair.a), batch_b.add(pair.b));
+    for (auto& batch : batches) batch.start(run, width);
 
     const auto distance = [&](std::size_t i) {
-        return state_space_distance(crowd_a.seen(members[i].first), crowd_b.seen(members[i].second));
+        return state_space_distance(batch_a.seen(members[i].first), batch_b.seen(members[i].second));
     };
     std::vector<double> start, sum(twins.size());
     std::vector<long> counted(twins.size());
     for (std::size_t i = 0; i < twins.size(); ++i) start.push_back(distance(i));
     for (long n = 1; n <= run.samples; ++n) {
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
-        for (auto& crowd : crowds) crowd.advance();
+        for (auto& batch : batches) batch.advance();
         for (std::size_t i = 0; i < twins.size(); ++i)
             if (const auto ratio = log_ratio(distance(i), start[i])) {
                 sum[i] += *ratio;

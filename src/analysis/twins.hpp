@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/ensemble.hpp"
+#include "integrate/batch.hpp"
 
 #include <atomic>
 #include <span>
@@ -15,7 +15,7 @@ struct Twins {
 
 /// The equations and the step of one side of all twins.
 struct TwinSide {
-    EnsembleModel model = EnsembleModel::angles;
+    Model model = Model::angles;
     std::string method = "euler";
     long steps_per_sample = 250;
     friend bool operator==(const TwinSide&, const TwinSide&) = default;
@@ -37,7 +37,7 @@ std::size_t twins_block(int width = 0);
 /// Every trial is the same to the bit at every width and in any company: each lane does what a lone double would, and
 /// each mean is summed in the order of its samples. Pendulums that several twins share are stepped once.
 ///
-/// Errors: those of Ensemble; exit 130 soon after `stop` is set.
+/// Errors: those of Batch; exit 130 soon after `stop` is set.
 void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
                         const std::atomic<bool>& stop, int width = 0);
 

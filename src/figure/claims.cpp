@@ -246,7 +246,7 @@ const auto three_links = claim(
             twins.emplace_back(side({angle, 0, 0}), side({angle + parse_quad("0.003"), 0, 0}));
         }
         const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-        averages(twins, {.model = EnsembleModel::constraints}, stop);
+        averages(twins, {.model = Model::constraints}, stop);
         const double spent = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
         constexpr double all = 181;
         const auto chain = chain_of(side(std::vector<Quad>(16, 90))).cast<double>();

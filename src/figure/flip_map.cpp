@@ -1,6 +1,5 @@
 #include "analysis/share_at_least.hpp"
 #include "figure/kinds.hpp"
-#include "integrate/flip_reference.hpp"
 #include "integrate/flips.hpp"
 #include "numeric/nan.hpp"
 #include "scene/assemble.hpp"

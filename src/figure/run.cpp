@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/parallel_for.hpp"
-#include "integrate/ensemble.hpp"
+#include "integrate/widths.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"
 #include "output/queue.hpp"
@@ -75,7 +75,7 @@ void write_manifest(PartFiles& parts, const FigurePreset& figure, const KnownTri
         {"resolved_preset", json_of_toml(figure.resolved())},
         {"trials", trials.size()},
         {"threads", record.jobs},
-        {"register_width", Ensemble::widths().back()},
+        {"register_width", register_widths().back()},
         {"libraries", {{"gl", record.gl}, {"compiler", __VERSION__}}},
         {"time",
          {{"compute_wall_s", record.compute_wall_s},

@@ -203,10 +203,9 @@ private:
         TwinRun run{.sample_interval = 1 / pair_.sample_hz.value(), .samples = scene.samples};
         const auto take = [](const Side& side, TwinSide& into) {
             const auto& motion = side.motion;
-            into = {motion.model == Model::angles ? EnsembleModel::angles : EnsembleModel::constraints, motion.method,
-                    motion.steps_per_sample};
+            into = {motion.model, motion.method, motion.steps_per_sample};
             return !side.choice && motion.model != Model::mechanism && motion.precision == Precision::in_double &&
-                   motion.stabilise == Stabilise::none && Ensemble::serves(motion.method);
+                   motion.stabilise == Stabilise::none && Batch::serves(motion.method);
         };
         if (!take(scene.a, run.a) || !take(scene.b, run.b)) return std::nullopt;
         return run;

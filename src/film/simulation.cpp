@@ -31,7 +31,7 @@ std::pair<Effort, Effort> Simulation::efforts() {
 void Simulation::work(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop) {
     try {
         PairRun pair(scene);
-        std::optional<Crowd> crowd;
+        std::optional<MotionBatch> crowd;
         if (with_crowd && !scene.crowd.empty()) crowd.emplace(scene.crowd, 1);
         for (long sample = 0; sample < last; ++sample) {
             Shot shot{pair.next(stop), {}};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/crowd.hpp"
+#include "integrate/motion_batch.hpp"
 #include "output/queue.hpp"
 #include "scene/scene.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/dop853.hpp"
+#include "integrate/dormand_prince.hpp"
 
 #include <array>
 #include <utility>

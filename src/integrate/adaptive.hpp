@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "integrate/embedded_pair.hpp"
+#include "integrate/tableau.hpp"
 
 #include <cmath>
 #include <limits>

@@ -15,4 +15,44 @@ struct Euler {
     using Stepper = std::conditional_t<has_carried_euler<Model>, CarriedEuler<Model>, RungeKutta<Model, table>>;
 };
 
+/// Euler's method with the new velocities (symplectic Euler), at fixed step, for any system whose state is (q, v):
+///     v ← v + h a(q, v),   q ← q + h v
+/// Source  Hairer, Lubich & Wanner, Geometric Numerical Integration, §I.1.2 and theorem VI.3.3.
+template <System Model>
+class SemiImplicitEulerStepper {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    SemiImplicitEulerStepper(Model& model, const State& start, const Scalar& step)
+        : model_(model), y_(start), dydt_(start), h_(step) {}
+
+    void advance(long steps) {
+        const auto n = y_.size() / 2;
+        for (long i = 0; i < steps; ++i) {
+            model_.rate(y_, dydt_);
+            for (Eigen::Index j = n; j < 2 * n; ++j) y_[j] += h_ * dydt_[j];
+            for (Eigen::Index j = 0; j < n; ++j) y_[j] += h_ * y_[n + j];
+            settle(model_, y_);
+        }
+        evaluations_ += steps;
+    }
+
+    const State& state() const { return y_; }
+    long evaluations() const { return evaluations_; }
+
+private:
+    Model& model_;
+    State y_, dydt_;
+    Scalar h_;
+    long evaluations_ = 0;
+};
+
+struct SemiImplicitEuler {
+    static constexpr Method method{"semi-implicit-euler", "semi-implicit Euler", 1, false,
+                                   "explicit; symplectic where forces depend on positions alone"};
+    template <System Model>
+    using Stepper = SemiImplicitEulerStepper<Model>;
+};
+
 }  // namespace doppel

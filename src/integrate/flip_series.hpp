@@ -1,7 +1,7 @@
 #pragma once
 
+#include "integrate/taylor_series.hpp"
 #include "numeric/lanes.hpp"
-#include "numeric/lanes_sincos.hpp"
 
 namespace doppel {
 
@@ -11,6 +11,8 @@ struct FlipChain {
     double masses;   // 1 + m1 / m2
     double longer;   // l2 / l1
 };
+
+inline constexpr int flip_order = 16;  // at 1e-8 rad/s, 12 costs 1.2 times as much and 20 costs 1.1 times
 
 /// Taylor series of the motion of double pendulums side by side. With the tensions a, b of the rods, divided by m1 l1,
 /// and D = θ2 − θ1 (physics/double_pendulum.hpp is what comes of eliminating them):
@@ -22,7 +24,7 @@ struct FlipChain {
 /// equations at once: their determinant is that of the start.
 template <class Side>
 struct FlipSeries {
-    static constexpr int order = 16;  // at 1e-8 rad/s, 12 costs 1.2 times as much and 20 costs 1.1 times
+    static constexpr int order = flip_order;
 
     /// The coefficients of one power of the time; sine and cosine of θ1 times g/l1.
     struct Term {
@@ -91,10 +93,10 @@ struct FlipSeries {
     }
 
     /// How far the series is good, s, but no more than `longest`: its last four terms of the rates stay below
-    /// 2^allowed rad/s. Four, because of a motion from rest at 90° three in every four vanish.
+    /// 2^allowed rad/s.
     [[gnu::always_inline]] Side step(double allowed, double longest) const {
         Side exponent(1000);
-        for (int k = order - 3; k <= order; ++k) {
+        for (int k = order - watched_coefficients + 1; k <= order; ++k) {
             const Side size = greater(abs(term[k].omega[0]), abs(term[k].omega[1]));
             exponent = lesser(exponent, (Side(allowed) - rough_log2(size)) * Side(1.0 / k));
         }

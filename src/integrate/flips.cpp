@@ -1,8 +1,10 @@
 #include "integrate/flips.hpp"
 
 #include "base/error.hpp"
-#include "integrate/ensemble.hpp"
 #include "integrate/flips_kernel.hpp"
+#include "integrate/taylor.hpp"
+#include "integrate/widths.hpp"
+#include "numeric/roots.hpp"
 #include "numeric/state.hpp"
 
 #include <algorithm>
@@ -10,8 +12,9 @@
 #include <limits>
 
 namespace doppel {
-
 namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
 
 /// g l_i Σ_{k≥i} m_k, J: half of what it takes to lift rod i from hanging to upright.
 double weight(const Pendulum<double>& p, std::size_t rod) {
@@ -35,23 +38,33 @@ double energy_of(const Pendulum<double>& p) {
 
 /// The least of it with a rod upright, J; where gravity pulls up, standing upright takes none.
 double least_energy_to_flip(const Pendulum<double>& p) {
-    if (p.gravity < 0) return -std::numeric_limits<double>::infinity();
-    double least = std::numeric_limits<double>::infinity();
+    if (p.gravity < 0) return -never;
+    double least = never;
     for (std::size_t i = 0; i < p.links(); ++i) least = std::min(least, 2 * weight(p, i));
     return least;
 }
 
-auto finder_of(int asked) {
-    switch (Ensemble::chosen_width(asked)) {
-#ifdef DOPPEL_WIDE_ENSEMBLES
-        case 4:
-            return find_flips<4>;
-        case 8:
-            return find_flips<8>;
-#endif
-        default:
-            return find_flips<2>;
+/// A rod's angle on a step in the sense in which it flips, and its rate there.
+struct Outward {
+    double value, rate;  // rad beyond the upright, rad/s
+};
+
+/// When |θ| first exceeds π on a step, s from its start, from the polynomial of θ; at(t) → Outward for either sense.
+template <class At>
+double first_flip(const Bernstein& theta, const At& at) {
+    const double widest = 1.5 / 32 * theta.length;  // a 32nd, whatever rounding makes of it
+    double first = never;
+    const auto [least, greatest] = std::minmax_element(theta.b.begin(), theta.b.end());
+    for (const double sense : {1.0, -1.0}) {
+        if (!(sense > 0 ? *greatest > pi : *least < -pi)) continue;
+        auto turned = theta;
+        for (double& value : turned.b) value *= sense;
+        const auto rises = turned.rises(pi);
+        if (rises.empty()) continue;
+        first = std::min(first, root(
+                                    rises.front(), [&](double t) { return at(t, sense); }, widest));
     }
+    return first;
 }
 
 void check(const Pendulum<double>& p, std::span<const Release> releases, const FlipSpec& spec,
@@ -67,6 +80,37 @@ void check(const Pendulum<double>& p, std::span<const Release> releases, const F
 
 }  // namespace
 
+double first_flip(const RodOnStep& rod) {
+    auto theta = Bernstein::of_powers(rod.theta, rod.h);
+    theta.b.back() = rod.theta_end;
+    return first_flip(theta, [&](double t, double sense) {
+        double angle = rod.theta[flip_order], rate = rod.omega[flip_order];
+        for (int k = flip_order - 1; k >= 0; --k) {
+            angle = angle * t + rod.theta[k];
+            rate = rate * t + rod.omega[k];
+        }
+        return Outward{sense * angle - pi, sense * rate};
+    });
+}
+
+double reference_flip(const Pendulum<double>& pendulum, double duration, double tolerance) {
+    DoublePendulum<double> model(pendulum);
+    const auto start = DoublePendulum<double>::start(pendulum);
+    if (start.head(2).cwiseAbs().maxCoeff() > pi) return 0;
+    TaylorStepper<DoublePendulum<double>> stepper(model, start, tolerance);
+    for (double time = 0; time < duration; time += stepper.step()) {
+        stepper.take_step();
+        double flip = never;
+        for (const int rod : {0, 1})
+            flip = std::min(flip, first_flip(stepper.angle(rod), [&](double t, double sense) {
+                                const auto& y = stepper.at(t);
+                                return Outward{sense * y[rod] - pi, sense * y[2 + rod]};
+                            }));
+        if (flip < never) return time + flip <= duration ? time + flip : never;
+    }
+    return never;
+}
+
 double flip_tolerance(double duration) {
     return std::pow(10, -std::clamp(8 + std::ceil((duration - 20) / 2), 8.0, 14.0));
 }
@@ -78,7 +122,7 @@ bool flip_is_forbidden(const Pendulum<double>& pendulum) {
 void first_flips(const Pendulum<double>& pendulum, std::span<const Release> releases, const FlipSpec& spec,
                  std::span<double> times, const std::atomic<bool>& stop, int width) {
     check(pendulum, releases, spec, times);
-    const auto find = finder_of(width);
+    const auto find = at_width(chosen_width(width), []<int chosen>() { return find_flips<chosen>; });
 
     // what is known beforehand; the rest is marked by a negative time
     Pendulum<double> released = pendulum;
@@ -87,7 +131,7 @@ void first_flips(const Pendulum<double>& pendulum, std::span<const Release> rele
         released.angle[0] = releases[i].theta1;
         released.angle[1] = releases[i].theta2;
         const bool is_beyond = std::max(std::abs(releases[i].theta1), std::abs(releases[i].theta2)) > pi;
-        times[i] = is_beyond ? 0 : energy_of(released) < least ? std::numeric_limits<double>::infinity() : -1;
+        times[i] = is_beyond ? 0 : energy_of(released) < least ? never : -1;
     }
 
     const auto& [mass, length, angle, rate, gravity] = pendulum;

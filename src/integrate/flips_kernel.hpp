@@ -7,8 +7,8 @@
 
 namespace doppel {
 
-// What passes between integrate/flips.cpp and the code that was compiled for one kind of processor
-// (integrate/flips_width.cpp): plain numbers, as for ensembles.
+// What integrate/flips.cpp and the code for one kind of processor (integrate/flips_width.cpp) share, by the rules of
+// integrate/batch_width.cpp.
 
 struct FlipRequest {
     FlipChain chain;
@@ -33,5 +33,12 @@ template <>
 FlipOutcome find_flips<4>(const FlipRequest& request);
 template <>
 FlipOutcome find_flips<8>(const FlipRequest& request);
+
+/// The motion of one rod on one step of length h, s: the coefficients of its angle and of its rate, and where it ends.
+struct RodOnStep {
+    double h, theta[flip_order + 1], omega[flip_order + 1], theta_end;
+};
+/// When |θ| first exceeds π, s after the start of the step; infinity where it does not.
+double first_flip(const RodOnStep& rod);
 
 }  // namespace doppel

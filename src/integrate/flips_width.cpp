@@ -1,23 +1,140 @@
-// Compiled once for every kind of processor, as integrate/ensemble_width.cpp is and by the same rules.
+// Compiled once for every kind of processor, by the rules of integrate/batch_width.cpp.
 
-#include "integrate/flip_lanes.hpp"
+#include "integrate/flips_kernel.hpp"
+#include "numeric/state.hpp"
 
-#ifndef DOPPEL_FLIPS_WIDTH
-#define DOPPEL_FLIPS_WIDTH 2
-#endif
+#include <limits>
 
 namespace doppel {
 namespace {
 
-constexpr int width = DOPPEL_FLIPS_WIDTH;
+/// Finds flips in lanes. As soon as a lane's pendulum has flipped, or its time is over, the next release takes its
+/// place.
+template <class Side>
+class FlipLanes {
+public:
+    explicit FlipLanes(const FlipRequest& request) : request_(request) {}
+
+    FlipOutcome run() {
+        for (auto& group : groups_)
+            for (int lane = 0; lane < Side::width; ++lane) {
+                group.trial[lane] = none;
+                take_next(group, lane);
+            }
+        while (busy_ > 0) {
+            if (request_.stop->load(std::memory_order_relaxed)) return FlipOutcome::stopped;
+            for (int i = 0; i < steps_between_looks; ++i) step();
+        }
+        return broken_ ? FlipOutcome::broken : FlipOutcome::found;
+    }
+
+private:
+    using Series = FlipSeries<Side>;
+
+    static constexpr int registers = 2;  // while one waits for its results the other works
+    static constexpr int steps_between_looks = 64;
+    static constexpr double least_step = 1e-9;  // s; where no more is allowed the numbers have broken down
+    static constexpr double never = std::numeric_limits<double>::infinity();
+    static constexpr std::size_t none = ~std::size_t(0);
+
+    struct Group {
+        Series series;
+        Side time;  // s, since the release
+        std::size_t trial[Side::width];
+    };
+
+    [[gnu::always_inline]] void step() {
+        for (auto& group : groups_) group.series.start(request_.chain);
+        for (int k = 0; k < flip_order; ++k)
+            for (auto& group : groups_) group.series.extend(request_.chain, k);
+        for (auto& group : groups_) finish(group);
+    }
+
+    /// To the end of the step, with a closer look at the lanes where something may happen on the way.
+    [[gnu::always_inline]] void finish(Group& group) {
+        auto& now = group.series.term[0];
+        const Side h = group.series.step(request_.allowed, request_.longest);
+        const auto end = group.series.at(h);
+        const Side after = group.time + h;
+        const Side reach1 = reach(h, now.theta[0], end.theta[0], now.omega[0], end.omega[0]);
+        const Side reach2 = reach(h, now.theta[1], end.theta[1], now.omega[1], end.omega[1]);
+        const auto dull =
+            (reach1 < Side(pi)) & (reach2 < Side(pi)) & (after < Side(request_.duration)) & (h > Side(least_step));
+        bool done[Side::width] = {};
+        const bool all_dull = all_of(dull);
+        if (!all_dull)
+            for (int lane = 0; lane < Side::width; ++lane) {
+                const double first = reach1[lane] > pi ? flip_of(group, 0, lane, h[lane], end) : never;
+                const double second = reach2[lane] > pi ? flip_of(group, 1, lane, h[lane], end) : never;
+                done[lane] = is_done(group, lane, h[lane], second < first ? second : first);
+            }
+        for (int i = 0; i < 2; ++i) {
+            now.theta[i] = end.theta[i];
+            now.omega[i] = end.omega[i];
+        }
+        group.time = after;
+        if (!all_dull)
+            for (int lane = 0; lane < Side::width; ++lane)
+                if (done[lane]) take_next(group, lane);
+    }
+
+    /// How large |θ| may become on a step: where the rod turns back on it, it gains no more than the greater rate makes
+    /// in half the time.
+    [[gnu::always_inline]] static Side reach(const Side& h, const Side& theta, const Side& theta_end, const Side& omega,
+                                             const Side& omega_end) {
+        return greater(abs(theta), abs(theta_end)) + Side(0.5) * h * greater(abs(omega), abs(omega_end));
+    }
+
+    /// Whether a lane's pendulum flips in this step, `flip` s after its start, or comes to the end of its time; which is
+    /// noted.
+    bool is_done(const Group& group, int lane, double h, double flip) {
+        if (group.trial[lane] == none) return false;
+        const double time = group.time[lane] + flip;
+        const bool breaks = !(h > least_step);
+        if (!(time <= group.time[lane] + h) && group.time[lane] + h < request_.duration && !breaks) return false;
+        broken_ |= breaks;
+        request_.times[group.trial[lane]] = time <= request_.duration ? time : never;
+        return true;
+    }
+
+    static double flip_of(const Group& group, int rod, int lane, double h, const typename Series::Ends& end) {
+        RodOnStep on_step{.h = h, .theta = {}, .omega = {}, .theta_end = end.theta[rod][lane]};
+        for (int k = 0; k <= flip_order; ++k) {
+            on_step.theta[k] = group.series.term[k].theta[rod][lane];
+            on_step.omega[k] = group.series.term[k].omega[rod][lane];
+        }
+        return first_flip(on_step);
+    }
+
+    /// Gives a lane the next release whose time is to be found; where there is none, one at rest that hangs.
+    void take_next(Group& group, int lane) {
+        if (group.trial[lane] != none) --busy_;
+        while (next_ < request_.count && !(request_.times[next_] < 0)) ++next_;
+        const bool is_left = next_ < request_.count;
+        busy_ += is_left;
+        group.trial[lane] = is_left ? next_ : none;
+        group.time.set(lane, 0);
+        auto& start = group.series.term[0];
+        start.theta[0].set(lane, is_left ? request_.releases[next_].theta1 : 0);
+        start.theta[1].set(lane, is_left ? request_.releases[next_].theta2 : 0);
+        for (int i = 0; i < 2; ++i) start.omega[i].set(lane, is_left ? request_.omega[i] : 0);
+        next_ += is_left;
+    }
+
+    FlipRequest request_;
+    std::size_t next_ = 0;
+    int busy_ = 0;  // lanes with a pendulum
+    bool broken_ = false;
+    Group groups_[registers];
+};
 
 struct ThisBuild;
 
 }  // namespace
 
 template <>
-FlipOutcome find_flips<width>(const FlipRequest& request) {
-    return FlipLanes<Lanes<width, ThisBuild>>(request).run();
+FlipOutcome find_flips<compiled_width>(const FlipRequest& request) {
+    return FlipLanes<Lanes<compiled_width, ThisBuild>>(request).run();
 }
 
 }  // namespace doppel

@@ -1,10 +1,10 @@
 #include "integrate/methods.hpp"
 
 #include "integrate/registry.hpp"
+#include "integrate/stabilise.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/mechanism.hpp"
 #include "physics/rod_chain.hpp"
-#include "physics/stabilise.hpp"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@ namespace doppel {
 /// A method with the models it can step.
 struct MethodEntry : Method {
     bool angles, constraints, mechanism;
-    bool stabilised;  // constraints that are held otherwise (physics/stabilise.hpp)
+    bool stabilised;  // constraints that are held otherwise (integrate/stabilise.hpp)
 };
 
 /// All of them, in the order of integrate/registry.hpp.

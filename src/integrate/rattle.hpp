@@ -1,9 +1,9 @@
 #pragma once
 
 #include "integrate/method.hpp"
+#include "integrate/stabilise.hpp"
 #include "numeric/quad.hpp"
 #include "physics/rod_chain.hpp"
-#include "physics/stabilise.hpp"
 
 #include <array>
 #include <string_view>

@@ -1,14 +1,11 @@
 #pragma once
 
 #include "integrate/adams.hpp"
-#include "integrate/dop853.hpp"
-#include "integrate/dopri5.hpp"
+#include "integrate/dormand_prince.hpp"
 #include "integrate/euler.hpp"
 #include "integrate/gauss.hpp"
-#include "integrate/midpoint.hpp"
 #include "integrate/rattle.hpp"
-#include "integrate/rk4.hpp"
-#include "integrate/semi_implicit_euler.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "integrate/taylor.hpp"
 
 #include <tuple>

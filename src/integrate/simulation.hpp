@@ -4,8 +4,8 @@
 #include "integrate/method_stepper.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
+#include "integrate/stabilise.hpp"
 #include "integrate/turns.hpp"
-#include "physics/stabilise.hpp"
 #include "physics/tension.hpp"
 
 #include <algorithm>
@@ -92,7 +92,7 @@ public:
         }
         if constexpr (View::follows_turns)
             if (spec.follows_turns) turns_ = Turns(view_.pendulum.template cast<double>().angle);
-        turns_.look(start, 0);
+        turns_.update(start, 0);
         start_energy_ = view_.energy(start, bobs);
     }
 
@@ -167,7 +167,7 @@ private:
 
     void follow_turns(double seconds) {
         if constexpr (View::follows_turns)
-            if (turns_.followed()) turns_.look(stepper_->state(), seconds);
+            if (turns_.followed()) turns_.update(stepper_->state(), seconds);
     }
 
     View view_;

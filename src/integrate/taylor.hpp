@@ -1,16 +1,16 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "integrate/angle_series.hpp"
+#include "integrate/mechanism_series.hpp"
 #include "integrate/method.hpp"
-#include "integrate/taylor_lanes.hpp"
-#include "physics/mechanism_series.hpp"
-#include "physics/rod_series.hpp"
+#include "integrate/rod_series.hpp"
+#include "numeric/roots.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace doppel {
 
@@ -18,10 +18,9 @@ namespace doppel {
 /// last coefficients allow; output times shorten no step, as the series holds anywhere inside one.
 ///
 /// Order   p = 10 − ½ ln ε: more than the usual 1 − ½ ln ε, since the work here grows more like p than like p².
-/// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to what the rates amount
-/// to.
-///         Four, because of a motion from rest at 90° three in every four vanish. Rates are the harder part: an angle
-///         errs by about h/p times as much. No step is more than twice the one before.
+/// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the rates' amount.
+///         Rates are the harder part: an angle errs by about h/p times as much. No step is more than twice the one
+///         before.
 /// Rounding of the state is carried over to the next step, and time is kept as a distance from the start of the step.
 /// Source  Jorba & Zou 2005, A software package for the numerical integration of ODEs by means of high-order Taylor
 ///         methods, Experimental Mathematics 14:99.
@@ -35,7 +34,7 @@ public:
     TaylorStepper(Model& model, const State& start, const Scalar& tolerance, int order = 0)
         : model_(model),
           tolerance_(checked(plain_value(tolerance))),
-          order_(std::clamp(order == 0 ? order_for(tolerance_) : order, watched + 1, most_orders)),
+          order_(std::clamp(order == 0 ? order_for(tolerance_) : order, watched_coefficients + 1, most_orders)),
           series_(model, order_),
           base_(start),
           lost_(State::Zero(start.size())),
@@ -66,7 +65,15 @@ public:
         return out_;
     }
     const Scalar& step() const { return step_; }
-    const auto& series() const { return series_; }  // of the step
+    /// The angle of a link on the step, rad, at whose ends it is what at() says.
+    Bernstein angle(int link) requires requires(typename SeriesOf<Model>::type series) { series.rate(0, 0); }
+    {
+        std::vector<double> powers{at(Scalar(0))[link]};
+        for (int k = 0; k <= order_; ++k) powers.push_back(series_.rate(k, link) / (k + 1));
+        auto angle = Bernstein::of_powers(powers, step_);
+        angle.b.back() = at(step_)[link];
+        return angle;
+    }
 
     int order() const { return order_; }
     long steps() const { return steps_; }
@@ -75,7 +82,6 @@ public:
     long evaluations() const { return steps_ * order_; }
 
 private:
-    static constexpr int watched = 4;  // coefficients that the step goes by
     static constexpr double growth = 2;
     static constexpr int most_orders = 64;
 
@@ -112,20 +118,14 @@ private:
 
     double chosen_step() const {
         double exponent = std::numeric_limits<double>::max();  // log2 h
-        for (int k = order_ - watched + 1; k <= order_; ++k) {
+        for (int k = order_ - watched_coefficients + 1; k <= order_; ++k) {
             const double size = series_.size(k);
             if (!(size <= std::numeric_limits<double>::max()))
                 throw method_failed("taylor: coefficient {} of the series is not finite; the motion has blown up", k);
-            exponent = std::min(exponent, log2_of(tolerance_ / size) / k);
+            exponent = std::min(exponent, rough_log2(tolerance_ / size) / k);
         }
         const double longest = series_.longest_step();
         return std::min({std::exp2(exponent), longest, steps_ == 0 ? longest : growth * plain_value(step_)});
-    }
-
-    /// log2 x within 0.05, by a straight line between powers of two: what comes of it is divided by k.
-    static double log2_of(double x) {
-        constexpr double mean_deviation = 0.043;
-        return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - (1023 - mean_deviation);
     }
 
     /// sum + lost ← sum + lost + more, all but exactly. Source  Knuth, The Art of Computer Programming 2, §4.2.2.
@@ -146,7 +146,7 @@ private:
     long steps_ = 0;
 };
 
-/// The Taylor method, for every model that has a series (physics/model_series.hpp).
+/// The Taylor method, for every model that has a series (integrate/taylor_series.hpp).
 struct Taylor {
     static constexpr Method method{"taylor", "Taylor series", 0, true, "explicit, order from the tolerance"};
     template <HasSeries Model>

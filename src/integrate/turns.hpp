@@ -30,7 +30,7 @@ public:
 
     /// At a state, so many seconds after the last look; 0 for the state released.
     template <class State>
-    void look(const State& y, double seconds) {
+    void update(const State& y, double seconds) {
         fastest_ = 0;
         for (std::size_t i = 0; i < rods_.size(); ++i) {
             const auto q = 2 * static_cast<Eigen::Index>(i), v = y.size() / 2 + q;

@@ -29,7 +29,7 @@ concept Constrained = System<M> && requires(M model, const typename M::Half& q, 
     model.rounding(q, c);              // c ← what C changes by where every coordinate is off by ε of the largest
 };
 
-/// The same, where nothing else holds the constraints (physics/stabilise.hpp).
+/// The same, where nothing else holds the constraints (integrate/stabilise.hpp).
 template <class M>
 concept Unstabilised = Constrained<M> && !requires {
     M::is_stabilised;

@@ -177,7 +177,7 @@ struct Mechanism {
     }
 
 private:
-    friend MechanismSeries<Scalar>;  // made of the same parts, with the same errors (physics/mechanism_series.hpp)
+    friend MechanismSeries<Scalar>;  // made of the same parts, with the same errors (integrate/mechanism_series.hpp)
 
     using Gradients = typename ConstraintSet<Scalar>::Gradients;
 

@@ -1,9 +1,9 @@
 #include "analysis/section.hpp"
 
 #include "base/error.hpp"
-#include "integrate/dop853.hpp"
+#include "integrate/dormand_prince.hpp"
 #include "integrate/pendulums.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "integrate/taylor.hpp"
 #include "physics/bob.hpp"
 #include "physics/canonical.hpp"

@@ -3,6 +3,7 @@
 #include "analysis/distance.hpp"
 #include "base/error.hpp"
 #include "integrate/support.hpp"
+#include "integrate/widths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ namespace twins_test {
 
 constexpr long samples = 40;
 
-TwinRun both(EnsembleModel model, const std::string& method = "euler") {
+TwinRun both(Model model, const std::string& method = "euler") {
     const TwinSide side{model, method, 250};
     return {.a = side, .b = side, .samples = samples};
 }
@@ -30,7 +31,7 @@ std::vector<double> averages_of(const std::vector<Twins>& twins, const TwinRun& 
 }
 
 Course course_of(const Pendulum<double>& p, const TwinSide& side) {
-    auto spec = stepping(side.model == EnsembleModel::angles ? Model::angles : Model::constraints, side.method, p, 120);
+    auto spec = stepping(side.model == Model::angles ? Model::angles : Model::constraints, side.method, p, 120);
     spec.steps_per_sample = side.steps_per_sample;
     return Course(spec);
 }
@@ -77,20 +78,20 @@ void expect_as_films(const TwinRun& run) {
 }
 
 TEST(Twins, AverageAsTheFilmsToTheLastBit) {
-    for (const auto model : {EnsembleModel::angles, EnsembleModel::constraints})
+    for (const auto model : {Model::angles, Model::constraints})
         for (const char* method : {"euler", "rk4"}) expect_as_films(both(model, method));
 }
 
 TEST(Twins, MayDifferInTheirEquationsMethodsAndSteps) {
-    auto run = both(EnsembleModel::angles);
-    run.b = {EnsembleModel::constraints, "euler", 250};
+    auto run = both(Model::angles);
+    run.b = {Model::constraints, "euler", 250};
     expect_as_films(run);
-    run.b = {EnsembleModel::angles, "midpoint", 20};
+    run.b = {Model::angles, "midpoint", 20};
     expect_as_films(run);
 
     // one pendulum in two formulations starts as one: there is no ratio
     const Twins one{released(50, 0), released(50, 0)};
-    run.b = {EnsembleModel::constraints, "euler", 250};
+    run.b = {Model::constraints, "euler", 250};
     const auto start =
         state_space_distance(course_of(one.a, run.a).observe().bobs, course_of(one.b, run.b).observe().bobs);
     const double average = averages_of({one}, run).front();
@@ -101,11 +102,11 @@ TEST(Twins, MayDifferInTheirEquationsMethodsAndSteps) {
 }
 
 TEST(Twins, HaveTheSameBitsAtEveryWidthInAnyCompanyAndOrder) {
-    for (const auto model : {EnsembleModel::angles, EnsembleModel::constraints}) {
+    for (const auto model : {Model::angles, Model::constraints}) {
         const auto run = both(model);
         auto twins = some_twins();
         const auto expected = averages_of(twins, run);
-        for (const int width : Ensemble::widths()) EXPECT_EQ(averages_of(twins, run, width), expected) << width;
+        for (const int width : register_widths()) EXPECT_EQ(averages_of(twins, run, width), expected) << width;
 
         std::reverse(twins.begin(), twins.end());
         auto backwards = averages_of(twins, run);
@@ -127,7 +128,7 @@ TEST(Twins, HaveTheSameBitsAtEveryWidthInAnyCompanyAndOrder) {
 }
 
 TEST(Twins, ShareThePendulumsTheyHaveInCommon) {
-    const auto run = both(EnsembleModel::angles);
+    const auto run = both(Model::angles);
     std::vector<Twins> chain;  // each one's twin is the next one's sibling
     for (int i = 0; i < 9; ++i) chain.push_back({released(10 * i, 0), released(10 * (i + 1), 0)});
     chain.push_back(chain[4]);
@@ -144,7 +145,7 @@ TEST(Twins, ApartInGravityAloneAreTwo) {
     twins.b.angle[0] += 1e-6;  // a start apart, to measure by
     Twins heavier = twins;
     heavier.a.gravity = 9.9;
-    const auto run = both(EnsembleModel::angles);
+    const auto run = both(Model::angles);
     const auto averages = averages_of({twins, heavier}, run);
     EXPECT_EQ(averages[0], average_of_films(twins, run));
     EXPECT_EQ(averages[1], average_of_films(heavier, run));
@@ -155,7 +156,7 @@ TEST(Twins, OfMoreLinksThanLanesTake) {
     Pendulum<double> p{{1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}, {0.5, 0.4, 0.3, 0.2, 0.1}, {0, 0, 0, 0, 0}, 9.8};
     Twins twins{p, p};
     twins.b.angle[0] += 1e-4;
-    for (const auto model : {EnsembleModel::angles, EnsembleModel::constraints}) {
+    for (const auto model : {Model::angles, Model::constraints}) {
         auto run = both(model);
         run.samples = 5;
         EXPECT_EQ(averages_of({twins}, run).front(), average_of_films(twins, run)) << static_cast<int>(model);
@@ -163,7 +164,7 @@ TEST(Twins, OfMoreLinksThanLanesTake) {
 }
 
 TEST(Twins, ThatAreOneHaveNoAverage) {
-    const auto run = both(EnsembleModel::constraints);
+    const auto run = both(Model::constraints);
     const Twins one{released(90, 90), released(90, 90)}, two{released(90, 90), released(91, 90)};
     const auto averages = averages_of({one, two, one}, run);
     EXPECT_TRUE(std::isnan(averages[0]));
@@ -179,7 +180,7 @@ TEST(Twins, ThatBreakDownHaveNoAverageAndSpoilNoOther) {
     Twins one{calm, calm}, other{calm, calm};
     one.b.angle[0] += 1e-4;
     other.b.mass[0] *= 1.01;
-    for (const auto model : {EnsembleModel::angles, EnsembleModel::constraints}) {
+    for (const auto model : {Model::angles, Model::constraints}) {
         auto run = both(model);
         run.a.steps_per_sample = run.b.steps_per_sample = 1;
         run.sample_interval = 0.5;  // as the step
@@ -194,7 +195,7 @@ TEST(Twins, ThatBreakDownHaveNoAverageAndSpoilNoOther) {
 }
 
 TEST(Twins, StopSoon) {
-    auto run = both(EnsembleModel::angles);
+    auto run = both(Model::angles);
     run.samples = 10'000'000;
     std::vector<double> averages(1);
     std::atomic<bool> stop = false;

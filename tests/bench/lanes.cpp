@@ -1,4 +1,5 @@
-#include "integrate/ensemble.hpp"
+#include "integrate/batch.hpp"
+#include "integrate/widths.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -22,8 +23,8 @@ std::vector<Pendulum<double>> released(std::size_t links) {
     return all;
 }
 
-void thousand_steps(benchmark::State& state, EnsembleModel model, std::size_t links, const char* method, int width) {
-    Ensemble ensemble(released(links), model, method, 1.0 / 30000, width);
+void thousand_steps(benchmark::State& state, Model model, std::size_t links, const char* method, int width) {
+    Batch ensemble(released(links), model, method, 1.0 / 30000, width);
     for (auto _ : state) ensemble.advance(1000);
     state.counters["ns"] = benchmark::Counter(static_cast<double>(state.iterations()) * 1e-6 * trials,
                                               benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
@@ -31,9 +32,9 @@ void thousand_steps(benchmark::State& state, EnsembleModel model, std::size_t li
 
 const bool registered = [] {
     for (const char* method : {"euler", "rk4"})
-        for (const int width : Ensemble::widths())
+        for (const int width : register_widths())
             for (const auto& [name, model] :
-                 {std::pair("angles", EnsembleModel::angles), std::pair("constraints", EnsembleModel::constraints)})
+                 {std::pair("angles", Model::angles), std::pair("constraints", Model::constraints)})
                 for (const std::size_t links : {2u, 3u}) {
                     const auto title = std::string("lanes/") + method + "/" + name + "_" + std::to_string(links) +
                                        "/width_" + std::to_string(width);

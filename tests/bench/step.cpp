@@ -1,6 +1,5 @@
 #include "integrate/euler.hpp"
-#include "integrate/midpoint.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "peers/chain_rate.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"

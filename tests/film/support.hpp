@@ -1,7 +1,7 @@
 #pragma once
 
 #include "film/composer.hpp"
-#include "integrate/crowd.hpp"
+#include "integrate/motion_batch.hpp"
 #include "render/renderer.hpp"
 #include "scene/support.hpp"
 
@@ -11,7 +11,7 @@ namespace doppel {
 template <class Visit>
 void for_each_shot(const Scene& scene, long last, Visit&& visit) {
     PairRun pair(scene);
-    std::optional<Crowd> crowd;
+    std::optional<MotionBatch> crowd;
     if (!scene.crowd.empty()) crowd.emplace(scene.crowd, 1);
     const std::atomic<bool> never = false;
     for (long n = 0; n <= last; ++n) {

@@ -1,7 +1,6 @@
 // The methods that choose their steps from a tolerance: what they achieve, when they sample, when they give up.
 
-#include "integrate/dop853.hpp"
-#include "integrate/dopri5.hpp"
+#include "integrate/dormand_prince.hpp"
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"

@@ -2,9 +2,7 @@
 
 #include "integrate/adams.hpp"
 #include "integrate/euler.hpp"
-#include "integrate/midpoint.hpp"
-#include "integrate/rk4.hpp"
-#include "integrate/semi_implicit_euler.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
 #include "base/error.hpp"
-#include "integrate/ensemble.hpp"
-#include "integrate/flip_reference.hpp"
 #include "integrate/flips.hpp"
 #include "integrate/flips_kernel.hpp"
+#include "integrate/widths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -240,7 +239,7 @@ TEST(Flips, AreTheSameToTheLastBitAtEveryWidthAndInEveryGrouping) {
     const auto releases = some_releases(301);
     const auto times = flips(releases, uneven());
     EXPECT_GT(std::count_if(times.begin(), times.end(), [](double t) { return t < never; }), 50);
-    for (const int width : Ensemble::widths()) EXPECT_EQ(flips(releases, uneven(), {}, width), times) << width;
+    for (const int width : register_widths()) EXPECT_EQ(flips(releases, uneven(), {}, width), times) << width;
 
     std::vector<std::size_t> order(releases.size());
     std::iota(order.begin(), order.end(), 0);

@@ -1,7 +1,7 @@
 #include "integrate/gauss.hpp"
 
 #include "integrate/flow.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "numeric/quad.hpp"
 #include "physics/bob.hpp"
 

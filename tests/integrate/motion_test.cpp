@@ -3,10 +3,10 @@
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/registry.hpp"
+#include "integrate/stabilise.hpp"
 #include "integrate/support.hpp"
 #include "physics/chain_parts.hpp"
 #include "physics/rod_chain.hpp"
-#include "physics/stabilise.hpp"
 
 #include <cmath>
 

@@ -1,12 +1,9 @@
 // The error of every explicit method shrinks like step^order: measured in quad, where rounding does not hide it.
 
 #include "integrate/adams.hpp"
-#include "integrate/dop853.hpp"
-#include "integrate/dopri5.hpp"
+#include "integrate/dormand_prince.hpp"
 #include "integrate/euler.hpp"
-#include "integrate/midpoint.hpp"
-#include "integrate/rk4.hpp"
-#include "integrate/semi_implicit_euler.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "numeric/quad.hpp"
 #include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"

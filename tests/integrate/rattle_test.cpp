@@ -1,7 +1,7 @@
 #include "integrate/rattle.hpp"
 
 #include "integrate/flow.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "physics/bob.hpp"
 #include "physics/canonical.hpp"
 #include "physics/chain_parts.hpp"

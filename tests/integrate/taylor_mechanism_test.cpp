@@ -1,4 +1,4 @@
-#include "integrate/dop853.hpp"
+#include "integrate/dormand_prince.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
 #include "numeric/quad.hpp"

@@ -1,7 +1,7 @@
 #include "integrate/taylor.hpp"
 
 #include "integrate/pendulums.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
 #include "physics/bob.hpp"

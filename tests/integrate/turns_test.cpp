@@ -28,10 +28,10 @@ TEST(Turns, AreCountedBothWaysFromAnyStart) {
     const auto first = [](int n) { return 7.5 - 1.2e-3 * n * n; };
     const auto second = [](int n) { return -20 + 9 * std::sin(0.25 * n); };
     Turns turns({first(0), second(0)});
-    turns.look(places(first(0), second(0)), 0);
+    turns.update(places(first(0), second(0)), 0);
     for (int n = 0; n <= 1000; ++n) {
         const auto y = places(first(n), second(n));
-        turns.look(y, 1);
+        turns.update(y, 1);
         const auto bobs = seen(turns, y);
         ASSERT_NEAR(bobs[0].theta, first(n), 2e-12) << n;   // measured 2e-13
         ASSERT_NEAR(bobs[1].theta, second(n), 1e-14) << n;  // measured 2e-15
@@ -46,7 +46,7 @@ TEST(Turns, AreKeptWhereARodPointsStraightUp) {
             auto y = places(released, released);
             y[0] = x;
             y[2] = 2 * x;
-            turns.look(y, 0);
+            turns.update(y, 0);
             for (const auto& bob : seen(turns, y)) EXPECT_DOUBLE_EQ(bob.theta, released) << x;
         }
 }
@@ -54,7 +54,7 @@ TEST(Turns, AreKeptWhereARodPointsStraightUp) {
 TEST(Turns, AreNotAddedWhereNotFollowed) {
     Turns turns;
     EXPECT_FALSE(turns.followed());
-    turns.look(places(4, 5), 0);
+    turns.update(places(4, 5), 0);
     EXPECT_DOUBLE_EQ(seen(turns, places(4, 5))[0].theta, 4 - 2 * pi);
 }
 
@@ -64,9 +64,9 @@ TEST(Turns, AreCountedWhereMoreThanHalfATurnPassesBetweenLooks) {
     const auto second = [](double n) { return 3 - 20 * n + 0.2 * n * n; };
     const auto at = [&](double n) { return places(first(n), second(n), 15 + 0.3 * n, -20 + 0.4 * n); };
     Turns turns({first(0), second(0)});
-    turns.look(at(0), 0);
+    turns.update(at(0), 0);
     for (int n = 1; n <= 50; ++n) {
-        turns.look(at(n), 1);
+        turns.update(at(n), 1);
         const auto bobs = seen(turns, at(n));
         ASSERT_NEAR(bobs[0].theta, first(n), 1e-11) << n;   // measured 4e-13
         ASSERT_NEAR(bobs[1].theta, second(n), 1e-11) << n;  // measured 3e-13
@@ -78,22 +78,22 @@ TEST(Turns, AreNotMadeUpOfARodThatSwingsToAndFro) {
     const auto angle = [](double t) { return pi + 0.9 * std::sin(4000 * t); };
     const auto rate = [](double t) { return 0.9 * 4000 * std::cos(4000 * t); };
     Turns turns({angle(0), 0});
-    turns.look(places(angle(0), 0, rate(0)), 0);
+    turns.update(places(angle(0), 0, rate(0)), 0);
     double t = 0;
     for (int n = 1; n <= 100'000; ++n) {
         const double wait = turns.patience();
         t += wait;
         const auto y = places(angle(t), 0, rate(t));
-        turns.look(y, wait);
+        turns.update(y, wait);
         ASSERT_NEAR(seen(turns, y)[0].theta, angle(t), 1e-12) << n;  // measured 9e-16
     }
 }
 
 TEST(Turns, AreLookedAtTheMoreOftenTheFasterTheyAre) {
     Turns turns({0, 0});
-    turns.look(places(0, 0, 3, -8), 0);
+    turns.update(places(0, 0, 3, -8), 0);
     EXPECT_DOUBLE_EQ(turns.patience(), Turns::longest_unwatched);
-    turns.look(places(0, 0, 2000, -8), 0);
+    turns.update(places(0, 0, 2000, -8), 0);
     EXPECT_DOUBLE_EQ(turns.patience(), Turns::farthest_unwatched / 2000);
 }
 

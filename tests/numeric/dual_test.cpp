@@ -1,8 +1,7 @@
 #include "numeric/dual.hpp"
 
 #include "integrate/euler.hpp"
-#include "integrate/midpoint.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"

@@ -1,5 +1,4 @@
-#include "numeric/lanes_sincos.hpp"
-
+#include "numeric/lanes.hpp"
 #include "numeric/quad.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "physics/mechanism.hpp"
 
 namespace doppel {

@@ -1,7 +1,7 @@
-#include "physics/stabilise.hpp"
+#include "integrate/stabilise.hpp"
 
 #include "integrate/euler.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/runge_kutta.hpp"
 #include "numeric/quad.hpp"
 #include "physics/bob.hpp"
 #include "physics/rod_chain.hpp"

@@ -1,44 +1,42 @@
-// The recurrence of AngleSeries for two and three links of double, on packs of four lanes. Without #pragma once:
-// taylor_lanes.cpp includes it once for every instruction set, into a namespace that has Pack, make_pack() and
-// swapped<s>(), which takes lane i from lane i xor s. Each lane has its own sums in an order of its own, so all
-// instruction sets give the same bits.
+// The recurrence of AngleSeries for two and three links of double, in four lanes. Compiled for registers of 2 and of 4
+// doubles, by the rules of integrate/batch_width.cpp. Each lane has its own sums in an order of its own, so both give the
+// same bits.
 //
 // A vector of the plane for each link lies in the lanes like this:
 //     two links      x1 x2 y1 y2                   and a number for each link   a1 a2 a1 a2
 //     three links    x1 x2 x3 0  and  y1 y2 y3 0   and a number for each link   a1 a2 a3 0
 // A linear map is kept by distance: by[s] holds what it makes of lane i xor s for lane i.
 
-[[gnu::always_inline]] inline Pack all(double x) {
-    return make_pack(x, x, x, x);
-}
-[[gnu::always_inline]] inline Pack load(const double* p) {
-    return *reinterpret_cast<const Pack*>(p);
-}
-[[gnu::always_inline]] inline void store(double* p, Pack v) {
-    *reinterpret_cast<Pack*>(p) = v;
-}
+#include "integrate/lane_series.hpp"
+#include "numeric/lanes.hpp"
+
+namespace doppel {
+namespace {
+
+struct ThisBuild;
+using Side = Lanes<4, ThisBuild>;
 
 /// A vector of the plane for each link.
 template <int N>
 struct Plane {
-    Pack part[N - 1];
+    Side part[N - 1];
 
     [[gnu::always_inline]] static Plane load_from(const double (&p)[N - 1][4]) {
-        if constexpr (N == 2) return {{load(p[0])}};
-        if constexpr (N == 3) return {{load(p[0]), load(p[1])}};
+        if constexpr (N == 2) return {{Side::load(p[0])}};
+        if constexpr (N == 3) return {{Side::load(p[0]), Side::load(p[1])}};
     }
     [[gnu::always_inline]] static Plane from(const double (&x)[N], const double (&y)[N]) {
-        if constexpr (N == 2) return {{make_pack(x[0], x[1], y[0], y[1])}};
-        if constexpr (N == 3) return {{make_pack(x[0], x[1], x[2], 0), make_pack(y[0], y[1], y[2], 0)}};
+        if constexpr (N == 2) return {{Side::of(x[0], x[1], y[0], y[1])}};
+        if constexpr (N == 3) return {{Side::of(x[0], x[1], x[2], 0), Side::of(y[0], y[1], y[2], 0)}};
     }
     /// (x, y), the same for all links
     [[gnu::always_inline]] static Plane both(double x, double y) {
-        if constexpr (N == 2) return {{make_pack(x, x, y, y)}};
-        if constexpr (N == 3) return {{all(x), all(y)}};
+        if constexpr (N == 2) return {{Side::of(x, x, y, y)}};
+        if constexpr (N == 3) return {{Side(x), Side(y)}};
     }
     [[gnu::always_inline]] void store_to(double (&p)[N - 1][4]) const {
-        store(p[0], part[0]);
-        if constexpr (N == 3) store(p[1], part[1]);
+        part[0].store(p[0]);
+        if constexpr (N == 3) part[1].store(p[1]);
     }
     [[gnu::always_inline]] friend Plane operator+(const Plane& a, const Plane& b) {
         if constexpr (N == 2) return {{a.part[0] + b.part[0]}};
@@ -48,24 +46,24 @@ struct Plane {
         if constexpr (N == 2) return {{a.part[0] * b.part[0]}};
         if constexpr (N == 3) return {{a.part[0] * b.part[0], a.part[1] * b.part[1]}};
     }
-    [[gnu::always_inline]] friend Plane operator*(const Plane& a, Pack number) {
+    [[gnu::always_inline]] friend Plane operator*(const Plane& a, Side number) {
         if constexpr (N == 2) return {{a.part[0] * number}};
         if constexpr (N == 3) return {{a.part[0] * number, a.part[1] * number}};
     }
     /// (y, x)
     [[gnu::always_inline]] Plane mirrored() const {
-        if constexpr (N == 2) return {{swapped<2>(part[0])}};
+        if constexpr (N == 2) return {{part[0].template exchanged<2>()}};
         if constexpr (N == 3) return {{part[1], part[0]}};
     }
     /// x + y
-    [[gnu::always_inline]] Pack sum() const {
-        if constexpr (N == 2) return part[0] + swapped<2>(part[0]);
+    [[gnu::always_inline]] Side sum() const {
+        if constexpr (N == 2) return part[0] + part[0].template exchanged<2>();
         if constexpr (N == 3) return part[0] + part[1];
     }
     template <int s>
     [[gnu::always_inline]] Plane exchanged() const {
-        if constexpr (N == 2) return {{swapped<s>(part[0])}};
-        if constexpr (N == 3) return {{swapped<s>(part[0]), swapped<s>(part[1])}};
+        if constexpr (N == 2) return {{part[0].template exchanged<s>()}};
+        if constexpr (N == 3) return {{part[0].template exchanged<s>(), part[1].template exchanged<s>()}};
     }
 };
 
@@ -74,7 +72,7 @@ template <int N>
 struct Map {
     Plane<N> by[4];
 
-    [[gnu::always_inline]] Pack operator()(const Plane<N>& v) const {
+    [[gnu::always_inline]] Side operator()(const Plane<N>& v) const {
         const auto sum = (by[0] * v + by[1] * v.template exchanged<1>()) +
                          (by[2] * v.template exchanged<2>() + by[3] * v.template exchanged<3>());
         if constexpr (N == 2) return sum.part[0];
@@ -84,9 +82,9 @@ struct Map {
 
 /// A number for each link, number(i).
 template <int N, class Number>
-[[gnu::always_inline]] inline Pack numbers(const Number& number) {
-    if constexpr (N == 2) return make_pack(number(0), number(1), number(0), number(1));
-    if constexpr (N == 3) return make_pack(number(0), number(1), number(2), 0);
+[[gnu::always_inline]] inline Side numbers(const Number& number) {
+    if constexpr (N == 2) return Side::of(number(0), number(1), number(0), number(1));
+    if constexpr (N == 3) return Side::of(number(0), number(1), number(2), 0);
 }
 
 /// n ← −m⁻¹
@@ -126,40 +124,40 @@ struct Recurrence {
     Vectors turning;           // ω_0 times a quarter turn
     Map<N> of_newest;          // −M⁻¹ r_0 · F[…]
     Map<N> of_last;            // −M⁻¹ r_1 · F[…]
-    Pack inverse[4];           // −M⁻¹, by distance
-    Pack rate;                 // ω_k
+    Side inverse[4];           // −M⁻¹, by distance
+    Side rate;                 // ω_k
     Vectors known;             // R_{k−1}
 
     /// Rates up to `order` from angles and rates.
     [[gnu::always_inline]] void run(const SinCos<double>* angles, const double* rates, int order) {
         start(angles, rates);
         rate = of_newest(known) + solve((across0 * weight).sum());
-        store(term[1].rate, rate);
+        rate.store(term[1].rate);
         Vectors across{}, force{};  // r_k, F_{k−2}
-        Pack last{};                // ω_{k−1}
+        Side last{};                // ω_{k−1}
         for (int k = 1; k < order; ++k) {
             Vectors p{}, e{};  // Σ_{j=2}^k r_j ω_{k+1−j}, Σ_{j=2}^k r_j · F_{k−j}
             add_old(k, p, e);
             if (k == 1) e = across1 * weight;  // F_0 = F[…] + gravity
             if (k > 2) {
                 const auto across2 = Vectors::load_from(term[2].across);
-                p = (p + across * load(term[1].rate)) + across2 * last;
+                p = (p + across * Side::load(term[1].rate)) + across2 * last;
                 e = (e + across * Vectors::load_from(term[0].force)) + across2 * force;
             }
             const double step = chain.inverse[k + 1];
             const Vectors change = across0 * rate + known;
             last = rate;
-            force = force_of(change) * all(k);
+            force = force_of(change) * Side(k);
             if (k == 1) force = force + weight;
             force.store_to(term[k - 1].force);
-            across = quarter * change.mirrored() * all(step);
+            across = quarter * change.mirrored() * Side(step);
             across.store_to(term[k + 1].across);
 
             // r_{k+1} ω_0 = (R_{k−1} + r_0 ω_k) turned, times ω_0/(k + 1); and r_0 turned, times ω_0, is r_1
-            const Vectors next = (p + turning * all(step) * known.mirrored()) + across1 * all(1 + step) * rate;
-            rate = (of_newest(next) + all(step) * solve(e.sum())) + of_last(change * all(k * step));
+            const Vectors next = (p + turning * Side(step) * known.mirrored()) + across1 * Side(1 + step) * rate;
+            rate = (of_newest(next) + Side(step) * solve(e.sum())) + of_last(change * Side(k * step));
             known = next;
-            store(term[k + 1].rate, rate);
+            rate.store(term[k + 1].rate);
         }
     }
 
@@ -182,7 +180,7 @@ struct Recurrence {
         rate = numbers<N>([&](int i) { return rates[i]; });
         turning = quarter * rate;
         known = across1 * rate;
-        store(term[0].rate, rate);
+        rate.store(term[0].rate);
         across1.store_to(term[1].across);
     }
 
@@ -190,8 +188,8 @@ struct Recurrence {
     [[gnu::always_inline]] Map<N> map_of(const double (&x)[N], const double (&y)[N], const double (&n)[N][N]) const {
         Map<N> map{};
         for (int i = 0; i < N; ++i) {
-            const auto row = Vectors::both(x[i], y[i]) * load(chain.coupling[i]);
-            const Pack column = numbers<N>([&](int j) { return n[j][i]; });
+            const auto row = Vectors::both(x[i], y[i]) * Side::load(chain.coupling[i]);
+            const Side column = numbers<N>([&](int j) { return n[j][i]; });
             map.by[0] = map.by[0] + row * column;
             map.by[1] = map.by[1] + row.template exchanged<1>() * column;
             map.by[2] = map.by[2] + row.template exchanged<2>() * column;
@@ -202,17 +200,17 @@ struct Recurrence {
 
     /// F[v], in units of μ_i
     [[gnu::always_inline]] Vectors force_of(const Vectors& v) const {
-        const auto sum = v + v.template exchanged<1>() * load(chain.exchange[1]);
+        const auto sum = v + v.template exchanged<1>() * Side::load(chain.exchange[1]);
         if constexpr (N == 2) return sum;
-        return sum + (v.template exchanged<2>() * load(chain.exchange[2]) +
-                      v.template exchanged<3>() * load(chain.exchange[3]));
+        return sum + (v.template exchanged<2>() * Side::load(chain.exchange[2]) +
+                      v.template exchanged<3>() * Side::load(chain.exchange[3]));
     }
 
     /// −M⁻¹ v
-    [[gnu::always_inline]] Pack solve(Pack v) const {
-        const Pack sum = inverse[0] * v + inverse[1] * swapped<1>(v);
+    [[gnu::always_inline]] Side solve(Side v) const {
+        const Side sum = inverse[0] * v + inverse[1] * v.template exchanged<1>();
         if constexpr (N == 2) return sum;
-        return sum + (inverse[2] * swapped<2>(v) + inverse[3] * swapped<3>(v));
+        return sum + (inverse[2] * v.template exchanged<2>() + inverse[3] * v.template exchanged<3>());
     }
 
     /// Adds the products for 2 < j < k, and for j = k = 2, from the middle outwards: what came last is added last.
@@ -220,7 +218,7 @@ struct Recurrence {
         Vectors p2{}, e2{};
         const auto add = [&](int j, Vectors& into_p, Vectors& into_e) __attribute__((always_inline)) {
             const auto r = Vectors::load_from(term[j].across);
-            into_p = into_p + r * load(term[k + 1 - j].rate);
+            into_p = into_p + r * Side::load(term[k + 1 - j].rate);
             into_e = into_e + r * Vectors::load_from(term[k - j].force);
         };
         if (k % 2 == 0) add(k / 2 + 1, p, e);
@@ -245,9 +243,9 @@ void move(const typename LaneSeries<N>::Chain& chain, const typename LaneSeries<
           double* change) {
     using Both = Plane<N>;  // numbers for each link, of the angles in place of x and of the rates in place of y
     const auto coefficient = [&](int k) __attribute__((always_inline)) {
-        return Both::both(chain.inverse[k + 1], 1) * load(term[k].rate);
+        return Both::both(chain.inverse[k + 1], 1) * Side::load(term[k].rate);
     };
-    const Pack square = all(h * h);
+    const Side square = Side(h * h);
     Both even{}, odd{};
     int k = order;
     if (k % 2 == 1) odd = coefficient(k--);
@@ -256,11 +254,25 @@ void move(const typename LaneSeries<N>::Chain& chain, const typename LaneSeries<
         odd = odd * square + coefficient(k - 1);
     }
     alignas(32) double sum[2][4];
-    const Both total = even * square + odd * all(h);
-    store(sum[0], total.part[0]);
-    store(sum[1], total.part[N - 2]);
+    const Both total = even * square + odd * Side(h);
+    total.part[0].store(sum[0]);
+    total.part[N - 2].store(sum[1]);
     for (int i = 0; i < N; ++i) {
         change[i] = (sum[0][i] + term[0].rate[i]) * h;
         change[N + i] = sum[1][N == 2 ? i + 2 : i];
     }
 }
+
+template <int N>
+typename LaneSeries<N>::Kernel kernel() {
+    return {expand<N>, move<N>};
+}
+
+}  // namespace
+
+template <>
+LaneKernels lane_kernels<compiled_width>() {
+    return {kernel<2>(), kernel<3>()};
+}
+
+}  // namespace doppel

@@ -1,11 +1,11 @@
-#include "physics/mechanism_series.hpp"
+#include "integrate/mechanism_series.hpp"
 
 #include "allocations.hpp"
+#include "integrate/rod_series.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
 #include "physics/chain_parts.hpp"
 #include "physics/mechanisms.hpp"
-#include "physics/rod_series.hpp"
 
 #include <gtest/gtest.h>
 

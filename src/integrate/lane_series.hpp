@@ -1,23 +1,21 @@
 #pragma once
 
-#include "physics/angle_series.hpp"
+#include "numeric/state.hpp"
+#include "physics/pendulum.hpp"
 
 #include <vector>
 
 namespace doppel {
 
-/// Whether this processor, and this build, computes on four doubles at once (AVX2).
-bool has_four_lanes();
-
-/// AngleSeries for two or three links of double, all of them side by side in the lanes of the processor: several times
-/// as fast, and bit for bit the same whether there are four lanes (`wide`) or two.
+/// AngleSeries for two or three links of double, all of them side by side in four lanes: several times as fast, and bit
+/// for bit the same whether a register holds 4 doubles or 2.
 template <int N>
 class LaneSeries {
 public:
     using State = doppel::State<double, 2 * N>;
     static constexpr int most_orders = 64;
 
-    /// The chain as the recurrence needs it, four lanes a number (integrate/taylor_kernel.hpp). μ_i = Σ_{k≥i} m_k.
+    /// The chain as the recurrence needs it, four lanes a number (integrate/lane_series_width.cpp). μ_i = Σ_{k≥i} m_k.
     struct Chain {
         alignas(32) double coupling[N][4];  // μ_max(i,j) / μ_i in row i
         alignas(32) double exchange[4][4];  // the same by distance s: lane i, column i xor s
@@ -36,7 +34,8 @@ public:
         void (*move)(const Chain&, const Term*, int order, double h, double* change);
     };
 
-    LaneSeries(const Pendulum<double>& p, int order, bool wide = has_four_lanes());
+    /// `width` doubles to a register, 2 or 4; 0: the widest of the two that this processor has.
+    LaneSeries(const Pendulum<double>& p, int order, int width = 0);
 
     void expand(const State& y);
     void move(double h, State& change) const { kernel_.move(chain_, terms_.data(), order_, h, change.data()); }
@@ -46,12 +45,7 @@ public:
     double rate(int k, int link) const { return terms_[static_cast<std::size_t>(k)].rate[link]; }
 
 private:
-    /// The greatest |ω_k|.
-    double greatest(int k) const {
-        double most = 0;
-        for (int i = 0; i < N; ++i) most = greater(most, std::abs(terms_[static_cast<std::size_t>(k)].rate[i]));
-        return most;
-    }
+    double greatest(int k) const;  // |ω_k|
 
     int order_;
     Chain chain_{};
@@ -64,23 +58,16 @@ private:
 extern template class LaneSeries<2>;
 extern template class LaneSeries<3>;
 
-template <>
-struct SeriesOf<AngleChain<double, 2>> {
-    struct type : LaneSeries<2> {
-        type(const AngleChain<double, 2>& model, int order) : LaneSeries(model.pendulum, order) {}
-    };
+/// In the code for registers of `width` doubles (cmake/widths.cmake).
+struct LaneKernels {
+    LaneSeries<2>::Kernel two;
+    LaneSeries<3>::Kernel three;
 };
+template <int width>
+LaneKernels lane_kernels();
 template <>
-struct SeriesOf<AngleChain<double, 3>> {
-    struct type : LaneSeries<3> {
-        type(const AngleChain<double, 3>& model, int order) : LaneSeries(model.pendulum, order) {}
-    };
-};
+LaneKernels lane_kernels<2>();
 template <>
-struct SeriesOf<DoublePendulum<double>> {
-    struct type : LaneSeries<2> {
-        type(const DoublePendulum<double>& model, int order) : LaneSeries(chain_of(model), order) {}
-    };
-};
+LaneKernels lane_kernels<4>();
 
 }  // namespace doppel

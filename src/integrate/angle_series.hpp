@@ -1,11 +1,13 @@
 #pragma once
 
+#include "integrate/lane_series.hpp"
+#include "integrate/taylor_series.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/double_pendulum.hpp"
-#include "physics/model_series.hpp"
 
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 namespace doppel {
@@ -21,8 +23,8 @@ namespace doppel {
 /// is known, F is linear in r̂″, and so a = (k + 1) ω_{k+1} solves
 ///     M_0 a = −( r_0 · F_k[R] + Σ_{j=1}^k r_j · F_{k−j} ) ,    M_ij = Σ_{k≥max(i,j)} m_k r_i · r_j ,
 /// with the same mass matrix at every order. Four products a link for each pair of orders; the rest is O(N).
-/// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2. The motion: that of
-/// AngleChain.
+/// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
+///         The motion: that of AngleChain.
 template <class S, int N>
 class AngleSeries {
 public:
@@ -79,18 +81,24 @@ public:
     }
 
 private:
-    /// Links whose products are formed side by side, and what holds a number of each.
-    static constexpr Eigen::Index width = std::is_same_v<Scalar, double> ? 4 : 1;
-    template <class, class = void>
-    struct PackOf {
-        using type = Scalar;
-    };
-    template <class Unused>
-    struct PackOf<double, Unused> {
-        using type = double __attribute__((vector_size(32), aligned(8), may_alias));
-    };
-    using Pack = typename PackOf<Scalar>::type;
+    /// Numbers of the links whose products are formed side by side; each lane has sums of its own, so the bits are the
+    /// same at any width.
+    using Side = std::conditional_t<std::is_same_v<Scalar, double>, Lanes<4>, Scalar>;
+    static constexpr Eigen::Index width = is_lanes<Side> ? 4 : 1;
     using Row = std::array<Scalar, static_cast<std::size_t>(width)>;
+
+    static Side load(const Row& row) {
+        if constexpr (is_lanes<Side>)
+            return Side::load(row.data());
+        else
+            return row[0];
+    }
+    static void store(const Side& side, Row& row) {
+        if constexpr (is_lanes<Side>)
+            side.store(row.data());
+        else
+            row[0] = side;
+    }
 
     /// Coefficients of one order.
     struct Term {
@@ -125,21 +133,20 @@ private:
         if (k + 1 < order_) find_forces(k);
     }
 
-    /// The sums of products for one block of links. Each lane has sums of its own: the same bits at any width.
+    /// The sums of products for one block of links.
     static void multiply(const Term* term, int k, Sums& sums) {
-        const auto pack = [](const Row& row) -> const Pack& { return reinterpret_cast<const Pack&>(row); };
-        Pack x = pack(term[k + 1].x) * pack(term[0].rate), y = pack(term[k + 1].y) * pack(term[0].rate);
-        Pack moment_x = Pack{}, moment_y = Pack{};
+        Side x = load(term[k + 1].x) * load(term[0].rate), y = load(term[k + 1].y) * load(term[0].rate);
+        Side moment_x(0), moment_y(0);
         for (int j = 1; j <= k; ++j) {
             const Term &one = term[j], &other = term[k - j], &after = term[k + 1 - j];
-            x += pack(one.x) * pack(after.rate);
-            y += pack(one.y) * pack(after.rate);
-            moment_x += pack(one.x) * pack(other.fx);
-            moment_y += pack(one.y) * pack(other.fy);
+            x += load(one.x) * load(after.rate);
+            y += load(one.y) * load(after.rate);
+            moment_x += load(one.x) * load(other.fx);
+            moment_y += load(one.y) * load(other.fy);
         }
-        reinterpret_cast<Pack&>(sums.x) = x;
-        reinterpret_cast<Pack&>(sums.y) = y;
-        reinterpret_cast<Pack&>(sums.moment) = moment_x + moment_y;
+        store(x, sums.x);
+        store(y, sums.y);
+        store(moment_x + moment_y, sums.moment);
     }
 
     /// F_k, of r̂″_k = (k + 1) × what the sums hold.
@@ -190,25 +197,29 @@ private:
     double amount_ = 0;  // of the rates, rad/s
 };
 
-/// For two and three links of double, integrate/taylor_lanes.hpp has something faster.
+/// The chain that a model in angles describes.
 template <class Scalar, int N>
-struct SeriesOf<AngleChain<Scalar, N>> {
-    struct type : AngleSeries<Scalar, N> {
-        type(const AngleChain<Scalar, N>& model, int order) : AngleSeries<Scalar, N>(model.pendulum, order) {}
-    };
-};
-
-/// The closed form as a chain of two.
+const Pendulum<Scalar>& chain_of(const AngleChain<Scalar, N>& model) {
+    return model.pendulum;
+}
 template <class Scalar>
 Pendulum<Scalar> chain_of(const DoublePendulum<Scalar>& d) {
     return {{d.m1, d.m2}, {d.l1, d.l2}, {Scalar(0), Scalar(0)}, {Scalar(0), Scalar(0)}, d.g};
 }
 
-template <class Scalar>
-struct SeriesOf<DoublePendulum<Scalar>> {
-    struct type : AngleSeries<Scalar, 2> {
-        type(const DoublePendulum<Scalar>& model, int order) : AngleSeries<Scalar, 2>(chain_of(model), order) {}
+/// The series of a model in angles: for two and three links of double in lanes.
+template <class Model, int N>
+struct ChainSeries {
+    using Scalar = typename Model::Scalar;
+    static constexpr bool in_lanes = std::is_same_v<Scalar, double> && (N == 2 || N == 3);
+    using Series = std::conditional_t<in_lanes, LaneSeries<N>, AngleSeries<Scalar, N>>;
+    struct type : Series {
+        type(const Model& model, int order) : Series(chain_of(model), order) {}
     };
 };
+template <class Scalar, int N>
+struct SeriesOf<AngleChain<Scalar, N>> : ChainSeries<AngleChain<Scalar, N>, N> {};
+template <class Scalar>
+struct SeriesOf<DoublePendulum<Scalar>> : ChainSeries<DoublePendulum<Scalar>, 2> {};
 
 }  // namespace doppel

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "physics/model_series.hpp"
+#include "integrate/stabilise.hpp"
+#include "integrate/taylor_series.hpp"
 #include "physics/rod_chain.hpp"
-#include "physics/stabilise.hpp"
 
 #include <cmath>
 #include <vector>
@@ -16,8 +16,8 @@ namespace doppel {
 ///     r_0 · A_k = −½ (k + 1)(k + 2) Σ_{j=1}^{k+1} r_j · r_{k+2−j} ,
 /// a tridiagonal system for λ_k, with the same matrix at every order.
 /// Lengths are what they are in the state: nothing pulls the rods back.
-/// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2. The motion: that of
-/// RodChain.
+/// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
+///         The motion: that of RodChain.
 template <class S, int N>
 class RodSeries {
 public:

@@ -13,17 +13,15 @@ namespace doppel {
 /// Many motions that are stepped together from sample to sample, each as it would be alone, to the last bit.
 ///
 /// Chains that differ in their masses, lengths, gravity and release only, and go by an explicit method of fixed step,
-/// are stepped side by side in the registers of this processor (integrate/ensemble.hpp), all others one by one.
-class Crowd {
+/// are stepped side by side in the registers of this processor (integrate/batch.hpp), all others one by one.
+class MotionBatch {
 public:
     /// On `jobs` threads; what comes of it does not depend on them. Throws what make_motion() does.
-    explicit Crowd(std::span<const MotionSpec> specs, int jobs);
-    ~Crowd();
-    Crowd(Crowd&&) noexcept;
-    Crowd& operator=(Crowd&&) noexcept;
+    explicit MotionBatch(std::span<const MotionSpec> specs, int jobs);
+    ~MotionBatch();
 
     /// All on to the next sample. Throws what Motion::advance() does, of the first that cannot go on; the message says
-    /// which one that is. The crowd is lost then.
+    /// which one that is. The batch is lost then.
     void advance(const std::atomic<bool>& stop);
 
     std::size_t size() const { return size_; }
@@ -32,14 +30,19 @@ public:
     Bobs<double> bobs(std::size_t k) const;
 
     /// How many doubles to a register the motions are stepped in; 1 where they are stepped one by one.
-    int width() const { return width_; }
+    int width() const;
 
 private:
-    class Part;
+    class SideBySide;
 
-    std::size_t size_, part_ = 1;  // motions, and how many to a part
-    int jobs_, width_ = 1;
-    std::vector<std::unique_ptr<Part>> parts_;
+    void advance_part(std::size_t part, const std::atomic<bool>& stop);
+    template <class Act>
+    void with_name(std::size_t k, const Act& act) const;
+
+    std::size_t size_, part_;  // motions, and how many are stepped on one thread at a time
+    int jobs_;
+    std::vector<std::unique_ptr<SideBySide>> together_;  // a part each; or
+    std::vector<std::unique_ptr<Motion>> one_by_one_;
 };
 
 }  // namespace doppel

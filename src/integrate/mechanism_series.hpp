@@ -1,8 +1,8 @@
 #pragma once
 
-#include "physics/force_series.hpp"
+#include "integrate/force_series.hpp"
+#include "integrate/taylor_series.hpp"
 #include "physics/mechanism.hpp"
-#include "physics/model_series.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +19,8 @@ namespace doppel {
 /// which gives λ_k, with the same matrix J_0 M⁻¹ J_0ᵀ at every order.
 /// Lengths are what they are in the state: nothing pulls the rods back.
 /// Errors  those of the mechanism, wherever a singular configuration lies on the way that move() goes.
-/// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2. The motion: that of
-/// Mechanism.
+/// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
+///         The motion: that of Mechanism.
 template <class S>
 class MechanismSeries {
 public:

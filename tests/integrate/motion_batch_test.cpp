@@ -1,14 +1,15 @@
-#include "integrate/crowd.hpp"
+#include "integrate/motion_batch.hpp"
 
 #include "base/error.hpp"
-#include "integrate/ensemble.hpp"
+#include "integrate/batch.hpp"
 #include "integrate/support.hpp"
+#include "integrate/widths.hpp"
 
 #include <cmath>
 #include <string>
 
 namespace doppel {
-namespace crowd_test {
+namespace motion_batch_test {
 
 /// Chains that are released a degree apart.
 std::vector<MotionSpec> fan(Model model, std::string_view method, std::size_t links, std::size_t count) {
@@ -42,20 +43,20 @@ void expect_same(const Bobs<double>& seen, const Bobs<double>& expected) {
 
 /// Each motion as it goes alone, at the start and after many samples.
 void expect_each_as_alone(const std::vector<MotionSpec>& specs, int jobs, int width, long samples = 6) {
-    Crowd crowd(specs, jobs);
+    MotionBatch batch(specs, jobs);
     std::atomic<bool> never = false;
-    ASSERT_EQ(crowd.size(), specs.size());
-    EXPECT_EQ(crowd.width(), width);
-    for (std::size_t k = 0; k < specs.size(); k += 5) expect_same(crowd.bobs(k), Course(specs[k]).observe().bobs);
-    for (long n = 0; n < samples; ++n) crowd.advance(never);
+    ASSERT_EQ(batch.size(), specs.size());
+    EXPECT_EQ(batch.width(), width);
+    for (std::size_t k = 0; k < specs.size(); k += 5) expect_same(batch.bobs(k), Course(specs[k]).observe().bobs);
+    for (long n = 0; n < samples; ++n) batch.advance(never);
     for (std::size_t k = 0; k < specs.size(); k += 5) {
         SCOPED_TRACE(specs[k].method + ", motion " + std::to_string(k));
-        expect_same(crowd.bobs(k), Course(specs[k]).advance(samples).bobs);
+        expect_same(batch.bobs(k), Course(specs[k]).advance(samples).bobs);
     }
 }
 
-TEST(Crowd, EachGoesAsItWouldAlone) {
-    const int wide = Ensemble::widths().back();
+TEST(MotionBatch, EachGoesAsItWouldAlone) {
+    const int wide = register_widths().back();
     for (const auto model : {Model::angles, Model::constraints})
         for (const std::size_t links : {1u, 2u, 3u, 4u, 5u})
             expect_each_as_alone(fan(model, "euler", links, 70), 2, links <= 4 ? wide : 1);
@@ -65,16 +66,16 @@ TEST(Crowd, EachGoesAsItWouldAlone) {
     expect_each_as_alone(fan(Model::constraints, "rattle", 2, 70), 1, 1);
 }
 
-TEST(Crowd, FollowsTheTurns) {
+TEST(MotionBatch, FollowsTheTurns) {
     // thrown so that some go round, both ways; the lone motion's own turns are tested against angles
     auto specs = fan(Model::constraints, "euler", 2, 30);
     for (std::size_t k = 0; k < specs.size(); ++k) specs[k].chain->rate = {Quad(15 - static_cast<int>(k)), Quad(0)};
-    expect_each_as_alone(specs, 1, Ensemble::widths().back(), 200);
+    expect_each_as_alone(specs, 1, register_widths().back(), 200);
     for (auto& spec : specs) spec.follows_turns = false;
-    expect_each_as_alone(specs, 1, Ensemble::widths().back(), 200);
+    expect_each_as_alone(specs, 1, register_widths().back(), 200);
 }
 
-TEST(Crowd, StepsOneByOneWhatDoesNotMarchInStep) {
+TEST(MotionBatch, StepsOneByOneWhatIsNotSteppedAlike) {
     const auto specs = fan(Model::constraints, "euler", 2, 20);
     const auto expect_alone = [&](auto change) {
         auto changed = specs;
@@ -103,29 +104,30 @@ std::string fault(ExitCode code, Act act) {
     return "";
 }
 
-TEST(Crowd, SaysWhoCannotGoOn) {
+TEST(MotionBatch, SaysWhoCannotGoOn) {
     // two of them break down in the same sample, in different parts: the first is named whatever the threads do
     auto specs = fan(Model::constraints, "rattle", 2, 200);
     for (auto& spec : specs) spec.steps_per_sample = 1;
     for (const std::size_t k : {100u, 180u}) specs[k].chain->rate = {Quad(4000), Quad(-4000)};
     std::atomic<bool> stop = false;
     for (const int jobs : {1, 4}) {
-        Crowd crowd(specs, jobs);
-        const auto words = fault(ExitCode::method_failed, [&] { crowd.advance(stop); });
+        MotionBatch batch(specs, jobs);
+        const auto words = fault(ExitCode::method_failed, [&] { batch.advance(stop); });
         EXPECT_EQ(words.find("pendulum 101 of 200: rattle: "), 0u) << words;
     }
     specs[50].method = "ruler";
-    EXPECT_EQ(fault(ExitCode::bad_input, [&] { Crowd(specs, 2); }), "pendulum 51 of 200: there is no method \"ruler\"");
-    EXPECT_NE(fault(ExitCode::bad_input, [&] { Crowd({}, 2); }), "");
+    EXPECT_EQ(fault(ExitCode::bad_input, [&] { MotionBatch(specs, 2); }),
+              "pendulum 51 of 200: there is no method \"ruler\"");
+    EXPECT_NE(fault(ExitCode::bad_input, [&] { MotionBatch({}, 2); }), "");
 }
 
-TEST(Crowd, StopsWhenAsked) {
+TEST(MotionBatch, StopsWhenAsked) {
     std::atomic<bool> stop = true;
     for (const char* method : {"euler", "taylor"}) {
-        Crowd crowd(fan(Model::angles, method, 2, 10), 1);
-        EXPECT_EQ(fault(ExitCode::interrupted, [&] { crowd.advance(stop); }), "interrupted");
+        MotionBatch batch(fan(Model::angles, method, 2, 10), 1);
+        EXPECT_EQ(fault(ExitCode::interrupted, [&] { batch.advance(stop); }), "interrupted");
     }
 }
 
-}  // namespace crowd_test
+}  // namespace motion_batch_test
 }  // namespace doppel

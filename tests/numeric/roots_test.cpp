@@ -1,4 +1,4 @@
-#include "numeric/bernstein.hpp"
+#include "numeric/roots.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace bernstein_test {
+namespace roots_test {
 
 /// Powers of Π (t − root), times a factor.
 std::vector<double> with_roots(const std::vector<double>& roots, double factor) {
@@ -44,8 +44,8 @@ TEST(Bernstein, FindsEveryRiseInOrder) {
             if (roots[i] > 0 && roots[i] <= length) expected.push_back(roots[i]);
         ASSERT_EQ(rises.size(), expected.size()) << length;
         for (std::size_t i = 0; i < rises.size(); ++i) {
-            EXPECT_LE(rises[i].low * length, expected[i]) << length;
-            EXPECT_GE(rises[i].high * length, expected[i]) << length;
+            EXPECT_LE(rises[i].low, expected[i]) << length;
+            EXPECT_GE(rises[i].high, expected[i]) << length;
         }
     }
 }
@@ -67,5 +67,25 @@ TEST(Bernstein, CountsARootAtTheEndAndNoneAtTheStart) {
     EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{1, -1}, 1).rises().empty());  // falls
 }
 
-}  // namespace bernstein_test
+TEST(Bernstein, RisesThroughALevel) {
+    const auto line = Bernstein::of_powers(std::vector<double>{0, 1}, 4);
+    EXPECT_TRUE(line.rises(5).empty());
+    const auto rises = line.rises(2.9);
+    ASSERT_EQ(rises.size(), 1u);
+    EXPECT_LT(rises[0].low, 2.9);
+    EXPECT_GT(rises[0].high, 2.9);
+}
+
+TEST(Root, IsFoundWithinTheBracketWhereverNewtonsMethodWouldGo) {
+    struct Now {
+        double value, rate;
+    };
+    const auto flat = [](double t) { return Now{std::cbrt(t - 1), std::pow(std::cbrt(t - 1), -2) / 3}; };
+    EXPECT_NEAR(root({0, 3}, flat), 1, 1e-15);
+    const auto cosine = [](double t) { return Now{-std::cos(t), std::sin(t)}; };
+    for (const double widest : {3.0, 0.1}) EXPECT_NEAR(root({0, 3}, cosine, widest), std::acos(0.0), 2e-16);
+    EXPECT_EQ(root({-1, 1}, [](double t) { return Now{t, 1}; }), 0);
+}
+
+}  // namespace roots_test
 }  // namespace doppel

@@ -1,0 +1,106 @@
+#include "integrate/batch.hpp"
+
+#include "base/error.hpp"
+#include "integrate/batch_kernel.hpp"
+#include "integrate/widths.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace doppel {
+
+BatchBlock::~BatchBlock() = default;
+
+namespace {
+
+constexpr auto method_names = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{std::tuple_element_t<I, BatchMethods>::method.name...};
+}
+(std::make_index_sequence<std::tuple_size_v<BatchMethods>>());
+
+/// The number of a method in BatchMethods; their count where it is none of them.
+std::size_t method_number(std::string_view name) {
+    return static_cast<std::size_t>(std::find(method_names.begin(), method_names.end(), name) - method_names.begin());
+}
+
+/// The members' numbers, by quantity, as the blocks are made from them.
+struct Table {
+    std::vector<double> mass, length, angle, rate, gravity;
+
+    explicit Table(std::span<const Pendulum<double>> members) {
+        const auto gather = [&](std::vector<double>& to, const std::vector<double> Pendulum<double>::*quantity) {
+            for (std::size_t j = 0; j < members.front().links(); ++j)
+                for (const auto& member : members) to.push_back((member.*quantity)[j]);
+        };
+        gather(mass, &Pendulum<double>::mass);
+        gather(length, &Pendulum<double>::length);
+        gather(angle, &Pendulum<double>::angle);
+        gather(rate, &Pendulum<double>::rate);
+        for (const auto& member : members) gravity.push_back(member.gravity);
+    }
+};
+
+/// A long chain on its own.
+BatchBlock* make_lone_block(const BatchRequest& request, std::size_t member) {
+    const auto pendulum = pendulum_of<double>(request, member);
+    return request.constraints ? with_method<RodChain<double, Eigen::Dynamic>>(request, pendulum)
+                               : with_method<AngleChain<double, Eigen::Dynamic>>(request, pendulum);
+}
+
+}  // namespace
+
+bool Batch::serves(std::string_view method) {
+    return method_number(method) < method_names.size();
+}
+
+Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string_view method, double step, int width) {
+    if (members.empty()) throw bad_input("a batch needs at least one pendulum");
+    const std::size_t links = members.front().links();
+    for (const auto& member : members)
+        if (member.links() != links)
+            throw bad_input("the pendulums of a batch have as many links each: not {} and {}", links, member.links());
+    auto* make = make_lone_block;
+    if (links <= batch_links) {
+        width_ = chosen_width(width);
+        block_ = static_cast<std::size_t>(batch_block(width_));
+        make = at_width(width_, []<int chosen>() { return make_batch_block<chosen>; });
+    }
+    if (!serves(method))
+        throw bad_input("\"{}\" does not step many pendulums side by side; these do: {}", method,
+                        fmt::join(method_names, ", "));
+    const Table table(members);
+    const BatchRequest request{.members = members.size(),
+                               .links = links,
+                               .mass = table.mass.data(),
+                               .length = table.length.data(),
+                               .angle = table.angle.data(),
+                               .rate = table.rate.data(),
+                               .gravity = table.gravity.data(),
+                               .step = step,
+                               .constraints = model == Model::constraints,
+                               .method = method_number(method)};
+    for (std::size_t first = 0; first < members.size(); first += block_) blocks_.emplace_back(make(request, first));
+}
+
+Batch::~Batch() = default;
+Batch::Batch(Batch&&) noexcept = default;
+
+void Batch::advance(long steps) {
+    for (auto& block : blocks_) block->advance(steps);
+}
+
+State<double, Eigen::Dynamic> Batch::state(std::size_t member) const {
+    State<double, Eigen::Dynamic> y;
+    read(member, y);
+    return y;
+}
+
+void Batch::read(std::size_t member, State<double, Eigen::Dynamic>& y) const {
+    const auto& block = *blocks_[member / block_];
+    y.resize(static_cast<Eigen::Index>(block.dimensions()));
+    block.read(member % block_, y.data());
+}
+
+}  // namespace doppel

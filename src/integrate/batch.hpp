@@ -1,0 +1,47 @@
+#pragma once
+
+#include "integrate/motion.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace doppel {
+
+class BatchBlock;
+
+/// Many pendulums of the same number of links, each with its own masses, lengths, gravity and release, stepped side by
+/// side in the registers of this processor. Every one ends, to the last bit, as it would alone and at every width.
+///
+/// Chains of up to 4 links are stepped in lanes, longer ones one by one. One thread steps one batch; several batches may
+/// be stepped at once.
+class Batch {
+public:
+    /// In angles or as particles on rods. `width` doubles to a register: one of register_widths(), or 0 for the widest.
+    /// Errors  Error (exit 2) where there is no pendulum, they differ in their links, the method is none of the explicit
+    ///         ones of fixed step, or this processor has no such width.
+    Batch(std::span<const Pendulum<double>> members, Model model, std::string_view method, double step, int width = 0);
+    ~Batch();
+    Batch(Batch&&) noexcept;
+
+    void advance(long steps);  // without allocation
+
+    int width() const { return width_; }  // 1 where they are stepped one by one
+
+    /// The state of a member as its model keeps it: (θ1 … θN, ω1 … ωN) or (x1, y1 … , vx1, vy1 …).
+    State<double, Eigen::Dynamic> state(std::size_t member) const;
+    /// The same into `y`, which keeps its memory.
+    void read(std::size_t member, State<double, Eigen::Dynamic>& y) const;
+
+    /// Whether a method steps batches: explicit, of fixed step.
+    static bool serves(std::string_view method);
+
+private:
+    std::size_t block_ = 1;  // members to a block
+    int width_ = 1;
+    std::vector<std::unique_ptr<BatchBlock>> blocks_;
+};
+
+}  // namespace doppel

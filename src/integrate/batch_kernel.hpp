@@ -1,0 +1,124 @@
+#pragma once
+
+#include "integrate/euler.hpp"
+#include "integrate/runge_kutta.hpp"
+#include "numeric/lanes.hpp"
+#include "physics/pendulum.hpp"
+
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+namespace doppel {
+
+// What integrate/batch.cpp and the code for one kind of processor (integrate/batch_width.cpp) share: only plain numbers
+// pass between them, so that no function of a common type is compiled twice for different processors under one name.
+
+/// The methods that step many pendulums side by side: of fixed step and explicit, so that all lanes do the same.
+using BatchMethods = std::tuple<Euler, SemiImplicitEuler, Midpoint, Rk4>;
+
+/// Pendulums of one shape, stored by quantity: quantity j of member i is at [j · members + i].
+struct BatchRequest {
+    std::size_t members, links;
+    const double *mass, *length, *angle, *rate;  // of link j
+    const double* gravity;                       // one a member
+    double step;                                 // s
+    bool constraints;                            // the model: else angles
+    std::size_t method;                          // its number in BatchMethods
+};
+
+inline constexpr std::size_t batch_links = 4;  // the longest chain that is stepped in lanes
+
+/// Some members that are stepped side by side.
+class BatchBlock {
+public:
+    virtual ~BatchBlock();
+    virtual void advance(long steps) = 0;
+    virtual std::size_t dimensions() const = 0;
+    /// Writes the state of member `lane` of the block, dimensions() numbers, to `entries`.
+    virtual void read(std::size_t lane, double* entries) const = 0;
+};
+
+/// The members of one block: twice the doubles of a register, for while one half waits for its results the other works.
+inline constexpr int batch_block(int width) {
+    return 2 * width;
+}
+
+/// The block of the members from `first`, filled up with the last one, in the code for registers of `width` doubles: 2
+/// for every processor, 4 for AVX2, 8 for AVX-512 (cmake/widths.cmake). The caller deletes it.
+template <int width>
+BatchBlock* make_batch_block(const BatchRequest& request, std::size_t first);
+template <>
+BatchBlock* make_batch_block<2>(const BatchRequest& request, std::size_t first);
+template <>
+BatchBlock* make_batch_block<4>(const BatchRequest& request, std::size_t first);
+template <>
+BatchBlock* make_batch_block<8>(const BatchRequest& request, std::size_t first);
+
+/// The block of one model and one method, in lanes or, alone, in double.
+template <class Model, class Which>
+class SteppedBlock final : public BatchBlock {
+public:
+    using Scalar = typename Model::Scalar;
+    using Stepper = typename Which::template Stepper<Model>;
+
+    SteppedBlock(const Pendulum<Scalar>& pendulum, double step)
+        : model_(pendulum), stepper_(model_, Model::start(pendulum), Scalar(step)) {}
+
+    void advance(long steps) override { stepper_.advance(steps); }
+    std::size_t dimensions() const override { return static_cast<std::size_t>(stepper_.state().size()); }
+    void read(std::size_t lane, double* entries) const override {
+        const auto& y = stepper_.state();
+        for (Eigen::Index i = 0; i < y.size(); ++i) {
+            if constexpr (is_lanes<Scalar>)
+                entries[i] = y[i][static_cast<int>(lane)];
+            else
+                entries[i] = y[i];
+        }
+    }
+
+private:
+    Model model_;
+    Stepper stepper_;
+};
+
+/// The members from `first` side by side.
+template <class Side>
+Pendulum<Side> pendulum_of(const BatchRequest& request, std::size_t first) {
+    Pendulum<Side> pendulum;
+    const auto fill = [&](Side& side, const double* values) {
+        if constexpr (is_lanes<Side>)
+            for (int lane = 0; lane < Side::width; ++lane) {
+                const std::size_t member = first + static_cast<std::size_t>(lane);
+                side.set(lane, values[member < request.members ? member : request.members - 1]);
+            }
+        else
+            side = values[first];
+    };
+    const auto fill_all = [&](std::vector<Side>& sides, const double* values) {
+        sides.resize(request.links);
+        for (std::size_t j = 0; j < request.links; ++j) fill(sides[j], values + j * request.members);
+    };
+    fill_all(pendulum.mass, request.mass);
+    fill_all(pendulum.length, request.length);
+    fill_all(pendulum.angle, request.angle);
+    fill_all(pendulum.rate, request.rate);
+    fill(pendulum.gravity, request.gravity);
+    return pendulum;
+}
+
+/// The block with the method asked for.
+template <class Model>
+BatchBlock* with_method(const BatchRequest& request, const Pendulum<typename Model::Scalar>& pendulum) {
+    BatchBlock* block = nullptr;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+        ((request.method == I
+              ? void(block = new SteppedBlock<Model, std::tuple_element_t<I, BatchMethods>>(pendulum, request.step))
+              : void()),
+         ...);
+    }
+    (std::make_index_sequence<std::tuple_size_v<BatchMethods>>());
+    return block;
+}
+
+}  // namespace doppel

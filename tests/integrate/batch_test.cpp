@@ -1,0 +1,109 @@
+#include "integrate/batch.hpp"
+
+#include "base/error.hpp"
+#include "integrate/batch_kernel.hpp"
+#include "integrate/widths.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/double_pendulum.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+namespace doppel {
+namespace batch_test {
+
+constexpr double step = 1.0 / 3000;
+constexpr long steps = 300;  // more than the 256 after which Euler takes its sines afresh
+
+/// Trials that differ in everything; their number is no multiple of any width.
+std::vector<Pendulum<double>> some_trials(std::size_t links, std::size_t count = 11) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> some(0.5, 2);
+    std::vector<Pendulum<double>> trials(count);
+    for (auto& p : trials) {
+        for (auto* quantity : {&p.mass, &p.length, &p.angle, &p.rate}) {
+            quantity->clear();
+            for (std::size_t i = 0; i < links; ++i) quantity->push_back(some(random));
+        }
+        p.gravity = 5 * some(random);
+    }
+    return trials;
+}
+
+template <class Which, class Model>
+State<double, Eigen::Dynamic> alone(const Pendulum<double>& p) {
+    Model model(p);
+    typename Which::template Stepper<Model> stepper(model, Model::start(p), step);
+    stepper.advance(steps);
+    return stepper.state();
+}
+
+template <class Which, class Model>
+void expect_each_trial_as_alone(Model model, std::size_t links) {
+    const auto trials = some_trials(links);
+    for (const int width : register_widths()) {
+        Batch batch(trials, model, Which::method.name, step, width);
+        batch.advance(100);
+        batch.advance(steps - 100);
+        for (std::size_t i = 0; i < trials.size(); ++i)
+            EXPECT_EQ(batch.state(i), (alone<Which, Model>(trials[i])))
+                << Which::method.name << ", width " << width << ", trial " << i;
+    }
+}
+
+template <class Which>
+void expect_all_models_as_alone() {
+    expect_each_trial_as_alone<Which, AngleChain<double, 1>>(Model::angles, 1);
+    expect_each_trial_as_alone<Which, DoublePendulum<double>>(Model::angles, 2);
+    expect_each_trial_as_alone<Which, AngleChain<double, 3>>(Model::angles, 3);
+    expect_each_trial_as_alone<Which, RodChain<double, 1>>(Model::constraints, 1);
+    expect_each_trial_as_alone<Which, RodChain<double, 2>>(Model::constraints, 2);
+    expect_each_trial_as_alone<Which, RodChain<double, 3>>(Model::constraints, 3);
+    expect_each_trial_as_alone<Which, RodChain<double, 4>>(Model::constraints, 4);
+    expect_each_trial_as_alone<Which, RodChain<double, Eigen::Dynamic>>(Model::constraints, 6);
+}
+
+TEST(Batch, EachTrialEndsAsAloneAtEveryWidth) {
+    expect_all_models_as_alone<Euler>();
+    expect_all_models_as_alone<SemiImplicitEuler>();
+    expect_all_models_as_alone<Midpoint>();
+    expect_all_models_as_alone<Rk4>();
+}
+
+TEST(Batch, TakesTheWidestThatTheProcessorHas) {
+    const auto trials = some_trials(2);
+    EXPECT_EQ(Batch(trials, Model::angles, "euler", step).width(), register_widths().back());
+    EXPECT_EQ(Batch(trials, Model::angles, "euler", step, 2).width(), 2);
+    EXPECT_EQ(Batch(some_trials(5), Model::angles, "euler", step).width(), 1);
+}
+
+/// The sentence of the error.
+template <class Make>
+std::string refusal(Make make) {
+    try {
+        make();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::bad_input);
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Batch, SaysWhatItCannotStep) {
+    const auto trials = some_trials(2);
+    EXPECT_EQ(
+        refusal([&] { Batch(trials, Model::angles, "dop853", step); }),
+        "\"dop853\" does not step many pendulums side by side; these do: euler, semi-implicit-euler, midpoint, rk4");
+    auto mixed = trials;
+    mixed.back() = some_trials(3).back();
+    EXPECT_EQ(refusal([&] { Batch(mixed, Model::angles, "euler", step); }),
+              "the pendulums of a batch have as many links each: not 2 and 3");
+    EXPECT_NE(refusal([&] { Batch({}, Model::angles, "euler", step); }), "");
+    EXPECT_NE(refusal([&] { Batch(trials, Model::angles, "euler", step, 3); }), "");
+}
+
+}  // namespace batch_test
+}  // namespace doppel
