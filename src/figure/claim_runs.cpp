@@ -1,6 +1,5 @@
 #include "figure/claim_runs.hpp"
 
-#include "scene/assemble.hpp"
 #include "scene/scene.hpp"
 
 namespace doppel::study {

@@ -4,9 +4,8 @@
 #include "base/clock.hpp"
 #include "figure/claim_runs.hpp"
 #include "numeric/dual.hpp"
-#include "scene/assemble.hpp"
 #include "scene/scene.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "numeric/nan.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <cmath>

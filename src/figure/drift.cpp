@@ -3,7 +3,7 @@
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
 #include "scene/resolved.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <array>

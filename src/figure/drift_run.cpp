@@ -2,7 +2,7 @@
 
 #include "base/clock.hpp"
 #include "numeric/nan.hpp"
-#include "scene/choose.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

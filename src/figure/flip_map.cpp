@@ -2,9 +2,9 @@
 #include "figure/kinds.hpp"
 #include "integrate/flip_reference.hpp"
 #include "integrate/flips.hpp"
-#include "scene/assemble.hpp"
+#include "scene/scene.hpp"
 #include "scene/resolved.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <cmath>

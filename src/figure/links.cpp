@@ -2,7 +2,7 @@
 #include "base/clock.hpp"
 #include "figure/kinds.hpp"
 #include "integrate/motion.hpp"
-#include "scene/assemble.hpp"
+#include "scene/scene.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>

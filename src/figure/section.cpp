@@ -2,7 +2,7 @@
 
 #include "figure/kinds.hpp"
 #include "image/theme.hpp"
-#include "scene/assemble.hpp"
+#include "scene/scene.hpp"
 #include "scene/resolved.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "figure/stability_spec.hpp"
 
-#include "scene/assemble.hpp"
+#include "scene/scene.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>

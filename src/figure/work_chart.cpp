@@ -1,7 +1,7 @@
 #include "figure/work_chart.hpp"
 
 #include "numeric/nan.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,7 @@
 #include "analysis/natural_units.hpp"
 #include "analysis/sensitivity.hpp"
 #include "numeric/nan.hpp"
-#include "scene/assemble.hpp"
-#include "scene/choose.hpp"
+#include "scene/scene.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>

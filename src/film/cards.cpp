@@ -1,7 +1,7 @@
 #include "film/composer.hpp"
 #include "render/font.hpp"
 #include "scene/version.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ DisplayList card(const std::vector<CardLine>& lines, Size size, Color background
 DisplayList Composer::title_card(double opacity) const {
     const auto& style = layout_.style;
     const auto& theme = style.theme;
-    const auto words = side_words(scene_);
+    const auto words = side_captions(scene_);
     return card({{layout_.title, style.font.card, Weight::bold, theme.text},
                  {layout_.subtitle, 1.5 * style.font.subtitle, Weight::regular, theme.quiet_text},
                  {"", style.font.subtitle, Weight::regular, theme.text},

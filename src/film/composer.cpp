@@ -2,7 +2,7 @@
 
 #include "film/survey.hpp"
 #include "render/font.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 

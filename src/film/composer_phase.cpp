@@ -1,6 +1,6 @@
 #include "film/composer.hpp"
 #include "render/font.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 

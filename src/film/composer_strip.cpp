@@ -1,7 +1,7 @@
 #include "film/composer.hpp"
 #include "film/survey.hpp"
 #include "render/font.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 

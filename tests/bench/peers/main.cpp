@@ -1,5 +1,5 @@
 #include "base/error.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/terminal.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "figure/run.hpp"
