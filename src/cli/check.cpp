@@ -1,15 +1,14 @@
 #include "base/clock.hpp"
 #include "base/machine.hpp"
 #include "base/time_limit.hpp"
-#include "cli/commands.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/options.hpp"
-#include "cli/print.hpp"
+#include "cli/program.hpp"
+#include "cli/terminal.hpp"
 #include "figure/computation.hpp"
 #include "film/film.hpp"
-#include "scene/choice.hpp"
-#include "scene/outlook.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
+#include "scene/forecast.hpp"
+#include "scene/method_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -112,14 +111,14 @@ double estimated_pictures(const Scene& scene) {
 void print_side(const char* name, const Side& side) {
     const auto steps = side.method.adaptive ? std::string("its own steps")
                                             : fmt::format("{} steps a sample", grouped(side.motion.steps_per_sample));
-    print_line("  {}      {}, {}, {}, {}", name, name_of(side.motion.model), side.method.title, pace_words(side),
+    print_line("  {}      {}, {}, {}, {}", name, name_of(side.motion.model), side.method.title, step_control_text(side),
                steps);
     print_line("         {}: {}", name_of(side.motion.model), side.why);
 }
 
 /// What to expect of a side: how far it errs, and how far any run of its precision could be right.
-void print_outlook(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
-    const auto seen = outlook(scene, side, stop);
+void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
+    const auto seen = forecast_of(scene, side, stop);
     const auto unit = side.has_angles ? "rad" : "of its size";
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto say = [](const std::string& words) { print_line("         {}", words); };
@@ -137,14 +136,14 @@ void print_outlook(const Scene& scene, const Side& side, const std::atomic<bool>
         const auto& [value, uncertainty] = *seen.exponent;
         const double tenfold = std::log(10) / value;
         switch (seen.kind) {
-            case Outlook::Kind::regular:
+            case Forecast::Kind::regular:
                 say(fmt::format("regular: no Lyapunov exponent to be seen ({:.2g} ± {:.1g} 1/s)", value, uncertainty));
                 break;
-            case Outlook::Kind::chaotic:
+            case Forecast::Kind::chaotic:
                 say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
                                 tenfold, value, uncertainty));
                 break;
-            case Outlook::Kind::unstable:
+            case Forecast::Kind::unstable:
                 say(
                     fmt::format("released at an unstable equilibrium: near it errors grow tenfold every {:.2g} s "
                                 "(exponent {:.2g} 1/s); this alone is no chaos",
@@ -159,19 +158,19 @@ void print_outlook(const Scene& scene, const Side& side, const std::atomic<bool>
 
 /// What half or ten times the accuracy would take, against what is asked.
 void print_rivals(const Scene& scene, const SideSpec& spec, const Side& side, const std::atomic<bool>& stop) {
-    const Chooser chooser(spec, scene.preset.duration_s, scene.preset.sample_hz, stop);
+    const MethodChooser chooser(spec, scene.preset.duration_s, scene.preset.sample_hz, stop);
     for (const auto& [factor, title] : {std::pair(2.0, "half"), {0.1, "ten times"}}) {
         const double accuracy = factor * side.choice->accuracy;
         if (accuracy > 1) continue;
         std::string words = "is out of reach";
         try {
-            const auto way = chooser.choose(accuracy);
+            const auto rival = chooser.choose(accuracy);
             // where rounding decides how far it holds, it decides the work too
-            words =
-                way.choice->horizon < scene.samples
-                    ? fmt::format("holds up to {:.3g} s", scene.time(way.choice->horizon))
-                    : fmt::format("takes {:.2f} times the work ({}, {})",
-                                  way.choice->evaluations / side.choice->evaluations, way.method.name, pace_words(way));
+            words = rival.choice->horizon < scene.samples
+                        ? fmt::format("holds up to {:.3g} s", scene.time(rival.choice->horizon))
+                        : fmt::format("takes {:.2f} times the work ({}, {})",
+                                      rival.choice->evaluations / side.choice->evaluations, rival.method.name,
+                                      step_control_text(rival));
         } catch (const Error& fault) {
             if (fault.code() != ExitCode::bad_input) throw;
         }
@@ -187,7 +186,7 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     for (const auto* side : {&scene.a, &scene.b}) {
         const bool is_a = side == &scene.a;
         print_side(is_a ? "a" : "b", *side);
-        if (!estimate.at_least && estimate.seconds < patience) print_outlook(scene, *side, stop);
+        if (!estimate.at_least && estimate.seconds < patience) print_forecast(scene, *side, stop);
         if (side->choice) print_rivals(scene, is_a ? scene.preset.a : scene.preset.b, *side, stop);
     }
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;

@@ -1,6 +1,6 @@
 #include "base/error.hpp"
-#include "cli/commands.hpp"
-#include "cli/print.hpp"
+#include "cli/program.hpp"
+#include "cli/terminal.hpp"
 #include "image/golden.hpp"
 #include "output/part_files.hpp"
 #include "output/png.hpp"

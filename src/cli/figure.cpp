@@ -1,8 +1,8 @@
 #include "base/error.hpp"
-#include "cli/commands.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/options.hpp"
+#include "cli/program.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "figure/run.hpp"
 
 #include <CLI/CLI.hpp>

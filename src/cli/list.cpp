@@ -1,13 +1,16 @@
-#include "cli/commands.hpp"
-#include "cli/print.hpp"
+#include "cli/program.hpp"
+#include "cli/terminal.hpp"
 #include "figure/preset.hpp"
 #include "integrate/methods.hpp"
 #include "scene/preset.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <memory>
+#include <sstream>
 
 namespace doppel {
 namespace {
@@ -39,6 +42,13 @@ void list_methods() {
     }
 }
 
+/// As it is into a file; a terminal gets lines that it can but show.
+void show(const std::string& text) {
+    if (!isatty(STDOUT_FILENO)) return write_out(text);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) print_line("{}", line);
+}
+
 }  // namespace
 
 void add_list(CLI::App& app) {
@@ -54,6 +64,14 @@ void add_list(CLI::App& app) {
         print_line("figures, for doppel figure:");
         list_presets(true);
     });
+}
+
+void add_show(CLI::App& app) {
+    auto name = std::make_shared<std::string>();
+    auto& command = *app.add_subcommand("show", "The TOML of a preset, a start for one of your own");
+    command.footer("Example:\n  doppel show butterfly > mine.toml");
+    command.add_option("PRESET", *name, "Name (see doppel list) or path")->required();
+    command.callback([name] { show(find_preset(*name, &watch_interrupts()).text); });
 }
 
 }  // namespace doppel

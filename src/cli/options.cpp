@@ -1,8 +1,8 @@
 #include "cli/options.hpp"
 
 #include "base/error.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>
 

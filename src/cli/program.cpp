@@ -2,8 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/commands.hpp"
-#include "cli/print.hpp"
+#include "cli/terminal.hpp"
 #include "scene/nearest.hpp"
 #include "scene/version.hpp"
 

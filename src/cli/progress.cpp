@@ -1,7 +1,7 @@
 #include "cli/progress.hpp"
 
 #include "base/text.hpp"
-#include "cli/print.hpp"
+#include "cli/terminal.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 #include "base/error.hpp"
-#include "cli/commands.hpp"
 #include "cli/options.hpp"
+#include "cli/program.hpp"
 #include "film/film.hpp"
 
 #include <CLI/CLI.hpp>
@@ -70,6 +70,16 @@ void add_render(CLI::App& app) {
         for (const auto& scene : scenes)
             if (scene.preset.video.format != FilmFormat::png) check_video(video_options(scene));
         run_all(scenes, *options, run);
+    });
+}
+
+void add_simulate(CLI::App& app) {
+    auto options = std::make_shared<RunCommandOptions>();
+    auto& command = *app.add_subcommand("simulate", "Runs presets without pictures: CSV and manifest, no OpenGL");
+    command.footer("Example:\n  doppel simulate butterfly --set 'system.integrator=\"rk4\"'");
+    add_run_options(command, *options, "Has no effect on a table");
+    command.callback([options] {
+        run_all(read_scenes(*options), *options, {.out = options->out, .pictures = false, .jobs = options->jobs});
     });
 }
 

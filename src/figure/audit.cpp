@@ -1,7 +1,6 @@
 #include "figure/audit.hpp"
 
 #include "figure/kinds.hpp"
-#include "scene/assemble.hpp"
 #include "scene/scene.hpp"
 
 namespace doppel {

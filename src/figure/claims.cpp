@@ -3,9 +3,8 @@
 #include "base/clock.hpp"
 #include "figure/audit.hpp"
 #include "numeric/dual.hpp"
-#include "scene/assemble.hpp"
+#include "scene/captions.hpp"
 #include "scene/scene.hpp"
-#include "scene/wording.hpp"
 
 #include <algorithm>
 #include <array>

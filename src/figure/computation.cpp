@@ -3,7 +3,7 @@
 #include "base/clock.hpp"
 #include "base/threads.hpp"
 #include "base/time_limit.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
 #include "numeric/nan.hpp"
+#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
-#include "scene/wording.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 #include "figure/kinds.hpp"
 #include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"
+#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
-#include "scene/wording.hpp"
 
 #include <algorithm>
 #include <array>

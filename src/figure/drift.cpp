@@ -2,9 +2,9 @@
 
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
-#include "scene/assemble.hpp"
+#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
-#include "scene/wording.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>

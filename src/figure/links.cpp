@@ -2,8 +2,8 @@
 #include "base/clock.hpp"
 #include "figure/kinds.hpp"
 #include "integrate/motion.hpp"
-#include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

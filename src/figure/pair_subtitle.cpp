@@ -1,6 +1,6 @@
 #include "figure/pair_subtitle.hpp"
 
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -66,7 +66,7 @@ std::string method_words(const Scene& scene) {
         words.push_back(fmt::format("accuracy {} rad", text_of(*accuracy)));
     } else {
         if (a.method.name == b.method.name) words.emplace_back(a.method.title);
-        if (pace_words(a) == pace_words(b)) words.push_back(pace_words(a));
+        if (step_control_text(a) == step_control_text(b)) words.push_back(step_control_text(a));
     }
     if (a.motion.precision == Precision::in_quad && b.motion.precision == Precision::in_quad)
         words.emplace_back("in quad");
@@ -93,7 +93,7 @@ std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_a
     add(release_words(scene, swept_angle));
     add(rate_words(scene.preset.a, scene.preset.b));
     add(apart);
-    if (const auto sides = side_words(scene); sides[0].heading != "a")
+    if (const auto sides = side_captions(scene); sides[0].heading != "a")
         add(fmt::format("{} against {}", sides[0].heading, sides[1].heading));
     const auto method = method_words(scene);
     return fmt::format("{}{}{}", fmt::join(parts, ", "), method.empty() ? "" : "; ", method);

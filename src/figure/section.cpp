@@ -2,8 +2,8 @@
 
 #include "figure/kinds.hpp"
 #include "image/theme.hpp"
-#include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
+#include "scene/scene.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 #include "analysis/spectrum.hpp"
 
 #include "figure/kinds.hpp"
-#include "scene/assemble.hpp"
+#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
-#include "scene/wording.hpp"
+#include "scene/scene.hpp"
 
 #include <cmath>
 #include <numeric>

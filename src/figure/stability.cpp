@@ -2,8 +2,8 @@
 #include "analysis/linear_stability.hpp"
 #include "figure/kinds.hpp"
 #include "numeric/nan.hpp"
-#include "scene/assemble.hpp"
 #include "scene/resolved.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>

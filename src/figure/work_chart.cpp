@@ -1,6 +1,6 @@
 #include "figure/work_precision.hpp"
 #include "numeric/nan.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include "integrate/methods.hpp"
 #include "numeric/nan.hpp"
+#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
-#include "scene/wording.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #include "analysis/natural_units.hpp"
 #include "figure/work_precision.hpp"
-#include "scene/assemble.hpp"
-#include "scene/choose.hpp"
+#include "scene/method_choice.hpp"
 #include "scene/resolved.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "film/composer.hpp"
 
 #include "render/font.hpp"
+#include "scene/captions.hpp"
 #include "scene/version.hpp"
-#include "scene/wording.hpp"
 
 #include <fmt/format.h>
 
@@ -128,7 +128,7 @@ DisplayList Composer::title_card(double opacity) const {
     const auto& layout = state_.layout;
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
-    const auto words = side_words(state_.scene);
+    const auto words = side_captions(state_.scene);
     return card({{layout.title, font.card, Weight::bold, theme.text},
                  {layout.subtitle, 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
                  {"", font.subtitle, Weight::regular, theme.text},

@@ -4,7 +4,7 @@
 #include "image/color.hpp"
 #include "numeric/state.hpp"
 #include "render/font.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 
@@ -133,7 +133,7 @@ void place_panels(Layout& layout, const Scene& scene, const Area& room) {
     const bool apart = video.layout == Arrangement::side_by_side || video.layout == Arrangement::portrait;
     const bool has_phase = video.layout == Arrangement::phase;
     const auto areas = panel_areas(room, apart || has_phase ? 2 : 1, is_tall(video), std::round(24 * layout.unit));
-    const auto said = side_words(scene);
+    const auto said = side_captions(scene);
     using Words = PendulumPanel::Words;
     if (apart) {
         for (std::size_t side = 0; side < 2; ++side)
@@ -246,7 +246,7 @@ Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
     const float u = layout.unit, t = layout.text;
     layout.page = {std::round(60 * u), std::round(28 * u), width - std::round(60 * u), height - std::round(26 * u)};
     layout.title = scene.preset.title;
-    layout.subtitle = scene_words(scene);
+    layout.subtitle = scene_caption(scene);
     const auto seen = motion_bounds(scene, stop);
 
     const float header = layout.page.top + 96 * t;

@@ -2,7 +2,7 @@
 #include "film/trail.hpp"
 #include "numeric/state.hpp"
 #include "render/font.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 

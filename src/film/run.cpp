@@ -8,7 +8,7 @@
 #include "film/simulation.hpp"
 #include "output/csv.hpp"
 #include "output/part_files.hpp"
-#include "scene/distance_check.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "film/layer.hpp"
 #include "render/font.hpp"
 #include "render/stroke.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 

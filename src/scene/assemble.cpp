@@ -1,7 +1,6 @@
-#include "scene/assemble.hpp"
-
 #include "base/error.hpp"
 #include "scene/nearest.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scene/preset.hpp"
-#include "scene/toml_document.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <array>
 #include <string_view>

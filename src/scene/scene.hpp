@@ -16,7 +16,7 @@ namespace doppel {
 
 /// What an accuracy that was asked for came to. Errors are in rad, the largest of all angles; of what hangs in no
 /// chain, those of places in units of its size.
-struct Choice {
+struct MethodChoice {
     double accuracy;          // asked for
     double estimated_error;   // up to the horizon
     long horizon;             // the sample up to which the run is that accurate; the last where it is to the end
@@ -27,8 +27,8 @@ struct Choice {
 /// One side with everything chosen.
 struct Side {
     MotionSpec motion;
-    std::string why;               // this model
-    std::optional<Choice> choice;  // where an accuracy was asked for
+    std::string why;                     // this model
+    std::optional<MethodChoice> choice;  // where an accuracy was asked for
     MethodEntry method;
     Rational step{0, 1};       // s; of methods with a fixed step
     std::vector<double> mass;  // kg, a bob each
@@ -39,6 +39,17 @@ struct Side {
     bool conserves_energy = true;      // no spring is damped
     std::vector<MechanismLine> lines;  // what is drawn besides the bobs
 };
+
+/// The chain as written, in radians.
+Pendulum<Quad> chain_of(const SideSpec& spec);
+
+/// The particles of a side (those of its chain, "bob1", "bob2" …, where it names none), its constraints and forces, and
+/// gravity. Throws Error (exit 2) where a part names a particle that is not there.
+Assembly<Quad> assembly_of(const SideSpec& spec);
+
+/// A side with its model chosen, the smallest that serves, and everything in exact numbers. Throws Error (exit 2) where
+/// the system is faulty.
+Side make_side(const SideSpec& spec, const Rational& sample_hz);
 
 /// What a preset comes to: the models chosen, the clock in whole numbers.
 struct Scene {
@@ -100,6 +111,10 @@ private:
     double energy_scale_ = 1, largest_energy_ = 0, longest_rod_ = 0;  // J, J, m
     long sample_ = -1;
 };
+
+/// Throws Error where the sides are so far apart that their distance is out of the range of a double; it names the
+/// number that makes it so. Exit 2 at the start, exit 3 later.
+void check_distance(const Scene& scene, const Moment& moment);
 
 /// Steps the pair from sample to sample.
 class PairRun {

@@ -1,4 +1,4 @@
-#include "scene/toml_document.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <algorithm>
 #include <cctype>

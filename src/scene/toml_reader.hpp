@@ -2,12 +2,14 @@
 
 #include "base/error.hpp"
 #include "scene/preset.hpp"
-#include "scene/toml_text.hpp"
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -16,6 +18,38 @@
 #include <vector>
 
 namespace doppel {
+
+/// The text of a TOML document, in which places are found soon however long it is.
+class TomlText {
+public:
+    explicit TomlText(std::string text);
+
+    const std::string& text() const { return text_; }
+    /// The number that stands at a line and column (counted in characters, from 1), without its underscores.
+    std::string literal_at(std::size_t line, std::size_t column) const;
+
+private:
+    struct Place {
+        std::size_t line, column, offset;  // bytes
+        bool is_before(std::size_t other_line, std::size_t other_column) const {
+            return line < other_line || (line == other_line && column < other_column);
+        }
+    };
+    void step(Place& place) const;
+
+    std::string text_;
+    std::vector<Place> milestones_;  // every so many characters
+};
+
+/// The text behind every document that was read, by the path its nodes carry: numbers mean their decimals, which only
+/// the text still has.
+using TomlTexts = std::map<std::string, TomlText>;
+
+// Words for errors.
+
+std::string kind_of(const toml::node& node);  // "a whole number"
+std::string shown(const toml::node& node);    // the value as TOML writes it, on one line and not too long
+std::string found(const toml::node& node);    // "it is a whole number (3)"
 
 /// Reads one table of a preset key by key: reader(field, member). A key that is absent leaves its member alone; one of
 /// the wrong kind is an Error (exit 2) with place, value and what would be right. finish() finds the keys nobody asked
@@ -139,5 +173,20 @@ private:
     const TomlTexts* texts_;
     std::set<std::string, std::less<>> known_;
 };
+
+/// A preset's text as tables, with the command line's values in place.
+struct TomlDocument {
+    std::string path;  // what errors name
+    toml::table root;
+    TomlTexts texts;
+
+    /// A reader of the table [key], which may be absent.
+    TomlReader table(TomlReader& above, std::string_view key) const {
+        return {above.read_table(key), fmt::format("[{}]", key), path, texts};
+    }
+};
+
+/// Throws Error (exit 2) with the place where the text is no TOML, a value is none, or a key is given twice.
+TomlDocument parse_document(const PresetText& source, const std::vector<Override>& overrides);
 
 }  // namespace doppel

@@ -1,4 +1,4 @@
-#include "scene/toml_text.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

@@ -1,4 +1,5 @@
-#include "scene/distance_check.hpp"
+#include "scene/scene.hpp"
+
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 

@@ -1,7 +1,7 @@
 #include "base/error.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "figure/run.hpp"
 #include "peers.hpp"
 

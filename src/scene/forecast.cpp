@@ -1,4 +1,4 @@
-#include "scene/outlook.hpp"
+#include "scene/forecast.hpp"
 
 #include "analysis/error_course.hpp"
 #include "analysis/linear_stability.hpp"
@@ -43,21 +43,21 @@ bool is_plain_chain(const MotionSpec& motion) {
     return motion.parts->constraints.size() == motion.chain->links() && motion.parts->forces.size() <= 1;
 }
 
-Outlook::Kind kind_of(const Pendulum<double>& pendulum, const Exponent& exponent) {
-    if (equilibrium_exponent(pendulum)) return exponent.value > 0 ? Outlook::Kind::unstable : Outlook::Kind::regular;
+Forecast::Kind kind_of(const Pendulum<double>& pendulum, const Exponent& exponent) {
+    if (equilibrium_exponent(pendulum)) return exponent.value > 0 ? Forecast::Kind::unstable : Forecast::Kind::regular;
     // one link keeps its energy, which leaves it no choice, however slowly its exponent vanishes near the upright
-    return pendulum.links() == 1 || is_regular(exponent) ? Outlook::Kind::regular : Outlook::Kind::chaotic;
+    return pendulum.links() == 1 || is_regular(exponent) ? Forecast::Kind::regular : Forecast::Kind::chaotic;
 }
 
 /// Beyond the end, errors go on growing by the exponent, whose mean over a time t varies like 1/√t.
-std::optional<Outlook::Limit> limit_of(const Ends& ends, const Scene& scene, const Outlook& seen) {
-    std::optional<Outlook::Limit> limit;
+std::optional<Forecast::Limit> limit_of(const Ends& ends, const Scene& scene, const Forecast& seen) {
+    std::optional<Forecast::Limit> limit;
     if (!ends.lost.empty()) {
         const auto [first, last] = std::minmax_element(ends.lost.begin(), ends.lost.end());
         limit = {scene.time(*first), scene.time(*last)};
     }
     if (ends.greatest_error == 0) return limit;
-    if (!seen.exponent || seen.kind == Outlook::Kind::regular) return std::nullopt;
+    if (!seen.exponent || seen.kind == Forecast::Kind::regular) return std::nullopt;
     const auto time_to_grow = [&](double error, int sign) {
         const ExponentSpec spec;
         const double mean = seen.exponent->value, growth = std::log(off / error), time = growth / mean;
@@ -66,19 +66,19 @@ std::optional<Outlook::Limit> limit_of(const Ends& ends, const Scene& scene, con
     };
     const double end = scene.time(scene.samples);
     const double first = end + time_to_grow(ends.greatest_error, 1), last = end + time_to_grow(ends.least_error, -1);
-    return Outlook::Limit{limit ? limit->from : first, last};
+    return Forecast::Limit{limit ? limit->from : first, last};
 }
 
 }  // namespace
 
-Outlook outlook(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
+Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
     const auto reference = reference_course(side.motion, scene.samples, side.reach, off, stop);
     const auto course = error_course(side.motion, reference, off, stop);
     if (course.error.empty()) throw method_failed("the method breaks down at once");
-    Outlook seen{.error = course.error.back(),
-                 .error_s = scene.time(static_cast<long>(course.error.size()) - 1),
-                 .exponent = std::nullopt,
-                 .limit = std::nullopt};
+    Forecast seen{.error = course.error.back(),
+                  .error_s = scene.time(static_cast<long>(course.error.size()) - 1),
+                  .exponent = std::nullopt,
+                  .limit = std::nullopt};
 
     constexpr std::size_t most_links = 12;
     if (is_plain_chain(side.motion) && side.motion.chain->links() <= most_links) {

@@ -1,9 +1,8 @@
-#include "scene/choice.hpp"
+#include "scene/method_choice.hpp"
 
 #include "analysis/error_course.hpp"
-#include "scene/assemble.hpp"
-#include "scene/way.hpp"
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +19,7 @@ constexpr double nearly = 0.97;  // as far as the finest setting gets, where rou
 
 /// A setting, tried.
 struct Trial {
-    int rung;
+    int level;
     ErrorCourse course;
     long horizon;  // the last sample to which the accuracy holds; −1 = none
 
@@ -31,34 +30,34 @@ struct Trial {
     }
 };
 
-/// The loosest setting of one way that does.
+/// The loosest setting of one method that does.
 class Search {
 public:
-    Search(const Way& way, double accuracy, const ReferenceCourse& reference, const std::atomic<bool>& stop)
-        : way_(way), allowed_(margin * accuracy), reference_(reference), stop_(stop) {}
+    Search(const StepControl& control, double accuracy, const ReferenceCourse& reference, const std::atomic<bool>& stop)
+        : control_(control), allowed_(margin * accuracy), reference_(reference), stop_(stop) {}
 
     /// To the last of `samples`, or close to where the finest gets; which is taken if it does not get to `least`.
     Trial best(long samples, long least) {
         long goal = samples;
-        if (tried(way_.start()).horizon < goal) {
-            const auto& finest = tried(way_.finest());
+        if (tried(control_.start()).horizon < goal) {
+            const auto& finest = tried(control_.finest());
             if (finest.horizon < least) return finest;
             if (finest.horizon < goal)
                 goal = std::max(least, std::lround(nearly * static_cast<double>(finest.horizon)));
         }
-        const auto does = [&](int rung) { return tried(rung).horizon >= goal; };
+        const auto does = [&](int level) { return tried(level).horizon >= goal; };
         // by growing strides from what the table suggests, then by halves
-        int fine = way_.start(), loose = fine, stride = 1;
+        int fine = control_.start(), loose = fine, stride = 1;
         if (does(fine)) {
             do {
                 fine = loose;
-                loose = std::max(fine - stride, way_.loosest() - 1);
+                loose = std::max(fine - stride, -1);
                 stride *= 2;
-            } while (loose >= way_.loosest() && does(loose));
+            } while (loose >= 0 && does(loose));
         } else {
             do {
                 loose = fine;
-                fine = std::min(loose + stride, way_.finest());
+                fine = std::min(loose + stride, control_.finest());
                 stride *= 2;
             } while (!does(fine));
         }
@@ -70,15 +69,15 @@ public:
     }
 
 private:
-    const Trial& tried(int rung) {
-        const auto known = trials_.find(rung);
+    const Trial& tried(int level) {
+        const auto known = trials_.find(level);
         if (known != trials_.end()) return known->second;
-        auto course = error_course(way_.side(rung).motion, reference_, enough, stop_);
+        auto course = error_course(control_.side(level).motion, reference_, enough, stop_);
         const long horizon = course.last_within(allowed_);
-        return trials_.emplace(rung, Trial{rung, std::move(course), horizon}).first->second;
+        return trials_.emplace(level, Trial{level, std::move(course), horizon}).first->second;
     }
 
-    const Way& way_;
+    const StepControl& control_;
     double allowed_;
     const ReferenceCourse& reference_;
     const std::atomic<bool>& stop_;
@@ -123,29 +122,30 @@ Error out_of_reach(double accuracy, const Trial& trial, const SideSpec& spec, do
         quad ? "" : "; precision = \"quad\" reaches further");
 }
 
-/// The ways that are the table's cheapest for this accuracy or a finer one: of these nothing finer is left out, so that
+/// The methods that are the table's cheapest for this accuracy or a finer one: of these nothing finer is left out, so that
 /// less accuracy never takes more work.
-std::vector<MeasuredWay> cheapest_ways(const SideSpec& spec, double accuracy) {
-    std::vector<MeasuredWay> all;
-    const auto is_new = [&](const MeasuredWay& way) {
-        return std::none_of(all.begin(), all.end(), [&](const MeasuredWay& known) {
-            return known.model == way.model && known.method == way.method;
+std::vector<MeasuredMethod> cheapest_methods(const SideSpec& spec, double accuracy) {
+    std::vector<MeasuredMethod> all;
+    const auto is_new = [&](const MeasuredMethod& measured) {
+        return std::none_of(all.begin(), all.end(), [&](const MeasuredMethod& known) {
+            return known.model == measured.model && known.method == measured.method;
         });
     };
     constexpr int finest = 22;  // the table has an accuracy each half decade
     for (int half_decades = 0; half_decades <= finest; ++half_decades) {
         const double of_table = std::pow(10, -0.5 * half_decades);
         if (of_table > accuracy * 1.0001 && half_decades < finest) continue;
-        const auto ways = allowed_ways(spec, half_decades < finest ? of_table : std::min(accuracy, finest_in_table));
-        if (!ways.empty() && is_new(ways.front())) all.push_back(ways.front());
+        const auto measured =
+            measured_methods(spec, half_decades < finest ? of_table : std::min(accuracy, finest_in_table));
+        if (!measured.empty() && is_new(measured.front())) all.push_back(measured.front());
     }
     if (all.empty()) throw bad_input("no method that serves this system was measured to reach accuracy = {}", accuracy);
     return all;
 }
 
-/// A way, and the trial of it that did best.
+/// A method, and the trial of it that did best.
 struct Found {
-    Way way;
+    StepControl control;
     Trial trial;
 
     /// Further; or as far, or short of the end nearly so, with less work.
@@ -159,47 +159,47 @@ struct Found {
     }
 };
 
-std::string why_words(const SideSpec& spec, const Way& chosen, double accuracy) {
-    const auto ways = allowed_ways(spec, accuracy);
+std::string why_words(const SideSpec& spec, const StepControl& chosen, double accuracy) {
+    const auto all = measured_methods(spec, accuracy);
     const auto of_method = [&](bool same) {
-        return std::find_if(ways.begin(), ways.end(),
-                            [&](const auto& way) { return (way.method == chosen.method().name) == same; });
+        return std::find_if(all.begin(), all.end(),
+                            [&](const auto& one) { return (one.method == chosen.method().name) == same; });
     };
     const auto taken = of_method(true), rival = of_method(false);
-    const bool cheapest = taken == ways.begin();
+    const bool cheapest = taken == all.begin();
     auto words = cheapest ? fmt::format("the cheapest way to {} rad that was measured", scientific(accuracy))
                           : fmt::format("takes less work here than {}, the cheapest way to {} rad that was measured",
-                                        ways.front().method, scientific(accuracy));
-    if (cheapest && rival != ways.end() && rival->cost > taken->cost)
+                                        all.front().method, scientific(accuracy));
+    if (cheapest && rival != all.end() && rival->cost > taken->cost)
         words += fmt::format("; {} would take {:.1f} times as long", rival->method, rival->cost / taken->cost);
     return words;
 }
 
 }  // namespace
 
-Chooser::Chooser(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
-                 const std::atomic<bool>& stop)
+MethodChooser::MethodChooser(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
+                             const std::atomic<bool>& stop)
     : spec_(spec),
       duration_(duration),
       sample_hz_(sample_hz),
       stop_(stop),
       time_unit_(time_unit_of(spec, duration.value())),
       samples_(product(duration, sample_hz)->numerator) {
-    const Way any(spec, sample_hz, cheapest_ways(spec, finest_in_table).front(), time_unit_);
+    const StepControl any(spec, sample_hz, cheapest_methods(spec, finest_in_table).front(), time_unit_);
     const auto side = any.side(any.finest());
     reference_ = reference_course(side.motion, samples_, side.reach, enough, stop);
 }
 
-Side Chooser::choose(double accuracy) const {
+Side MethodChooser::choose(double accuracy) const {
     const double swing = std::min(duration_.value(), 2 * pi * time_unit_);
     const long swing_samples = std::min(samples_, std::lround(std::ceil(swing * sample_hz_.value() * (1 - 1e-9))));
     std::optional<Found> best;
-    for (const auto& measured : cheapest_ways(spec_, accuracy)) {
-        const Way way(spec_, sample_hz_, measured, time_unit_);
-        Found found{way, Search(way, accuracy, reference_, stop_).best(samples_, swing_samples)};
+    for (const auto& measured : cheapest_methods(spec_, accuracy)) {
+        const StepControl control(spec_, sample_hz_, measured, time_unit_);
+        Found found{control, Search(control, accuracy, reference_, stop_).best(samples_, swing_samples)};
         if (!best || found.beats(*best, samples_)) best.emplace(std::move(found));
     }
-    const auto& [way, trial] = *best;
+    const auto& [control, trial] = *best;
     const auto& course = trial.course;
     if (trial.horizon < swing_samples)
         throw course.failure.empty()
@@ -207,20 +207,20 @@ Side Chooser::choose(double accuracy) const {
             : method_failed("the motion breaks down within {:.2g} s: {}",
                             static_cast<double>(course.error.size()) / sample_hz_.value(), course.failure);
 
-    auto side = way.side(trial.rung);
-    side.choice = Choice{
+    auto side = control.side(trial.level);
+    side.choice = MethodChoice{
         .accuracy = accuracy,
         .estimated_error = std::max(course.at(static_cast<std::size_t>(trial.horizon)), least_error(spec_.precision)),
         .horizon = trial.horizon,
         .verified_by = reference_.words(),
         .evaluations = trial.work() * static_cast<double>(samples_)};
-    side.why = why_words(spec_, way, accuracy);
+    side.why = why_words(spec_, control, accuracy);
     return side;
 }
 
 Side choose_side(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
                  const std::atomic<bool>& stop) {
-    return Chooser(spec, duration, sample_hz, stop).choose(static_cast<double>(*spec.accuracy));
+    return MethodChooser(spec, duration, sample_hz, stop).choose(static_cast<double>(*spec.accuracy));
 }
 
 }  // namespace doppel

@@ -8,17 +8,17 @@
 namespace doppel {
 
 /// What a picture says about one side: `heading`, what sets it apart from the other; `note`, the start it has besides.
-struct SideWords {
+struct SideCaptions {
     std::string heading, note;
 };
 
-std::array<SideWords, 2> side_words(const Scene& scene);
+std::array<SideCaptions, 2> side_captions(const Scene& scene);
 
 /// What both sides have in common: "two double pendulums, released at rest · angles, explicit Euler, 1/30 000 s".
-std::string scene_words(const Scene& scene);
+std::string scene_caption(const Scene& scene);
 
 /// How finely a side is stepped: "1/30 000 s", "tolerance 1e-12".
-std::string pace_words(const Side& side);
+std::string step_control_text(const Side& side);
 
 /// 12 → "₁₂"
 std::string subscript(std::size_t number);

@@ -1,7 +1,5 @@
-#include "scene/choose.hpp"
-
 #include "physics/mechanism.hpp"
-#include "scene/assemble.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include "plot/axis.hpp"
 
@@ -78,7 +78,7 @@ std::vector<Statement> statements(const SideSpec& spec, const SideSpec& other, c
     all.push_back({fmt::format("g = {} m/s²", text_of(spec.gravity_m_per_s2))});
     all.push_back({model_words(side)});
     all.push_back({std::string(side.method.title)});
-    all.push_back({pace_words(side)});
+    all.push_back({step_control_text(side)});
     return all;
 }
 
@@ -109,7 +109,7 @@ std::string subscript(std::size_t number) {
     return text;
 }
 
-std::string pace_words(const Side& side) {
+std::string step_control_text(const Side& side) {
     return side.method.adaptive ? fmt::format("tolerance {}", text_of(side.motion.tolerance)) : step_words(side.step);
 }
 
@@ -125,10 +125,10 @@ std::string roughly(double value) {
     return unit < 1 ? fmt::format("{:.2g}", value) : grouped(std::lround(std::round(value / unit) * unit));
 }
 
-std::array<SideWords, 2> side_words(const Scene& scene) {
+std::array<SideCaptions, 2> side_captions(const Scene& scene) {
     const std::array all{statements(scene.preset.a, scene.preset.b, scene.a),
                          statements(scene.preset.b, scene.preset.a, scene.b)};
-    std::array<SideWords, 2> words;
+    std::array<SideCaptions, 2> words;
     for (std::size_t side = 0; side < 2; ++side) {
         std::vector<std::string> differs, start;
         for (std::size_t i = 0; i < all[side].size(); ++i) {
@@ -153,7 +153,7 @@ std::array<SideWords, 2> side_words(const Scene& scene) {
     return words;
 }
 
-std::string scene_words(const Scene& scene) {
+std::string scene_caption(const Scene& scene) {
     const auto at_rest = [](const SideSpec& side) {
         const auto rests = [](const ParticleSpec& particle) {
             return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;
@@ -165,7 +165,7 @@ std::string scene_words(const Scene& scene) {
     std::vector<std::string> common;
     if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));
     if (scene.a.method.name == scene.b.method.name) common.emplace_back(scene.a.method.title);
-    if (pace_words(scene.a) == pace_words(scene.b)) common.push_back(pace_words(scene.a));
+    if (step_control_text(scene.a) == step_control_text(scene.b)) common.push_back(step_control_text(scene.a));
     const auto number = scene.crowd.empty() ? std::string("two") : grouped(static_cast<long>(scene.crowd.size()));
     return fmt::format("{} {}{}{}{}", number, system_words(scene.preset.a),
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",

@@ -1,5 +1,5 @@
 // What pictures and messages say.
-#include "scene/wording.hpp"
+#include "scene/captions.hpp"
 
 #include "scene/nearest.hpp"
 #include "scene/resolved.hpp"
@@ -10,9 +10,9 @@
 #include <array>
 
 namespace doppel {
-namespace wording_test {
+namespace captions_test {
 
-TEST(Words, RoundWhatWasMeasuredOnce) {
+TEST(Captions, RoundWhatWasMeasuredOnce) {
     EXPECT_EQ(roughly(0.1234), "0.12");
     EXPECT_EQ(roughly(1.26), "1.3");
     EXPECT_EQ(roughly(9.96), "10");
@@ -20,17 +20,17 @@ TEST(Words, RoundWhatWasMeasuredOnce) {
     EXPECT_EQ(roughly(223456), "220 000");
 }
 
-TEST(Words, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
-    const auto few = side_words(scene_of("butterfly"));
+TEST(Captions, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
+    const auto few = side_captions(scene_of("butterfly"));
     EXPECT_EQ(few[0].heading, "θ₁ = 90°");
     EXPECT_EQ(few[0].note, "θ₂ = 90°");
-    const auto many = side_words(scene_of(
-        "butterfly", {"b.omega_deg_per_s=[1, 2]", "b.mass_kg=[3, 4]", "b.length_m=[0.5, 0.6]", "b.gravity_m_per_s2=9.7"}));
+    const auto many = side_captions(scene_of("butterfly", {"b.omega_deg_per_s=[1, 2]", "b.mass_kg=[3, 4]",
+                                                           "b.length_m=[0.5, 0.6]", "b.gravity_m_per_s2=9.7"}));
     EXPECT_EQ(many[1].heading, "θ₁ = 90.003°, ω₁ = 1°/s");
     EXPECT_EQ(many[1].note, "ω₂ = 2°/s, m₁ = 3 kg, m₂ = 4 kg, …");
 }
 
-TEST(Words, NearestAllowsATypingErrorInThreeLetters) {
+TEST(Captions, NearestAllowsATypingErrorInThreeLetters) {
     constexpr std::array<std::string_view, 2> names{"poster_s", "background_color"};
     EXPECT_EQ(nearest("backgruond_colour", names), "background_color");
     EXPECT_EQ(nearest("bakgrund_kolour", names), "background_color");  // four letters of fifteen
@@ -52,5 +52,5 @@ TEST(Resolved, KeepsBothColoursOfTheSides) {
     EXPECT_NE(resolved_toml(preset).find(R"(side_colors = ["#102030", "#a0b0c0"])"), std::string::npos);
 }
 
-}  // namespace wording_test
+}  // namespace captions_test
 }  // namespace doppel

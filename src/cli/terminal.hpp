@@ -5,11 +5,19 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 namespace doppel {
+
+/// Becomes true when the person, or the system, asks the program to end (SIGINT, SIGTERM, SIGHUP). The second time ends
+/// it at once.
+const std::atomic<bool>& watch_interrupts();
+
+/// From now on, whoever reads the progress may go away, and the work goes on.
+void outlive_readers();
 
 /// Writes to standard output, at once; tells why it could not.
 std::error_code try_write_out(std::string_view text);

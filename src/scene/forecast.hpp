@@ -9,7 +9,7 @@ namespace doppel {
 
 /// What can be known of a side's motion before it is run. Errors are those of angles, rad, the largest of all; of what
 /// hangs in no chain, of places in units of its size.
-struct Outlook {
+struct Forecast {
     /// For how long runs of this precision can be right, within half a rad, s. About: no bound.
     struct Limit {
         double from, to;  // of several runs; or what the exponent, and how it varies, makes of their errors at the end
@@ -31,6 +31,6 @@ struct Outlook {
 /// By the run beside the reference (analysis/reference_course.hpp), and runs by Taylor series as fine as the precision
 /// allows, each of which rounds in its own way.
 /// Errors  exit 130 soon after `stop` is set; exit 3 where the method breaks down at once.
-Outlook outlook(const Scene& scene, const Side& side, const std::atomic<bool>& stop);
+Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -1,8 +1,8 @@
-#include "scene/choice.hpp"
+#include "scene/method_choice.hpp"
 
 #include "analysis/angle_error.hpp"
-#include "scene/choose.hpp"
 #include "scene/resolved.hpp"
+#include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 
 namespace doppel {
-namespace choice_test {
+namespace method_choice_test {
 
 const std::atomic<bool> never = false;
 
@@ -187,7 +187,7 @@ TEST(Choice, NeverTakesMoreWorkForLessAccuracy) {
          {"angle_deg = [90, 90]", "angle_deg = [150, 90]", "angle_deg = [30, 0]", "links = 3\nangle_deg = [120, 0, 0]",
           "links = 1\nangle_deg = [170]", "mass_kg = [0.001, 1]", "angle_deg = [90, 90]\nmodel = \"constraints\""}) {
         auto preset = preset_from(fmt::format("[scene]\nduration_s = 12\n[system]\n{}\naccuracy = 1e-2", system));
-        const Chooser chooser(preset.a, preset.duration_s, {30, 1}, never);
+        const MethodChooser chooser(preset.a, preset.duration_s, {30, 1}, never);
         double before = 0;
         for (const double accuracy : {1e-1, 2e-2, 1e-2, 1e-3, 5e-4, 5e-5, 1e-6, 1e-7, 2e-8, 1e-9, 1e-10}) {
             try {
@@ -292,5 +292,5 @@ TEST(Choice, SaysWhatIsWithinReach) {
     EXPECT_EQ(fault_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
 }
 
-}  // namespace choice_test
+}  // namespace method_choice_test
 }  // namespace doppel

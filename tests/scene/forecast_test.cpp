@@ -1,4 +1,4 @@
-#include "scene/outlook.hpp"
+#include "scene/forecast.hpp"
 
 #include "analysis/error_course.hpp"
 #include "scene/support.hpp"
@@ -9,7 +9,7 @@
 #include <tuple>
 
 namespace doppel {
-namespace outlook_test {
+namespace forecast_test {
 
 const std::atomic<bool> never = false;
 
@@ -20,16 +20,16 @@ Scene scene_from(const std::string& system, int duration_s) {
                                  duration_s, system)}));
 }
 
-Outlook outlook_of(const std::string& system, int duration_s = 30) {
+Forecast predicted(const std::string& system, int duration_s = 30) {
     const auto scene = scene_from(system, duration_s);
-    return outlook(scene, scene.a, never);
+    return forecast_of(scene, scene.a, never);
 }
 
-TEST(Outlook, TellsForAboutHowLongRunsInDoubleCanBeRight) {
+TEST(Forecast, TellsForAboutHowLongRunsInDoubleCanBeRight) {
     for (const char* system : {"angle_deg = [90, 90]", "angle_deg = [150, 90]",
                                "angle_deg = [120, -60]\nmass_kg = [2, 1]", "links = 3\nangle_deg = [120, 0, 0]"}) {
         const auto scene = scene_from(system, 40);
-        const auto limit = outlook(scene, scene.a, never).limit;
+        const auto limit = forecast_of(scene, scene.a, never).limit;
         ASSERT_TRUE(limit) << system;
         EXPECT_LE(limit->from, limit->to);
         // others, by methods and equations that it did not try
@@ -50,31 +50,30 @@ TEST(Outlook, TellsForAboutHowLongRunsInDoubleCanBeRight) {
     }
 }
 
-TEST(Outlook, SaysSoBeforeTheEndToo) {
+TEST(Forecast, SaysSoBeforeTheEndToo) {
     // what it makes of ten seconds holds what forty show
-    const auto shown = *outlook_of("angle_deg = [90, 90]", 40).limit,
-               told = *outlook_of("angle_deg = [90, 90]", 10).limit;
+    const auto shown = *predicted("angle_deg = [90, 90]", 40).limit,
+               told = *predicted("angle_deg = [90, 90]", 10).limit;
     EXPECT_NEAR(told.from / shown.from, 1, 0.2);  // measured 0.02
     EXPECT_GT(told.to, 0.9 * shown.to);
     EXPECT_LT(told.to, 1.8 * shown.to);
-    EXPECT_FALSE(outlook_of("angle_deg = [30, 0]").limit);  // regular: no end in sight
+    EXPECT_FALSE(predicted("angle_deg = [30, 0]").limit);  // regular: no end in sight
 }
 
-TEST(Outlook, TellsAnUnstableEquilibriumFromChaos) {
-    using Kind = Outlook::Kind;
-    const auto upright = outlook_of("links = 1\nangle_deg = [180]", 5);
+TEST(Forecast, TellsAnUnstableEquilibriumFromChaos) {
+    using Kind = Forecast::Kind;
+    const auto upright = predicted("links = 1\nangle_deg = [180]", 5);
     EXPECT_EQ(upright.kind, Kind::unstable);
     EXPECT_NEAR(upright.exponent->value, std::sqrt(9.8), 1e-12);
-    EXPECT_EQ(outlook_of("angle_deg = [180, 0]", 5).kind, Kind::unstable);
-    EXPECT_EQ(outlook_of("angle_deg = [0, 0]", 5).kind, Kind::regular);
-    EXPECT_EQ(outlook_of("links = 1\nangle_deg = [179.999]", 5).kind, Kind::regular);
-    EXPECT_EQ(outlook_of("angle_deg = [30, 0]", 5).kind, Kind::regular);
-    EXPECT_EQ(outlook_of("angle_deg = [90, 90]", 5).kind, Kind::chaotic);
+    EXPECT_EQ(predicted("angle_deg = [180, 0]", 5).kind, Kind::unstable);
+    EXPECT_EQ(predicted("angle_deg = [0, 0]", 5).kind, Kind::regular);
+    EXPECT_EQ(predicted("links = 1\nangle_deg = [179.999]", 5).kind, Kind::regular);
+    EXPECT_EQ(predicted("angle_deg = [30, 0]", 5).kind, Kind::regular);
+    EXPECT_EQ(predicted("angle_deg = [90, 90]", 5).kind, Kind::chaotic);
     // a spring makes another system of it, of which the chain's exponent tells nothing
-    EXPECT_FALSE(
-        outlook_of("angle_deg = [90, 90]\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [2, 0]", 5)
-            .exponent);
+    EXPECT_FALSE(predicted("angle_deg = [90, 90]\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [2, 0]", 5)
+                     .exponent);
 }
 
-}  // namespace outlook_test
+}  // namespace forecast_test
 }  // namespace doppel

@@ -1,6 +1,7 @@
+#include "analysis/distance.hpp"
 #include "analysis/energy_error.hpp"
+#include "scene/captions.hpp"
 #include "scene/scene.hpp"
-#include "scene/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +59,8 @@ std::optional<double> SideRun::energy_error(const Observation& seen) const {
 
 BreakDown SideRun::broken(const std::string& what) const {
     return {fmt::format("{}: side {} broke down by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_,
-                        scene_.time(sample_), what, name_of(side_.motion.model), side_.method.title, pace_words(side_)),
+                        scene_.time(sample_), what, name_of(side_.motion.model), side_.method.title,
+                        step_control_text(side_)),
             name_, sample_};
 }
 
@@ -85,6 +87,45 @@ Observation SideRun::next(const std::atomic<bool>& stop) {
     auto seen = motion_->observe();
     watch(seen);
     return seen;
+}
+
+Moment PairRun::next(const std::atomic<bool>& stop) {
+    Moment now;
+    now.sample = ++sample_;
+    now.a = a_.next(stop);
+    now.b = b_.next(stop);
+    now.energy_error_a = a_.energy_error(now.a);
+    now.energy_error_b = b_.energy_error(now.b);
+    const bool exact = !now.a.exact.empty() && !now.b.exact.empty();
+    now.distance = exact ? static_cast<double>(state_space_distance(now.a.exact, now.b.exact))
+                         : state_space_distance(now.a.bobs, now.b.bobs);
+    return now;
+}
+
+void check_distance(const Scene& scene, const Moment& moment) {
+    if (std::isfinite(moment.distance)) return;
+    struct Number {
+        std::string what;
+        double a = 0, b = 0;
+    } worst;
+    for (std::size_t i = 0; i < moment.a.bobs.size(); ++i) {
+        const auto &a = moment.a.bobs[i], &b = moment.b.bobs[i];
+        const auto look = [&](const char* what, double of_a, double of_b) {
+            if (std::abs(of_a - of_b) > std::abs(worst.a - worst.b))
+                worst = {fmt::format("{} of mass {}", what, i + 1), of_a, of_b};
+        };
+        look("the mass, kg,", a.mass, b.mass);
+        look("the place in x, m,", a.x, b.x);
+        look("the place in y, m,", a.y, b.y);
+        look("the velocity in x, m/s,", a.vx, b.vx);
+        look("the velocity in y, m/s,", a.vy, b.vy);
+    }
+    const bool of_b = std::abs(worst.b) > std::abs(worst.a);
+    throw Error(moment.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,
+                fmt::format("{}: side {}: {} is {:.6g} at t = {} s, and {:.6g} on the other side: the square of their "
+                            "difference is out of range, beyond 1.8e308",
+                            scene.preset.name, of_b ? 'b' : 'a', worst.what, of_b ? worst.b : worst.a,
+                            scene.time(moment.sample), of_b ? worst.a : worst.b));
 }
 
 }  // namespace doppel

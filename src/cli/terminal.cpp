@@ -1,6 +1,8 @@
-#include "cli/interrupt.hpp"
+#include "cli/terminal.hpp"
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 
 namespace doppel {
 namespace {
@@ -25,6 +27,19 @@ const std::atomic<bool>& watch_interrupts() {
 
 void outlive_readers() {
     std::signal(SIGPIPE, SIG_IGN);
+}
+
+std::error_code try_write_out(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
+    return {errno, std::generic_category()};
+}
+
+void write_out(std::string_view text) {
+    if (const auto fault = try_write_out(text)) throw unwritten(fault);
+}
+
+Error unwritten(const std::error_code& why) {
+    return io_failed("standard output cannot be written: {}", why.message());
 }
 
 }  // namespace doppel
