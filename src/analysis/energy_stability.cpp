@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// Takes the error of one look at the energy in; not a number stays.
+/// Takes the error of one sample in; NaN stays.
 void take(double error, double& greatest) {
     if (error <= blow_up)
         greatest = std::max(error, greatest);

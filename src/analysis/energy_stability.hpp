@@ -13,12 +13,12 @@ namespace doppel {
 /// Energy is compared with what a release has above hanging at rest. An error beyond so many times that is a blow-up.
 inline constexpr double blow_up = 100;
 
-/// How pendulums are stepped, and how often their energy is looked at.
+/// How pendulums are stepped, and how often their energy is sampled.
 struct StabilityRun {
     std::string method;
     Model model = Model::angles;
     Rational duration{10, 1};   // s
-    long samples = 100;         // looks at the energy, evenly over the duration
+    long samples = 100;         // of the energy, evenly over the duration
     long steps_per_sample = 1;  // of methods with a fixed step
     Quad tolerance = 0;         // of adaptive ones
     int width = 0;              // doubles to a register (integrate/batch.hpp); changes no bit

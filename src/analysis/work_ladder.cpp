@@ -17,7 +17,6 @@ namespace {
 
 constexpr Rung no_rung{nan_value, nan_value, nan_value, nan_value, nan_value, nan_value, nan_value};
 
-/// How finely a run goes.
 struct Setting {
     double value;  // step, s, or tolerance
     long steps;    // of a fixed step; 0 for a tolerance
@@ -58,7 +57,7 @@ std::vector<Setting> settings(const WorkProblem& problem, const Solver& solver, 
     return all;
 }
 
-/// Tells when finer settings no longer help.
+/// Detects when finer settings no longer help.
 class Floor {
 public:
     explicit Floor(double error) : floor_(error) {}
@@ -80,9 +79,9 @@ private:
     int since_best_ = 0;
 };
 
-constexpr double long_enough_s = 1e-3;  // that a clock tells it within some tenths of a percent
-constexpr double warm_enough_s = 3e-3;  // that what comes first is not seen
-constexpr long most_runs = 32;          // at a time: all of them fit into the nearest cache
+constexpr double long_enough_s = 1e-3;  // for a clock error of some tenths of a percent
+constexpr double warm_enough_s = 3e-3;  // for cold caches not to count
+constexpr long most_runs = 32;          // at a time: all fit into the first-level cache
 
 template <class Run>
 double cpu_of(Run&& run) {

@@ -1,5 +1,7 @@
 #include "analysis/work_results.hpp"
 
+#include "numeric/nan.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -108,6 +110,15 @@ std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>&
         if (front.empty() || point.error < front.back().error) front.push_back(point);
     }
     return front;
+}
+
+std::pair<double, double> time_spread(const std::vector<Ladder>& all) {
+    std::vector<double> spreads;
+    for (const auto& ladder : all)
+        for (const std::size_t i : useful_rungs(ladder, Cost::time, {0, 1})) spreads.push_back(ladder.spread[i]);
+    if (spreads.empty()) return {nan_value, nan_value};
+    std::sort(spreads.begin(), spreads.end());
+    return {spreads[spreads.size() / 2], spreads.back()};
 }
 
 std::optional<Cheapest> cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error,

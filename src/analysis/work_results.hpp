@@ -3,6 +3,7 @@
 #include "analysis/work_ladder.hpp"
 
 #include <optional>
+#include <utility>
 
 namespace doppel {
 
@@ -23,7 +24,7 @@ inline double cost_of(const Rung& rung, Cost cost) {
 /// The ladder of several repeats, the first of which has everything.
 Ladder merged(std::size_t problem, const Solver& solver, const std::vector<std::vector<Rung>>& repeats);
 
-/// The errors that matter: larger ones tell nothing, and what is below `least` is at the floor.
+/// The range of errors shown; what is below `least` is at the floor.
 struct ErrorRange {
     double least, most;
 };
@@ -39,12 +40,15 @@ std::optional<double> cost_at(const Ladder& ladder, Cost cost, double error);
 /// Of each method on a problem the model that is the cheapest at most powers of ten of the error; of equals the first.
 std::vector<const Ladder*> best_models(std::size_t problem, const std::vector<Ladder>& all, Cost cost);
 
-/// A place on the front: no ladder of ours errs less at less cost.
+/// A point of the front: no ladder of Doppel's methods errs less at less cost.
 struct FrontPoint {
     double cost, error;
 };
 std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>& all, Cost cost,
                                  const ErrorRange& range);
+
+/// Median and greatest spread of the CPU times of all useful rungs; NaN where there are none.
+std::pair<double, double> time_spread(const std::vector<Ladder>& all);
 
 /// The ladder that gets to `error` at the least cost, of Doppel's methods or of the external ones.
 struct Cheapest {

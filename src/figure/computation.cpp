@@ -57,8 +57,8 @@ void Computation::take_record() {
             : fmt::format("; line {} is damaged, and what follows it is computed anew", part.damaged_line)));
 }
 
-/// Runs of trials that are not known, cut to what is best computed at once. Where they are many, some from all over the
-/// work come first: they tell what the rest will take.
+/// Runs of unknown trials, cut to what is best computed together. Of many groups, some evenly spaced ones come first, to
+/// estimate the time of the rest.
 void Computation::find_groups() {
     const std::size_t most = figure_.work->together();
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial) {
@@ -147,13 +147,13 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
     const double before = now();
     for (std::size_t trial = 0; trial < trials; ++trial) {
         total += work.units(trial);
-        // what counts for nothing is what others rest on: first, or the first of them would pay for it
+        // trials of 0 units are what others need: computed first, outside the estimate
         TrialNumbers numbers;
         if (work.units(trial) == 0) work.compute(trial, {&numbers, 1}, stop);
     }
     const double start = now();
     const TimeLimit limit(allowed_s, stop);
-    // from all over the work, for trials differ: steps of the golden section meet no pattern
+    // trials differ: samples by steps of the golden ratio
     constexpr double golden = 0.6180339887498949;
     const std::size_t groups = (trials + together - 1) / together;
     try {

@@ -15,33 +15,32 @@ struct FigureProgress {
     double done = 0, total = 0;
 };
 
-/// How a figure gets on, for the person who waits. Called by any thread, one at a time for one figure.
+/// Progress of a figure. Called by any thread, one at a time for one figure.
 struct ComputationReport {
     std::function<void(const FigureProgress&)> progress;
     std::function<void(const std::string& sentence)> note;  // what it will take; what it goes on from
 };
 
-/// The trials of a part of a figure that are not known yet, in groups for threads to take; and the record of them in a
-/// file, once that pays. Destroyed before it is complete, it leaves that file.
+/// The unknown trials of a part of a figure, in groups for threads to take, and the file that records them once the
+/// computation takes some seconds. Destroyed before it is complete, it leaves that file.
 class Computation {
 public:
-    /// `record` = the file, where there is to be one; where it is there its trials are known, up to the first
-    /// that is damaged. `threads` is for the words. Throws Error (exit 4) where the record is something else, which
-    /// stays.
+    /// `record` = the file; where it exists, its trials up to the first damaged one are known. `threads` is for
+    /// messages. Throws Error (exit 4) where the record is another file, which is left alone.
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<FilePlace> record, int threads,
                 ComputationReport report);
 
     std::size_t groups() const { return groups_.size(); }
-    /// One of the groups, each once; any thread. True for the one that was the last to be done: then all is known.
-    /// Throws Error: what a trial throws, with where the rest is kept; exit 3 where its numbers cannot be.
+    /// Computes a group, each once, on any thread. True for the last one: then all trials are known. Throws Error: what
+    /// a trial throws, with the place of the record; exit 3 where its numbers do not fit.
     bool compute(std::size_t group, const std::atomic<bool>& stop);
     KnownTrials take() { return std::move(known_); }
-    /// The same fault, with how much is kept in the record, and where.
+    /// The same fault, with the share that is kept in the record, and its path.
     Error with_record(const Error& fault);
 
     const PartHeader& header() const { return header_; }
     const std::optional<FilePlace>& record() const { return record_; }
-    double computed_units() const { return computed_units_; }  // not read
+    double computed_units() const { return computed_units_; }  // without those read
     double cpu_s() const { return cpu_s_; }                    // of the threads while they computed
     double start_s() const { return start_s_; }                // of the first group, by CLOCK_MONOTONIC
 

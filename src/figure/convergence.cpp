@@ -27,7 +27,7 @@ struct RungRow {
     double step, distance, steps;
 };
 
-/// How far the two sides of a pair part, over finer and finer steps: what is left of truncation, and what of rounding.
+/// The distance of the two sides of a pair over finer and finer steps, in double and in quad.
 class Convergence final : public FigureWork {
 public:
     explicit Convergence(FigureReader& reader) : pair_(reader.pair()) {
@@ -37,13 +37,13 @@ public:
         table.read_whole("decades", decades_, 1, 14);
         table.read_whole("quad_decades", quad_decades_, 1, 29);
         if (table.has("mark_step_s")) table.read_positive_ratio("mark_step_s", mark_step_.emplace());
-        if (const auto names = table.read_texts("methods")) methods_ = *names;
+        table.read_texts("methods", methods_);
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         check_distinct(table, "methods", methods_);
         for (const auto precision : {Precision::in_double, Precision::in_quad})
             for (const auto& name : methods_) add_ladder(table, name, precision);
         for (const auto& [begin, ladder] : ladders_) check_methods(table, make_scene(pair_of(begin)));
-        table.finish();
+        settings_ = table.finish();
     }
 
     std::size_t trials() const override { return ladders_.back().first + ladders_.back().second.rungs; }
@@ -78,8 +78,7 @@ public:
                 .dashed = in_double};
             for (std::size_t rung = 0; rung < ladder.rungs; ++rung) {
                 const auto row = row_of<RungRow>(numbers[begin + rung]);
-                curve.x.push_back(row.step);
-                curve.y.push_back(row.distance);
+                add_point(curve, row.step, row.distance);
             }
             plot.curves.push_back(std::move(curve));
         }
@@ -113,18 +112,10 @@ public:
         return all;
     }
 
-    std::string resolved() const override {
-        const auto mark = mark_step_ ? fmt::format("mark_step_s = \"{}\"\n", mark_step_->text()) : "";
-        return resolved_pair(pair_) +
-               fmt::format(
-                   "\n[convergence]\nmethods = {}\nhalvings = {}\nquad_halvings = {}\n"
-                   "decades = {}\nquad_decades = {}\n",
-                   toml_list(methods_), halvings_, quad_halvings_, decades_, quad_decades_) +
-               mark;
-    }
+    std::string resolved() const override { return resolved_pair(pair_) + settings_; }
 
 private:
-    /// The order that the distances tell: with steps between the two finest, with tolerances over the middle third.
+    /// The order of convergence: with steps between the two finest, with tolerances over the middle third.
     static double slope(std::span<const TrialNumbers> numbers, std::size_t begin, const PairLadder& ladder) {
         const std::size_t fine_rung = ladder.adaptive() ? 2 * ladder.rungs / 3 : ladder.rungs - 1;
         const auto fine = row_of<RungRow>(numbers[begin + fine_rung]);
@@ -132,7 +123,7 @@ private:
         return std::log(coarse.distance / fine.distance) / std::log(coarse.step / fine.step);
     }
 
-    /// What the ladders come to, in words.
+    /// The caption.
     std::string words(std::span<const TrialNumbers> numbers) const {
         std::string slopes;
         double least_double = nan_value, least_quad = nan_value;
@@ -166,7 +157,6 @@ private:
         ladders_.emplace_back(ladders_.empty() ? 0 : trials(), ladder);
     }
 
-    /// Faults are told at once.
     static void check_methods(const TomlReader& table, const Scene& scene) {
         for (const auto* side : {&scene.a, &scene.b})
             if (!serves(side->method, side->motion.model))
@@ -221,7 +211,7 @@ private:
     Preset pair_;
     std::vector<std::string> methods_{"euler", "midpoint", "rk4", "gauss6/rattle6", "dop853"};
     int halvings_ = 10, quad_halvings_ = 6, decades_ = 11, quad_decades_ = 24;
-    std::optional<Rational> mark_step_;                        // a line at it
+    std::optional<Rational> mark_step_;                        // marked by a line
     std::vector<std::pair<std::size_t, PairLadder>> ladders_;  // each with its first trial
 };
 

@@ -23,8 +23,8 @@ struct PairCurve {
     Preset pair;
 };
 
-/// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see until when
-/// the answer stands.
+/// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see how long
+/// both agree.
 class Curves final : public FigureWork {
 public:
     explicit Curves(FigureReader& reader) {
@@ -32,7 +32,7 @@ public:
         table.read_choice("quantity", quantity_, quantities);
         table.read_truth("logarithmic", logarithmic_);
         if (table.has("check_tolerance")) table.read_positive("check_tolerance", check_tolerance_.emplace());
-        table.finish();
+        settings_ = table.finish();
         const auto tables = reader.top.read_tables("curve");
         if (tables.empty()) curves_.push_back({quantity_, "", reader.pair()});
         for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -49,7 +49,7 @@ public:
             entry.finish();
         }
         for (const auto& curve : curves_) {
-            samples_ = make_scene(curve.pair).samples;  // faults are told at once
+            samples_ = make_scene(curve.pair).samples;  // reports faults now
             if (quantity_ == "log_ratio" && released_alike(curve.pair.a, curve.pair.b))
                 throw table.fault("quantity",
                                   "\"log_ratio\" takes sides that are released differently: there is no "
@@ -123,10 +123,8 @@ public:
 
     std::string resolved() const override {
         const auto& base = curves_.front().pair;
-        auto text =
-            fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n\n[curves]\nquantity = \"{}\"\nlogarithmic = {}\n",
-                        base.duration_s.text(), base.sample_hz.text(), quantity_, logarithmic_);
-        if (check_tolerance_) text += fmt::format("check_tolerance = {}\n", text_of(*check_tolerance_));
+        auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
+                                base.sample_hz.text(), settings_);
         for (const auto& curve : curves_)
             text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\n{}", toml_text(curve.column),
                                 toml_text(curve.label), resolved_sides(curve.pair, "curve."));

@@ -19,7 +19,7 @@ struct RunRow {
     double setting, evaluations_per_s, cpu_s, broken_at_s;
 };
 
-/// How a kind of growth is called, and looks: one hue for all its curves, and its law beside their names.
+/// The name and look of a kind of growth: one hue for all its curves, and its law beside their names.
 struct GrowthLook {
     Growth::Kind kind;
     std::string_view words, law;
@@ -35,14 +35,14 @@ const GrowthLook& look_of(const Growth& growth) {
     return *std::find_if(looks.begin(), looks.end(), [&](const auto& look) { return look.kind == growth.kind; });
 }
 
-/// Of errors that each are the worst since the one before.
+/// The running maximum; NaN stays.
 std::vector<double> worst_so_far(std::vector<double> worst) {
     for (std::size_t i = 1; i < worst.size(); ++i)
         if (!std::isnan(worst[i])) worst[i] = std::fmax(worst[i], worst[i - 1]);
     return worst;
 }
 
-/// What a method makes of energy and rods over a long time, every method at the same cost.
+/// Errors of energy and rods over a long time, every method at the same cost.
 class Drift final : public FigureWork {
 public:
     explicit Drift(FigureReader& reader) : release_(reader.release()) {
@@ -56,8 +56,8 @@ public:
                               spec_.evaluations_per_s);
         for (const auto& method : doppel::methods())
             if (method.angles || method.constraints) methods_.emplace_back(method.name);
-        if (const auto names = table.read_texts("methods")) methods_ = *names;
-        if (const auto names = table.read_texts("projected")) projected_ = *names;
+        table.read_texts("methods", methods_);
+        table.read_texts("projected", projected_);
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         for (const auto& name : methods_)
             if (known(table, "methods", name).angles) runs_.push_back({name, Model::angles});
@@ -70,7 +70,7 @@ public:
         }
         check_distinct(table, "methods", methods_);
         check_distinct(table, "projected", projected_);
-        table.finish();
+        settings_ = table.finish();
     }
 
     std::size_t trials() const override { return runs_.size(); }
@@ -146,18 +146,11 @@ public:
         return all;
     }
 
-    std::string resolved() const override {
-        return resolved_release(release_) +
-               fmt::format(
-                   "\n[drift]\nduration_s = {}\npoints_per_decade = {}\nevaluations_per_s = {}\nmethods = {}\n"
-                   "projected = {}\n",
-                   spec_.times_s.back(), points_per_decade_, spec_.evaluations_per_s, toml_list(methods_),
-                   toml_list(projected_));
-    }
+    std::string resolved() const override { return resolved_release(release_) + settings_; }
 
 private:
     /// From the first second on, at three digits.
-    void read_times(TomlReader& table) {
+    void read_times(SettingsReader& table) {
         double duration = 1e5;
         table.read_positive("duration_s", duration);
         constexpr double least = 10, most = 1e8;
@@ -215,7 +208,7 @@ private:
         return runs_[run].name + (runs_[run].projected ? " projected" : "");
     }
 
-    /// So that those that end among others are named at their ends.
+    /// So that the labels of curves that end early stand at their ends.
     std::vector<std::size_t> longest_first(std::span<const TrialNumbers> numbers) const {
         std::vector<std::size_t> order(runs_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
@@ -237,8 +230,7 @@ private:
         const auto errors = worst_so_far(of_rods ? run.length_error : run.energy_error);
         for (std::size_t i = 0; i < errors.size(); ++i) {
             if (!(errors[i] > 0)) continue;
-            curve.x.push_back(time(run, i));
-            curve.y.push_back(errors[i]);
+            add_point(curve, time(run, i), errors[i]);
         }
         if (curve.x.empty()) return;
         if (found.kind == Growth::Kind::breakdown)
@@ -247,7 +239,7 @@ private:
         plot.curves.push_back(std::move(curve));
     }
 
-    /// What all took, and who took less.
+    /// The cost of all, and the exceptions.
     std::string cost_words(std::span<const TrialNumbers> numbers) const {
         std::string exceptions;
         for (std::size_t run = 0; run < runs_.size(); ++run) {
@@ -261,7 +253,7 @@ private:
                            spec_.evaluations_per_s, exceptions);
     }
 
-    /// Who grows how, with the fitted exponents.
+    /// The growth of each method's error, with the fitted exponents.
     std::string growth_caption(std::span<const TrialNumbers> numbers, bool of_rods) const {
         std::string words;
         for (const auto& look : looks) {

@@ -19,8 +19,8 @@ struct CheckRow {
     double time, reference;
 };
 
-/// The time to the first flip over all releases θ1 × θ2. A trial is a row of the map; one of the last trials follows
-/// some releases, drawn by lot, by a method ten thousand times finer, to say how far the map can be believed.
+/// The time to the first flip over all releases θ1 × θ2. A trial is a row of the map; the last trials compare some
+/// random releases with a reference ten thousand times finer.
 class FlipMap final : public FigureWork {
 public:
     explicit FlipMap(FigureReader& reader) : release_(reader.release()) {
@@ -38,7 +38,7 @@ public:
         if (spec_.tolerance < finest)
             throw table.fault("tolerance", "must be at least {}; it is {}", finest, spec_.tolerance);
         table.read_whole("checked", checked_, 0, 100'000);
-        table.finish();
+        settings_ = table.finish();
         pendulum_ = chain_of(release_).cast<double>();
         const bool at_rest = pendulum_.rate[0] == 0 && pendulum_.rate[1] == 0;
         map_trials_ = static_cast<std::size_t>(at_rest ? (rows_ + 1) / 2 : rows_);
@@ -121,11 +121,7 @@ public:
     std::string resolved() const override {
         std::vector<std::string> rates;
         for (const auto& rate : release_.omega_deg_per_s) rates.push_back(text_of(rate));
-        return resolved_chain(release_) +
-               fmt::format(
-                   "omega_deg_per_s = [{}]\n\n[flip_map]\ncolumns = {}\nrows = {}\nduration_s = {}\ntolerance = {}\n"
-                   "checked = {}\n",
-                   fmt::join(rates, ", "), columns_, rows_, spec_.duration, spec_.tolerance, checked_);
+        return fmt::format("{}omega_deg_per_s = [{}]\n{}", resolved_chain(release_), fmt::join(rates, ", "), settings_);
     }
 
 private:
@@ -170,10 +166,10 @@ private:
         return static_cast<std::size_t>(std::min(a_check, checked_ - static_cast<int>(trial) * a_check));
     }
 
-    /// For some releases drawn by lot from those with the energy to flip: the map's time, and the reference's.
+    /// CheckRows of random releases with the energy to flip.
     TrialNumbers checks(std::size_t trial, const std::atomic<bool>& stop) const {
-        std::mt19937_64 lot(trial);
-        const auto drawn = [&] { return 360.0 * (static_cast<double>(lot() >> 11) * 0x1p-53) - 180; };
+        std::mt19937_64 random(trial);
+        const auto drawn = [&] { return 360.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 180; };
         TrialNumbers numbers;
         for (auto left = checks_of(trial); left > 0;) {
             const auto p = released(drawn(), drawn());
@@ -190,7 +186,7 @@ private:
     }
 
     struct CheckFindings {
-        int agreeing = 0;   // of the checked: flip, or do not, within 10 ms of the reference
+        int agreeing = 0;   // of the checked: within 10 ms of the reference, or no flip in both
         double median = 0;  // s, of those that flip in both
     };
     CheckFindings check_findings(std::span<const TrialNumbers> numbers) const {

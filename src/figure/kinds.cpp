@@ -7,6 +7,13 @@
 
 namespace doppel {
 
+void SettingsReader::read_texts(std::string_view key, std::vector<std::string>& into) {
+    if (const auto texts = TomlReader::read_texts(key)) into = *texts;
+    std::vector<std::string> quoted;
+    for (const auto& text : into) quoted.push_back(toml_text(text));
+    keep(key, fmt::format("[{}]", fmt::join(quoted, ", ")));
+}
+
 Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
     Preset preset;
     preset.name = preset.title = name;
@@ -30,7 +37,7 @@ const MethodEntry& method_named(const TomlReader& table, const std::string& name
     throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
 }
 
-const ReleaseParameter& read_parameter(TomlReader& table, std::span<const std::string_view> names) {
+const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const std::string_view> names) {
     static constexpr std::array<ReleaseParameter, 4> all{
         {{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& s, const Quad& x) { s.angle_deg[0] = x; }, 30, false},
          {"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& s, const Quad& x) { s.angle_deg[1] = x; }, 30, false},
@@ -41,12 +48,6 @@ const ReleaseParameter& read_parameter(TomlReader& table, std::span<const std::s
     std::string name(names.front());
     table.read_choice("parameter", name, names);
     return *std::find_if(all.begin(), all.end(), [&](const auto& parameter) { return parameter.name == name; });
-}
-
-std::string toml_list(const std::vector<std::string>& texts) {
-    std::vector<std::string> quoted;
-    for (const auto& text : texts) quoted.push_back(toml_text(text));
-    return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names) {

@@ -5,12 +5,72 @@
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
 #include "scene/preset_tables.hpp"
+#include "scene/resolved.hpp"
 
 #include <memory>
 #include <span>
 #include <string_view>
 
 namespace doppel {
+
+/// Reads the table that is a kind's own, and keeps what it read as TOML, defaults included: one list of keys for both.
+class SettingsReader : public TomlReader {
+public:
+    explicit SettingsReader(TomlReader table)
+        : TomlReader(std::move(table)), text_(fmt::format("\n[{}]\n", bare_name())) {}
+
+    void read_whole(std::string_view key, int& into, int least, int most) {
+        TomlReader::read_whole(key, into, least, most);
+        keep(key, into);
+    }
+    void read_truth(std::string_view key, bool& into) {
+        TomlReader::read_truth(key, into);
+        keep(key, into);
+    }
+    template <class Number>  // double or Quad
+    void read_number(std::string_view key, Number& into) {
+        TomlReader::read_number(key, into);
+        keep(key, into);
+    }
+    template <class Number>
+    void read_positive(std::string_view key, Number& into) {
+        TomlReader::read_positive(key, into);
+        keep(key, into);
+    }
+    void read_positive_ratio(std::string_view key, Rational& into) {
+        TomlReader::read_positive_ratio(key, into);
+        keep(key, toml_text(into.text()));
+    }
+    void read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most) {
+        TomlReader::read_positive_list(key, into, most);
+        keep(key, fmt::format("[{}]", fmt::join(into, ", ")));
+    }
+    void read_text(std::string_view key, std::string& into) {
+        TomlReader::read_text(key, into);
+        keep(key, toml_text(into));
+    }
+    void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices) {
+        TomlReader::read_choice(key, into, choices);
+        keep(key, toml_text(into));
+    }
+    void read_texts(std::string_view key, std::vector<std::string>& into);
+
+    /// "[table]" and its keys. Throws as TomlReader::finish() does.
+    const std::string& finish() const {
+        TomlReader::finish();
+        return text_;
+    }
+
+private:
+    template <class Value>
+    void keep(std::string_view key, const Value& value) {
+        if constexpr (std::is_same_v<Value, Quad>)
+            text_ += fmt::format("{} = {}\n", key, text_of(value));
+        else
+            text_ += fmt::format("{} = {}\n", key, value);
+    }
+    std::string text_;
+};
 
 /// A preset being read: each kind of figure takes the tables that are its own.
 struct FigureReader {
@@ -19,7 +79,7 @@ struct FigureReader {
     TomlReader &top, &scene, &chart;  // of [chart], a kind may take keys of its own
     std::span<const ExternalMethod> external_methods = {};
 
-    TomlReader table(std::string_view key) { return document.table(top, key); }
+    SettingsReader table(std::string_view key) { return SettingsReader(document.table(top, key)); }
     /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_tables.hpp).
     Preset pair(const std::vector<TomlReader*>& more = {});
     /// The chain that [system] describes, where the figure itself knows how to step it.
@@ -43,10 +103,7 @@ struct ReleaseParameter {
     bool is_ratio;  // > 0
 };
 /// `parameter`, one of these, of which the first is the default. Throws Error (exit 2).
-const ReleaseParameter& read_parameter(TomlReader& table, std::span<const std::string_view> names);
-
-/// ["a", "b"]
-std::string toml_list(const std::vector<std::string>& texts);
+const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const std::string_view> names);
 
 /// Throws Error (exit 2) where one of the names of a key is there twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);

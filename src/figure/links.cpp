@@ -30,7 +30,7 @@ public:
         table.read_whole("to", to_, from_, 1000);
         table.read_positive("duration_s", spec_.duration_s);
         spec_.transient_s = spec_.duration_s / 10;
-        table.finish();
+        settings_ = table.finish();
         if (release_.links() != 1)
             throw table.fault("from", "takes a [system] of one link, which all links are like; it has {}",
                               release_.links());
@@ -84,10 +84,7 @@ public:
                 {"constraints_step_ns_a_link_of_the_longest", rows_of<CostRow>(numbers[0]).back().constraints / to_}};
     }
 
-    std::string resolved() const override {
-        return resolved_release(release_) +
-               fmt::format("\n[links]\nfrom = {}\nto = {}\nduration_s = {}\n", from_, to_, spec_.duration_s);
-    }
+    std::string resolved() const override { return resolved_release(release_) + settings_; }
 
 private:
     std::size_t chains() const { return static_cast<std::size_t>(to_ - from_) + 1; }

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view mark = "doppel trials";  // what such a file calls itself
+constexpr std::string_view mark = "doppel trials";  // the kind of file
 constexpr int format = 2;                           // of its lines; 1 had no checksums
 constexpr std::size_t longest_header = 1 << 16, longest_line = std::size_t{1} << 32;
 constexpr std::size_t most_trials = 100'000'000;
@@ -132,7 +132,7 @@ std::string stem(const PartHeader& header) {
     return header.of == 1 ? header.figure + "." : fmt::format("{}.{}-of-{}.", header.figure, header.shard, header.of);
 }
 
-/// The files NAME.I-of-N.shard of a folder, or what else begins and ends like them.
+/// The files NAME.*.shard of a folder.
 std::vector<fs::path> shards_in(const fs::path& folder, const std::string& name) {
     std::vector<fs::path> found;
     std::error_code ignored;
@@ -157,7 +157,7 @@ void check_header(const fs::path& path, const PartHeader& found, const PartHeade
         refuse("preset, or other --set", short_hash(found.preset), short_hash(wanted.preset));
 }
 
-/// Those of the parts that are not there, as many as one can read.
+/// Throws where parts are missing; names the first of them.
 void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) {
     constexpr std::size_t most_named = 5;
     const auto missing = static_cast<std::size_t>(std::count(parts.begin(), parts.end(), fs::path()));

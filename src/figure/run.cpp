@@ -50,7 +50,7 @@ KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atom
 
 namespace {
 
-/// What a manifest tells besides the figure.
+/// Of the run, for the manifest.
 struct FigureRecord {
     int jobs = 1;
     double compute_wall_s = 0, compute_cpu_s = 0;  // other figures may have been computed meanwhile
@@ -182,7 +182,7 @@ public:
         finished_.abandon();
     }
 
-    /// The number of a figure whose numbers are complete, in the order in which they are; nothing after the last.
+    /// The next figure whose numbers are complete; nothing after the last.
     /// Rethrows what stopped the threads.
     std::optional<std::size_t> next() {
         auto figure = finished_.pop();
@@ -237,7 +237,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         }
         return;
     }
-    std::vector<std::unique_ptr<PartFiles>> files;  // now: a folder that cannot be made is told at once
+    std::vector<std::unique_ptr<PartFiles>> files;  // now, so that faults are reported early
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name, run));
     Scheduler scheduler(figures, options, jobs, files, stop, report);

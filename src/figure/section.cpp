@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-/// Whose colour is whose: a theme has fewer than a section may have orbits.
+/// The legend: a theme may have fewer colours than a section has orbits.
 std::string color_words(std::size_t orbits) {
     const auto colors = themes.front().palette.size();
     if (orbits <= colors) return "Every colour is one orbit.";
@@ -41,7 +41,7 @@ public:
         table.read_whole("orbits", orbits_, 1, 10'000);
         table.read_whole("crossings", spec_.crossings, 1, 1'000'000);
         table.read_positive("tolerance", spec_.tolerance);
-        table.finish();
+        settings_ = table.finish();
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
     }
@@ -75,8 +75,7 @@ public:
             for (std::size_t orbit = 0; orbit < orbits(); ++orbit) {
                 Curve curve{.mark = Mark::points, .hue = static_cast<int>(orbit)};
                 for (const auto& crossing : crossings_of(numbers[panel * orbits() + orbit])) {
-                    curve.x.push_back(crossing.theta2);
-                    curve.y.push_back(crossing.p2);
+                    add_point(curve, crossing.theta2, crossing.p2);
                 }
                 plot.curves.push_back(std::move(curve));
             }
@@ -92,11 +91,7 @@ public:
         return {{"points", points}};
     }
 
-    std::string resolved() const override {
-        return resolved_chain(release_) +
-               fmt::format("\n[section]\nenergy_J = [{}]\norbits = {}\ncrossings = {}\ntolerance = {}\n",
-                           fmt::join(energies_, ", "), orbits_, spec_.crossings, spec_.tolerance);
-    }
+    std::string resolved() const override { return resolved_chain(release_) + settings_; }
 
 private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {

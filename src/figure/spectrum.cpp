@@ -25,7 +25,7 @@ public:
         constexpr double finest = 1e-14, coarsest = 1e-2;
         if (spec_.tolerance < finest || spec_.tolerance > coarsest)
             throw table.fault("tolerance", "must be from {} to {}; it is {}", finest, coarsest, spec_.tolerance);
-        table.finish();
+        settings_ = table.finish();
     }
 
     std::size_t trials() const override { return 1; }
@@ -58,8 +58,7 @@ public:
         for (std::size_t i = 0; i < exponents(); ++i) {
             Curve curve{.label = "λ" + subscript(i + 1), .hue = static_cast<int>(i)};
             for (const auto& sample : samples) {
-                curve.x.push_back(sample.time_s);
-                curve.y.push_back(sample.exponents[i]);
+                add_point(curve, sample.time_s, sample.exponents[i]);
             }
             plot.curves.push_back(std::move(curve));
         }
@@ -84,10 +83,7 @@ public:
         return all;
     }
 
-    std::string resolved() const override {
-        return resolved_release(release_) + fmt::format("\n[spectrum]\nduration_s = {}\nsamples = {}\ntolerance = {}\n",
-                                                        spec_.duration_s, spec_.samples, spec_.tolerance);
-    }
+    std::string resolved() const override { return resolved_release(release_) + settings_; }
 
 private:
     std::size_t exponents() const { return 2 * release_.links(); }

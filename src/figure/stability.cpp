@@ -25,8 +25,8 @@ struct Cells {
     }
 };
 
-/// How well each method keeps energy, over its step or tolerance and a parameter of the release: where it blows up, and
-/// where linear theory says that it must. A trial is a column of one method's map: all releases at one step.
+/// The energy error of each method over its step or tolerance and a parameter of the release, and the limit of linear
+/// theory. A trial is a column of one method's map: all releases at one step.
 class Stability final : public FigureWork {
 public:
     explicit Stability(FigureReader& reader) : release_(reader.release()) {
@@ -34,7 +34,7 @@ public:
         read_rows(table);
         read_methods(table);
         read_columns(table);
-        table.finish();
+        settings_ = table.finish();
         make_releases(reader.table("system"), table);
     }
 
@@ -74,7 +74,6 @@ public:
                       .high = cells.to,
                       .logarithmic = true};
             plot.y = {.low = rows.from, .high = rows.to, .logarithmic = rows.logarithmic};
-            // named once a line
             if (figure.columns == 0 || m % side_by_side == 0) plot.y.label = std::string(parameter_->label);
             if (!rows.logarithmic) plot.y.every = 45;
             plot.map = map_of(numbers, m);
@@ -108,24 +107,10 @@ public:
         return all;
     }
 
-    std::string resolved() const override {
-        std::vector<std::string> names;
-        for (const auto* method : methods_) names.emplace_back(method->name);
-        auto text =
-            resolved_release(release_) +
-            fmt::format(
-                "\n[stability]\nparameter = \"{}\"\nfrom = {}\nto = {}\nrows = {}\ncolumns = {}\nduration_s = \"{}\"\n"
-                "methods = {}\nmodel = \"{}\"\n",
-                parameter_->name, rows_.from, rows_.to, rows_.count, steps_.count, duration_.text(), toml_list(names),
-                model_);
-        if (has(false)) text += fmt::format("step_from_s = {}\nstep_to_s = {}\n", steps_.from, steps_.to);
-        if (has(true))
-            text += fmt::format("tolerance_from = {}\ntolerance_to = {}\n", tolerances_.from, tolerances_.to);
-        return text;
-    }
+    std::string resolved() const override { return resolved_release(release_) + settings_; }
 
 private:
-    void read_rows(TomlReader& table) {
+    void read_rows(SettingsReader& table) {
         constexpr std::array<std::string_view, 2> parameters{"theta1_deg", "mass_ratio"};
         parameter_ = &read_parameter(table, parameters);
         rows_.logarithmic = parameter_->is_ratio;
@@ -144,14 +129,14 @@ private:
         table.read_whole("rows", rows_.count, 1, 10'000);
     }
 
-    void read_methods(TomlReader& table) {
+    void read_methods(SettingsReader& table) {
         constexpr std::array<std::string_view, 3> models{"auto", "angles", "constraints"};
         table.read_choice("model", model_, models);
         std::vector<std::string> names;
         for (const bool adaptive : {false, true})
             for (const auto& method : doppel::methods())
                 if (method.adaptive == adaptive && serves(method, model_of(method))) names.emplace_back(method.name);
-        if (const auto given = table.read_texts("methods")) names = *given;
+        table.read_texts("methods", names);
         if (names.empty()) throw table.fault("methods", "must name at least one");
         for (const auto& name : names) {
             const auto* method = &method_named(table, name);
@@ -163,18 +148,19 @@ private:
     }
 
     /// The range of the methods that go by a tolerance, or of those that do not.
-    void read_range(TomlReader& table, bool adaptive, std::string_view from, std::string_view to, Cells& cells) {
+    void read_range(SettingsReader& table, bool adaptive, std::string_view from, std::string_view to, Cells& cells) {
         for (const auto key : {from, to})
             if (table.has(key) && !has(adaptive))
                 throw table.fault(key, "is for methods {}, of which none is named",
                                   adaptive ? "that go by a tolerance" : "of fixed step");
+        if (!has(adaptive)) return;
         table.read_positive(from, cells.from);
         table.read_positive(to, cells.to);
         if (!(cells.to > cells.from))
             throw table.fault(to, "must be more than {} = {}; it is {}", from, cells.from, cells.to);
     }
 
-    void read_columns(TomlReader& table) {
+    void read_columns(SettingsReader& table) {
         table.read_positive_ratio("duration_s", duration_);
         read_range(table, false, "step_from_s", "step_to_s", steps_);
         read_range(table, true, "tolerance_from", "tolerance_to", tolerances_);
@@ -209,8 +195,7 @@ private:
     }
 
     Model model_of(const MethodEntry& method) const {
-        const bool in_angles = model_ == "angles" || (model_ == "auto" && method.angles);
-        return in_angles ? Model::angles : Model::constraints;
+        return model_ == "angles" || (model_ == "auto" && method.angles) ? Model::angles : Model::constraints;
     }
     /// Whether there is a method that goes by a tolerance, or one that does not.
     bool has(bool adaptive) const {
@@ -263,13 +248,12 @@ private:
         for (std::size_t row = 0; row < map.rows; ++row)
             for (std::size_t column = 0; column < map.columns; ++column) {
                 const double error = numbers[method * columns_ + column][row];
-                // no error at all is as small as any
                 map.values.push_back(static_cast<float>(error < least_shown ? least_shown : error));
             }
         return map;
     }
 
-    /// Where linear theory has a row blow up, s; not a number where nowhere.
+    /// The step at which linear theory has a row blow up, s; NaN where there is none.
     double limit_at(std::string_view method, std::size_t row) const {
         const auto modes = small_oscillations(releases_[row].cast<double>());
         return step_limit(method, modes, duration_.value(), blow_up).value_or(nan_value);
@@ -279,8 +263,7 @@ private:
     void draw_limit(std::string_view method, Plot& plot) const {
         Curve curve{.label = "linear limit", .dashed = true, .quiet = true};
         for (std::size_t row = 0; row < releases_.size(); ++row) {
-            curve.x.push_back(limit_at(method, row));
-            curve.y.push_back(rows_.middle(static_cast<int>(row)));
+            add_point(curve, limit_at(method, row), rows_.middle(static_cast<int>(row)));
         }
         const auto [least, most] = std::minmax_element(curve.x.begin(), curve.x.end());
         constexpr double alike = 1e-4;

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace doppel {
 namespace {
@@ -19,7 +18,7 @@ struct SweepRow {
     double average, exponent, uncertainty;
 };
 
-/// The study's sweeps: twins released over a range of one parameter, and how far apart they come on average.
+/// The study's sweeps: the average ln(d/d₀) of twins, and the Lyapunov exponent, over a range of one parameter.
 class Sweep final : public FigureWork {
 public:
     explicit Sweep(FigureReader& reader) : pair_(reader.pair()) {
@@ -40,16 +39,16 @@ public:
             table.read_positive("exponent_duration_s", exponent_spec_.duration_s);
             exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
         }
-        table.finish();
+        settings_ = table.finish();
         const auto scene = make_scene(twins(0));
-        make_scene(twins(trials_ - 1));  // faults are told at once
+        make_scene(twins(trials_ - 1));  // reports faults now
         run_ = fast_run(scene);
         subtitle_ = words(scene);
     }
 
     std::size_t trials() const override { return trials_; }
     std::size_t together() const override {
-        // a twin that is the next trial's sibling is stepped once for both
+        // a twin that two neighbouring trials share is stepped once
         return run_ ? twins_block() / (shares_twins() ? 1 : 2) - (shares_twins() ? 1 : 0) : 1;
     }
     std::string unit() const override { return "pairs"; }
@@ -143,14 +142,7 @@ public:
         return all;
     }
 
-    std::string resolved() const override {
-        auto text = resolved_pair(pair_);
-        text += fmt::format(
-            "\n[sweep]\nparameter = \"{}\"\nfrom = {}\nto = {}\nstep = {}\ndifference = {}\nexponent = {}\n",
-            parameter_->name, text_of(from_), text_of(to_), text_of(step_), text_of(difference_), exponent_);
-        if (exponent_) text += fmt::format("exponent_duration_s = {}\n", exponent_spec_.duration_s);
-        return text;
-    }
+    std::string resolved() const override { return resolved_pair(pair_) + settings_; }
 
 private:
     SweepRow row_of_trial(const TrialNumbers& numbers) const {
@@ -212,7 +204,7 @@ private:
     }
 
     std::string words(Scene scene) const {
-        // what sets all twins apart is told by itself
+        // the difference of all twins is named on its own
         parameter_->set(scene.preset.b, from_);
         const auto apart = text_of(difference_ < 0 ? Quad(-difference_) : difference_);
         if (parameter_->is_ratio) {
@@ -243,7 +235,7 @@ private:
         return sum / static_cast<double>(counted);
     }
 
-    /// How many releases are regular; and takes equilibria, whose exponent is another thing, out of the curve.
+    /// Counts the regular releases, and takes equilibria out of the curve: their exponent is not that of a motion.
     std::string exponent_words(std::span<const TrialNumbers> numbers, Curve& exponents) const {
         long regular = 0;
         std::string equilibria;

@@ -18,7 +18,7 @@
 
 namespace doppel {
 
-/// The numbers that one trial of a figure comes to, at least one; NaN where one could not be had.
+/// The numbers that one trial of a figure comes to, at least one; NaN where one is missing.
 using TrialNumbers = std::vector<double>;
 
 /// Whether all are numbers, neither infinite nor NaN.
@@ -87,7 +87,12 @@ void add_row(Csv& table, const Cells&... cells) {
     table.end_row();
 }
 
-/// What a figure has to say about itself beside its table: a key of the manifest.
+inline void add_point(Curve& curve, double x, double y) {
+    curve.x.push_back(x);
+    curve.y.push_back(y);
+}
+
+/// A result of a figure beside its table: a key of the manifest.
 struct Finding {
     std::string key;
     std::variant<double, std::string, bool> value;
@@ -104,7 +109,7 @@ public:
     virtual std::size_t together() const { return 1; }
     /// Whether its trials measure time, and so are computed one after the other, by themselves.
     virtual bool measures_time() const { return false; }
-    /// What a person would count, "pairs", and how many of them a trial is; 0 for what other trials rest on.
+    /// The unit of progress, "pairs", and how many of them a trial is; 0 for what other trials need first.
     virtual std::string unit() const { return "trials"; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
 
@@ -115,7 +120,7 @@ public:
     }
 
     /// Whether the numbers can be those of the trial: as many as it has, and infinite or NaN only where they may be.
-    /// Those of a file are asked, and those just computed.
+    /// Both those read from files and those just computed are checked.
     virtual bool fits(std::size_t trial, std::span<const double> numbers) const = 0;
 
     /// The table: its columns, and its rows from the numbers of all trials.
@@ -138,6 +143,8 @@ public:
     virtual std::string resolved_chart() const { return {}; }
 
 protected:
+    std::string settings_;  // the kind's own table as it was read, TOML
+
     /// One trial, of a kind that computes no two together.
     virtual TrialNumbers compute_trial(std::size_t /*trial*/, const std::atomic<bool>& /*stop*/) const { return {}; }
 };

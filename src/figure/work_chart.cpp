@@ -14,7 +14,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr double rounding = 0x1p-53;
-constexpr double most_shown = 1;  // rad: beyond, an end is not known
+constexpr double most_shown = 1;  // rad
 
 /// Methods of a family share a hue of the palette; of two, the second is dashed.
 struct Look {
@@ -36,7 +36,7 @@ Look look_of(std::string_view method) {
     return {};
 }
 
-/// What of a ladder is shown.
+/// The errors shown.
 ErrorRange range_of(const WorkDiagram& diagram) {
     constexpr double at_floor = 10;
     return {std::isnan(diagram.floor) ? 0 : at_floor * diagram.floor, most_shown};
@@ -53,21 +53,17 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
                 .quiet = external != nullptr,
                 .ground = best ? Ground::none : Ground::line};
     const auto useful = useful_rungs(ladder, diagram.cost, range_of(diagram));
-    const auto add = [&](double x, double y) {
-        curve.x.push_back(x);
-        curve.y.push_back(y);
-    };
-    for (const std::size_t i : useful) add(cost_of(ladder.rungs[i], diagram.cost), ladder.rungs[i].error);
+    for (const std::size_t i : useful) add_point(curve, cost_of(ladder.rungs[i], diagram.cost), ladder.rungs[i].error);
     if (diagram.cost == Cost::evaluations || !best) return curve;
-    // how far times spread, as level bars where they show
+    // the spread of times, as horizontal bars
     constexpr double shows = 0.05;
     for (const std::size_t i : useful) {
         const auto& rung = ladder.rungs[i];
         const double spread = std::min(ladder.spread[i], 0.9);
         if (spread < shows) continue;
-        add(nan_value, nan_value);
-        add(rung.cpu_s * (1 - spread), rung.error);
-        add(rung.cpu_s * (1 + spread), rung.error);
+        add_point(curve, nan_value, nan_value);
+        add_point(curve, rung.cpu_s * (1 - spread), rung.error);
+        add_point(curve, rung.cpu_s * (1 + spread), rung.error);
     }
     return curve;
 }
@@ -75,13 +71,12 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
 Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.ground = Ground::band};
     for (const auto& point : front_of(diagram.index, diagram.ladders, diagram.cost, range_of(diagram))) {
-        curve.x.push_back(point.cost);
-        curve.y.push_back(point.error);
+        add_point(curve, point.cost, point.error);
     }
     return curve;
 }
 
-/// Where the published study stands.
+/// The point of the published study.
 void add_study(const WorkDiagram& diagram, Plot& plot) {
     for (const auto& ladder : diagram.ladders) {
         if (ladder.problem != diagram.index || !ladder.solver.is_study()) continue;
@@ -95,7 +90,7 @@ void add_study(const WorkDiagram& diagram, Plot& plot) {
     }
 }
 
-/// Axes around what matters: from where a first method is of use, down to the floors where they are near.
+/// The limits of the axes: from the least useful accuracy down to the floors, where errors come near them.
 void fit(const WorkDiagram& diagram, Plot& plot) {
     constexpr double of_use = 0.03, near = 100;
     double least = most_shown, cheapest = std::numeric_limits<double>::infinity();
@@ -106,7 +101,7 @@ void fit(const WorkDiagram& diagram, Plot& plot) {
         }
     if (std::isfinite(cheapest)) plot.x.low = 0.5 * cheapest;
     plot.y.low = least / 4;
-    plot.y.high = 20 * most_shown;  // the study's words stand above
+    plot.y.high = 20 * most_shown;  // room for the study's label
     if (!(least < near * diagram.floor)) return;
     const double grown = diagram.floor / rounding;
     const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);

@@ -17,9 +17,9 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::array costs{"time"sv, "evaluations"sv};
-constexpr std::array all_models{Model::angles, Model::constraints, Model::mechanism};
+constexpr std::array model_names{"angles"sv, "constraints"sv, "mechanism"sv};  // in the order of Model
 
-/// What a person may want of the end, rad.
+/// Accuracies, rad, for which the cheapest method is named.
 struct Accuracy {
     double error;
     const char *key, *words;
@@ -48,7 +48,7 @@ public:
         table.read_positive("least_error", least_error_);
         read_solvers(table);
         for (const auto& method : reader.external_methods) solvers_.push_back({Model::angles, "", &method});
-        table.finish();
+        settings_ = table.finish();
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
@@ -129,19 +129,13 @@ public:
             for (const auto& accuracy : accuracies) add_findings(ladders, p, accuracy, all);
         }
         if (cost_ == Cost::evaluations) return all;
-        const auto [typical, worst] = spread_of(ladders);
+        const auto [typical, worst] = time_spread(ladders);
         all.push_back({"spread_typical", typical});
         all.push_back({"spread_worst", worst});
         return all;
     }
 
-    std::string resolved() const override {
-        std::vector<std::string> models;
-        for (const auto model : models_) models.emplace_back(name_of(model));
-        return fmt::format(
-            "\n[work_precision]\n{}models = {}\nmethods = {}\nrepeats = {}\nmost_evaluations = {}\nleast_error = {}\n",
-            problems_.resolved, toml_list(models), toml_list(methods_), repeats_, most_evaluations_, least_error_);
-    }
+    std::string resolved() const override { return settings_ + problems_.comment; }
 
     std::string resolved_chart() const override {
         return fmt::format("cost = \"{}\"\n", costs[cost_ == Cost::time ? 0 : 1]);
@@ -151,25 +145,23 @@ private:
     int repeats() const { return cost_ == Cost::time ? repeats_ : 1; }
     bool has_angles() const { return problems_.all.front().has_angles(); }
 
-    void read_solvers(TomlReader& table) {
-        if (const auto names = table.read_texts("models")) {
-            models_.clear();
-            for (const auto& name : *names) {
-                const auto found = std::find_if(all_models.begin(), all_models.end(),
-                                                [&](Model model) { return name_of(model) == name; });
-                if (found == all_models.end())
-                    throw table.fault("models", "are of angles, constraints, mechanism; \"{}\" is not", name);
-                models_.push_back(*found);
-            }
+    void read_solvers(SettingsReader& table) {
+        std::vector<std::string> models(model_names.begin(), model_names.end());
+        table.read_texts("models", models);
+        std::vector<Model> chosen;
+        for (const auto& name : models) {
+            const auto found = std::find(model_names.begin(), model_names.end(), name);
+            if (found == model_names.end())
+                throw table.fault("models", "are of {}; \"{}\" is not", fmt::join(model_names, ", "), name);
+            chosen.push_back(static_cast<Model>(found - model_names.begin()));
         }
-        if (const auto names = table.read_texts("methods"))
-            methods_ = *names;
-        else
-            for (const auto& method : methods()) methods_.emplace_back(method.name);
-        for (const auto& name : methods_) method_named(table, name);
-        check_distinct(table, "methods", methods_);
-        for (const auto model : models_)
-            for (const auto& name : methods_)
+        std::vector<std::string> methods;
+        for (const auto& method : doppel::methods()) methods.emplace_back(method.name);
+        table.read_texts("methods", methods);
+        for (const auto& name : methods) method_named(table, name);
+        check_distinct(table, "methods", methods);
+        for (const auto model : chosen)
+            for (const auto& name : methods)
                 if (serves(*find_method(name), model)) solvers_.push_back({model, name});
         if (solvers_.empty())
             throw table.fault(table.has("methods") ? "methods" : "models",
@@ -277,18 +269,8 @@ private:
         return number < 1000 ? fmt::format("{:.3g}", number) : grouped(std::lround(number));
     }
 
-    /// Typical and worst spread of the times that are shown.
-    static std::pair<double, double> spread_of(const std::vector<Ladder>& ladders) {
-        std::vector<double> all;
-        for (const auto& ladder : ladders)
-            for (const std::size_t i : useful_rungs(ladder, Cost::time, {0, 1})) all.push_back(ladder.spread[i]);
-        if (all.empty()) return {nan_value, nan_value};
-        std::sort(all.begin(), all.end());
-        return {all[all.size() / 2], all.back()};
-    }
-
     std::string spread_words(const std::vector<Ladder>& ladders) const {
-        const auto [typical, worst] = spread_of(ladders);
+        const auto [typical, worst] = time_spread(ladders);
         return fmt::format(
             "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
             "± {:.0f} %, shown as bars.",
@@ -304,8 +286,6 @@ private:
     std::unique_ptr<SharedReference[]> references_;  // of each problem
     int repeats_ = 5, most_evaluations_ = 300'000;
     double least_error_ = 1e-16;
-    std::vector<Model> models_{all_models.begin(), all_models.end()};
-    std::vector<std::string> methods_;
     std::vector<Solver> solvers_;
     std::vector<std::pair<std::size_t, Solver>> ladders_;  // the problem of each, and its solver
 };

@@ -8,10 +8,10 @@ namespace doppel {
 /// The problems that a preset's [work_precision] asks for. Throws Error (exit 2).
 struct WorkProblems {
     std::vector<WorkProblem> all;
-    std::string resolved;  // the keys that name them, TOML
     std::string subtitle;  // what moves
+    std::string comment;   // what else the numbers depend on, TOML
 };
-WorkProblems read_problems(TomlReader& table);
+WorkProblems read_problems(SettingsReader& table);
 
 /// Everything that the diagram of one problem shows.
 struct WorkDiagram {

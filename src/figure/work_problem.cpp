@@ -67,10 +67,10 @@ WorkProblem standard_problem(const StandardProblem& standard) {
     return make_problem(std::string(standard.name), side, {standard.seconds, 1});
 }
 
-WorkProblems read_standard(TomlReader& table) {
-    std::vector<std::string> names, quoted;
+WorkProblems read_standard(SettingsReader& table) {
+    std::vector<std::string> names;
     for (const auto& standard : standard_problems()) names.emplace_back(standard.name);
-    if (const auto asked = table.read_texts("problems")) names = *asked;
+    table.read_texts("problems", names);
     if (names.empty()) throw table.fault("problems", "must name at least one of P1, P2, P3, P4");
     WorkProblems problems;
     for (const auto& name : names) {
@@ -80,11 +80,9 @@ WorkProblems read_standard(TomlReader& table) {
         if (std::count(names.begin(), names.end(), name) > 1)
             throw table.fault("problems", "must differ; \"{}\" is there twice", name);
         problems.all.push_back(standard_problem(*found));
-        quoted.push_back(toml_text(name));
     }
     if (table.has("duration_s"))
         throw table.fault("duration_s", "is for the motion of a \"scene\"; the problems have their own");
-    problems.resolved = fmt::format("problems = [{}]\n", fmt::join(quoted, ", "));
     problems.subtitle =
         "double and triple pendulums released at rest, links of 1 m and 1 kg, g = 9.8 m/s²; double precision, one core";
     return problems;
@@ -108,7 +106,7 @@ std::string system_words(const WorkProblem& problem) {
 }
 
 /// Side a of a film. What it says stands beside its name, so that two films of one name are told apart.
-WorkProblems read_scene(TomlReader& table) {
+WorkProblems read_scene(SettingsReader& table) {
     std::string name;
     table.read_text("scene", name);
     if (table.has("problems")) throw table.fault("problems", "cannot stand beside \"scene\", which is one of its own");
@@ -122,21 +120,20 @@ WorkProblems read_scene(TomlReader& table) {
     table.demand_drawable("scene", source.name);
     if (is_figure(source)) throw table.fault("scene", "must name a film; \"{}\" is a figure", name);
     auto film = read_preset(source);
-    if (table.has("duration_s")) table.read_positive_ratio("duration_s", film.duration_s);
+    table.read_positive_ratio("duration_s", film.duration_s);
     WorkProblems problems;
     problems.all.push_back(make_problem(source.name, film.a, film.duration_s));
     problems.subtitle = system_words(problems.all.back());
-    problems.resolved = fmt::format("scene = {}\nduration_s = \"{}\"\n", toml_text(name), film.duration_s.text());
     film.b = film.a;
-    std::string comment;
-    for (const char c : resolved_sides(film)) comment += c == '\n' ? std::string("\n# ") : std::string(1, c);
-    problems.resolved += "#" + comment + "\n";
+    problems.comment = "#";
+    for (const char c : resolved_sides(film)) problems.comment += c == '\n' ? std::string("\n# ") : std::string(1, c);
+    problems.comment += "\n";
     return problems;
 }
 
 }  // namespace
 
-WorkProblems read_problems(TomlReader& table) {
+WorkProblems read_problems(SettingsReader& table) {
     return table.has("scene") ? read_scene(table) : read_standard(table);
 }
 

@@ -1,4 +1,3 @@
-#include "analysis/drift.hpp"
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>
@@ -124,33 +123,6 @@ TEST(Drift, SaysWhatCannotBe) {
     expect_fault("drift.evaluations_per_s=1", "must be from 10 to");
     expect_fault("drift.points=3", "points_per_decade");
     expect_fault("system.step_s=0.1", "step_s");
-}
-
-TEST(Growth, IsWhatThePowerSays) {
-    std::vector<double> times, errors;
-    for (int i = 0; i <= 40; ++i) times.push_back(std::pow(10, 0.1 * i));
-    using Kind = Growth::Kind;
-    for (const auto& [power, expected] :
-         {std::pair{0.0, Kind::bounded}, {0.5, Kind::root}, {1.0, Kind::linear}, {2.0, Kind::steeper}}) {
-        errors.clear();
-        // another law before the last two decades leaves no trace
-        for (const double t : times) errors.push_back(t < 99 ? 7 : std::pow(t, power));
-        const auto growth = growth_of(times, errors, std::nan(""));
-        EXPECT_NEAR(growth.exponent, power, 2e-15);  // measured 0
-        EXPECT_EQ(growth.kind, expected);
-        EXPECT_TRUE(std::isnan(growth.doubling_s));
-    }
-    EXPECT_EQ(growth_of(times, std::vector(times.size(), 0.0), std::nan("")).kind, Kind::bounded);
-}
-
-TEST(Growth, DoublesUntilItBreaksDown) {
-    std::vector<double> times, errors;
-    for (int i = 0; i <= 20; ++i) times.push_back(std::pow(10, 0.1 * i));
-    for (const double t : times) errors.push_back(t < 64 ? std::exp2(t / 5) : std::nan(""));
-    const auto growth = growth_of(times, errors, 65);
-    EXPECT_EQ(growth.kind, Growth::Kind::breakdown);
-    EXPECT_NEAR(growth.doubling_s, 5, 5e-15);  // measured 8.9e-16
-    EXPECT_EQ(growth.broken_at_s, 65);
 }
 
 }  // namespace drift_test

@@ -1,7 +1,6 @@
-#include "analysis/linear_stability.hpp"
 #include "analysis/energy_stability.hpp"
+#include "analysis/linear_stability.hpp"
 #include "figure/support.hpp"
-#include "integrate/widths.hpp"
 #include "output/golden.hpp"
 #include "render/renderer.hpp"
 
@@ -96,29 +95,6 @@ TEST(Stability, HasWholeStepsNearThoseAskedFor) {
     }
 }
 
-TEST(Stability, IsTheSameAtEveryWidthAndAlone) {
-    std::vector<Pendulum<Quad>> releases;
-    for (int i = 1; i <= 11; ++i) releases.push_back({.angle = {Quad(i) / 4, 0}});
-    const std::atomic<bool> never = false;
-    for (const auto model : {Model::angles, Model::constraints})
-        for (const char* method : {"euler", "rk4"})
-            for (const long steps : {20L, 200L}) {
-                StabilityRun run{.method = method, .model = model, .duration = {10, 1}, .samples = steps, .width = 2};
-                const auto expected = greatest_energy_errors(run, releases, never);
-                ASSERT_EQ(expected.size(), releases.size());
-                for (const int width : register_widths()) {
-                    run.width = width;
-                    const auto errors = greatest_energy_errors(run, releases, never);
-                    for (std::size_t i = 0; i < releases.size(); ++i) {
-                        const auto lone = greatest_energy_errors(run, std::span(releases).subspan(i, 1), never);
-                        for (const double error : {errors[i], lone[0]})
-                            EXPECT_TRUE(error == expected[i] || (std::isnan(error) && std::isnan(expected[i])))
-                                << method << " " << width << " " << i;
-                    }
-                }
-            }
-}
-
 TEST(Stability, IsTheSameForAnyJobsAndFromTheResolvedPreset) {
     for (const char* name : {"stability", "stability-mass"}) {
         const auto figure = figure_of(name, {"stability.rows=4", "stability.columns=5", "stability.duration_s=2"});
@@ -172,16 +148,6 @@ TEST(Stability, NeedsEnergyToCompareWith) {
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("hangs at rest, without energy"), std::string::npos) << error.what();
     }
-}
-
-TEST(ReleasedEnergy, IsThatAboveHanging) {
-    const Pendulum<double> p{.mass = {2, 3}, .length = {0.5, 0.7}, .angle = {0.4, 2.0}, .rate = {1.5, -0.3}};
-    const double bottom = -p.potential_range() / 2;
-    EXPECT_NEAR(released_energy(p),
-                energy(bobs_of_angles(p, released_in_angles<double, Eigen::Dynamic>(p)), p.gravity) - bottom,
-                5e-14);  // measured 7.1e-15
-    // with θ = 10⁻⁷ the level alone would leave two digits
-    EXPECT_NEAR(released_energy({.angle = {1e-7, 0}}) / (0.5 * 9.8 * 2e-14), 1, 5e-15);  // measured 1e-15
 }
 
 /// Steps, times and angles at which nothing is chaotic yet.

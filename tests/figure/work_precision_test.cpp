@@ -224,9 +224,9 @@ private:
 };
 
 TEST(WorkPrecision, HasPeers) {
-    const std::vector<ExternalMethod> peers{{"idle", true, 1e-4, 1e-2, [](const Pendulum<double>&, double, double setting) {
-                                       return std::make_unique<Idle>(setting);
-                                   }}};
+    const std::vector<ExternalMethod> peers{
+        {"idle", true, 1e-4, 1e-2,
+         [](const Pendulum<double>&, double, double setting) { return std::make_unique<Idle>(setting); }}};
     const auto figure = read_figure({"x", "presets/x.toml",
                                      fmt::format("[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = "
                                                  "\"{}\"\nmodels = [\"angles\"]\nmethods = [\"taylor\"]\n",
@@ -260,9 +260,9 @@ TEST(WorkPrecision, TakesAMechanism) {
 }
 
 TEST(WorkPrecision, FailsWhereEveryRunBreaksDown) {
-    const auto figure = figure_of("speed-accuracy", {by_evaluations, "work_precision.problems=[\"P3\"]",
-                                                     "work_precision.methods=[\"gauss4\", \"rattle\"]",
-                                                     "work_precision.most_evaluations=100"});
+    const auto figure = figure_of(
+        "speed-accuracy", {by_evaluations, "work_precision.problems=[\"P3\"]",
+                           "work_precision.methods=[\"gauss4\", \"rattle\"]", "work_precision.most_evaluations=100"});
     const auto trials = computed(figure);
     for (const auto& row : rows_of(table_text(figure, trials)))
         EXPECT_TRUE(std::isnan(row.number("angle_error_rad"))) << row.cells.at("method");
