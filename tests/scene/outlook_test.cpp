@@ -50,6 +50,10 @@ TEST(Outlook, TellsForAboutHowLongRunsInDoubleCanBeRight) {
     }
 }
 
+TEST(Outlook, TellsTheErrorAtTheEndOfWhatIsRight) {
+    EXPECT_EQ(outlook_of("angle_deg = [30, 0]", 5).error_s, 5);
+}
+
 TEST(Outlook, SaysSoBeforeTheEndToo) {
     // what it makes of ten seconds holds what forty show
     const auto shown = *outlook_of("angle_deg = [90, 90]", 40).limit,

@@ -24,8 +24,8 @@ TEST(Words, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
     const auto few = side_words(scene_of("butterfly"));
     EXPECT_EQ(few[0].heading, "θ₁ = 90°");
     EXPECT_EQ(few[0].note, "θ₂ = 90°");
-    const auto many = side_words(scene_of(
-        "butterfly", {"b.omega_deg_per_s=[1, 2]", "b.mass_kg=[3, 4]", "b.length_m=[0.5, 0.6]", "b.gravity_m_per_s2=9.7"}));
+    const auto many = side_words(scene_of("butterfly", {"b.omega_deg_per_s=[1, 2]", "b.mass_kg=[3, 4]",
+                                                        "b.length_m=[0.5, 0.6]", "b.gravity_m_per_s2=9.7"}));
     EXPECT_EQ(many[1].heading, "θ₁ = 90.003°, ω₁ = 1°/s");
     EXPECT_EQ(many[1].note, "ω₂ = 2°/s, m₁ = 3 kg, m₂ = 4 kg, …");
 }
@@ -45,6 +45,27 @@ TEST(Defaults, AreThoseOfTheReference) {
     EXPECT_EQ(chain.mass_kg, (std::vector<Quad>{1, 1, 1}));
     EXPECT_EQ(chain.length_m, (std::vector<Quad>{1, 1, 1}));
     EXPECT_EQ(read("[video]\nlayout = \"ensemble\"").video.members, 100);
+}
+
+TEST(Resolved, KeepsTheRangeOfEveryStrip) {
+    for (const std::string range :
+         {"distance_range = [0.001, 0.01]", "exponent_range = [-1, 2]", "energy_range = [1e-05, 1]",
+          "rod_error_range = [1e-09, 1e-08]", "rod_force_range = [-3, 30]"}) {
+        const auto preset = read_preset({"x", "x.toml", "[video]\n" + range, "x.toml"});
+        EXPECT_NE(resolved_toml(preset).find("\n" + range + "\n"), std::string::npos) << resolved_toml(preset);
+    }
+}
+
+TEST(Words, OfAValueInAnErrorAreCut) {
+    const auto fault = [](std::size_t letters) {
+        return error_of([&] {
+                   read_preset({"x", "x.toml", "[system]\nlinks = \"" + std::string(letters, 'y') + "\"", "x.toml"});
+               })
+            .second;
+    };
+    // 60 with its quotes
+    EXPECT_TRUE(fault(58).ends_with("it is a string (\"" + std::string(58, 'y') + "\")")) << fault(58);
+    EXPECT_TRUE(fault(59).ends_with("it is a string (\"" + std::string(58, 'y') + "…)")) << fault(59);
 }
 
 TEST(Resolved, KeepsBothColoursOfTheSides) {
