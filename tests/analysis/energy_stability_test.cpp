@@ -1,6 +1,6 @@
 #include "analysis/energy_stability.hpp"
 
-#include "integrate/ensemble.hpp"
+#include "integrate/widths.hpp"
 #include "physics/bob.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(EnergyStability, IsTheSameAtEveryWidthAndAlone) {
                 StabilityRun run{.method = method, .model = model, .duration = {10, 1}, .samples = steps, .width = 2};
                 const auto expected = greatest_energy_errors(run, releases, never);
                 ASSERT_EQ(expected.size(), releases.size());
-                for (const int width : Ensemble::widths()) {
+                for (const int width : register_widths()) {
                     run.width = width;
                     const auto errors = greatest_energy_errors(run, releases, never);
                     for (std::size_t i = 0; i < releases.size(); ++i) {

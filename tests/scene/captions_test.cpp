@@ -47,6 +47,27 @@ TEST(Defaults, AreThoseOfTheReference) {
     EXPECT_EQ(read("[video]\nlayout = \"ensemble\"").video.members, 100);
 }
 
+TEST(Resolved, KeepsTheRangeOfEveryStrip) {
+    for (const std::string range :
+         {"distance_range = [0.001, 0.01]", "exponent_range = [-1, 2]", "energy_range = [1e-05, 1]",
+          "rod_error_range = [1e-09, 1e-08]", "rod_force_range = [-3, 30]"}) {
+        const auto preset = read_preset({"x", "x.toml", "[video]\n" + range, "x.toml"});
+        EXPECT_NE(resolved_toml(preset).find("\n" + range + "\n"), std::string::npos) << resolved_toml(preset);
+    }
+}
+
+TEST(Words, OfAValueInAnErrorAreCut) {
+    const auto fault = [](std::size_t letters) {
+        return error_of([&] {
+                   read_preset({"x", "x.toml", "[system]\nlinks = \"" + std::string(letters, 'y') + "\"", "x.toml"});
+               })
+            .second;
+    };
+    // 60 with its quotes
+    EXPECT_TRUE(fault(58).ends_with("it is a string (\"" + std::string(58, 'y') + "\")")) << fault(58);
+    EXPECT_TRUE(fault(59).ends_with("it is a string (\"" + std::string(58, 'y') + "…)")) << fault(59);
+}
+
 TEST(Resolved, KeepsBothColoursOfTheSides) {
     auto preset = read_preset(find_preset("butterfly"), sets({"video.side_colors=[\"#102030\", \"#a0b0c0\"]"}));
     EXPECT_NE(resolved_toml(preset).find(R"(side_colors = ["#102030", "#a0b0c0"])"), std::string::npos);

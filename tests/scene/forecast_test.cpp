@@ -50,6 +50,10 @@ TEST(Forecast, TellsForAboutHowLongRunsInDoubleCanBeRight) {
     }
 }
 
+TEST(Forecast, TellsTheErrorAtTheEndOfWhatIsRight) {
+    EXPECT_EQ(predicted("angle_deg = [30, 0]", 5).error_s, 5);
+}
+
 TEST(Forecast, SaysSoBeforeTheEndToo) {
     // what it makes of ten seconds holds what forty show
     const auto shown = *predicted("angle_deg = [90, 90]", 40).limit,

@@ -8,6 +8,8 @@
 
 #include <cmath>
 #include <random>
+#include <set>
+#include <string>
 
 namespace doppel {
 namespace method_choice_test {
@@ -255,6 +257,27 @@ TEST(Choice, TakesTheCheapestWayThatTheTableAllows) {
                tight = make_scene(preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-11"));
     EXPECT_LT(loose.a.choice->evaluations, tight.a.choice->evaluations);
     EXPECT_LT(tight.a.choice->estimated_error, loose.a.choice->estimated_error);
+}
+
+TEST(Choice, TakesLessWorkThanTheFinestWayNeedsWhereItMay) {
+    // adams, by the table the cheapest way to the finest accuracy, takes two evaluations a step, and a step a sample
+    const auto scene = make_scene(preset_from(
+        "[scene]\nduration_s = 3\nsample_hz = 120\n[system]\naccuracy = 0.1\nmodel = \"constraints\"\nangle_deg = 60"));
+    EXPECT_LT(scene.a.choice->evaluations, 2 * 360);  // measured 163, by dop853
+}
+
+TEST(Choice, GivesTolerancesOfOneOrThreeOfAPowerOfTen) {
+    std::set<char> digits;
+    for (int half_decades = 2; half_decades <= 10; ++half_decades) {
+        const auto scene = make_scene(
+            preset_from(fmt::format("[scene]\nduration_s = 2\n[system]\nangle_deg = [30, 0]\naccuracy = {:.3g}",
+                                    std::pow(10, -0.5 * half_decades))));
+        const double tolerance = static_cast<double>(scene.a.motion.tolerance);
+        const auto digit = fmt::format("{:.0e}", tolerance);
+        EXPECT_NEAR(std::stod(digit) / tolerance, 1, 1e-14);  // measured 0
+        digits.insert(digit[0]);
+    }
+    EXPECT_EQ(digits, (std::set<char>{'1', '3'}));
 }
 
 TEST(Choice, StandsInPlaceOfIntegratorAndStep) {

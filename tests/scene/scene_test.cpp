@@ -275,6 +275,61 @@ TEST(Distance, OutOfRangeIsToldOfTheSideAndTheQuantity) {
     EXPECT_EQ(fault({}).first, ExitCode::done);
 }
 
+TEST(SideRun, NamesTheVelocityThatIsNoNumber) {
+    // so light a mass on so stiff a spring that its acceleration is beyond all numbers, its energy not
+    const auto scene = scene_from(R"(
+[system]
+integrator = "euler"
+step_s = "1/120"
+[[system.particle]]
+name = "mote"
+mass_kg = 1e-10
+position_m = [2, 2]
+[[system.force]]
+kind = "spring"
+name = "spring"
+from = "mote"
+to = [0, 0]
+length_m = 0
+stiffness_N_per_m = 1e300
+)");
+    const std::atomic<bool> never = false;
+    SideRun run(scene, scene.a, 'a');
+    run.next(never);
+    const auto [code, message] = error_of([&] { run.next(never); });
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("the velocity of mass 1 is -inf"), std::string::npos) << message;
+}
+
+TEST(Particles, AreInTheOrderOfTheOtherSide) {
+    const auto particle = [](const std::string& side, const std::string& name, int x) {
+        return fmt::format("[[{}.particle]]\nname = \"{}\"\nposition_m = [{}, 0]\n", side, name, x);
+    };
+    const auto fault = [&](const std::string& first, const std::string& second) {
+        return error_of([&] {
+                   scene_from(particle("a", "sun", 0) + particle("a", "moon", 1) + particle("b", first, 0) +
+                              particle("b", second, 2));
+               })
+            .second;
+    };
+    EXPECT_NE(fault("moon", "sun").find("particle must be in the order of the other side: moon, sun"),
+              std::string::npos)
+        << fault("moon", "sun");
+    EXPECT_EQ(fault("sun", "moon"), "nothing was thrown");
+}
+
+TEST(Crowd, GoesFromOneSideToTheOtherInEqualSteps) {
+    const auto scene = scene_of("fan", {"video.members=5", "a.angle_deg=[90, 40]", "b.angle_deg=[98, 20]",
+                                        "a.mass_kg=[1, 1]", "b.mass_kg=[1, 3]"});
+    ASSERT_EQ(scene.crowd.size(), 5u);
+    for (int k = 0; k < 5; ++k) {
+        const auto& chain = *scene.crowd[static_cast<std::size_t>(k)].chain;
+        EXPECT_NEAR(static_cast<double>(chain.angle[0]), (90 + 2 * k) * pi / 180, 1e-15) << k;  // measured 0
+        EXPECT_NEAR(static_cast<double>(chain.angle[1]), (40 - 5 * k) * pi / 180, 1e-15) << k;  // measured 0
+        EXPECT_EQ(static_cast<double>(chain.mass[1]), 1 + 0.5 * k);
+    }
+}
+
 TEST(Damping, IsNoErrorOfTheEnergy) {
     const auto scene = scene_from(R"(
 [scene]

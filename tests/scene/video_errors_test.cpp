@@ -54,6 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"poster_s = 0.001",
              "[video] poster_s must be the time of a frame, a multiple of 1/120 s up to 30 s; it is 1/1000"},
         Case{"contact_sheet = [0, 4]", "[video] contact_sheet must be two whole numbers from 1 to 32; it is [0, 4]"},
+        Case{"contact_sheet = [4, 33]", "[video] contact_sheet must be two whole numbers from 1 to 32; it is [4, 33]"},
         Case{"hold_end_s = -1", "[video] hold_end_s must be ≥ 0; it is -1"},
         Case{"title_card_s = 4000", "[video] title_card_s must be from 0 (none) to 3600; it is 4000"},
         Case{"glow_px = -1", "[video] glow_px must be from 0 (none) to 100; it is -1"},
