@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-void write_figure_manifest(PartFiles& parts, const FigurePreset& figure, const KnownTrials& trials,
+void write_figure_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
                            const FigureRecord& record) {
     Json findings = Json::object();
     for (const auto& finding : figure.work->findings(trials))

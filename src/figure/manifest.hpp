@@ -14,7 +14,7 @@ struct FigureRecord {
 };
 
 /// NAME.json. Throws Error (exit 4).
-void write_figure_manifest(PartFiles& parts, const FigurePreset& figure, const KnownTrials& trials,
+void write_figure_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
                            const FigureRecord& record);
 
 }  // namespace doppel

@@ -6,9 +6,9 @@
 #include "base/parallel_for.hpp"
 #include "figure/manifest.hpp"
 #include "figure/merge.hpp"
-#include "output/part_files.hpp"
 #include "output/png.hpp"
-#include "output/queue.hpp"
+#include "output/transaction.hpp"
+#include "output/workers.hpp"
 #include "render/renderer.hpp"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ public:
     }
 
     RunResult print(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials, FigureRecord facts,
-                    PartFiles& files) {
+                    Transaction& files) {
         if (options_.shard) {
             PartWriter(files.file(shard_name(header)), header, trials).close();
             return {.files = files.publish()};
@@ -119,7 +119,7 @@ class Workshop {
 public:
     /// `files` of each figure: where the record of its trials goes.
     Workshop(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
-             const std::vector<std::unique_ptr<PartFiles>>& files, const std::atomic<bool>& stop,
+             const std::vector<std::unique_ptr<Transaction>>& files, const std::atomic<bool>& stop,
              const FigureReport& report)
         : stop_(stop) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
@@ -195,16 +195,16 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
             const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
-            PartFiles files(options.out / figures[k].name);
+            Transaction files(options.out / figures[k].name);
             auto result = press.print(figures[k], header_of(figures[k]), trials, {}, files);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
         }
         return;
     }
-    std::vector<std::unique_ptr<PartFiles>> files;  // now: a folder that cannot be made is told at once
+    std::vector<std::unique_ptr<Transaction>> files;  // now: a folder that cannot be made is told at once
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
-    for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name, run));
+    for (const auto& figure : figures) files.push_back(std::make_unique<Transaction>(options.out / figure.name, run));
     Workshop workshop(figures, options, jobs, files, stop, report);
     if (!figures.empty()) press.warm_up(figures.front());
     while (const auto k = workshop.next()) {
@@ -218,7 +218,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         } catch (const Error& fault) {
             throw computation.with_record(fault);
         }
-        files[*k]->folder().remove_file(computation.record()->name);
+        files[*k]->folder().remove(computation.record()->name);
         result.samples = std::lround(computation.computed_units());
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         report.done(*k, result);

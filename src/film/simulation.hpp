@@ -1,7 +1,7 @@
 #pragma once
 
 #include "integrate/crowd.hpp"
-#include "output/queue.hpp"
+#include "output/workers.hpp"
 #include "scene/scene.hpp"
 
 #include <atomic>

@@ -2,141 +2,116 @@
 
 #include "base/error.hpp"
 #include "base/machine.hpp"
-#include "output/output_file.hpp"
-#include "output/png_text.hpp"
-#include "output/pool.hpp"
+#include "output/folder.hpp"
 #include "output/samples.hpp"
 #include "output/workers.hpp"
 
 #include <libdeflate.h>
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdlib>
-#include <exception>
+#include <cstdint>
+#include <new>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace doppel {
 namespace {
 
-/// Memory of a thread for stb_image_write, which asks for the same few blocks of megabytes for each picture: given back
-/// to the system and asked for again, they would cost a third of the work in page faults.
-class Arena {
-public:
-    /// Null where memory is out.
-    void* take(std::size_t size) {
-        // the smallest that fits; else the largest makes room
-        Block* best = nullptr;
-        for (Block& block : blocks_)
-            if (!block.taken && (!best || (best->size < size ? block.size > best->size
-                                                             : block.size >= size && block.size < best->size)))
-                best = &block;
-        if (!best) return nullptr;
-        if (best->size < size) {
-            best->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
-            best->size = best->bytes ? size : 0;
-            if (!best->bytes) return nullptr;
-        }
-        best->taken = true;
-        return best->bytes.get();
-    }
+// Portable Network Graphics (W3C, 2003)
 
-    void give_back(const void* bytes) {
-        for (Block& block : blocks_)
-            if (block.bytes.get() == bytes) block.taken = false;
+std::string big_endian(std::uint32_t number) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 0xff);
+    return bytes;
+}
+
+std::string chunk(std::string_view type, std::string_view content) {
+    const std::string checked = std::string(type).append(content);
+    return big_endian(static_cast<std::uint32_t>(content.size())) + checked +
+           big_endian(libdeflate_crc32(0, checked.data(), checked.size()));
+}
+
+std::string keyword(const std::string& key) {
+    if (key == "encoder") return "Software";
+    std::string word = key;
+    if (!word.empty() && word[0] >= 'a' && word[0] <= 'z') word[0] = static_cast<char>(word[0] - 'a' + 'A');
+    return word;
+}
+
+/// UTF-8 as Latin-1; nothing where a character is none of it.
+std::optional<std::string> latin1(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        if (lead < 0x80) {
+            result += text[i];
+        } else if ((lead == 0xc2 || lead == 0xc3) && i + 1 < text.size()) {
+            // U+0080 … U+00FF are two bytes
+            result += static_cast<char>((lead & 3) << 6 | (text[++i] & 0x3f));
+        } else {
+            return std::nullopt;
+        }
+    }
+    return result;
+}
+
+/// A picture's rows, each after a byte that says that it is not filtered: flat colours compress best as they are; any
+/// filter takes 1.7 times as long for a larger file.
+struct Rows {
+    Size size;
+    std::size_t bytes = 0;
+    Buffer data{};
+
+    void set(const Picture& picture, const PngOptions& options) {
+        size = picture.size;
+        const Samples samples = options.with_alpha ? Samples::rgba : Samples::rgb;
+        const std::size_t row_bytes = byte_count(samples, {0, 0, size.width, 1});
+        bytes = (1 + row_bytes) * static_cast<std::size_t>(size.height);
+        std::uint8_t* to = data.make_room(bytes);
+        for (int y = 0; y < size.height; ++y, to += row_bytes) {
+            *to++ = 0;
+            convert(picture, {0, y, size.width, y + 1}, samples, to);
+        }
+    }
+};
+
+/// Writes pictures, one after another; keeps its memory.
+class PngWriter {
+public:
+    void write(const FilePlace& place, const Rows& rows, const PngOptions& options, const std::atomic<bool>& stop) {
+        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        OutputFile file(place);
+        std::string header = big_endian(static_cast<std::uint32_t>(rows.size.width)) +
+                             big_endian(static_cast<std::uint32_t>(rows.size.height));
+        header += {8, static_cast<char>(options.with_alpha ? 6 : 2), 0, 0, 0};  // bits a channel, RGBA or RGB
+        file.write("\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + png_text_chunks(options.metadata));
+
+        const std::size_t bound = libdeflate_zlib_compress_bound(compressor_.get(), rows.bytes);
+        std::uint8_t* packed = packed_.make_room(bound);
+        const std::size_t count =
+            libdeflate_zlib_compress(compressor_.get(), rows.data.data(), rows.bytes, packed, bound);
+        if (count == 0 || count > INT32_MAX)
+            throw io_failed("{}: a picture of {}x{} px cannot be compressed", place.path.string(), rows.size.width,
+                            rows.size.height);
+        file.write(big_endian(static_cast<std::uint32_t>(count)) + "IDAT");
+        file.write({reinterpret_cast<const char*>(packed), count});
+        const auto check = libdeflate_crc32(libdeflate_crc32(0, "IDAT", 4), packed, count);
+        file.write(big_endian(check) + chunk("IEND", ""));
+        file.close();
     }
 
 private:
-    struct Free {
-        void operator()(std::byte* bytes) const { std::free(bytes); }
-    };
-    struct Block {
-        std::unique_ptr<std::byte, Free> bytes;
-        std::size_t size = 0;
-        bool taken = false;
-    };
-    std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed, the file: all that it holds at once
+    static libdeflate_compressor* made_compressor() {
+        // the levels above take 1.8 times as long for a file 2 to 5 % smaller: see tests/output/png_test.cpp
+        constexpr int level = 1;
+        if (auto* compressor = libdeflate_alloc_compressor(level)) return compressor;
+        throw std::bad_alloc();
+    }
+
+    Owned<libdeflate_compressor, libdeflate_free_compressor> compressor_{made_compressor()};
+    Buffer packed_;
 };
-
-struct FreeCompressor {
-    void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
-};
-
-thread_local Arena arena;
-
-/// zlib's format through libdeflate, as stb_image_write asks for it: a block of the arena's, or null.
-unsigned char* compress(unsigned char* data, int length, int* compressed_length, int /*quality*/) {
-    // the others take 1.8 times as long for a file 2 to 5 % smaller: see tests/output/png_test.cpp
-    constexpr int level = 1;
-    thread_local const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
-        libdeflate_alloc_compressor(level));
-    if (!compressor) return nullptr;
-    const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), std::size_t(length));
-    auto* compressed = static_cast<unsigned char*>(arena.take(bound));
-    if (!compressed) return nullptr;
-    *compressed_length =
-        static_cast<int>(libdeflate_zlib_compress(compressor.get(), data, std::size_t(length), compressed, bound));
-    return compressed;
-}
-
-}  // namespace
-}  // namespace doppel
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBIW_ZLIB_COMPRESS doppel::compress
-#define STBIW_MALLOC(size) doppel::arena.take(size)
-#define STBIW_REALLOC(block, size) (std::abort(), nullptr)  // asked for only by its own compressor
-#define STBIW_FREE(block) doppel::arena.give_back(block)
-#include <stb_image_write.h>
-#pragma GCC diagnostic pop
-
-namespace doppel {
-namespace {
-
-// flat colours compress best as they are; any filter takes 1.7 times as long for a larger file
-[[maybe_unused]] const int no_filter = stbi_write_force_png_filter = 0;
-
-Samples samples_of(const PngOptions& options) {
-    return options.with_alpha ? Samples::rgba : Samples::rgb;
-}
-
-/// A file's text chunks follow its signature and header.
-constexpr std::size_t header_bytes = 8 + 25;
-
-/// `bytes` are the picture's as samples_of() has them.
-void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
-                   const std::string& text_chunks, const std::atomic<bool>& stop) {
-    if (stop) throw Error(ExitCode::interrupted, "interrupted");
-    OutputFile output(place);
-    struct Target {
-        OutputFile& output;
-        const std::string& text_chunks;
-        std::exception_ptr error;
-    } target{output, text_chunks, nullptr};
-    const auto write = [](void* context, void* data, int count) {
-        auto& [file, chunks, error] = *static_cast<Target*>(context);
-        const std::string_view png(static_cast<const char*>(data), std::size_t(count));
-        try {
-            file.write(png.substr(0, header_bytes));
-            file.write(chunks);
-            file.write(png.substr(header_bytes));
-        } catch (...) {
-            error = std::current_exception();  // none can pass through C
-        }
-    };
-    const int channels = options.with_alpha ? 4 : 3;
-    if (!stbi_write_png_to_func(write, &target, size.width, size.height, channels, bytes, channels * size.width))
-        throw io_failed("{}: a picture of {}x{} px cannot be compressed", place.path.string(), size.width, size.height);
-    if (target.error) std::rethrow_exception(target.error);
-    output.close();
-}
 
 class PngSink final : public Sink {
 public:
@@ -145,48 +120,57 @@ public:
         : place_of_(std::move(place_of)),
           options_(std::move(options)),
           stop_(stop),
-          text_chunks_(png_text_chunks(options_.metadata)),
-          writers_(threads, threads, [this](Job& job) { write(job); }) {}
+          workers_(threads, threads, [this](Job& job) { write(job); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& /*changed*/) override {
-        Job job{place_of_(taken_++), picture.size, spare_.take()};
-        const Rect all = all_of(picture.size);
-        const Samples samples = samples_of(options_);
-        convert(picture, all, samples, job.bytes.make_room(byte_count(samples, all)));
-        writers_.give(std::move(job));
+        Job job{place_of_(taken_++), spare_.take()};
+        job.rows.set(picture, options_);
+        workers_.give(std::move(job));
     }
 
-    void finish() override { writers_.finish(); }
+    void finish() override { workers_.finish(); }
 
 private:
     struct Job {
         FilePlace place;
-        Size size;
-        Buffer bytes;
+        Rows rows;
     };
 
     void write(Job& job) {
-        write_samples(job.place, job.size, job.bytes.data(), options_, text_chunks_, stop_);
-        spare_.give_back(std::move(job.bytes));
+        PngWriter writer = writers_.take();
+        writer.write(job.place, job.rows, options_, stop_);
+        writers_.give_back(std::move(writer));
+        spare_.give_back(std::move(job.rows));
     }
 
     const std::function<FilePlace(long)> place_of_;
     const PngOptions options_;
     const std::atomic<bool>& stop_;
-    const std::string text_chunks_;
     long taken_ = 0;
-    Pool<Buffer> spare_;
-    Workers<Job> writers_;
+    Pool<Rows> spare_;
+    Pool<PngWriter> writers_;  // as many as threads
+    Workers<Job> workers_;
 };
 
 }  // namespace
 
+// 11.3.4: a keyword ends with a zero; iTXt adds that it is not compressed, and an empty language and translation of the
+// keyword.
+std::string png_text_chunks(const Metadata& metadata) {
+    std::string chunks;
+    for (const auto& [key, text] : metadata) {
+        const std::string start = keyword(key) + '\0';
+        const auto short_text = latin1(text);
+        chunks += short_text ? chunk("tEXt", start + *short_text) : chunk("iTXt", start + std::string(4, '\0') + text);
+    }
+    return chunks;
+}
+
 void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options,
                const std::atomic<bool>& stop) {
-    const Rect all = all_of(picture.size);
-    Buffer bytes;
-    convert(picture, all, samples_of(options), bytes.make_room(byte_count(samples_of(options), all)));
-    write_samples(place, picture.size, bytes.data(), options, png_text_chunks(options.metadata), stop);
+    Rows rows;
+    rows.set(picture, options);
+    PngWriter().write(place, rows, options, stop);
 }
 
 std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options,
@@ -196,7 +180,7 @@ std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int
 }
 
 int png_threads(int jobs, Size size) {
-    // what waits, what is at work, its rows with their filters, compressed, and the file
+    // what waits, what is at work, compressed, and as much again for the rest of the program
     const std::size_t bytes = 5 * byte_count(Samples::rgba, all_of(size));
     return static_cast<int>(in_hand(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }
