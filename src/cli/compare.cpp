@@ -2,8 +2,8 @@
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "image/golden.hpp"
-#include "output/part_files.hpp"
 #include "output/png.hpp"
+#include "output/transaction.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ constexpr const char* maker = "Doppel compare";  // of every difference picture
 void remove_difference(const fs::path& folder, const std::string& name) {
     if (!fs::is_directory(folder)) return;
     const auto pictures = Folder::at(folder);
-    if (maker_of_picture(pictures, name) == maker) pictures.remove_file(name);
+    if (maker_of_picture(pictures, name) == maker) pictures.remove(name);
 }
 
 /// True if they pass; else says why and writes the difference picture.
@@ -54,7 +54,7 @@ bool same(const fs::path& expected_path, const fs::path& actual_path, const fs::
         remove_difference(folder_in(out), name);
         return true;
     }
-    PartFiles parts(folder_in(out), name);
+    Transaction parts(folder_in(out), name);
     write_png(parts.file(name), difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
     const auto files = parts.publish();
     print_line("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path.string(),

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "figure/preset.hpp"
-#include "output/output_file.hpp"
+#include "output/folder.hpp"
 
 #include <atomic>
 #include <filesystem>

@@ -5,9 +5,10 @@
 #include "base/machine.hpp"
 #include "base/parallel_for.hpp"
 #include "integrate/widths.hpp"
-#include "output/part_files.hpp"
+#include "output/transaction.hpp"
 #include "output/png.hpp"
-#include "output/queue.hpp"
+#include "output/transaction.hpp"
+#include "output/workers.hpp"
 #include "render/renderer.hpp"
 #include "scene/manifest_json.hpp"
 
@@ -58,7 +59,7 @@ struct FigureRecord {
     std::string gl;
 };
 
-void write_manifest(PartFiles& parts, const FigurePreset& figure, const KnownTrials& trials,
+void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
                     const FigureRecord& record) {
     Json findings = Json::object();
     for (const auto& finding : figure.work->findings(trials))
@@ -98,7 +99,7 @@ public:
     }
 
     RunResult write(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials,
-                    FigureRecord record, PartFiles& files) {
+                    FigureRecord record, Transaction& files) {
         if (options_.shard) {
             PartWriter(files.file(shard_name(header)), header, trials).close();
             return {.files = files.publish()};
@@ -154,7 +155,7 @@ class Scheduler {
 public:
     /// `files` of each figure: where the record of its trials goes.
     Scheduler(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
-              const std::vector<std::unique_ptr<PartFiles>>& files, const std::atomic<bool>& stop,
+              const std::vector<std::unique_ptr<Transaction>>& files, const std::atomic<bool>& stop,
               const FigureReport& report)
         : stop_(stop) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
@@ -230,16 +231,16 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
             const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
-            PartFiles files(options.out / figures[k].name);
+            Transaction files(options.out / figures[k].name);
             auto result = writer.write(figures[k], header_of(figures[k]), trials, {}, files);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
         }
         return;
     }
-    std::vector<std::unique_ptr<PartFiles>> files;  // now, so that faults are reported early
+    std::vector<std::unique_ptr<Transaction>> files;  // now, so that faults are reported early
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
-    for (const auto& figure : figures) files.push_back(std::make_unique<PartFiles>(options.out / figure.name, run));
+    for (const auto& figure : figures) files.push_back(std::make_unique<Transaction>(options.out / figure.name, run));
     Scheduler scheduler(figures, options, jobs, files, stop, report);
     if (!figures.empty()) writer.prepare(figures.front());
     while (const auto k = scheduler.next()) {
@@ -253,7 +254,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         } catch (const Error& fault) {
             throw computation.with_record(fault);
         }
-        files[*k]->folder().remove_file(computation.record()->name);
+        files[*k]->folder().remove(computation.record()->name);
         result.samples = std::lround(computation.computed_units());
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         report.done(*k, result);

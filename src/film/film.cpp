@@ -91,7 +91,7 @@ VideoOptions video_options(const Scene& scene) {
             .metadata = metadata_of(scene.preset)};
 }
 
-Film::Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record,
+Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, RunRecord& record,
            const std::atomic<bool>& stop)
     : scene_(scene), schedule_(schedule_of(scene)), composer_(scene, stop), parts_(parts), stop_(stop) {
     const auto& video = scene.preset.video;

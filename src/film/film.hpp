@@ -3,8 +3,8 @@
 #include "film/composer.hpp"
 #include "film/manifest.hpp"
 #include "film/run.hpp"
-#include "output/part_files.hpp"
 #include "output/sink.hpp"
+#include "output/transaction.hpp"
 #include "output/video.hpp"
 #include "render/renderer.hpp"
 
@@ -33,7 +33,7 @@ class Film {
 public:
     /// For the samples options.first … options.last − 1. Adds its files to `parts`. All may throw Error (exit 130) soon
     /// after `stop` is set.
-    Film(const Scene& scene, const RunOptions& options, PartFiles& parts, RunRecord& record,
+    Film(const Scene& scene, const RunOptions& options, Transaction& parts, RunRecord& record,
          const std::atomic<bool>& stop);
 
     /// Every sample, from 0 on.
@@ -57,7 +57,7 @@ private:
     const Scene& scene_;
     Schedule schedule_;
     Composer composer_;
-    PartFiles& parts_;
+    Transaction& parts_;
     std::string film_name_;  // of the video, or the folder of pictures
     const std::atomic<bool>& stop_;
     long sample_ = 0;                     // added last

@@ -38,7 +38,7 @@ Json side_json(const Scene& scene, const Side& side, const Effort& effort, doubl
 
 }  // namespace
 
-void write_manifest(PartFiles& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
+void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
     Json manifest = {
         {"doppel", program_json()},
         {"preset", scene.preset.name},

@@ -28,6 +28,6 @@ struct RunRecord {
 };
 
 /// Writes the manifest `name`; hashes the files that are finished. Throws Error (exit 4).
-void write_manifest(PartFiles& parts, const std::string& name, const Scene& scene, const RunRecord& record);
+void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record);
 
 }  // namespace doppel

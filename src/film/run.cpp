@@ -7,7 +7,7 @@
 #include "film/manifest.hpp"
 #include "film/simulation.hpp"
 #include "output/csv.hpp"
-#include "output/part_files.hpp"
+#include "output/transaction.hpp"
 #include "scene/scene.hpp"
 
 #include <algorithm>
@@ -138,7 +138,7 @@ std::string failed_name(const std::string& name, const std::string& ending) {
 
 /// Keeps the samples before the break-down, under a name that says so, with a manifest; throws the error that tells
 /// where they are, and which step would have held.
-[[noreturn]] void keep_failed(const Scene& scene, const BreakDown& fault, RunRecord& record, PartFiles& parts,
+[[noreturn]] void keep_failed(const Scene& scene, const BreakDown& fault, RunRecord& record, Transaction& parts,
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
     const auto advice = step_that_holds(scene, fault, stop);
@@ -187,7 +187,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const auto [first, last, stride, total] = range_of(scene, options);
     RunRecord record{.first_sample = first, .last_sample = last - 1};
-    PartFiles parts(options.out / scene.preset.name);
+    Transaction parts(options.out / scene.preset.name);
     std::optional<Film> film;
     auto range = options;
     range.first = first, range.last = last;

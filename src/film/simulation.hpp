@@ -1,7 +1,7 @@
 #pragma once
 
 #include "integrate/motion_batch.hpp"
-#include "output/queue.hpp"
+#include "output/workers.hpp"
 #include "scene/scene.hpp"
 
 #include <atomic>

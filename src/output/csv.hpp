@@ -1,6 +1,6 @@
 #pragma once
 
-#include "output/output_file.hpp"
+#include "output/folder.hpp"
 
 #include <string>
 #include <string_view>

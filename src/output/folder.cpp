@@ -97,15 +97,19 @@ bool Folder::exchange(const std::string& one, const std::string& other) const {
     throw cannot(path_ / one, "renamed to " + other);
 }
 
-void Folder::remove_file(const std::string& name) const {
-    if (unlinkat(descriptor(), name.c_str(), 0) != 0 && errno != ENOENT) throw cannot(path_ / name, "removed");
-}
-
-void Folder::remove_folder(const std::string& name) const {
-    const Folder inside = folder(name);
-    for (const auto& file : inside.names())
-        if (inside.entry(file).kind == Entry::Kind::file) inside.remove_file(file);
-    if (unlinkat(descriptor(), name.c_str(), AT_REMOVEDIR) != 0) throw cannot(path_ / name, "removed");
+void Folder::remove(const std::string& name) const {
+    const auto failed = [&](int flags) { return unlinkat(descriptor(), name.c_str(), flags) != 0; };
+    const auto kind = entry(name).kind;
+    if (kind == Entry::Kind::none) return;
+    if (kind != Entry::Kind::file && kind != Entry::Kind::folder)
+        throw io_failed("{} is no file of Doppel's; remove it", (path_ / name).string());
+    if (kind == Entry::Kind::folder) {
+        const Folder inside = folder(name);
+        for (const auto& file : inside.names())
+            if (inside.entry(file).kind == Entry::Kind::file) inside.remove(file);
+    }
+    if (failed(kind == Entry::Kind::folder ? AT_REMOVEDIR : 0) && errno != ENOENT)
+        throw cannot(path_ / name, "removed");
 }
 
 void Folder::sync(bool contents) const {
@@ -114,10 +118,34 @@ void Folder::sync(bool contents) const {
     if ((contents && failed(syncfs(descriptor()))) || failed(fsync(descriptor()))) throw cannot(path_, "written");
 }
 
+void remove_folders(const std::vector<fs::path>& folders) {
+    for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) rmdir(folder->c_str());
+}
+
+std::vector<fs::path> make_folders(const fs::path& folder) {
+    std::vector<fs::path> made;
+    fs::path way;
+    for (const fs::path& step : folder) {
+        way /= step;
+        std::error_code error, ignored;
+        while (!fs::is_directory(way, ignored)) {
+            if (fs::create_directory(way, error)) made.push_back(way);
+            if (!error) continue;
+            remove_folders(made);
+            if (fs::exists(fs::symlink_status(way, ignored)))
+                throw io_failed("{} is no folder; Doppel would write into a folder there", way.string());
+            throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
+        }
+    }
+    return made;
+}
+
+int FilePlace::descriptor() const {
+    return folder ? folder->descriptor() : AT_FDCWD;
+}
+
 void rename_file(const FilePlace& from, const FilePlace& to) {
-    const auto folder = [](const FilePlace& place) { return place.folder ? place.folder->descriptor() : AT_FDCWD; };
-    const auto name = [](const FilePlace& place) { return place.folder ? place.name : place.path.string(); };
-    if (renameat(folder(from), name(from).c_str(), folder(to), name(to).c_str()) != 0)
+    if (renameat(from.descriptor(), from.name.c_str(), to.descriptor(), to.name.c_str()) != 0)
         throw cannot(from.path, "renamed to " + to.path.filename().string());
 }
 
@@ -126,9 +154,8 @@ FilePlace part_of(const FilePlace& place) {
 }
 
 Descriptor create_file(const FilePlace& place) {
-    Descriptor file(place.folder ? openat(place.folder->descriptor(), place.name.c_str(),
-                                          O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)
-                                 : open(place.path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    const int fresh = place.folder ? O_EXCL | O_NOFOLLOW : O_TRUNC;
+    Descriptor file(openat(place.descriptor(), place.name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | fresh, 0666));
     if (!file) throw cannot(place.path, "written");
     return file;
 }
@@ -136,28 +163,49 @@ Descriptor create_file(const FilePlace& place) {
 Descriptor create_unnamed_file(const FilePlace& place) {
     constexpr int unnamed = O_RDWR | O_TMPFILE | O_CLOEXEC;
     const auto parent = place.path.has_parent_path() ? place.path.parent_path() : fs::path(".");
-    Descriptor file(place.folder ? openat(place.folder->descriptor(), ".", unnamed, 0600)
-                                 : open(parent.c_str(), unnamed, 0600));
+    Descriptor file(openat(place.descriptor(), place.folder ? "." : parent.c_str(), unnamed, 0600));
     if (file) return file;
     if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) throw cannot(place.path, "written");
     // a file system that knows none: it has a name for a moment
     const auto name = place.path.filename().string() + ".spool";
     const Folder folder = place.folder ? place.folder->folder(".") : Folder::at(parent);
     file = create_file({folder, name});
-    folder.remove_file(name);
+    folder.remove(name);
     return file;
 }
 
 Descriptor open_file(const FilePlace& place) {
     // a pipe that nobody writes to would let the opening wait
-    Descriptor file(place.folder ? openat(place.folder->descriptor(), place.name.c_str(),
-                                          O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)
-                                 : open(place.path.c_str(), O_RDONLY | O_CLOEXEC));
+    const int careful = place.folder ? O_NOFOLLOW | O_NONBLOCK : 0;
+    Descriptor file(openat(place.descriptor(), place.name.c_str(), O_RDONLY | O_CLOEXEC | careful));
     if (!file) throw cannot(place.path, "read");
     struct stat status {};
     if (fstat(file.number(), &status) != 0) throw cannot(place.path, "read");
     if (place.folder && !S_ISREG(status.st_mode)) throw io_failed("{} is not a regular file", place.path.string());
     return file;
+}
+
+Stream stream_of(Descriptor file, const char* mode, const fs::path& path, std::string_view what) {
+    Stream stream(fdopen(file.number(), mode));
+    if (!stream) throw cannot(path, what);
+    file.release();  // closed with the stream
+    return stream;
+}
+
+OutputFile::OutputFile(const FilePlace& place)
+    : path_(place.path), file_(stream_of(create_file(place), "wb", path_, "written")) {}
+
+void OutputFile::write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) throw cannot(path_, "written");
+}
+
+void OutputFile::flush() {
+    if (std::fflush(file_.get()) != 0) throw cannot(path_, "written");
+}
+
+void OutputFile::close() {
+    // the last bytes leave the buffer only here
+    if (std::fclose(file_.release()) != 0) throw cannot(path_, "written");
 }
 
 Error cannot(const fs::path& path, std::string_view what) {

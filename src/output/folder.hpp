@@ -3,7 +3,9 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,10 +60,9 @@ public:
     void rename(const std::string& from, const std::string& to) const;
     /// Both stand, each in the place of the other. False where the file system knows no such thing.
     bool exchange(const std::string& one, const std::string& other) const;
-    /// Nothing where it is not there.
-    void remove_file(const std::string& name) const;
-    /// The folder `name` and the files in it; folders in it are not touched, and then it stays and this throws.
-    void remove_folder(const std::string& name) const;
+    /// A file, or a folder and the files in it; nothing where it is not there. Folders in it are not touched, and then
+    /// it stays and this throws, as where `name` is of another kind.
+    void remove(const std::string& name) const;
     /// Which names there are has reached the disk; so has all in files in this file system where `contents`.
     void sync(bool contents = false) const;
 
@@ -72,14 +73,23 @@ private:
     Descriptor descriptor_;
 };
 
+/// Makes what is missing of the way to `folder`, and returns what it made, outermost first: other runs may make the
+/// same folders meanwhile. Throws Error (exit 4), after which none of them is left.
+std::vector<std::filesystem::path> make_folders(const std::filesystem::path& folder);
+/// Removes those that are empty.
+void remove_folders(const std::vector<std::filesystem::path>& folders);
+
 /// Where a file is: in an open folder, or at a path as the person gave it.
 struct FilePlace {
-    FilePlace(std::filesystem::path where) : path(std::move(where)) {}  // NOLINT: a path is a place
+    FilePlace(std::filesystem::path where) : name(where.string()), path(std::move(where)) {}  // NOLINT: a path is one
     FilePlace(const Folder& in, const std::string& as) : folder(&in), name(as), path(in.path() / as) {}
 
+    /// What `name` is looked for in, for the system's calls.
+    int descriptor() const;
+
     const Folder* folder = nullptr;  // which outlives the place
-    std::string name;
-    std::filesystem::path path;  // for messages, where there is a folder
+    std::string name;                // the path, where there is no folder
+    std::filesystem::path path;      // for messages, where there is a folder
 };
 
 /// Gives the file another name, where an older one is replaced. Throws Error (exit 4).
@@ -94,6 +104,38 @@ Descriptor create_file(const FilePlace& place);
 Descriptor create_unnamed_file(const FilePlace& place);
 /// A file to read; in a folder only a regular one, and no link. Throws Error (exit 4).
 Descriptor open_file(const FilePlace& place);
+
+/// What a library in C gave, and how it is given back.
+template <auto destroy>
+struct Destroy {
+    void operator()(auto* thing) const { destroy(thing); }
+};
+template <class T, auto destroy>
+using Owned = std::unique_ptr<T, Destroy<destroy>>;
+
+using Stream = Owned<std::FILE, std::fclose>;
+/// The file, buffered, in a mode of fdopen(3). Throws Error (exit 4) that says `what` it cannot be.
+Stream stream_of(Descriptor file, const char* mode, const std::filesystem::path& path, std::string_view what);
+
+/// A file being written. Every failure, a full disk included, is an Error (exit 4) with the path and the system's
+/// reason.
+class OutputFile {
+public:
+    /// Opens it, empty.
+    explicit OutputFile(const FilePlace& place);
+
+    void write(std::string_view bytes);
+    /// What was written so far can be read by others.
+    void flush();
+    /// Only what was closed is known to be written.
+    void close();
+
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+    Stream file_;
+};
 
 /// "PATH: cannot be WHAT: the system's reason", exit 4, by errno or the given number.
 Error cannot(const std::filesystem::path& path, std::string_view what);

@@ -3,20 +3,43 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/threads.hpp"
-#include "output/palette.hpp"
-#include "output/pool.hpp"
-#include "output/spool.hpp"
-#include "output/video_codecs.hpp"
+#include "output/libav_encoder.hpp"
 #include "output/workers.hpp"
 
 extern "C" {
 #include <libavutil/imgutils.h>
 }
 
+#include <libdeflate.h>
+#include <libimagequant.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <new>
+#include <stdexcept>
+#include <system_error>
 
 namespace doppel {
 namespace {
+
+using LiqImage = Owned<liq_image, liq_image_destroy>;
+
+/// No copy: it looks at `rgba` while it lives.
+LiqImage image_of(const liq_attr& attributes, const std::uint8_t* rgba, Size size) {
+    LiqImage image(liq_image_create_rgba(&attributes, rgba, size.width, size.height, 0));
+    if (!image) throw std::bad_alloc();
+    return image;
+}
+
+void check(liq_error error) {
+    if (error == LIQ_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error != LIQ_OK) throw std::logic_error("libimagequant refuses its task");
+}
+
+// A frame is a head, its areas, and their bytes compressed as one. Only this process reads it: as memory has it.
+struct Head {
+    std::size_t areas, packed;
+};
 
 /// A comment as GIF has it (GIF89a, 24): a line for each text, in blocks of at most 255 bytes; then the byte that ends
 /// the file.
@@ -114,6 +137,97 @@ private:
 };
 
 }  // namespace
+
+Palette::Palette() : attributes_(liq_attr_create()) {
+    if (!attributes_) throw std::bad_alloc();
+    check(liq_set_max_colors(attributes_.get(), 255));
+    histogram_.reset(liq_histogram_create(attributes_.get()));
+    if (!histogram_) throw std::bad_alloc();
+}
+
+void Palette::count(const std::uint8_t* rgba, Size size) {
+    const auto image = image_of(*attributes_, rgba, size);
+    check(liq_histogram_add_image(histogram_.get(), attributes_.get(), image.get()));
+}
+
+void Palette::choose() {
+    liq_result* result = nullptr;
+    check(liq_histogram_quantize(histogram_.get(), attributes_.get(), &result));
+    result_.reset(result);
+    histogram_.reset();
+    check(liq_set_dithering_level(result, 0));
+}
+
+std::array<std::uint32_t, 256> Palette::argb() const {
+    std::array<std::uint32_t, 256> entries{};
+    const liq_palette& palette = *liq_get_palette(result_.get());
+    for (unsigned i = 0; i < palette.count; ++i) {
+        const auto [r, g, b, a] = palette.entries[i];
+        entries[i] = 0xff000000u | std::uint32_t{r} << 16 | std::uint32_t{g} << 8 | b;
+    }
+    // opaque black: what is not needed must not be taken for the transparent one
+    for (unsigned i = palette.count; i < 255; ++i) entries[i] = 0xff000000u;
+    return entries;
+}
+
+void Palette::look_up(const std::uint8_t* rgba, Size size, std::uint8_t* index) {
+    const auto image = image_of(*attributes_, rgba, size);
+    check(liq_write_remapped_image(result_.get(), image.get(), index, std::size_t(size.width) * size.height));
+}
+
+Spool::Spool(const FilePlace& film, Samples samples)
+    : path_(film.path),
+      samples_(samples),
+      compressor_(libdeflate_alloc_compressor(1)),
+      decompressor_(libdeflate_alloc_decompressor()) {
+    if (!compressor_ || !decompressor_) throw std::bad_alloc();
+    file_ = stream_of(create_unnamed_file(film), "w+b", path_, "opened");
+}
+
+void Spool::write(const SampledAreas& frame) {
+    const std::size_t size = bytes_of(frame), bound = libdeflate_deflate_compress_bound(compressor_.get(), size);
+    std::uint8_t* packed = packed_.make_room(bound);
+    const Head head{frame.areas.size(),
+                    libdeflate_deflate_compress(compressor_.get(), frame.bytes.data(), size, packed, bound)};
+    const auto put = [&](const void* bytes, std::size_t count) {
+        if (count > 0 && std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
+    };
+    put(&head, sizeof head);
+    put(frame.areas.data(), frame.areas.size() * sizeof(Rect));
+    put(packed, head.packed);
+    ++frames_;
+}
+
+void Spool::rewind() {
+    if (std::fflush(file_.get()) != 0) fail("cannot be written");
+    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail("cannot be read");
+}
+
+void Spool::read(SampledAreas& frame) {
+    const auto get = [&](void* bytes, std::size_t count) {
+        if (count > 0 && std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
+    };
+    Head head{};
+    get(&head, sizeof head);
+    frame.areas.resize(head.areas);
+    get(frame.areas.data(), head.areas * sizeof(Rect));
+    std::uint8_t* packed = packed_.make_room(head.packed);
+    get(packed, head.packed);
+    const std::size_t size = bytes_of(frame);
+    if (libdeflate_deflate_decompress(decompressor_.get(), packed, head.packed, frame.bytes.make_room(size), size,
+                                      nullptr) != LIBDEFLATE_SUCCESS)
+        fail("is damaged");
+}
+
+std::size_t Spool::bytes_of(const SampledAreas& frame) const {
+    std::size_t count = 0;
+    for (const Rect& area : frame.areas) count += byte_count(samples_, area);
+    return count;
+}
+
+void Spool::fail(const char* what) const {
+    throw io_failed("{}: its frames on the disk: {}: {}", path_.string(), what, std::generic_category().message(errno));
+}
 
 std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options,
                                     const std::atomic<bool>& stop) {

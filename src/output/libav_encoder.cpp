@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
-#include "output/libav_log.hpp"
 #include "output/video.hpp"
 
 extern "C" {

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/libav_file.hpp"
-#include "output/metadata.hpp"
+#include "output/folder.hpp"
+#include "output/samples.hpp"
+#include "output/video.hpp"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -16,6 +17,34 @@ extern "C" {
 #include <vector>
 
 namespace doppel {
+
+/// libav, and the encoders behind it, print nothing from now on; what went wrong last is kept, for each thread.
+void keep_libav_log();
+
+/// What libav said last in this thread of what went wrong: one line without its end; empty where it said nothing since
+/// it was asked last.
+std::string take_libav_word();
+
+/// The file that a muxer of libav fills, opened as create_file() does: libav itself, given a name, would follow links.
+class LibavFile {
+public:
+    /// Throws Error (exit 4).
+    explicit LibavFile(const FilePlace& place) : file_(create_file(place)) {}
+    ~LibavFile();
+    LibavFile(const LibavFile&) = delete;
+    LibavFile& operator=(const LibavFile&) = delete;
+
+    /// The muxer, which this outlives, writes here; where it opens its file anew to read it (to move the index of an
+    /// MP4 to the front) it gets this one.
+    void attach(AVFormatContext& format);
+
+    /// All that was written has left the process. libav's code of what failed, 0 where nothing did.
+    int close();
+
+private:
+    Descriptor file_;
+    AVIOContext* writer_ = nullptr;
+};
 
 /// Frees what libav allocated.
 struct LibavFree {
@@ -43,6 +72,14 @@ struct Encoding {
     Metadata metadata = {};
     std::string png_chunks = {};  // to follow the header of an APNG
 };
+
+/// Throws as check_video() for everything but a missing encoder.
+void check_options(const VideoOptions& options);
+
+/// What libav has to do, of checked options, and what it takes the pictures as (gif: rgb, before they get a palette).
+/// Throws Error (exit 4) where it lacks the encoder.
+Encoding encoding_of(const VideoOptions& options);
+Samples samples_of(const VideoOptions& options);
 
 /// An encoder and the file it fills. All throw Error: exit 4 with the path and libav's reason, exit 130 soon after
 /// `stop` is set.

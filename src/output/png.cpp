@@ -2,9 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/machine.hpp"
-#include "output/output_file.hpp"
-#include "output/png_text.hpp"
-#include "output/pool.hpp"
+#include "output/folder.hpp"
 #include "output/samples.hpp"
 #include "output/workers.hpp"
 
@@ -13,9 +11,12 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace doppel {
 namespace {
@@ -59,17 +60,13 @@ private:
     std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed, the file: all that it holds at once
 };
 
-struct FreeCompressor {
-    void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
-};
-
 thread_local Arena arena;
 
 /// zlib's format through libdeflate, as stb_image_write asks for it: a block of the arena's, or null.
 unsigned char* compress(unsigned char* data, int length, int* compressed_length, int /*quality*/) {
     // the others take 1.8 times as long for a file 2 to 5 % smaller: see tests/output/png_test.cpp
     constexpr int level = 1;
-    thread_local const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
+    thread_local const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor(
         libdeflate_alloc_compressor(level));
     if (!compressor) return nullptr;
     const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), std::size_t(length));
@@ -99,6 +96,44 @@ unsigned char* compress(unsigned char* data, int length, int* compressed_length,
 
 namespace doppel {
 namespace {
+
+// Portable Network Graphics (W3C, 2003)
+
+std::string big_endian(std::uint32_t number) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 0xff);
+    return bytes;
+}
+
+std::string chunk(std::string_view type, std::string_view content) {
+    const std::string checked = std::string(type).append(content);
+    return big_endian(static_cast<std::uint32_t>(content.size())) + checked +
+           big_endian(libdeflate_crc32(0, checked.data(), checked.size()));
+}
+
+std::string keyword(const std::string& key) {
+    if (key == "encoder") return "Software";
+    std::string word = key;
+    if (!word.empty() && word[0] >= 'a' && word[0] <= 'z') word[0] = static_cast<char>(word[0] - 'a' + 'A');
+    return word;
+}
+
+/// UTF-8 as Latin-1; nothing where a character is none of it.
+std::optional<std::string> latin1(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        if (lead < 0x80) {
+            result += text[i];
+        } else if ((lead == 0xc2 || lead == 0xc3) && i + 1 < text.size()) {
+            // U+0080 … U+00FF are two bytes
+            result += static_cast<char>((lead & 3) << 6 | (text[++i] & 0x3f));
+        } else {
+            return std::nullopt;
+        }
+    }
+    return result;
+}
 
 // flat colours compress best as they are; any filter takes 1.7 times as long for a larger file
 [[maybe_unused]] const int no_filter = stbi_write_force_png_filter = 0;
@@ -180,6 +215,18 @@ private:
 };
 
 }  // namespace
+
+// 11.3.4: a keyword ends with a zero; iTXt adds that it is not compressed, and an empty language and translation of the
+// keyword.
+std::string png_text_chunks(const Metadata& metadata) {
+    std::string chunks;
+    for (const auto& [key, text] : metadata) {
+        const std::string start = keyword(key) + '\0';
+        const auto short_text = latin1(text);
+        chunks += short_text ? chunk("tEXt", start + *short_text) : chunk("iTXt", start + std::string(4, '\0') + text);
+    }
+    return chunks;
+}
 
 void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options,
                const std::atomic<bool>& stop) {

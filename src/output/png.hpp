@@ -1,7 +1,6 @@
 #pragma once
 
 #include "output/folder.hpp"
-#include "output/metadata.hpp"
 #include "output/sink.hpp"
 
 #include <filesystem>
@@ -16,7 +15,7 @@ struct PngOptions {
     Metadata metadata = {{"encoder", "Doppel"}};
 };
 
-/// One picture, through stb_image_write with libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the
+/// One picture, compressed by libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the
 /// picture was compressed.
 void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options = {},
                const std::atomic<bool>& stop = false);
@@ -30,6 +29,10 @@ Picture read_png(const std::filesystem::path& path);
 /// `stop` is set, thrown by take() or finish().
 std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options = {},
                                     const std::atomic<bool>& stop = never_stopped);
+
+/// PNG's text chunks of metadata: tEXt where Latin-1 has all characters of a text, iTXt elsewhere. Keywords are the
+/// registered ones: "Title", "Comment", …, "Software" for the encoder.
+std::string png_text_chunks(const Metadata& metadata);
 
 /// The threads for pictures of this size where `jobs` were asked for: that many, or one a core where it is 0; fewer
 /// where their pictures would take too much of the memory.

@@ -22,12 +22,6 @@
 namespace doppel {
 namespace {
 
-struct Free {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-    void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
-};
-using File = std::unique_ptr<std::FILE, Free>;
-
 std::uint64_t big_endian(const unsigned char* bytes) {
     return std::uint64_t{bytes[0]} << 24 | bytes[1] << 16 | bytes[2] << 8 | bytes[3];
 }
@@ -60,7 +54,7 @@ std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
 }  // namespace
 
 Picture read_png(const std::filesystem::path& path) {
-    const File file(std::fopen(path.c_str(), "rb"));
+    const Stream file(std::fopen(path.c_str(), "rb"));
     if (!file && errno == ENOENT) throw bad_input("{}: there is no such file", path.string());
     if (!file) throw io_failed("{}: cannot be read: {}", path.string(), std::generic_category().message(errno));
     std::error_code fault;
@@ -71,7 +65,7 @@ Picture read_png(const std::filesystem::path& path) {
 
     Size size;
     int channels = 0;
-    const std::unique_ptr<stbi_uc, Free> pixels(
+    const Owned<stbi_uc, stbi_image_free> pixels(
         stbi_load_from_file(file.get(), &size.width, &size.height, &channels, 4));
     if (!pixels) throw io_failed("{}: cannot be decoded as PNG: {}", path.string(), stbi_failure_reason());
     Picture picture(size);

@@ -10,6 +10,7 @@ extern "C" {
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <new>
 
 namespace doppel {
 namespace {
@@ -33,22 +34,13 @@ public:
     }
 
 private:
-    struct Free {
-        void operator()(AVSHA* sha) const { av_free(sha); }
-    };
-    std::unique_ptr<AVSHA, Free> sha_;
+    Owned<AVSHA, av_free> sha_;
 };
 
 }  // namespace
 
 std::string sha256_of_file(const FilePlace& place) {
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    Descriptor opened = open_file(place);
-    const std::unique_ptr<std::FILE, Close> file(fdopen(opened.number(), "rb"));
-    if (!file) throw cannot(place.path, "read");
-    opened.release();  // closed with the stream
+    const Stream file = stream_of(open_file(place), "rb", place.path, "read");
     Hash hash;
     std::array<std::uint8_t, std::size_t{1} << 16> block;
     while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) hash.add(block.data(), n);

@@ -2,8 +2,7 @@
 
 #include "base/machine.hpp"
 #include "output/gif.hpp"
-#include "output/pool.hpp"
-#include "output/video_codecs.hpp"
+#include "output/libav_encoder.hpp"
 #include "output/workers.hpp"
 
 extern "C" {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "output/folder.hpp"
-#include "output/metadata.hpp"
 #include "output/sink.hpp"
 
 #include <memory>

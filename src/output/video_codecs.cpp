@@ -1,8 +1,6 @@
-#include "output/video_codecs.hpp"
-
 #include "base/error.hpp"
-#include "output/libav_log.hpp"
-#include "output/png_text.hpp"
+#include "output/libav_encoder.hpp"
+#include "output/png.hpp"
 
 extern "C" {
 #include <libavutil/imgutils.h>

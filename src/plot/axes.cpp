@@ -59,9 +59,9 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
         list.push_back(
             vertical_line(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.line, style.theme.frame));
         if (!named) continue;
-        const Label label{tick.text, {at, baseline}, em, Align::center, Weight::regular, style.theme.quiet_text};
-        const Area box = text_area(label);
-        if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(label);
+        const Label words = label(tick.text, {at, baseline}, em, style.theme.quiet_text, Align::center);
+        const Area box = text_area(words);
+        if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(words);
     }
     const Weight weight = Weight::regular;
     const float size = fitting_size(plot.x.label, style.axis, weight, held.width());
@@ -83,12 +83,8 @@ void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, con
         if (named && grid) list.push_back(horizontal_line(place, area.left, area.right, style.line, style.theme.grid));
         list.push_back(horizontal_line(place, std::min(at, out), std::max(at, out), style.line, style.theme.frame));
         if (!named) continue;
-        list.push_back(Label{tick.text,
-                             {at + side * 0.55f * em, place + 0.36f * em},
-                             em,
-                             side < 0 ? Align::right : Align::left,
-                             Weight::regular,
-                             color});
+        list.push_back(label(tick.text, {at + side * 0.55f * em, place + 0.36f * em}, em, color,
+                             side < 0 ? Align::right : Align::left));
     }
 }
 

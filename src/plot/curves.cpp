@@ -14,9 +14,9 @@ struct Place {
 };
 
 /// Gathers a line piece by piece, cut to an area.
-class Cutter {
+class Clipper {
 public:
-    Cutter(const Area& area, std::vector<std::vector<Point>>& lines) : area_(area), lines_(lines) {}
+    Clipper(const Area& area, std::vector<std::vector<Point>>& lines) : area_(area), lines_(lines) {}
 
     void lift() { down_ = false; }
 
@@ -25,13 +25,13 @@ public:
             down_ = true;
             joined_ = false;
         } else {
-            cut(last_, to);
+            clip(last_, to);
         }
         last_ = to;
     }
 
 private:
-    void cut(Place from, Place to) {
+    void clip(Place from, Place to) {
         const auto within = shares_within(area_, from.x, from.y, to.x, to.y);
         if (!within) {
             joined_ = false;
@@ -57,7 +57,7 @@ private:
 /// Passes a dense line on with at most four points for each half column of pixels.
 class Thinner {
 public:
-    explicit Thinner(Cutter& cutter) : cutter_(cutter) {}
+    explicit Thinner(Clipper& clipper) : clipper_(clipper) {}
 
     void add(Place place) {
         const double column = std::floor(2 * place.x);
@@ -84,17 +84,17 @@ public:
     }
 
     void flush() {
-        for (const Place& place : held_) cutter_.move(place);
+        for (const Place& place : held_) clipper_.move(place);
         held_.clear();
     }
 
     void lift() {
         flush();
-        cutter_.lift();
+        clipper_.lift();
     }
 
 private:
-    Cutter& cutter_;
+    Clipper& clipper_;
     std::vector<Place> held_;
     double column_ = 0;
 };
@@ -147,10 +147,10 @@ void draw_dashes(const std::vector<Point>& line, float dash, float gap, Pen& pen
 void draw_ground(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
                  DisplayList& list) {
     std::vector<std::vector<Point>> lines;
-    Cutter cutter(area, lines);
+    Clipper clipper(area, lines);
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
-        std::isfinite(at.x) && std::isfinite(at.y) ? cutter.move(at) : cutter.lift();
+        std::isfinite(at.x) && std::isfinite(at.y) ? clipper.move(at) : clipper.lift();
     }
     if (curve.ground == Ground::band)
         draw_line(lines, 6 * style.curve, false, mixed(style.theme.background, style.theme.open, 0.22f), style, list);
@@ -166,8 +166,8 @@ constexpr std::size_t many = 400;  // marks in a panel: from here on they are dr
 DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area) {
     DrawnCurve made;
     if (curve.ground != Ground::none) return made;
-    Cutter cutter(area, made.lines);
-    Thinner thinner(cutter);
+    Clipper clipper(area, made.lines);
+    Thinner thinner(clipper);
     const bool dense = static_cast<float>(curve.x.size()) > 2 * area.width();
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
@@ -175,7 +175,7 @@ DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& a
             thinner.lift();
             continue;
         }
-        if (curve.mark != Mark::points) dense ? thinner.add(at) : cutter.move(at);
+        if (curve.mark != Mark::points) dense ? thinner.add(at) : clipper.move(at);
         const bool inside = at.x >= area.left && at.x <= area.right && at.y >= area.top && at.y <= area.bottom;
         // a value between two gaps shows as a dot, or it would not show at all
         const auto gap = [&](std::size_t k) {

@@ -168,12 +168,8 @@ void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle&
     const float em = style.tick, start = std::round(left + 1.2f * em), ticks_left = start + bar.thickness;
     list.push_back(colors(bar, start, area.top, style.scale));
     const auto words = [&](const std::string& text, float middle) {
-        list.push_back(Label{text,
-                             {start + bar.words_left, area.top + middle + 0.36f * em},
-                             em,
-                             Align::left,
-                             Weight::regular,
-                             style.theme.quiet_text});
+        const Point at{start + bar.words_left, area.top + middle + 0.36f * em};
+        list.push_back(label(text, at, em, style.theme.quiet_text));
     };
     for (const Tick& tick : bar.ticks) {
         if (tick.text.empty()) continue;

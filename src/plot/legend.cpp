@@ -121,12 +121,8 @@ void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const P
     float baseline = box.top + (pad + 0.8f) * size;
     for (const std::size_t i : which) {
         draw_sample(curves[i], left, right, baseline - 0.3f * size, style, over_map, list);
-        list.push_back(Label{curves[i].label,
-                             {right + gap * size, baseline},
-                             size,
-                             Align::left,
-                             Weight::regular,
-                             over_map ? rgb(0xffffff) : style.theme.text});
+        list.push_back(
+            label(curves[i].label, {right + gap * size, baseline}, size, over_map ? rgb(0xffffff) : style.theme.text));
         baseline += row * size;
     }
 }

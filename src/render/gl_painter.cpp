@@ -72,48 +72,49 @@ Painter::Painter(Size size)
 }
 
 void Painter::paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
-    plan(items, places);
+    make_batches(items, places);
     vertices_.clear();
-    for (std::size_t r = 0; r < used_runs_; ++r) {
-        Run& run = runs_[r];
-        run.begin = vertices_.size() / 4;
-        for (const std::size_t p : run.parts) {
+    for (std::size_t r = 0; r < used_batches_; ++r) {
+        Batch& batch = batches_[r];
+        batch.begin = vertices_.size() / 4;
+        for (const std::size_t p : batch.parts) {
             for (std::size_t i = items.parts[p].begin; i < items.parts[p].end; ++i) {
                 add(items.primitives[i], items.bounds[i], places);
             }
         }
-        run.end = vertices_.size() / 4;
+        batch.end = vertices_.size() / 4;
     }
     upload_vertices();
     upload(atlas);
     upload(items.images);
-    for (std::size_t r = 0; r < used_runs_; ++r) draw(runs_[r]);
+    for (std::size_t r = 0; r < used_batches_; ++r) draw(batches_[r]);
 }
 
-/// Shares out the parts among few runs. A part may be drawn earlier than its turn if it meets nothing on the way.
-void Painter::plan(const RenderList& items, const std::vector<Rect>& places) {
-    used_runs_ = 0;
+/// Shares out the parts among few batches. A part may be drawn earlier than its turn if it meets nothing on the way.
+void Painter::make_batches(const RenderList& items, const std::vector<Rect>& places) {
+    used_batches_ = 0;
     const auto meet = [](const Rect& a, const Rect& b) { return !common(a, b).empty(); };
     for (std::size_t p = 0; p < items.parts.size(); ++p) {
         const RenderList::Part& part = items.parts[p];
         if (std::none_of(places.begin(), places.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
         const Picture* image = items.primitives[part.begin].image;
-        std::size_t home = used_runs_;
-        for (std::size_t r = used_runs_; r-- > 0;) {
-            const bool met = meet(runs_[r].bounds, part.bounds);
+        std::size_t home = used_batches_;
+        for (std::size_t r = used_batches_; r-- > 0;) {
+            const bool met = meet(batches_[r].bounds, part.bounds);
             // the masks of two strokes must not mix
-            if (runs_[r].kind == part.kind && runs_[r].image == image && !(met && part.kind == Kind::mask)) home = r;
-            if (met || used_runs_ - r > 16) break;
+            if (batches_[r].kind == part.kind && batches_[r].image == image && !(met && part.kind == Kind::mask))
+                home = r;
+            if (met || used_batches_ - r > 16) break;
         }
-        if (home == used_runs_) {
-            if (++used_runs_ > runs_.size()) runs_.emplace_back();
-            runs_[home].kind = part.kind;
-            runs_[home].image = image;
-            runs_[home].bounds = {};
-            runs_[home].parts.clear();
+        if (home == used_batches_) {
+            if (++used_batches_ > batches_.size()) batches_.emplace_back();
+            batches_[home].kind = part.kind;
+            batches_[home].image = image;
+            batches_[home].bounds = {};
+            batches_[home].parts.clear();
         }
-        runs_[home].bounds = united(runs_[home].bounds, part.bounds);
-        runs_[home].parts.push_back(p);
+        batches_[home].bounds = united(batches_[home].bounds, part.bounds);
+        batches_[home].parts.push_back(p);
     }
 }
 
@@ -205,30 +206,30 @@ void Painter::upload(const std::vector<std::shared_ptr<const Picture>>& images) 
     }
 }
 
-void Painter::draw(const Run& run) {
+void Painter::draw(const Batch& batch) {
     const auto draw_quads = [&](const Program& program) {
         UseProgram(program);
-        for (std::size_t begin = run.begin; begin < run.end; begin += most_quads) {
-            const std::size_t count = std::min(run.end - begin, most_quads);
+        for (std::size_t begin = batch.begin; begin < batch.end; begin += most_quads) {
+            const std::size_t count = std::min(batch.end - begin, most_quads);
             DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_SHORT, nullptr,
                                    static_cast<GLint>(4 * begin));
         }
     };
-    if (run.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
+    if (batch.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
     for (const Loaded& loaded : images_) {
-        if (loaded.pixels.get() == run.image) BindTexture(GL_TEXTURE_2D, *loaded.texture);
+        if (loaded.pixels.get() == batch.image) BindTexture(GL_TEXTURE_2D, *loaded.texture);
     }
-    if (run.kind == Kind::mask) {
+    if (batch.kind == Kind::mask) {
         BlendEquation(GL_MIN);
         ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-        draw_quads(programs_[static_cast<std::size_t>(run.kind)]);
+        draw_quads(programs_[static_cast<std::size_t>(batch.kind)]);
         BlendEquation(GL_FUNC_ADD);
         ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         BlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ZERO);
         draw_quads(cover_);
     } else {
         BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-        draw_quads(programs_[static_cast<std::size_t>(run.kind)]);
+        draw_quads(programs_[static_cast<std::size_t>(batch.kind)]);
     }
 }
 

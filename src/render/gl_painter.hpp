@@ -29,7 +29,7 @@ private:
         std::array<std::uint8_t, 4> tint;
     };
     /// Parts drawn together.
-    struct Run {
+    struct Batch {
         Kind kind;
         const Picture* image;
         Rect bounds;             // of all its parts
@@ -42,13 +42,13 @@ private:
         std::unique_ptr<Texture> texture;
     };
 
-    void plan(const RenderList& items, const std::vector<Rect>& places);
+    void make_batches(const RenderList& items, const std::vector<Rect>& places);
     void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places);
     void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);
     void upload(const std::vector<std::shared_ptr<const Picture>>& images);
-    void draw(const Run& run);
+    void draw(const Batch& batch);
 
     std::array<Program, 4> programs_;  // by kind
     Program cover_;
@@ -60,8 +60,8 @@ private:
     std::vector<Loaded> images_;
     std::vector<Vertex> vertices_;
     std::vector<Point> outline_, clipped_;  // of what is added
-    std::vector<Run> runs_;                 // kept for their memory; those in use come first
-    std::size_t used_runs_ = 0;
+    std::vector<Batch> batches_;            // kept for their memory; those in use come first
+    std::size_t used_batches_ = 0;
 };
 
 }  // namespace doppel::gl

@@ -54,26 +54,26 @@ public:
             v.width = std::max(width, 1.f);
             v.glow *= std::max(stroke.glow, 0.f);
         }
-        bows_.clear();
-        if (path_.size() == 1) bows_.push_back({path_[0], path_[0], 0});
+        segments_.clear();
+        if (path_.size() == 1) segments_.push_back({path_[0], path_[0], 0});
         for (std::size_t i = 0; i + 1 < path_.size();) {
             const StrokePiece piece = next_piece(path_, i, Bends::no);
-            const Bow bow{path_[i], path_[piece.last], piece.bend};
+            const Segment segment{path_[i], path_[piece.last], piece.bend};
             // from joint to joint it changes its looks on the spot
-            if (!(bow.from.joint && bow.to.joint && bow.chord.length == 0)) bows_.push_back(bow);
+            if (!(segment.from.joint && segment.to.joint && segment.chord.length == 0)) segments_.push_back(segment);
             i = piece.last;
         }
         const auto color = tint(stroke.color);
-        for (std::size_t i = 0; i < bows_.size(); ++i) {
-            const auto& [from, to, bend, s] = bows_[i];
+        for (std::size_t i = 0; i < segments_.size(); ++i) {
+            const auto& [from, to, bend, s] = segments_[i];
             if (!(from.alpha > 0 || to.alpha > 0)) continue;
             const float per_px = s.length > 0 ? 1 / s.length : 0;
             const float alpha = s.length > 0 ? (from.alpha + to.alpha) / 2 : std::max(from.alpha, to.alpha);
             const float reach = std::max(from.width, to.width) / 2 + std::max({edge / 2, from.glow, to.glow});
             const float half_length =
                 s.length / 2 + edge / 2 +
-                reach * std::max(i > 0 ? share_at_joint(bows_[i - 1], bows_[i]) : 1,
-                                 i + 1 < bows_.size() ? share_at_joint(bows_[i], bows_[i + 1]) : 1);
+                reach * std::max(i > 0 ? share_at_joint(segments_[i - 1], segments_[i]) : 1,
+                                 i + 1 < segments_.size() ? share_at_joint(segments_[i], segments_[i + 1]) : 1);
             const Point middle = s.middle();
             add({.origin = {middle.x - s.axis.y * bend / 2, middle.y + s.axis.x * bend / 2},
                  .axis = s.axis,
@@ -125,7 +125,7 @@ public:
 
 private:
     /// A piece of a stroke.
-    struct Bow {
+    struct Segment {
         Stroke::Vertex from, to;
         float bend;  // px
         Chord chord{from.at, to.at};
@@ -141,7 +141,7 @@ private:
 
     /// How far both must reach beyond the joint where the one goes on as the other, in units of the stroke's reach:
     /// what is round there is shared by the two, each up to the bisector; an end of its own a piece rounds off alone.
-    static float share_at_joint(const Bow& a, const Bow& b) {
+    static float share_at_joint(const Segment& a, const Segment& b) {
         const Point out = a.direction(-a.steepness()), in = b.direction(b.steepness());
         const float along = out.x * in.x + out.y * in.y;  // cosine of the turn
         if (!(along > 0 && a.chord.length > 0 && b.chord.length > 0)) return 1;
@@ -193,7 +193,7 @@ private:
     RenderList& made_;
     // of the stroke in hand; kept for their memory
     std::vector<Stroke::Vertex> path_;
-    std::vector<Bow> bows_;
+    std::vector<Segment> segments_;
 };
 
 }  // namespace

@@ -13,9 +13,9 @@
 namespace doppel {
 
 /// What the renderer is made of: a context, a canvas, the backdrop, and the render list of the last picture.
-class Renderer::Machine {
+class Renderer::State {
 public:
-    Machine(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop)
+    State(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop)
         : size_(size), context_(make_context(gl)) {
         check_size();
         atlas_.emplace(limit(GL_MAX_TEXTURE_SIZE));
@@ -35,9 +35,9 @@ public:
         }
     }
 
-    ~Machine() { context_->make_current(); }
-    Machine(const Machine&) = delete;
-    Machine& operator=(const Machine&) = delete;
+    ~State() { context_->make_current(); }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
 
     const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop) {
         context_->make_current();
@@ -120,19 +120,19 @@ private:
 };
 
 Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop) try
-    : machine_(std::make_unique<Machine>(size, backdrop, gl, stop)) {
+    : state_(std::make_unique<State>(size, backdrop, gl, stop)) {
 } catch (const std::bad_alloc&) {
     throw io_failed("there is no memory for a picture of {} × {} px", size.width, size.height);
 }
 Renderer::~Renderer() = default;
 const Picture& Renderer::draw(const DisplayList& list, const std::atomic<bool>& stop) {
-    return machine_->draw(list, stop);
+    return state_->draw(list, stop);
 }
 const std::vector<Rect>& Renderer::changed() const {
-    return machine_->changed();
+    return state_->changed();
 }
 std::string Renderer::description() const {
-    return machine_->description();
+    return state_->description();
 }
 
 }  // namespace doppel

@@ -49,8 +49,8 @@ public:
     std::string description() const;
 
 private:
-    class Machine;
-    std::unique_ptr<Machine> machine_;
+    class State;
+    std::unique_ptr<State> state_;
 };
 
 }  // namespace doppel

@@ -1,6 +1,6 @@
 #include "scene/manifest_json.hpp"
 
-#include "output/output_file.hpp"
+#include "output/folder.hpp"
 #include "output/sha256.hpp"
 #include "scene/version.hpp"
 
@@ -27,7 +27,7 @@ Json program_json() {
     return {{"version", version()}, {"revision", revision()}};
 }
 
-void write_manifest(PartFiles& parts, const std::string& name, Json manifest) {
+void write_manifest(Transaction& parts, const std::string& name, Json manifest) {
     const auto place = parts.file(name);
     auto& files = manifest["files"] = Json::object();
     for (const auto& [file, where] : parts.finished_files())

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "output/part_files.hpp"
+#include "output/transaction.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +19,6 @@ Json program_json();
 
 /// Adds the files of the run, those that are finished, and those of earlier runs that stay, with size and SHA-256; then
 /// writes the manifest as the last of them, "NAME.json". Throws Error (exit 4).
-void write_manifest(PartFiles& parts, const std::string& name, Json manifest);
+void write_manifest(Transaction& parts, const std::string& name, Json manifest);
 
 }  // namespace doppel

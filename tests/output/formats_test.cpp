@@ -3,7 +3,6 @@
 #include "output/fixtures.hpp"
 #include "output/libav_encoder.hpp"
 #include "output/video.hpp"
-#include "output/video_codecs.hpp"
 
 #include <algorithm>
 #include <cmath>

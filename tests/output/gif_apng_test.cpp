@@ -1,7 +1,6 @@
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
-#include "output/palette.hpp"
-#include "output/spool.hpp"
+#include "output/gif.hpp"
 #include "output/video.hpp"
 
 #include <algorithm>

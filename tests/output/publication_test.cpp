@@ -1,7 +1,7 @@
 // Several files that take their places together, whatever happens on the way.
 #include "output/fixtures.hpp"
-#include "output/part_files.hpp"
 #include "output/system_calls.hpp"
+#include "output/transaction.hpp"
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -29,7 +29,7 @@ Contents contents(const fs::path& folder) {
 
 /// A run that writes a film, pictures and a manifest, all of which say `word`.
 void run(const fs::path& folder, const std::string& word) {
-    PartFiles files(folder);
+    Transaction files(folder);
     write_bytes(files.file("x.mp4").path, word);
     const Folder& frames = files.directory("frames");
     for (const char* name : {"000000.png", "000001.png"}) write_bytes(frames.path() / name, word);
@@ -116,7 +116,7 @@ TEST(Publication, IsAllNewOrAllOldWheneverItIsKilled) {
             for (const auto& [name, word] : expected_old)
                 EXPECT_TRUE(system || name == "x.failed.csv" || fs::exists(folder / name)) << kills << ", " << name;
             watch_calls(as_always);
-            { PartFiles next(folder); }
+            { Transaction next(folder); }
             const auto found = contents(folder);
             EXPECT_TRUE(found == expected_old || found == expected_new) << kills;
             old += found == expected_old;
@@ -141,9 +141,9 @@ TEST(Publication, IsAllNewOrAllOldWhereItsRecoveryIsKilledToo) {
                 killed = killed_before(
                     first, [&] { run(folder, "new"); }, system);
                 killed_again = killed_before(
-                    again, [&] { PartFiles next(folder); }, system);
+                    again, [&] { Transaction next(folder); }, system);
                 watch_calls(as_always);
-                { PartFiles next(folder); }
+                { Transaction next(folder); }
                 const auto found = contents(folder);
                 EXPECT_TRUE(found == expected_old || found == expected_new) << first << ", " << again;
             }
@@ -207,17 +207,17 @@ TEST(Publication, WhereTheOldOnesCannotComeBackEitherTheNextRunSortsIt) {
     int calls = 0;
     watch_calls([&](const std::string& call) { return call == "renameat2" && ++calls >= 2 ? EPERM : 0; });
     EXPECT_THROW(run(folder, "new"), Error);
-    EXPECT_THROW({ PartFiles next(folder); }, Error);
+    EXPECT_THROW({ Transaction next(folder); }, Error);
     watch_calls({});
     const auto before = contents(folder);
-    { PartFiles next(folder); }
+    { Transaction next(folder); }
     const auto found = contents(folder);
     EXPECT_EQ(found.at("x.mp4"), found.at("frames/000000.png"));
     EXPECT_EQ(found.at("x.mp4") == "new", found == expected_new);
     for (const auto& [name, bytes] : found) EXPECT_FALSE(name.ends_with(".part")) << name;
 }
 
-TEST(PartFiles, ARunThatCannotBeginLeavesNoFolder) {
+TEST(Transaction, ARunThatCannotBeginLeavesNoFolder) {
     const auto out = fresh_folder();
     int failing = 0;
     for (bool failed = true; failed;) {
@@ -226,7 +226,7 @@ TEST(PartFiles, ARunThatCannotBeginLeavesNoFolder) {
         });
         failed = false;
         try {
-            PartFiles files(out / "a/b");
+            Transaction files(out / "a/b");
         } catch (const Error& error) {
             failed = true;
             EXPECT_EQ(error.code(), ExitCode::io_failed);
@@ -238,24 +238,24 @@ TEST(PartFiles, ARunThatCannotBeginLeavesNoFolder) {
     EXPECT_EQ(failing, 4);  // the folder, its lock, its files
 }
 
-TEST(PartFiles, AFolderThatCannotBeMadeIsNamed) {
+TEST(Transaction, AFolderThatCannotBeMadeIsNamed) {
     const auto out = fresh_folder();
-    PartFiles files(out);
+    Transaction files(out);
     watch_calls([](const std::string& call) { return call == "mkdirat" ? ENOSPC : 0; });
     expect_error(ExitCode::io_failed, {(out / "frames.part").string() + ": cannot be made: No space left on device"},
                  [&] { files.directory("frames"); });
     watch_calls({});
 }
 
-TEST(FolderLock, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
+TEST(Journal, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
     const auto folder = fresh_folder();
     const auto no_locks = [](const std::string& call) { return call == "flock" ? ENOLCK : 0; };
     watch_calls(no_locks);
     {
-        PartFiles live(folder);
+        Transaction live(folder);
         write_bytes(live.file("x.csv").path, "half a tab");
         expect_error(ExitCode::io_failed, {"may be writing there", fmt::format("process {}", getpid()), "no locks"},
-                     [&] { PartFiles second(folder); });
+                     [&] { Transaction second(folder); });
         EXPECT_EQ(bytes_of(folder / "x.csv.part"), "half a tab");
         live.publish();
     }
@@ -264,13 +264,13 @@ TEST(FolderLock, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
     // of one that was killed nothing stays
     EXPECT_TRUE(killed_before(1'000'000, [&] {
         watch_calls(no_locks);
-        PartFiles killed(folder);
+        Transaction killed(folder);
         write_bytes(killed.file("y.csv").path, "half a tab");
         raise(SIGKILL);
     }));
     EXPECT_TRUE(fs::exists(folder / "y.csv.part"));
     watch_calls(no_locks);
-    { PartFiles next(folder); }
+    { Transaction next(folder); }
     watch_calls({});
     EXPECT_EQ(contents(folder), (Contents{{"x.csv", "half a tab"}}));
 }

@@ -1,5 +1,3 @@
-#include "output/queue.hpp"
-
 #include "output/workers.hpp"
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@ using namespace test;
 TEST(Manifest, IsFinishedAsTheFilesThatItNames) {
     const auto folder = fresh_folder();
     {
-        PartFiles files(folder);
+        Transaction files(folder);
         write_bytes(files.file("x.mp4").path, "video");
         files.finished("x.mp4");
         write_manifest(files, "x.json", {});

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "output/folder_lock.hpp"
-#include "output/publication.hpp"
+#include "output/journal.hpp"
 #include "output/written.hpp"
 
 #include <filesystem>
@@ -24,15 +23,15 @@ class Error;
 ///
 /// Only what Doppel made is replaced or removed (see is_written()), and no symbolic link in the folder, nor the folder
 /// if it is one, is followed.
-class PartFiles {
+class Transaction {
 public:
     /// Makes `folder` (and what leads to it) and takes it for this `run`; runs of other names may write other files
     /// there at the same time. Throws Error (exit 4) where that fails, something else is in its place, or another
     /// process has such a run there.
-    explicit PartFiles(const std::filesystem::path& folder, const std::string& run = "run");
-    ~PartFiles();
-    PartFiles(const PartFiles&) = delete;
-    PartFiles& operator=(const PartFiles&) = delete;
+    explicit Transaction(const std::filesystem::path& folder, const std::string& run = "run");
+    ~Transaction();
+    Transaction(const Transaction&) = delete;
+    Transaction& operator=(const Transaction&) = delete;
 
     /// Where to write the file NAME for now: NAME.part. Throws Error (exit 4) where NAME is taken by something that is
     /// not Doppel's, or cannot be replaced.
@@ -83,7 +82,7 @@ private:
     std::vector<std::filesystem::path> made_;  // folders, outermost first
     Folder folder_;
     WrittenFiles written_;
-    std::optional<FolderLock> lock_;
+    std::optional<Journal> journal_;
     std::vector<Part> parts_;
     std::vector<std::string> removed_;
     bool keeps_finished_ = false;

@@ -1,8 +1,7 @@
-#include "output/part_files.hpp"
-
 #include "output/fixtures.hpp"
-#include "output/output_file.hpp"
+#include "output/folder.hpp"
 #include "output/png.hpp"
+#include "output/transaction.hpp"
 #include "output/written.hpp"
 
 #include <sys/stat.h>
@@ -16,7 +15,7 @@
 #include <thread>
 
 namespace doppel {
-namespace part_files_test {
+namespace transaction_test {
 
 using namespace test;
 
@@ -34,11 +33,11 @@ using Names = std::set<std::string>;
 
 const std::string lock = ".run.lock";
 
-void write_part(PartFiles& files, const std::string& name, const std::string& bytes) {
+void write_part(Transaction& files, const std::string& name, const std::string& bytes) {
     write_bytes(files.file(name).path, bytes);
 }
 
-void write_picture(PartFiles& files, const std::string& name) {
+void write_picture(Transaction& files, const std::string& name) {
     write_bytes(files.directory("frames").path() / name, "picture");
 }
 
@@ -61,9 +60,9 @@ void killed(const std::function<void()>& action) {
     ASSERT_TRUE(WIFSIGNALED(status));
 }
 
-TEST(PartFiles, AppearTogetherWhenPublished) {
+TEST(Transaction, AppearTogetherWhenPublished) {
     const auto out = fresh_folder();
-    PartFiles files(out / "a/b");
+    Transaction files(out / "a/b");
     write_part(files, "x.csv", "table");
     write_part(files, "x.mp4", "video");
     write_picture(files, "0.png");
@@ -74,11 +73,11 @@ TEST(PartFiles, AppearTogetherWhenPublished) {
     EXPECT_EQ(bytes_of(out / "a/b/x.csv"), "table");
 }
 
-TEST(PartFiles, DestroyedUnpublishedLeaveNothing) {
+TEST(Transaction, DestroyedUnpublishedLeaveNothing) {
     const auto out = fresh_folder();
     fs::create_directory(out / "a");
     {
-        PartFiles files(out / "a/b/c");
+        Transaction files(out / "a/b/c");
         write_part(files, "x.csv", "table");
         write_picture(files, "0.png");
         files.file("never written");
@@ -86,17 +85,17 @@ TEST(PartFiles, DestroyedUnpublishedLeaveNothing) {
     EXPECT_EQ(listing(out), Names{"a"});  // which was there before
 }
 
-TEST(PartFiles, FoldersWithOtherThingsInThemStay) {
+TEST(Transaction, FoldersWithOtherThingsInThemStay) {
     const auto out = fresh_folder();
     {
-        PartFiles files(out / "a/b");
+        Transaction files(out / "a/b");
         files.file("x.csv");
         write_bytes(out / "a/notes", "somebody's");
     }
     EXPECT_EQ(listing(out), (Names{"a", "a/notes"}));
 }
 
-TEST(PartFiles, RunsThatStartTogetherShareTheFoldersTheyMake) {
+TEST(Transaction, RunsThatStartTogetherShareTheFoldersTheyMake) {
     const auto out = fresh_folder();
     for (int round = 0; round < 50; ++round) {
         const auto folder = out / std::to_string(round) / "a/b";
@@ -107,7 +106,7 @@ TEST(PartFiles, RunsThatStartTogetherShareTheFoldersTheyMake) {
             runs.emplace_back([&, run] {
                 start.arrive_and_wait();
                 try {
-                    const PartFiles files(folder, std::to_string(run));
+                    const Transaction files(folder, std::to_string(run));
                     ++begun;
                     start.arrive_and_wait();
                 } catch (const std::exception& error) {
@@ -120,39 +119,39 @@ TEST(PartFiles, RunsThatStartTogetherShareTheFoldersTheyMake) {
     }
 }
 
-TEST(PartFiles, OlderFilesStayUntilPublished) {
+TEST(Transaction, OlderFilesStayUntilPublished) {
     const auto out = fresh_folder();
     write_bytes(out / "x.csv", "old");
     write_record(out, {"x.csv"});
     {
-        PartFiles files(out);
+        Transaction files(out);
         EXPECT_FALSE(fs::exists(files.file("x.csv").path));
     }
     EXPECT_EQ(bytes_of(out / "x.csv"), "old");
-    PartFiles files(out);
+    Transaction files(out);
     write_part(files, "x.csv", "new");
     files.publish();
     EXPECT_EQ(bytes_of(out / "x.csv"), "new");
     EXPECT_EQ(listing(out), (Names{lock, "x.csv", "record.json"}));
 }
 
-TEST(PartFiles, AFolderIsReplacedAsAWhole) {
+TEST(Transaction, AFolderIsReplacedAsAWhole) {
     const auto out = fresh_folder();
     fs::create_directories(out / "frames");
     write_bytes(out / "frames/000000.png", "old");
     write_bytes(out / "frames/000001.png", "old");
     write_record(out, {"frames/000000.png", "frames/000001.png"});
-    PartFiles files(out);
+    Transaction files(out);
     write_picture(files, "000000.png");
     files.publish();
     EXPECT_EQ(listing(out), (Names{lock, "frames", "frames/000000.png", "record.json"}));
     EXPECT_EQ(bytes_of(out / "frames/000000.png"), "picture");
 }
 
-TEST(PartFiles, OneThatCannotBePublishedTakesTheOthersWithIt) {
+TEST(Transaction, OneThatCannotBePublishedTakesTheOthersWithIt) {
     const auto out = fresh_folder();
     {
-        PartFiles files(out / "a");
+        Transaction files(out / "a");
         write_part(files, "x.csv", "table");
         files.file("x.mp4");  // asked for, never written
         expect_error(ExitCode::io_failed, {"x.mp4.part", "No such file"}, [&] { files.publish(); });
@@ -160,20 +159,20 @@ TEST(PartFiles, OneThatCannotBePublishedTakesTheOthersWithIt) {
     EXPECT_EQ(listing(out), Names{});
 }
 
-TEST(PartFiles, WhatIsInTheWayIsNamed) {
+TEST(Transaction, WhatIsInTheWayIsNamed) {
     const auto out = fresh_folder();
     fs::create_directories(out / "x/x.csv");
     write_bytes(out / "file", "");
     expect_error(ExitCode::io_failed, {"x/x.csv is a folder; Doppel would write a file there"},
-                 [&] { PartFiles(out / "x").file("x.csv"); });
+                 [&] { Transaction(out / "x").file("x.csv"); });
     expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"},
-                 [&] { PartFiles(out).directory("file"); });
-    expect_error(ExitCode::io_failed, {"file is no folder"}, [&] { PartFiles(out / "file/x"); });
-    expect_error(ExitCode::io_failed, {"/proc/doppel", "No such file"}, [] { PartFiles("/proc/doppel/x"); });
+                 [&] { Transaction(out).directory("file"); });
+    expect_error(ExitCode::io_failed, {"file is no folder"}, [&] { Transaction(out / "file/x"); });
+    expect_error(ExitCode::io_failed, {"/proc/doppel", "No such file"}, [] { Transaction("/proc/doppel/x"); });
     EXPECT_EQ(listing(out), (Names{"x", "x/x.csv", "file"}));
 }
 
-TEST(PartFiles, LinksAndPipesBelowTheFolderAreNeverFollowed) {
+TEST(Transaction, LinksAndPipesBelowTheFolderAreNeverFollowed) {
     const auto out = fresh_folder();
     write_bytes(out / "thesis", "years of work");
     for (const std::string name : {".run.lock", "x.csv", "x.csv.part", "frames", "frames.part"})
@@ -185,7 +184,7 @@ TEST(PartFiles, LinksAndPipesBelowTheFolderAreNeverFollowed) {
             if (kind == "hard link") fs::create_hard_link(out / "thesis", folder / name);
             if (kind == "pipe") mkfifo((folder / name).c_str(), 0600);
             expect_error(ExitCode::io_failed, {(folder / name).string()}, [&] {
-                PartFiles files(folder);
+                Transaction files(folder);
                 files.file("x.csv");
                 files.directory("frames");
             });
@@ -194,19 +193,19 @@ TEST(PartFiles, LinksAndPipesBelowTheFolderAreNeverFollowed) {
         }
     fs::create_directory(out / "elsewhere");
     fs::create_directory_symlink("elsewhere", out / "link");
-    expect_error(ExitCode::io_failed, {"link is a symbolic link"}, [&] { PartFiles(out / "link"); });
-    PartFiles(out / "link/x").file("x.csv");  // the way there is the person's
+    expect_error(ExitCode::io_failed, {"link is a symbolic link"}, [&] { Transaction(out / "link"); });
+    Transaction(out / "link/x").file("x.csv");  // the way there is the person's
     EXPECT_EQ(listing(out / "elsewhere"), Names{});
 }
 
-TEST(PartFiles, WhatIsNotDoppelsIsNeverReplaced) {
+TEST(Transaction, WhatIsNotDoppelsIsNeverReplaced) {
     const auto out = fresh_folder();
     fs::create_directory(out / "frames");
     write_bytes(out / "x.csv", "my table");
     write_bytes(out / "frames/000000.png", "ours");
     write_bytes(out / "frames/notes.txt", "mine");
     write_record(out, {"frames/000000.png"});
-    PartFiles files(out);
+    Transaction files(out);
     expect_error(ExitCode::io_failed, {(out / "x.csv").string(), "not written by Doppel"},
                  [&] { files.file("x.csv"); });
     expect_error(ExitCode::io_failed, {(out / "frames/notes.txt").string(), "not written by Doppel"},
@@ -224,13 +223,13 @@ TEST(PartFiles, WhatIsNotDoppelsIsNeverReplaced) {
     EXPECT_EQ(bytes_of(out / "frames/000000.png"), "ours");
 }
 
-TEST(PartFiles, KnowsWhatDoppelMadeByItsContentToo) {
+TEST(Transaction, KnowsWhatDoppelMadeByItsContentToo) {
     const auto out = fresh_folder();
     fs::create_directory(out / "frames");
     write_png(out / "frames/000000.png", noise({4, 4}, 1));
     write_png(out / "x.png", noise({4, 4}, 1));
     write_bytes(out / "x.csv", "sample,time_s,a_theta1_rad\r\n");
-    PartFiles files(out);
+    Transaction files(out);
     files.file("x.png");
     files.file("x.csv");
     files.directory("frames");
@@ -238,16 +237,16 @@ TEST(PartFiles, KnowsWhatDoppelMadeByItsContentToo) {
     expect_error(ExitCode::io_failed, {"y.png"}, [&] { files.file("y.png"); });
 }
 
-TEST(PartFiles, TheMakerOfAPictureIsReadWhole) {
+TEST(Transaction, TheMakerOfAPictureIsReadWhole) {
     const auto folder = fresh_folder();
     const std::string maker = "Doppel " + std::string(300, 'x');  // its length takes two bytes
     write_png(folder / "x.png", noise({4, 4}, 1), {.metadata = {{"encoder", maker}}});
     EXPECT_EQ(maker_of_picture(Folder::at(folder), "x.png"), maker);
 }
 
-TEST(PartFiles, AreNoPrograms) {
+TEST(Transaction, AreNoPrograms) {
     const auto folder = fresh_folder();
-    PartFiles parts(folder);
+    Transaction parts(folder);
     OutputFile(parts.file("x.csv")).close();
     const auto executable = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
     EXPECT_EQ(listing(folder), (Names{lock, "x.csv.part"}));
@@ -255,24 +254,24 @@ TEST(PartFiles, AreNoPrograms) {
         EXPECT_EQ(entry.status().permissions() & executable, fs::perms::none) << entry;
 }
 
-TEST(PartFiles, FilesOfEarlierRunsStayKnown) {
+TEST(Transaction, FilesOfEarlierRunsStayKnown) {
     const auto out = fresh_folder();
     fs::create_directory(out / "frames");
     write_bytes(out / "frames/000000.png", "picture");
     write_bytes(out / "x.mp4", "video");
     write_bytes(out / "x.csv", "table");
     write_record(out, {"frames/000000.png", "x.mp4", "x.csv", "gone.png", "frames/000001.png"});
-    PartFiles files(out);
+    Transaction files(out);
     files.file("x.csv");
     std::set<std::string> earlier;
     for (const auto& [name, about] : files.earlier_files()) earlier.insert(name);
     EXPECT_EQ(earlier, (Names{"frames/000000.png", "x.mp4"}));
 }
 
-TEST(PartFiles, WhatIsFinishedStaysWhereALaterStepFails) {
+TEST(Transaction, WhatIsFinishedStaysWhereALaterStepFails) {
     const auto out = fresh_folder();
     {
-        PartFiles files(out);
+        Transaction files(out);
         write_part(files, "x.mp4", "video");
         files.finished("x.mp4");
         write_part(files, "x.csv", "half a tab");
@@ -282,10 +281,10 @@ TEST(PartFiles, WhatIsFinishedStaysWhereALaterStepFails) {
     }
     EXPECT_EQ(listing(out), (Names{lock, "x.mp4.part"}));
     fs::copy_file(out / "x.mp4.part", out / "rescued.mp4");
-    { PartFiles files(out); }
+    { Transaction files(out); }
     EXPECT_EQ(listing(out), Names{"rescued.mp4"});
     {
-        PartFiles files(out);
+        Transaction files(out);
         write_part(files, "x.mp4", "video");
         files.finished("x.mp4");
         expect_error(ExitCode::interrupted, {"stop"}, [&] {
@@ -295,9 +294,9 @@ TEST(PartFiles, WhatIsFinishedStaysWhereALaterStepFails) {
     EXPECT_EQ(listing(out), Names{"rescued.mp4"});
 }
 
-TEST(PartFiles, OneAloneIsKeptUnderAnotherName) {
+TEST(Transaction, OneAloneIsKeptUnderAnotherName) {
     const auto out = fresh_folder();
-    PartFiles files(out);
+    Transaction files(out);
     write_part(files, "x.csv", "table");
     write_part(files, "x.mp4", "video");
     write_picture(files, "0.png");
@@ -308,27 +307,27 @@ TEST(PartFiles, OneAloneIsKeptUnderAnotherName) {
     EXPECT_EQ(bytes_of(out / "x.failed.csv"), "table");
 }
 
-TEST(PartFiles, HoldTheFolderForOneRunAtATime) {
+TEST(Transaction, HoldTheFolderForOneRunAtATime) {
     const auto out = fresh_folder();
     const auto pid = std::to_string(getpid());
     {
-        PartFiles files(out / "a");
+        Transaction files(out / "a");
         expect_error(ExitCode::io_failed, {(out / "a").string() + ": ", "another run, process " + pid, "--out"},
-                     [&] { PartFiles(out / "a"); });
-        PartFiles shard(out / "a", "shard-1-of-2");  // of another name
+                     [&] { Transaction(out / "a"); });
+        Transaction shard(out / "a", "shard-1-of-2");  // of another name
         EXPECT_EQ(listing(out / "a"), (Names{lock, ".shard-1-of-2.lock"}));
         write_part(files, "x.csv", "sample,time_s,");
         files.publish();
     }
     EXPECT_EQ(listing(out), (Names{"a", "a/x.csv"}));
-    PartFiles(out / "a").file("x.csv");
+    Transaction(out / "a").file("x.csv");
 }
 
-TEST(PartFiles, WhatAKilledRunLeftGoesWithTheNext) {
+TEST(Transaction, WhatAKilledRunLeftGoesWithTheNext) {
     const auto out = fresh_folder();
     write_bytes(out / "notes.part", "somebody's");
     killed([&] {
-        PartFiles files(out);
+        Transaction files(out);
         write_part(files, "x.mp4", "video");
         write_picture(files, "0.png");
         fs::create_directory(out / "frames.old.part");  // as where it is killed while publishing
@@ -336,16 +335,16 @@ TEST(PartFiles, WhatAKilledRunLeftGoesWithTheNext) {
     });
     EXPECT_EQ(listing(out),
               (Names{lock, "frames.old.part", "frames.part", "frames.part/0.png", "notes.part", "x.mp4.part"}));
-    { PartFiles files(out, "another"); }  // is not concerned
+    { Transaction files(out, "another"); }  // is not concerned
     EXPECT_TRUE(fs::exists(out / "x.mp4.part"));
     {
-        PartFiles files(out);
+        Transaction files(out);
         EXPECT_EQ(listing(out), (Names{lock, "notes.part"}));
     }
     EXPECT_EQ(listing(out), Names{"notes.part"});
 }
 
-TEST(PartFiles, AStaleListRemovesNothingButParts) {
+TEST(Transaction, AStaleListRemovesNothingButParts) {
     const auto out = fresh_folder();
     fs::create_directory(out / "a");
     write_bytes(out / "x.part", "");
@@ -357,23 +356,23 @@ TEST(PartFiles, AStaleListRemovesNothingButParts) {
     for (const auto& [lines, publishes] :
          {std::pair(notes + "part x.csv\n", "publish\n"), {notes, "withdraw\n"}, {notes, ""}}) {
         write_bytes(out / "a" / lock, lines + publishes);
-        { PartFiles files(out / "a"); }
+        { Transaction files(out / "a"); }
         EXPECT_EQ(listing(out), (Names{"a", "a/x.csv", "x.part"}));
     }
 }
 
-TEST(PartFiles, ALockFileOfSomebodyElseStays) {
+TEST(Transaction, ALockFileOfSomebodyElseStays) {
     const auto out = fresh_folder();
     for (const std::string text : {"1234\nx.csv.part\n", "my own lock", "doppel ran here"}) {
         write_bytes(out / lock, text);
         expect_error(ExitCode::io_failed, {(out / lock).string(), "no lock file of Doppel's"},
-                     [&] { PartFiles files(out); });
+                     [&] { Transaction files(out); });
         EXPECT_EQ(bytes_of(out / lock), text);
     }
     write_bytes(out / lock, "doppel ru");  // killed while it wrote its first line
-    { PartFiles files(out); }
+    { Transaction files(out); }
     EXPECT_EQ(listing(out), Names{});
 }
 
-}  // namespace part_files_test
+}  // namespace transaction_test
 }  // namespace doppel

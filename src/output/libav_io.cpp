@@ -1,19 +1,28 @@
-#include "output/libav_file.hpp"
+#include "output/libav_encoder.hpp"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
+extern "C" {
+#include <libavutil/log.h>
+}
+
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstdarg>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <new>
+#include <utility>
 
 namespace doppel {
 namespace {
 
 /// One place in the file, to write or to read at.
-struct Stream {
+struct StreamPosition {
     int file;
     std::int64_t at = 0;  // bytes from the start
 };
@@ -21,7 +30,7 @@ struct Stream {
 /// Byte is uint8_t, const from libavformat 61 on. All of it is written, or libav's code of what failed is returned.
 template <class Byte>
 int write_stream(void* opaque, Byte* bytes, int count) {
-    auto& [file, at] = *static_cast<Stream*>(opaque);
+    auto& [file, at] = *static_cast<StreamPosition*>(opaque);
     for (int done = 0; done < count;) {
         const auto written = pwrite(file, bytes + done, static_cast<std::size_t>(count - done), at);
         if (written < 0 && errno == EINTR) continue;
@@ -33,7 +42,7 @@ int write_stream(void* opaque, Byte* bytes, int count) {
 }
 
 int read_stream(void* opaque, std::uint8_t* bytes, int count) {
-    auto& [file, at] = *static_cast<Stream*>(opaque);
+    auto& [file, at] = *static_cast<StreamPosition*>(opaque);
     const auto got = pread(file, bytes, static_cast<std::size_t>(count), at);
     if (got < 0) return AVERROR(errno);
     at += got;
@@ -41,7 +50,7 @@ int read_stream(void* opaque, std::uint8_t* bytes, int count) {
 }
 
 std::int64_t seek_stream(void* opaque, std::int64_t offset, int whence) {
-    auto& [file, at] = *static_cast<Stream*>(opaque);
+    auto& [file, at] = *static_cast<StreamPosition*>(opaque);
     struct stat status {};
     if (fstat(file, &status) != 0) return AVERROR(errno);
     whence &= ~AVSEEK_FORCE;
@@ -51,7 +60,7 @@ std::int64_t seek_stream(void* opaque, std::int64_t offset, int whence) {
 
 AVIOContext* open_stream(int file, bool writes) {
     constexpr int buffer_bytes = 1 << 16;
-    auto stream = std::make_unique<Stream>(Stream{file});
+    auto stream = std::make_unique<StreamPosition>(StreamPosition{file});
     auto* buffer = static_cast<unsigned char*>(av_malloc(buffer_bytes));
     auto* context =
         buffer ? avio_alloc_context(buffer, buffer_bytes, writes, stream.get(), read_stream, write_stream, seek_stream)
@@ -66,7 +75,7 @@ AVIOContext* open_stream(int file, bool writes) {
 
 void close_stream(AVIOContext* context) {
     if (!context) return;
-    delete static_cast<Stream*>(context->opaque);
+    delete static_cast<StreamPosition*>(context->opaque);
     av_freep(&context->buffer);
     avio_context_free(&context);
 }
@@ -84,7 +93,7 @@ void LibavFile::attach(AVFormatContext& format) {
     format.io_open = [](AVFormatContext* muxer, AVIOContext** context, const char*, int flags, AVDictionary**) {
         if (flags & AVIO_FLAG_WRITE) return AVERROR(EPERM);  // it has the one it writes to
         try {
-            *context = open_stream(static_cast<Stream*>(muxer->opaque)->file, false);
+            *context = open_stream(static_cast<StreamPosition*>(muxer->opaque)->file, false);
         } catch (const std::bad_alloc&) {
             return AVERROR(ENOMEM);
         }
@@ -100,6 +109,51 @@ int LibavFile::close() {
     avio_flush(writer_);
     if (writer_->error < 0) return writer_->error;
     return ::close(file_.release()) == 0 ? 0 : AVERROR(errno);
+}
+
+namespace {
+
+// libav calls back with nothing that could tell one encoder of ours from another: it is the thread that does
+thread_local std::string line, last_line;
+
+bool is_blank(char c) {
+    return static_cast<unsigned char>(c) <= ' ' || c == 127;
+}
+
+/// Without line breaks, other control characters, and what ends a sentence.
+std::string cleaned(std::string text) {
+    std::replace_if(text.begin(), text.end(), is_blank, ' ');
+    const auto last = text.find_last_not_of(" .");
+    text.resize(last == std::string::npos ? 0 : last + 1);
+    return text.substr(std::min(text.find_first_not_of(' '), text.size()));
+}
+
+/// A line may come in pieces.
+void keep(void* /*source*/, int level, const char* format, va_list arguments) {
+    if (level > AV_LOG_ERROR) return;
+    std::array<char, 512> piece{};
+    if (std::vsnprintf(piece.data(), piece.size(), format, arguments) < 0) return;
+    try {
+        line += piece.data();
+        if (!line.ends_with('\n')) return;
+        if (auto whole = cleaned(std::move(line)); !whole.empty()) last_line = std::move(whole);
+        line.clear();
+    } catch (...) {  // no memory for words; none can pass through C
+    }
+}
+
+}  // namespace
+
+void keep_libav_log() {
+    av_log_set_callback(keep);
+    // SVT-AV1 has a log of its own, and asks the environment alone
+    setenv("SVT_LOG", "0", 0);
+}
+
+std::string take_libav_word() {
+    if (auto rest = cleaned(std::move(line)); !rest.empty()) last_line = std::move(rest);
+    line.clear();
+    return std::exchange(last_line, {});
 }
 
 }  // namespace doppel

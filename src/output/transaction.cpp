@@ -1,4 +1,4 @@
-#include "output/part_files.hpp"
+#include "output/transaction.hpp"
 
 #include "base/error.hpp"
 
@@ -17,31 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using Kind = Entry::Kind;
-
-/// Only those that are empty.
-void remove_folders(const std::vector<fs::path>& folders) {
-    for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) rmdir(folder->c_str());
-}
-
-/// Makes what is missing of the way to `folder`, and returns what it made, outermost first: other runs may make the
-/// same folders meanwhile.
-std::vector<fs::path> make_folders(const fs::path& folder) {
-    std::vector<fs::path> made;
-    fs::path way;
-    for (const fs::path& step : folder) {
-        way /= step;
-        std::error_code error, ignored;
-        while (!fs::is_directory(way, ignored)) {
-            if (fs::create_directory(way, error)) made.push_back(way);
-            if (!error) continue;
-            remove_folders(made);
-            if (fs::exists(fs::symlink_status(way, ignored)))
-                throw io_failed("{} is no folder; Doppel would write into a folder there", way.string());
-            throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
-        }
-    }
-    return made;
-}
 
 /// The folder that the runs of one preset share: links lead to the folder it is in, none to itself.
 Folder open_last(const fs::path& folder, const std::vector<fs::path>& made) {
@@ -70,7 +45,7 @@ Error not_ours(const fs::path& path) {
 
 void remove_quietly(const Folder& folder, const std::string& name) {
     try {
-        remove_entry(folder, name);
+        folder.remove(name);
     } catch (const Error&) {
         // somebody put something there; it stays
     }
@@ -78,49 +53,48 @@ void remove_quietly(const Folder& folder, const std::string& name) {
 
 }  // namespace
 
-PartFiles::PartFiles(const fs::path& folder, const std::string& run)
+Transaction::Transaction(const fs::path& folder, const std::string& run)
     : made_(make_folders(folder)), folder_(open_last(folder, made_)) {
     try {
-        lock_.emplace(folder_, run);
+        journal_.emplace(folder_, run);
         recover();
         written_ = written_files(folder_);
     } catch (...) {
-        lock_.reset();
+        journal_.reset();
         remove_folders(made_);
         throw;
     }
 }
 
-PartFiles::~PartFiles() {
+Transaction::~Transaction() {
     for (const Part& part : parts_)
         if (!keeps_finished_ || !part.finished) remove_quietly(folder_, part_name(part.name));
-    lock_.reset();
+    journal_.reset();
     remove_folders(made_);
 }
 
 /// Ends what a killed run had begun, and removes what it left.
-void PartFiles::recover() {
-    const auto notes = read_notes(lock_->left());
-    const auto& publication = notes.publication;
-    lock_->leave();  // for another try, where this fails
-    if (publication.state == Publication::State::publish) {
+void Transaction::recover() {
+    const auto left = journal_->left();
+    journal_->leave();  // for another try, where this fails
+    if (left.state == Publication::State::publish) {
         written_ = written_files(folder_);
-        for (const auto& step : publication.steps)
+        for (const auto& step : left.steps)
             if (is_waiting(folder_, step))
                 refuse_strangers(step.name, folder_.entry(part_name(step.name)).kind == Kind::folder);
-        put_in_place(folder_, publication);
+        put_in_place(folder_, left);
     }
-    if (publication.state == Publication::State::withdraw) take_back(folder_, publication);
-    clear_away(folder_, publication);
-    for (const auto& name : notes.parts) {
-        remove_entry(folder_, part_name(name));
-        remove_entry(folder_, aside_name(name));
+    if (left.state == Publication::State::withdraw) take_back(folder_, left);
+    clear_away(folder_, left);
+    for (const auto& name : left.parts) {
+        folder_.remove(part_name(name));
+        folder_.remove(aside_name(name));
     }
-    lock_->begin();
-    lock_->leave(false);
+    journal_->begin();
+    journal_->leave(false);
 }
 
-void PartFiles::refuse_strangers(const std::string& name, bool is_folder) const {
+void Transaction::refuse_strangers(const std::string& name, bool is_folder) const {
     const auto path = folder_.path() / name;
     switch (folder_.entry(name).kind) {
         case Kind::none:
@@ -149,7 +123,7 @@ void PartFiles::refuse_strangers(const std::string& name, bool is_folder) const 
     }
 }
 
-PartFiles::Part& PartFiles::add_part(const std::string& name, bool is_folder) {
+Transaction::Part& Transaction::add_part(const std::string& name, bool is_folder) {
     refuse_strangers(name, is_folder);
     const auto part = part_name(name);
     for (const auto& taken : {part, aside_name(name)})
@@ -158,31 +132,31 @@ PartFiles::Part& PartFiles::add_part(const std::string& name, bool is_folder) {
     return parts_.emplace_back(Part{name, nullptr});
 }
 
-FilePlace PartFiles::file(const std::string& name) {
+FilePlace Transaction::file(const std::string& name) {
     add_part(name, false);
     return {folder_, part_name(name)};
 }
 
-const Folder& PartFiles::directory(const std::string& name) {
+const Folder& Transaction::directory(const std::string& name) {
     Part& part = add_part(name, true);
     folder_.make_folder(part_name(name));
     part.contents = std::make_unique<Folder>(folder_.folder(part_name(name)));
     return *part.contents;
 }
 
-void PartFiles::note_part(const std::string& name) {
-    lock_->note("part " + name);
+void Transaction::note_part(const std::string& name) {
+    journal_->note("part " + name);
 }
 
-void PartFiles::remove(const std::string& name) {
+void Transaction::remove(const std::string& name) {
     if (folder_.entry(name).kind == Kind::file && is_written(folder_, name, written_)) removed_.push_back(name);
 }
 
-void PartFiles::finished(const std::string& name) {
+void Transaction::finished(const std::string& name) {
     for (Part& part : parts_) part.finished = part.finished || part.name == name;
 }
 
-std::vector<fs::path> PartFiles::keeping_finished(const std::function<std::vector<fs::path>()>& last) {
+std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vector<fs::path>()>& last) {
     try {
         return last();
     } catch (const Error& error) {
@@ -194,17 +168,17 @@ std::vector<fs::path> PartFiles::keeping_finished(const std::function<std::vecto
 }
 
 /// What is finished stays; the words that say so.
-std::string PartFiles::keep() {
+std::string Transaction::keep() {
     std::string names;
     for (const Part& part : parts_)
         if (part.finished) names += (names.empty() ? "" : ", ") + (folder_.path() / part_name(part.name)).string();
     if (names.empty()) return "";
     keeps_finished_ = true;
-    lock_->leave();
+    journal_->leave();
     return "; what is finished stays until the next run: " + names;
 }
 
-FilePlace PartFiles::keep_only(const std::string& name, const std::string& new_name) {
+FilePlace Transaction::keep_only(const std::string& name, const std::string& new_name) {
     refuse_strangers(new_name, false);
     note_part(new_name);
     std::erase_if(parts_, [&](const Part& part) {
@@ -217,7 +191,7 @@ FilePlace PartFiles::keep_only(const std::string& name, const std::string& new_n
     return {folder_, part_name(new_name)};
 }
 
-std::vector<std::pair<std::string, FilePlace>> PartFiles::finished_files() const {
+std::vector<std::pair<std::string, FilePlace>> Transaction::finished_files() const {
     std::vector<std::pair<std::string, FilePlace>> files;
     for (const Part& part : parts_) {
         if (!part.finished) continue;
@@ -228,7 +202,7 @@ std::vector<std::pair<std::string, FilePlace>> PartFiles::finished_files() const
     return files;
 }
 
-WrittenFiles PartFiles::earlier_files() const {
+WrittenFiles Transaction::earlier_files() const {
     WrittenFiles earlier;
     for (const auto& [name, about] : written_) {
         const auto slash = name.find('/');
@@ -246,7 +220,7 @@ WrittenFiles PartFiles::earlier_files() const {
 }
 
 /// What is to be published, on the disk.
-Publication PartFiles::publication() {
+Publication Transaction::publication() {
     Publication publication{.state = Publication::State::publish};
     for (const Part& part : parts_) {
         const FilePlace place{folder_, part_name(part.name)};
@@ -263,23 +237,24 @@ Publication PartFiles::publication() {
     return publication;
 }
 
-std::vector<fs::path> PartFiles::publish() {
+std::vector<fs::path> Transaction::publish() {
     std::vector<fs::path> files;
     for (const Part& part : parts_) files.push_back(folder_.path() / part.name);
     const auto published = publication();
-    for (const auto& line : journal_of(published)) lock_->note(line);
+    for (const auto& name : published.removed) journal_->note("remove " + name);
+    for (const auto& step : published.steps) journal_->note(fmt::format("place {} {}", step.inode, step.name));
     folder_.sync();
     try {
-        lock_->note("publish", true);
+        journal_->note("publish", true);
         put_in_place(folder_, published);
     } catch (...) {
         // where this fails too, all stays as it stands for the next run to sort
         auto parts = std::exchange(parts_, {});
-        lock_->leave();
-        lock_->note("withdraw", true);
+        journal_->leave();
+        journal_->note("withdraw", true);
         take_back(folder_, published);
-        lock_->note("withdrawn", true);
-        lock_->leave(false);
+        journal_->note("withdrawn", true);
+        journal_->leave(false);
         parts_ = std::move(parts);
         throw;
     }
@@ -288,7 +263,7 @@ std::vector<fs::path> PartFiles::publish() {
     try {
         clear_away(folder_, published);
     } catch (const Error&) {
-        lock_->leave();  // somebody put something there: the next run says so
+        journal_->leave();  // somebody put something there: the next run says so
     }
     return files;
 }

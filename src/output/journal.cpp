@@ -1,4 +1,4 @@
-#include "output/folder_lock.hpp"
+#include "output/journal.hpp"
 
 #include "base/error.hpp"
 
@@ -7,13 +7,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <string_view>
+#include <utility>
 
 namespace doppel {
 namespace {
+
+using Kind = Entry::Kind;
 
 constexpr std::string_view head = "doppel run, process ";  // PID on HOST
 
@@ -36,17 +40,72 @@ bool is_gone(std::string_view line) {
            kill(process, 0) != 0 && errno == ESRCH;
 }
 
+/// The names in a lock file are only believed where they are plain: no path out of the folder.
+bool is_plain(std::string_view name) {
+    return !name.empty() && name != "." && name != ".." && name.find('/') == std::string_view::npos;
+}
+
 }  // namespace
 
-FolderLock::FolderLock(const Folder& folder, const std::string& run)
-    : folder_(folder), name_(fmt::format(".{}.lock", run)) {
+std::string part_name(const std::string& name) {
+    return name + ".part";
+}
+
+std::string aside_name(const std::string& name) {
+    return name + ".old.part";
+}
+
+bool is_waiting(const Folder& folder, const Publication::Step& step) {
+    const Entry part = folder.entry(part_name(step.name));
+    return part.kind != Kind::none && part.inode == step.inode;
+}
+
+void put_in_place(const Folder& folder, const Publication& publication) {
+    for (const auto& step : publication.steps) {
+        const auto part = part_name(step.name);
+        if (!is_waiting(folder, step)) continue;
+        const bool is_new = folder.entry(step.name).kind == Kind::none;
+        if (!is_new && folder.exchange(part, step.name)) continue;
+        if (!is_new) folder.rename(step.name, aside_name(step.name));
+        folder.rename(part, step.name);
+    }
+    folder.sync();
+}
+
+void take_back(const Folder& folder, const Publication& publication) {
+    for (const auto& step : publication.steps) {
+        const auto part = part_name(step.name), aside = aside_name(step.name);
+        const Entry placed = folder.entry(step.name);
+        if (placed.kind != Kind::none && placed.inode == step.inode) {
+            if (folder.entry(part).kind != Kind::none) {
+                folder.exchange(part, step.name);
+                continue;
+            }
+            folder.rename(step.name, part);
+        }
+        if (folder.entry(aside).kind != Kind::none && folder.entry(step.name).kind == Kind::none)
+            folder.rename(aside, step.name);
+    }
+    folder.sync();
+}
+
+void clear_away(const Folder& folder, const Publication& publication) {
+    for (const auto& step : publication.steps) {
+        folder.remove(part_name(step.name));
+        folder.remove(aside_name(step.name));
+    }
+    if (publication.state == Publication::State::publish)
+        for (const auto& name : publication.removed) folder.remove(name);
+}
+
+Journal::Journal(const Folder& folder, const std::string& run) : folder_(folder), name_(fmt::format(".{}.lock", run)) {
     take();
     if (!left_.empty()) left_.erase(left_.begin());  // its process
 }
 
 /// Opens, locks and reads the file, and makes sure that it is still the one of its name: its run removes it while
 /// another waits to open it.
-void FolderLock::take() {
+void Journal::take() {
     const auto path = folder_.path() / name_;
     for (;;) {
         constexpr int flags = O_RDWR | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
@@ -82,7 +141,7 @@ void FolderLock::take() {
     }
 }
 
-void FolderLock::read_notes() {
+void Journal::read_notes() {
     left_.clear();
     std::string text;
     char block[4096];
@@ -95,23 +154,43 @@ void FolderLock::read_notes() {
         left_.push_back(text.substr(at, end - at));
 }
 
-FolderLock::~FolderLock() {
+Journal::~Journal() {
     // before the lock goes: it can be nobody else's
     if (!leaves_) unlinkat(folder_.descriptor(), name_.c_str(), 0);
 }
 
-void FolderLock::begin() {
+void Journal::begin() {
     if (ftruncate(file_.number(), 0) != 0) throw cannot(folder_.path() / name_, "written");
     left_.clear();
     note(first_line());
 }
 
-void FolderLock::note(const std::string& line, bool synced) {
+void Journal::note(const std::string& line, bool synced) {
     const auto text = line + "\n";
     const auto written = write(file_.number(), text.data(), text.size());
     if (written != static_cast<ssize_t>(text.size()))
         throw cannot(folder_.path() / name_, "written", written < 0 ? errno : ENOSPC);
     if (synced && fsync(file_.number()) != 0 && errno != EINVAL) throw cannot(folder_.path() / name_, "written");
+}
+
+Publication Journal::left() const {
+    Publication publication;
+    for (const std::string_view line : left_) {
+        const auto space = line.find(' ');
+        const auto word = line.substr(0, space), rest = space == line.npos ? "" : line.substr(space + 1);
+        if (word == "publish") publication.state = Publication::State::publish;
+        if (word == "withdraw") publication.state = Publication::State::withdraw;
+        if (word == "withdrawn") publication = {.parts = std::move(publication.parts)};
+        if (word == "part" && is_plain(rest)) publication.parts.emplace_back(rest);
+        if (word == "remove" && is_plain(rest)) publication.removed.emplace_back(rest);
+        if (word == "place") {
+            ino_t inode = 0;
+            const auto [end, fault] = std::from_chars(rest.data(), rest.data() + rest.size(), inode);
+            const auto name = rest.substr(std::min<std::size_t>(rest.size(), std::size_t(end - rest.data()) + 1));
+            if (fault == std::errc() && is_plain(name)) publication.steps.push_back({std::string(name), inode});
+        }
+    }
+    return publication;
 }
 
 }  // namespace doppel
