@@ -89,7 +89,7 @@ std::vector<double> averages(const std::vector<SideTwins>& sides, const TwinSide
     std::vector<Twins> twins;
     for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});
     std::vector<double> found(twins.size());
-    average_log_ratios(twins, {.a = method, .b = method}, found, stop);
+    average_log_ratios(twins, {.a = method, .b = method, .samples = 3000}, found, stop);
     return found;
 }
 

@@ -111,5 +111,20 @@ TEST(NumbersOfAudit, AreAsManyAsTheClaimTakes) {
     EXPECT_FALSE(table_text(figure, trials).empty());  // they are enough to tell it: under ASan none is missing
 }
 
+TEST(NumbersOfAudit, OfTheAveragesAreThoseOfTheStudy) {
+    const auto figure = figure_of("audit");
+    const std::atomic<bool> never = false;
+    const auto measured = [&](std::size_t claim) {
+        KnownTrials trial(1);
+        figure.work->compute(claim, trial, never);
+        EXPECT_TRUE(figure.work->fits(claim, trial[0])) << claim;
+        return trial[0];
+    };
+    EXPECT_NEAR(measured(1).at(0), 2.205, 0.001);  // explicit Euler at 20°, as published
+    EXPECT_NEAR(measured(6).at(0), 5.6, 0.1);      // beyond 130°, in ln
+    const auto from_rest = measured(7);
+    EXPECT_LT(from_rest.at(0), from_rest.at(1));  // θ₂ = 0 and 90°
+}
+
 }  // namespace numbers_test
 }  // namespace doppel
