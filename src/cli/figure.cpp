@@ -40,11 +40,9 @@ std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
         for (const auto& preset : builtin_presets())
             if (is_figure(preset)) chosen.push_back(preset);
     }
-    for (std::size_t i = 0; i < chosen.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (chosen[i].name == chosen[j].name)
-                throw bad_input("{} and {} would both be written to {}/", chosen[j].path, chosen[i].path,
-                                chosen[i].name);
+    std::vector<std::string> names, paths;
+    for (const auto& preset : chosen) names.push_back(preset.name), paths.push_back(preset.path);
+    check_names(names, paths);
     return chosen;
 }
 

@@ -1,8 +1,7 @@
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"
-#include "integrate/methods.hpp"
-#include "scene/preset.hpp"
+#include "scene/scene.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -30,16 +29,11 @@ void list_presets(bool figures) {
 /// A table: value of `integrator`, order, step or tolerance, models, properties.
 void list_methods() {
     print_line("{:<20} {:>5}  {:<10} {:<32} {}", "integrator", "order", "goes by", "models", "properties");
-    for (const auto& method : methods()) {
-        std::vector<std::string_view> models;
-        if (method.angles) models.emplace_back("angles");
-        if (method.constraints) models.emplace_back("constraints");
-        if (method.mechanism) models.emplace_back("mechanism");
+    for (const auto& method : methods())
         print_line("{:<20} {:>5}  {:<10} {:<32} {}: {}", method.name,
                    method.order == 0 ? "any" : fmt::format("{}", method.order),
-                   method.adaptive ? "tolerance" : "step_s", fmt::format("{}", fmt::join(models, ", ")), method.title,
-                   method.properties);
-    }
+                   method.adaptive ? "tolerance" : "step_s", fmt::format("{}", fmt::join(models_of(method), ", ")),
+                   method.title, method.properties);
 }
 
 /// As it is into a file; a terminal gets lines that it can but show.

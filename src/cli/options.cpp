@@ -56,6 +56,13 @@ Override size_override(const std::string& key, const std::string& size) {
     return {key, fmt::format("[{}, {}]", sides->first, sides->second), "--size " + size};
 }
 
+void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (names[i] == names[j])
+                throw bad_input("{} and {} would both be written to {}/", paths[j], paths[i], names[i]);
+}
+
 std::vector<Override> overrides_of(const PresetOptions& options) {
     std::vector<Override> overrides;
     for (const auto& set : options.sets) overrides.push_back(parse_set(set));
@@ -67,12 +74,11 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     overrides.insert(overrides.end(), more.begin(), more.end());
     const auto& stop = watch_interrupts();
     std::vector<Scene> scenes;
+    std::vector<std::string> names;
     for (const auto& name : options.presets) {
         scenes.push_back(make_scene(read_preset(find_preset(name, &stop), overrides), stop));
-        for (std::size_t i = 0; i + 1 < scenes.size(); ++i)
-            if (scenes[i].preset.name == scenes.back().preset.name)
-                throw bad_input("{} and {} would both be written to {}/", options.presets[i], name,
-                                scenes[i].preset.name);
+        names.push_back(scenes.back().preset.name);
+        check_names(names, options.presets);
     }
     return scenes;
 }

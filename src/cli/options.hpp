@@ -36,6 +36,9 @@ std::optional<std::pair<long, long>> two_numbers(const std::string& text, char s
 /// --size WIDTHxHEIGHT as the key of a preset that it sets. Throws Error (exit 2).
 Override size_override(const std::string& key, const std::string& size);
 
+/// Throws Error (exit 2) where results of two presets, `paths`, would go to the same place.
+void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths);
+
 /// The values of --set.
 std::vector<Override> overrides_of(const PresetOptions& options);
 

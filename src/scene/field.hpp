@@ -15,8 +15,8 @@ namespace doppel {
 struct Bounds {
     static constexpr double infinity = std::numeric_limits<double>::infinity();
     double low = -infinity, high = infinity;
-    bool is_open = false;        // without `low` itself
-    std::string_view zero, why;  // what 0 means; why there are bounds
+    bool is_open = false;                  // without `low` itself
+    std::string_view zero = {}, why = {};  // what 0 means; why there are bounds
 
     bool has_low() const { return low > -infinity; }
     bool has_high() const { return high < infinity; }
@@ -39,11 +39,11 @@ struct Field {
     std::string_view key, help;
     std::string_view unit = {};
     Bounds bounds = {};
-    std::string_view absent = {};                  // what holds where an optional key is not given
+    std::string_view absent = {};  // what holds where an optional key is not given
+    Only only = {};
     std::string_view each = {};                    // what the numbers of an array are: "one a link"
     std::span<const std::string_view> names = {};  // of a string: its choices
-    Only only = {};
-    std::string_view needed_by = {};  // an entry of this kind must have it
+    std::string_view needed_by = {};               // an entry of this kind must have it
 };
 
 /// The names of an enumeration's values in presets, in their order.

@@ -113,9 +113,7 @@ int level_of_steps(double least) {
 }
 
 ModelChoice choice_of(Model model) {
-    return model == Model::angles        ? ModelChoice::angles
-           : model == Model::constraints ? ModelChoice::constraints
-                                         : ModelChoice::mechanism;
+    return static_cast<ModelChoice>(static_cast<int>(model) + 1);  // after `automatic`
 }
 
 }  // namespace

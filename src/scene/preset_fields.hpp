@@ -13,8 +13,8 @@ namespace doppel {
 // The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and ReferenceTable visit:
 // visit(field, member), visit.table(name, list). A table may be const. The reader checks what keys say together.
 
-inline constexpr Field title_field{.key = "title", .help = "shown above the pictures", .absent = "the file's name"};
-inline constexpr Field kind_field{
+inline const Field title_field{.key = "title", .help = "shown above the pictures", .absent = "the file's name"};
+inline const Field kind_field{
     .key = "kind", .help = "\"pair\" is a film, the others are figures", .names = scene_kinds};
 
 /// [scene], without `kind`.
@@ -30,27 +30,17 @@ void link_fields(Visit& visit, Side& side) {
     auto links = static_cast<int>(side.links());
     visit({"links", "links of the chain", "", from_to(1, 10'000)}, links);
     if constexpr (!std::is_const_v<Side>) side.set_links(static_cast<std::size_t>(links));
-    visit({.key = "mass_kg",
-           .help = "masses at the ends of the links",
-           .unit = "kg",
-           .bounds = positive,
-           .each = "one a link"},
-          side.mass_kg);
-    visit({.key = "length_m", .help = "lengths of the links", .unit = "m", .bounds = positive, .each = "one a link"},
-          side.length_m);
+    visit({"mass_kg", "masses at the ends of the links", "kg", positive, "", {}, "one a link"}, side.mass_kg);
+    visit({"length_m", "lengths of the links", "m", positive, "", {}, "one a link"}, side.length_m);
 }
 
 template <class Visit, class Side>
 void chain_fields(Visit& visit, Side& side) {
     link_fields(visit, side);
-    visit({.key = "angle_deg",
-           .help = "at the start, from the downward vertical, counter-clockwise",
-           .unit = "deg",
-           .bounds = {.low = -1e6, .high = 1e6, .why = "more leaves no digits to move by"},
-           .each = "one a link"},
-          side.angle_deg);
-    visit({.key = "omega_deg_per_s", .help = "rates at the start", .unit = "deg/s", .each = "one a link"},
-          side.omega_deg_per_s);
+    constexpr Bounds turns{.low = -1e6, .high = 1e6, .why = "more leaves no digits to move by"};
+    constexpr std::string_view from_vertical = "at the start, from the downward vertical, counter-clockwise";
+    visit({"angle_deg", from_vertical, "deg", turns, "", {}, "one a link"}, side.angle_deg);
+    visit({"omega_deg_per_s", "rates at the start", "deg/s", {}, "", {}, "one a link"}, side.omega_deg_per_s);
 }
 
 template <class Visit, class Side>
@@ -60,11 +50,11 @@ void gravity_field(Visit& visit, Side& side) {
           side.gravity_m_per_s2);
 }
 
-inline constexpr Field model_field{.key = "model", .help = "the equations; auto: the smallest that serves"};
-inline constexpr Field accuracy_field{.key = "accuracy",
-                                      .help = "largest error of an angle; chooses integrator, step_s and tolerance",
-                                      .unit = "rad",
-                                      .bounds = {.low = 0, .high = 1, .is_open = true}};
+inline const Field model_field{.key = "model", .help = "the equations; auto: the smallest that serves"};
+inline const Field accuracy_field{"accuracy",
+                                  "largest error of an angle; chooses integrator, step_s and tolerance",
+                                  "rad",
+                                  {.low = 0, .high = 1, .is_open = true}};
 
 /// The method, and the step or the tolerance that it goes by.
 template <class Visit, class Side>
@@ -79,18 +69,11 @@ void method_fields(Visit& visit, Side& side) {
             fmt::format("is for {}; \"{}\" goes by {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
             side.integrator_from_command_line};
     };
-    visit({.key = "step_s",
-           .help = "of methods with a fixed step",
-           .unit = "s",
-           .bounds = positive,
-           .absent = "1/30000",
-           .only = only(!adaptive, "methods with a fixed step")},
-          side.step_s);
-    visit({.key = "tolerance",
-           .help = "of adaptive methods: relative error of a step",
-           .bounds = positive,
-           .absent = "1e-12; in quad 1e-28",
-           .only = only(adaptive, "adaptive methods")},
+    const auto of_fixed = only(!adaptive, "methods with a fixed step"),
+               of_adaptive = only(adaptive, "adaptive methods");
+    visit({"step_s", "of methods with a fixed step", "s", positive, "1/30000", of_fixed}, side.step_s);
+    visit({"tolerance", "of adaptive methods: relative error of a step", "", positive, "1e-12; in quad 1e-28",
+           of_adaptive},
           side.tolerance);
 }
 
@@ -98,11 +81,8 @@ template <class Visit, class Side>
 void precision_fields(Visit& visit, Side& side) {
     visit({"precision", "53 bits or 113 (34 digits)"}, side.precision);
     visit({"stabilise", "what keeps constraints from drifting"}, side.stabilise);
-    visit({.key = "stabilise_rate_per_s",
-           .help = "of Baumgarte's method, α = β",
-           .unit = "1/s",
-           .bounds = positive,
-           .only = {.holds = side.stabilise == Stabilise::baumgarte}},
+    const Only of_baumgarte{.holds = side.stabilise == Stabilise::baumgarte};
+    visit({"stabilise_rate_per_s", "of Baumgarte's method, α = β", "1/s", positive, "", of_baumgarte},
           side.stabilise_rate_per_s);
 }
 
@@ -133,43 +113,28 @@ void part_fields(Visit& visit, Part& part, std::string_view kind) {
     }
     if constexpr (is_slot_or_anchor || is_droplet)
         visit({.key = "position_m",
-               .help = is_circle    ? "the centre"
-                       : is_droplet ? "where it is"
-                                    : "where it is held; a point of the line",
+               .help = is_circle ? "the centre" : "where it is held; a point of the line",
                .unit = "m",
                .absent = as_released,
                .needed_by = is_circle || is_droplet ? kind : ""},
               part.position_m);
     if constexpr (requires { part.direction; }) visit({"direction", "of the line, [x, y]"}, part.direction);
     if constexpr (requires { part.length_m; })
-        visit({.key = "length_m",
-               .help = is_spring ? "length at rest" : "length",
-               .unit = "m",
-               .bounds = is_spring ? not_negative : positive,
-               .absent = as_released},
+        visit({"length_m", "length; of a spring at rest", "m", is_spring ? not_negative : positive, as_released},
               part.length_m);
-    if constexpr (is_circle)
-        visit({.key = "radius_m", .help = "radius", .unit = "m", .bounds = positive, .absent = as_released},
-              part.radius_m);
+    if constexpr (is_circle) visit({"radius_m", "radius", "m", positive, as_released}, part.radius_m);
     if constexpr (is_spring) {
         visit({"stiffness_N_per_m", "stiffness", "N/m", positive}, part.stiffness_N_per_m);
         visit({"damping_N_s_per_m", "damping", "N s/m", not_negative}, part.damping_N_s_per_m);
     }
     if constexpr (is_droplet) visit({"mass_kg", "mass", "kg", positive}, part.mass_kg);
     if constexpr (requires { part.constant_m3_per_kg_s2; })
-        visit({.key = "constant_m3_per_kg_s2",
-               .help = "gravitational constant",
-               .unit = "m³/(kg s²)",
-               .bounds = positive,
-               .absent = "Newton's"},
+        visit({"constant_m3_per_kg_s2", "gravitational constant", "m³/(kg s²)", positive, "Newton's"},
               part.constant_m3_per_kg_s2);
 }
 
-inline constexpr Field size_field{.key = "size",
-                                  .help = "width and height",
-                                  .unit = "px",
-                                  .bounds = {.low = 64, .high = 16384},  // more than any GL takes, which says so itself
-                                  .each = "width and height"};
+inline constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL takes, which says so itself
+inline const Field size_field{"size", "width and height", "px", picture_sizes, "", {}, "width and height"};
 
 template <class Visit>
 void theme_field(Visit& visit, auto& theme) {
@@ -191,52 +156,33 @@ void format_fields(Visit& visit, Video& video) {
     };
     const bool is_webm = video.format == FilmFormat::webm;
     const auto encoded = only(video.is_encoded(), "of mp4 and webm");
-    visit({.key = "codec",
-           .help = "of webm",
-           .absent = "vp9",
-           .names = codecs,
-           .only = only(is_webm, "a choice of webm")},
-          video.codec);
-    visit({.key = "pixel_format", .help = "of mp4 and webm", .only = encoded}, video.pixel_format);
-    visit({.key = "transparent",
-           .help = "no background; of png, apng and webm (VP9)",
-           .only = {.holds = video.transparent}},
+    visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
+    visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
+    visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.holds = video.transparent}},
           video.transparent);
-    visit(
-        {.key = "preset", .help = "of mp4 and webm: effort of the encoder", .names = encoder_presets, .only = encoded},
-        video.preset);
-    visit({.key = "crf",
-           .help = "of mp4 and webm: lower is better; of webm up to 63",
-           .bounds = from_to(0, is_webm ? 63 : 51),
-           .only = encoded},
-          video.crf);
+    visit({"preset", "of mp4 and webm: effort of the encoder", "", {}, "", encoded, "", encoder_presets}, video.preset);
+    const auto quality = from_to(0, is_webm ? 63 : 51);
+    visit({"crf", "of mp4 and webm: lower is better; of webm up to 63", "", quality, "", encoded}, video.crf);
 }
 
 /// What is shown when.
 template <class Visit, class Video>
 void time_fields(Visit& visit, Video& video) {
     constexpr auto seconds = from_to(0, 3600, "none");
-    visit({.key = "fps",
-           .help = "frames a second; divides sample_hz · speed",
-           .unit = "1/s",
-           .bounds = positive,
-           .absent = "sample_hz · speed; of a gif 10 to 50"},
-          video.fps);
+    constexpr std::string_view all_samples = "sample_hz · speed; of a gif 10 to 50";
+    visit({"fps", "frames a second; divides sample_hz · speed", "1/s", positive, all_samples}, video.fps);
     visit({"speed", "seconds of motion a second of film", "", positive}, video.speed);
     visit({"hold_start_s", "how long the first frame stands", "s", seconds}, video.hold_start_s);
     visit({"hold_end_s", "how long the last frame stands", "s", seconds}, video.hold_end_s);
     visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);
     visit({"end_card_s", "a card with the outcome after the film", "s", seconds}, video.end_card_s);
-    visit({.key = "poster_s", .help = "NAME.poster.png: the frame at this time", .unit = "s", .bounds = not_negative},
-          video.poster_s);
-    visit({.key = "contact_sheet",
-           .help = "NAME.contact.png: frames across and down",
-           .bounds = from_to(1, 32),
-           .each = "frames across and down"},
+    visit({"poster_s", "NAME.poster.png: the frame at this time", "s", not_negative}, video.poster_s);
+    constexpr std::string_view across = "frames across and down";
+    visit({"contact_sheet", "NAME.contact.png: frames across and down", "", from_to(1, 32), "", {}, across},
           video.contact_sheet);
 }
 
-inline constexpr Field panels_field{.key = "panels", .help = "\"pendulums\" and strips, in their order"};
+inline const Field panels_field{.key = "panels", .help = "\"pendulums\" and strips, in their order"};
 
 template <class Visit, class Video>
 void layout_fields(Visit& visit, Video& video) {
@@ -246,40 +192,31 @@ void layout_fields(Visit& visit, Video& video) {
                     fmt::format("is of the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout))};
     };
     const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
-    visit({.key = "members",
-           .help = "of an ensemble: pendulums from side a to side b",
-           .bounds = from_to(2, 1000),
-           .only = of_ensemble},
-          video.members);
-    visit(
-        {.key = "phase", .help = "of the layout \"phase\": rates over angles, or a Poincaré section", .only = of_phase},
-        video.phase);
-    visit({.key = "phase_link",
-           .help = "of the layout \"phase\": the link that it shows",
-           .bounds = from_to(1, 10'000),
-           .only = of_phase},
-          video.phase_link);
+    constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
+    visit({"members", "of an ensemble: pendulums from side a to side b", "", some, "", of_ensemble}, video.members);
+    visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
+          video.phase);
+    visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
     if constexpr (std::is_const_v<Video>)
         visit(panels_field, static_cast<const Panels&>(video));
     else
         visit(panels_field, static_cast<Panels&>(video));
-    for (std::size_t i = 0; i < strip_kinds; ++i)
-        visit({.key = range_keys[i],
-               .help = "axis of the strip, [lowest, highest]",
-               .bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{},
-               .absent = "fitted to the motion",
-               .each = "lowest and highest"},
-              video.ranges[i]);
+    constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
+    for (std::size_t i = 0; i < strip_kinds; ++i) {
+        const auto bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{};
+        visit({range_keys[i], help, "", bounds, fitted, {}, "lowest and highest"}, video.ranges[i]);
+    }
 }
 
 /// Colours, widths, sizes of words, and trails.
 template <class Visit, class Video>
 void style_fields(Visit& visit, Video& video) {
     theme_field(visit, video.theme);
-    visit({.key = "side_colors", .help = "of side a and side b", .absent = "the theme's"}, video.side_colors);
+    constexpr std::string_view of_theme = "the theme's";
+    visit({"side_colors", "of side a and side b", "", {}, of_theme}, video.side_colors);
     visit.table("colors", [&](auto& table) {
         for (std::size_t i = 0; i < color_names.size(); ++i)
-            table({.key = color_names[i].key, .help = color_names[i].help, .absent = "the theme's"}, video.colors[i]);
+            table({color_names[i].key, color_names[i].help, "", {}, of_theme}, video.colors[i]);
     });
     visit.table("widths_px", [&](auto& table) {
         for (const auto& [key, member, help] : width_names)
@@ -289,14 +226,9 @@ void style_fields(Visit& visit, Video& video) {
         for (const auto& [key, member, help] : font_size_names)
             table({key, help, "px", from_to(4, 400)}, video.fonts.*member);
     });
-    visit({.key = "glow_px",
-           .help = "how far the light of trails and bobs reaches",
-           .unit = "px",
-           .bounds = from_to(0, 100, "none"),
-           .absent = "the theme's"},
-          video.glow_px);
-    visit({"trail_s", "how long the path behind the last bob lasts; 0 of an ensemble", "s", from_to(0, 3600, "none")},
-          video.trail_s);
+    constexpr auto glow = from_to(0, 100, "none"), trail = from_to(0, 3600, "none");
+    visit({"glow_px", "how far the light of trails and bobs reaches", "px", glow, of_theme}, video.glow_px);
+    visit({"trail_s", "how long the path behind the last bob lasts; 0 of an ensemble", "s", trail}, video.trail_s);
 }
 
 }  // namespace doppel

@@ -1,6 +1,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "embedded/scene.hpp"
+#include "output/folder.hpp"
 #include "scene/nearest.hpp"
 #include "scene/preset.hpp"
 
@@ -42,24 +43,8 @@ void check_name(const std::string& path, const std::string& name) {
             fmt::format("has {} bytes; {} are the most that leave room for endings", name.size(), longest_preset_name));
 }
 
-/// Closes what it opened.
-class File {
-public:
-    explicit File(const fs::path& path) : number_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
-    ~File() {
-        if (number_ >= 0) close(number_);
-    }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-
-    int number() const { return number_; }
-
-private:
-    int number_;
-};
-
 /// Waits until there is something to read. Throws Error (exit 130) soon after `stop` is set.
-void wait_for_bytes(const File& pipe, const std::atomic<bool>& stop) {
+void wait_for_bytes(const Descriptor& pipe, const std::atomic<bool>& stop) {
     constexpr int patience_ms = 50;
     pollfd wanted{.fd = pipe.number(), .events = POLLIN, .revents = 0};
     while (!stop)
@@ -69,8 +54,8 @@ void wait_for_bytes(const File& pipe, const std::atomic<bool>& stop) {
 
 /// All of a file, or of what comes through a pipe.
 std::string contents_of(const fs::path& path, const std::atomic<bool>* stop) {
-    const File file(path);
-    if (file.number() < 0)
+    const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+    if (!file)
         throw bad_input("{}: {}", path.string(),
                         errno == ENOENT ? "there is no such preset" : std::generic_category().message(errno));
     struct stat kind {};

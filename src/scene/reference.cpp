@@ -43,64 +43,51 @@ std::string range_text(const Bounds& bounds) {
                        bounds.high);
 }
 
-// What a key of a type takes.
-std::string type_text(const std::string*) {
-    return "text";
-}
-std::string type_text(const bool*) {
-    return "`true` or `false`";
-}
-std::string type_text(const int*) {
-    return "whole number";
-}
-std::string type_text(const double*) {
-    return "number";
-}
-std::string type_text(const Quad*) {
-    return "number";
-}
-std::string type_text(const Rational*) {
-    return "number or \"a/b\"";
-}
-std::string type_text(const std::vector<Quad>*) {
-    return "numbers";
-}
-std::string type_text(const QuadPair*) {
-    return "[x, y]";
-}
-std::string type_text(const EndSpec*) {
-    return "text or [x, y]";
-}
-std::string type_text(const Size*) {
-    return "two whole numbers";
-}
-std::string type_text(const std::array<int, 2>*) {
-    return "two whole numbers";
-}
-std::string type_text(const Range*) {
-    return "two numbers";
-}
-std::string type_text(const Color*) {
-    return "\"#rrggbb\"";
-}
-std::string type_text(const std::array<Color, 2>*) {
-    return "two of \"#rrggbb\"";
-}
+/// What a key of a type takes.
+template <class T>
+constexpr std::string_view type_words = "text";
+template <>
+constexpr std::string_view type_words<bool> = "`true` or `false`";
+template <>
+constexpr std::string_view type_words<int> = "whole number";
+template <>
+constexpr std::string_view type_words<double> = "number";
+template <>
+constexpr std::string_view type_words<Quad> = "number";
+template <>
+constexpr std::string_view type_words<Rational> = "number or \"a/b\"";
+template <>
+constexpr std::string_view type_words<std::vector<Quad>> = "numbers";
+template <>
+constexpr std::string_view type_words<QuadPair> = "[x, y]";
+template <>
+constexpr std::string_view type_words<EndSpec> = "text or [x, y]";
+template <>
+constexpr std::string_view type_words<Size> = "two whole numbers";
+template <>
+constexpr std::string_view type_words<std::array<int, 2>> = "two whole numbers";
+template <>
+constexpr std::string_view type_words<Range> = "two numbers";
+template <>
+constexpr std::string_view type_words<Color> = "\"#rrggbb\"";
+template <>
+constexpr std::string_view type_words<std::array<Color, 2>> = "two of \"#rrggbb\"";
+template <class T>
+constexpr std::string_view type_words<std::optional<T>> = type_words<T>;
 
 std::string choices_text(std::span<const std::string_view> names) {
     return fmt::format("`\"{}\"`", fmt::join(names, "\"`, `\""));
 }
 
-std::string type_text(const Panels*) {
-    return "list of `\"pendulums\"`, " + choices_text(names_of<StripKind>);
-}
-template <class Choice>
-requires std::is_enum_v<Choice> std::string type_text(const Choice*) {
-    return choices_text(names_of<Choice>);
-}
 template <class T>
-std::string type_text(const std::optional<T>*) {
-    return type_text(static_cast<const T*>(nullptr));
+std::string taken_by(const Field& field) {
+    if (!field.names.empty()) return choices_text(field.names);
+    if constexpr (std::is_enum_v<T>)
+        return choices_text(names_of<T>);
+    else if constexpr (std::is_same_v<T, Panels>)
+        return "list of `\"pendulums\"`, " + choices_text(names_of<StripKind>);
+    else
+        return std::string(type_words<T>);
 }
 
 /// A table of Markdown with a row a key: reference(field, default).
@@ -113,7 +100,7 @@ public:
 
     template <class T>
     void operator()(const Field& field, const T& value) {
-        auto takes = field.names.empty() ? type_text(&value) : choices_text(field.names);
+        auto takes = taken_by<T>(field);
         if (const auto range = range_text(field.bounds); !range.empty()) takes += ", " + range;
         add(field, takes, default_text(field, value));
     }

@@ -16,47 +16,31 @@ std::string toml_text(const std::string& text);
 /// A number where it is whole, "a/b" where it is not.
 std::string toml_ratio(const Rational& value);
 
-inline std::string toml_value(const std::string& text) {
-    return toml_text(text);
-}
-inline std::string toml_value(const Rational& value) {
-    return toml_ratio(value);
-}
-inline std::string toml_value(const Quad& value) {
-    return text_of(value);
-}
-inline std::string toml_value(double value) {
-    return fmt::format("{}", value);
-}
-inline std::string toml_value(int value) {
-    return fmt::format("{}", value);
-}
-inline std::string toml_value(bool value) {
-    return value ? "true" : "false";
-}
-inline std::string toml_value(const Size& size) {
-    return fmt::format("[{}, {}]", size.width, size.height);
-}
-inline std::string toml_value(const Range& range) {
-    return fmt::format("[{}, {}]", range.low, range.high);
-}
 std::string toml_value(const Color& color);
 std::string toml_value(const Panels& panels);
-template <class Choice>
-requires std::is_enum_v<Choice> std::string toml_value(Choice choice) {
-    return fmt::format("\"{}\"", name_of(choice));
-}
-template <class List>
-requires requires(const List& list) {
-    list.data();
-}
-std::string toml_value(const List& list) {
-    std::vector<std::string> values;
-    for (const auto& value : list) values.push_back(toml_value(value));
-    return fmt::format("[{}]", fmt::join(values, ", "));
-}
-inline std::string toml_value(const EndSpec& end) {
-    return std::visit([](const auto& one) { return toml_value(one); }, end);
+template <class T>
+std::string toml_value(const T& value) {
+    if constexpr (std::is_same_v<T, std::string>) {
+        return toml_text(value);
+    } else if constexpr (std::is_enum_v<T>) {
+        return fmt::format("\"{}\"", name_of(value));
+    } else if constexpr (std::is_same_v<T, Rational>) {
+        return toml_ratio(value);
+    } else if constexpr (std::is_same_v<T, Quad>) {
+        return text_of(value);
+    } else if constexpr (std::is_arithmetic_v<T>) {
+        return fmt::format("{}", value);
+    } else if constexpr (std::is_same_v<T, Size>) {
+        return fmt::format("[{}, {}]", value.width, value.height);
+    } else if constexpr (std::is_same_v<T, Range>) {
+        return fmt::format("[{}, {}]", value.low, value.high);
+    } else if constexpr (std::is_same_v<T, EndSpec>) {
+        return std::visit([](const auto& end) { return toml_value(end); }, value);
+    } else {
+        std::vector<std::string> elements;
+        for (const auto& element : value) elements.push_back(toml_value(element));
+        return fmt::format("[{}]", fmt::join(elements, ", "));
+    }
 }
 
 /// Writes a table key by key: writer(field, member). Keys that do not count, and what is not given, are left out.

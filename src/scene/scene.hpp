@@ -40,6 +40,9 @@ struct Side {
     std::vector<MechanismLine> lines;  // what is drawn besides the bobs
 };
 
+/// The names of the models that a method steps.
+std::vector<std::string_view> models_of(const MethodEntry& method);
+
 /// The chain as written, in radians.
 Pendulum<Quad> chain_of(const SideSpec& spec);
 

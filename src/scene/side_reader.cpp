@@ -1,4 +1,5 @@
 #include "scene/preset_fields.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -35,11 +36,7 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
 }
 
 std::string served(const MethodEntry& method) {
-    std::vector<std::string_view> models;
-    if (method.angles) models.emplace_back("angles");
-    if (method.constraints) models.emplace_back("constraints");
-    if (method.mechanism) models.emplace_back("mechanism");
-    return fmt::format("{}", fmt::join(models, " and "));
+    return fmt::format("{}", fmt::join(models_of(method), " and "));
 }
 
 /// Particles, constraints and forces. An entry with the name of one that is there changes it; others are added.
@@ -132,6 +129,15 @@ void check_choices(TomlReader& table, const SideSpec& side) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> models_of(const MethodEntry& method) {
+    std::vector<std::string_view> models;
+    for (const auto& [has, model] : {std::pair(method.angles, Model::angles),
+                                     {method.constraints, Model::constraints},
+                                     {method.mechanism, Model::mechanism}})
+        if (has) models.push_back(name_of(model));
+    return models;
+}
 
 void SideSpec::set_links(std::size_t links) {
     if (links == this->links()) return;

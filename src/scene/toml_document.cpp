@@ -71,11 +71,6 @@ toml::table parse(const std::string& text, const std::string& path, TomlTexts& t
     }
 }
 
-/// A table that knows which option gave it.
-toml::table table_of(const std::string& origin) {
-    return toml::parse("", origin);
-}
-
 /// The value of `change`, in a table of its own.
 toml::table given_by(const Override& change, TomlTexts& texts) {
     const auto& text = texts.insert_or_assign(change.origin, TomlText("value = " + change.value)).first->second.text();
@@ -95,7 +90,7 @@ void apply(toml::table& root, const Override& change, TomlTexts& texts) {
     std::string key = change.key;
     for (; dot != std::string::npos; dot = key.find('.')) {
         const auto head = key.substr(0, dot);
-        if (!table->contains(head)) table->insert(head, table_of(change.origin));
+        if (!table->contains(head)) table->insert(head, toml::parse("", change.origin));  // knows its origin
         table = table->get_as<toml::table>(head);
         if (!table) throw bad_input("{}: \"{}\" is no table", change.origin, head);
         key = key.substr(dot + 1);
