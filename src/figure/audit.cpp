@@ -14,6 +14,8 @@ std::string words(Verdict verdict) {
 /// The study's claims, measured one by one: a table.
 class Audit final : public FigureWork {
 public:
+    explicit Audit(FigureReader&) {}
+
     std::size_t trials() const override { return claims().size(); }
     std::string unit() const override { return "claims"; }
 
@@ -114,8 +116,6 @@ SideSpec with_droplet(SideSpec spec, bool droplet) {
     return spec;
 }
 
-std::shared_ptr<const FigureWork> read_audit(FigureReader&) {
-    return std::make_shared<Audit>();
-}
+const FigureKind audit_kind{"audit", read_as<Audit>};
 
 }  // namespace doppel

@@ -217,8 +217,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_convergence(FigureReader& reader) {
-    return std::make_shared<Convergence>(reader);
-}
+const FigureKind convergence_kind{"convergence", read_as<Convergence>};
 
 }  // namespace doppel

@@ -177,8 +177,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_curves(FigureReader& reader) {
-    return std::make_shared<Curves>(reader);
-}
+const FigureKind curves_kind{"curves", read_as<Curves>};
 
 }  // namespace doppel

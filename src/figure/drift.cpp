@@ -282,8 +282,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_drift(FigureReader& reader) {
-    return std::make_shared<Drift>(reader);
-}
+const FigureKind drift_kind{"drift", read_as<Drift>};
 
 }  // namespace doppel

@@ -235,8 +235,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_flip_map(FigureReader& reader) {
-    return std::make_shared<FlipMap>(reader);
-}
+const FigureKind flip_map_kind{"flip-map", read_as<FlipMap>};
 
 }  // namespace doppel

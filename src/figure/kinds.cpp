@@ -11,7 +11,7 @@ void SettingsReader::read_texts(std::string_view key, std::vector<std::string>& 
     if (const auto texts = TomlReader::read_texts(key)) into = *texts;
     std::vector<std::string> quoted;
     for (const auto& text : into) quoted.push_back(toml_text(text));
-    keep(key, fmt::format("[{}]", fmt::join(quoted, ", ")));
+    text_ += fmt::format("{} = [{}]\n", key, fmt::join(quoted, ", "));
 }
 
 Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
@@ -57,17 +57,9 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
 }
 
 std::span<const FigureKind> figure_kinds() {
-    static constexpr std::array<FigureKind, scene_kinds.size() - 1> kinds{{{"sweep", read_sweep},
-                                                                           {"curves", read_curves},
-                                                                           {"convergence", read_convergence},
-                                                                           {"spectrum", read_spectrum},
-                                                                           {"section", read_section},
-                                                                           {"flip-map", read_flip_map},
-                                                                           {"links", read_links},
-                                                                           {"work-precision", read_work_precision},
-                                                                           {"stability", read_stability},
-                                                                           {"drift", read_drift},
-                                                                           {"audit", read_audit}}};
+    static const std::array<FigureKind, scene_kinds.size() - 1> kinds{
+        sweep_kind, curves_kind,         convergence_kind, spectrum_kind, section_kind, flip_map_kind,
+        links_kind, work_precision_kind, stability_kind,   drift_kind,    audit_kind};
     return kinds;
 }
 

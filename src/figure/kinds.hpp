@@ -20,38 +20,30 @@ public:
         : TomlReader(std::move(table)), text_(fmt::format("\n[{}]\n", bare_name())) {}
 
     void read_whole(std::string_view key, int& into, int least, int most) {
-        TomlReader::read_whole(key, into, least, most);
-        keep(key, into);
+        keep(key, into, [&] { TomlReader::read_whole(key, into, least, most); });
     }
     void read_truth(std::string_view key, bool& into) {
-        TomlReader::read_truth(key, into);
-        keep(key, into);
+        keep(key, into, [&] { TomlReader::read_truth(key, into); });
     }
     template <class Number>  // double or Quad
     void read_number(std::string_view key, Number& into) {
-        TomlReader::read_number(key, into);
-        keep(key, into);
+        keep(key, into, [&] { TomlReader::read_number(key, into); });
     }
     template <class Number>
     void read_positive(std::string_view key, Number& into) {
-        TomlReader::read_positive(key, into);
-        keep(key, into);
+        keep(key, into, [&] { TomlReader::read_positive(key, into); });
     }
     void read_positive_ratio(std::string_view key, Rational& into) {
-        TomlReader::read_positive_ratio(key, into);
-        keep(key, toml_text(into.text()));
+        keep(key, into, [&] { TomlReader::read_positive_ratio(key, into); });
     }
     void read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most) {
-        TomlReader::read_positive_list(key, into, most);
-        keep(key, fmt::format("[{}]", fmt::join(into, ", ")));
+        keep(key, into, [&] { TomlReader::read_positive_list(key, into, most); });
     }
     void read_text(std::string_view key, std::string& into) {
-        TomlReader::read_text(key, into);
-        keep(key, toml_text(into));
+        keep(key, into, [&] { TomlReader::read_text(key, into); });
     }
     void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices) {
-        TomlReader::read_choice(key, into, choices);
-        keep(key, toml_text(into));
+        keep(key, into, [&] { TomlReader::read_choice(key, into, choices); });
     }
     void read_texts(std::string_view key, std::vector<std::string>& into);
 
@@ -62,10 +54,17 @@ public:
     }
 
 private:
-    template <class Value>
-    void keep(std::string_view key, const Value& value) {
+    template <class Value, class Read>
+    void keep(std::string_view key, const Value& value, Read&& read) {
+        read();
         if constexpr (std::is_same_v<Value, Quad>)
             text_ += fmt::format("{} = {}\n", key, text_of(value));
+        else if constexpr (std::is_same_v<Value, Rational>)
+            text_ += fmt::format("{} = {}\n", key, toml_text(value.text()));
+        else if constexpr (std::is_same_v<Value, std::string>)
+            text_ += fmt::format("{} = {}\n", key, toml_text(value));
+        else if constexpr (std::is_same_v<Value, std::vector<double>>)
+            text_ += fmt::format("{} = [{}]\n", key, fmt::join(value, ", "));
         else
             text_ += fmt::format("{} = {}\n", key, value);
     }
@@ -117,16 +116,12 @@ struct FigureKind {
 std::span<const FigureKind> figure_kinds();
 
 // One file each.
-std::shared_ptr<const FigureWork> read_sweep(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_curves(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_convergence(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_spectrum(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_section(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_flip_map(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_links(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_audit(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_work_precision(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_stability(FigureReader& reader);
-std::shared_ptr<const FigureWork> read_drift(FigureReader& reader);
+extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, flip_map_kind,
+    links_kind, work_precision_kind, stability_kind, drift_kind, audit_kind;
+
+template <class Kind>
+std::shared_ptr<const FigureWork> read_as(FigureReader& reader) {
+    return std::make_shared<Kind>(reader);
+}
 
 }  // namespace doppel

@@ -129,8 +129,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_links(FigureReader& reader) {
-    return std::make_shared<Links>(reader);
-}
+const FigureKind links_kind{"links", read_as<Links>};
 
 }  // namespace doppel

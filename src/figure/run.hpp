@@ -17,24 +17,22 @@ struct Shard {
 struct FigureOptions {
     std::filesystem::path out = "out";  // the files go to OUT/NAME/
     int jobs = 0;                       // threads that compute; 0 = one a core
-    std::optional<Shard> shard;         // compute this part alone, and keep its numbers for a merge
-    bool merge = false;                 // compute nothing: put the parts together
+    std::optional<Shard> shard;         // compute this part alone, into a file for a merge
+    bool merge = false;                 // compute nothing: merge the parts
     Gl gl = Gl::automatic;              // what draws
 };
 
-/// How the figures get on, for the person who waits. Called by any thread, one at a time for one figure; numbers are
-/// those of the figures as given.
+/// Progress of the figures, which are numbered as given. Called by any thread, one at a time for one figure.
 struct FigureReport {
     std::function<void(std::size_t figure, const FigureProgress&)> progress;
     std::function<void(std::size_t figure, const std::string& sentence)> note;
     std::function<void(std::size_t figure, const RunResult&)> done;
 };
 
-/// Makes figures. Their trials are shared out, figure after figure, among threads as these get free, while the caller's
-/// own thread draws and writes what is complete; so no core waits for the last trial of a figure. The numbers, and so
-/// the tables, are the same to the byte for any number of threads and any register width. A figure that takes more than
-/// some seconds keeps what it has in a file (part_file.hpp, resume_name); after an interruption, or worse, the same
-/// command goes on from there.
+/// Makes figures. Threads compute the trials, figure after figure, while the caller's thread draws and writes what is
+/// complete. The numbers, and so the tables, are the same to the byte for any number of threads and any register width.
+/// A figure that takes more than some seconds records its trials in a file (part_file.hpp, resume_name), from which the
+/// same command goes on after an interruption.
 ///
 /// Files of a figure appear complete or not at all; those that are complete stay where a later one fails. Throws Error:
 /// exit 2 where parts are missing or belong to something else, exit 3, 4 or, soon after `stop` is set, 130.

@@ -112,8 +112,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_section(FigureReader& reader) {
-    return std::make_shared<Section>(reader);
-}
+const FigureKind section_kind{"section", read_as<Section>};
 
 }  // namespace doppel

@@ -117,8 +117,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_spectrum(FigureReader& reader) {
-    return std::make_shared<Spectrum>(reader);
-}
+const FigureKind spectrum_kind{"spectrum", read_as<Spectrum>};
 
 }  // namespace doppel

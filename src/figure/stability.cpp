@@ -292,8 +292,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_stability(FigureReader& reader) {
-    return std::make_shared<Stability>(reader);
-}
+const FigureKind stability_kind{"stability", read_as<Stability>};
 
 }  // namespace doppel

@@ -274,8 +274,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_sweep(FigureReader& reader) {
-    return std::make_shared<Sweep>(reader);
-}
+const FigureKind sweep_kind{"sweep", read_as<Sweep>};
 
 }  // namespace doppel

@@ -292,8 +292,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const FigureWork> read_work_precision(FigureReader& reader) {
-    return std::make_shared<WorkPrecision>(reader);
-}
+const FigureKind work_precision_kind{"work-precision", read_as<WorkPrecision>};
 
 }  // namespace doppel
