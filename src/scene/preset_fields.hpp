@@ -113,7 +113,7 @@ void part_fields(Visit& visit, Part& part, std::string_view kind) {
     }
     if constexpr (is_slot_or_anchor || is_droplet)
         visit({.key = "position_m",
-               .help = is_circle ? "the centre" : "where it is held; a point of the line",
+               .help = is_circle ? "the centre" : "place; of a line, a point of it",
                .unit = "m",
                .absent = as_released,
                .needed_by = is_circle || is_droplet ? kind : ""},
