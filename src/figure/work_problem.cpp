@@ -1,8 +1,8 @@
 #include "figure/work_problem.hpp"
 
-#include "analysis/angle_error.hpp"
-#include "analysis/natural_units.hpp"
-#include "analysis/sensitivity.hpp"
+#include "analysis/difference.hpp"
+#include "analysis/exponent.hpp"
+#include "analysis/tangent.hpp"
 #include "numeric/nan.hpp"
 #include "scene/assemble.hpp"
 #include "scene/choose.hpp"

@@ -1,6 +1,6 @@
 #include "figure/work_run.hpp"
 
-#include "analysis/energy_error.hpp"
+#include "analysis/difference.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "numeric/nan.hpp"

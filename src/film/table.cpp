@@ -1,6 +1,6 @@
 #include "film/table.hpp"
 
-#include "analysis/distance.hpp"
+#include "analysis/difference.hpp"
 #include "base/error.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "scene/choice.hpp"
 
-#include "analysis/error_course.hpp"
+#include "analysis/reference_course.hpp"
 #include "scene/assemble.hpp"
 #include "scene/way.hpp"
 #include "scene/wording.hpp"

@@ -1,7 +1,6 @@
 #include "scene/scene.hpp"
 
-#include "analysis/distance.hpp"
-#include "analysis/energy_error.hpp"
+#include "analysis/difference.hpp"
 #include "base/error.hpp"
 #include "scene/assemble.hpp"
 #include "scene/choice.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/energy_error.hpp"
+#include "analysis/difference.hpp"
 #include "scene/scene.hpp"
 #include "scene/wording.hpp"
 

@@ -1,6 +1,6 @@
 #include "scene/choice.hpp"
 
-#include "analysis/angle_error.hpp"
+#include "analysis/difference.hpp"
 #include "scene/choose.hpp"
 #include "scene/resolved.hpp"
 
