@@ -193,8 +193,7 @@ TEST(Mechanism, GradientsAreThoseOfTheValues) {
     for (const auto& constraint : all) {
         parts.constraints = {constraint};
         Mechanism<S> model(parts);
-        State<S, Eigen::Dynamic> q(4), v(4), up(model.constraints()), here(up), down(up), slip(up),
-            bend(up);
+        State<S, Eigen::Dynamic> q(4), v(4), up(model.constraints()), here(up), down(up), slip(up), bend(up);
         for (auto* vector : {&q, &v})
             for (auto& x : *vector) x = S(number(random));
         const S h(1e-8);
