@@ -1,6 +1,6 @@
 #include "analysis/drift.hpp"
 
-#include "analysis/energy_error.hpp"
+#include "analysis/difference.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"

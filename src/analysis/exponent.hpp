@@ -32,4 +32,9 @@ bool is_regular(const Exponent& exponent);
 /// Errors  exit 2 where the spec makes no sense, exit 3 where dop853 breaks down, exit 130 soon after `stop` is set.
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
 
+/// How much a motion makes of an error at its start: the largest |∂θ_i(T)/∂θ_j(0)|, from the tangent equations in dual
+/// numbers. Times the rounding of a double, 2⁻⁵³, it is the error that no method in double can be expected to beat.
+/// Throws Error: exit 3 where a step cannot be made, exit 130 soon after `stop` is set.
+double angle_sensitivity(const Pendulum<double>& p, double seconds, const std::atomic<bool>& stop);
+
 }  // namespace doppel

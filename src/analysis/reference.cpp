@@ -1,6 +1,6 @@
 #include "analysis/reference.hpp"
 
-#include "analysis/angle_error.hpp"
+#include "analysis/difference.hpp"
 #include "base/error.hpp"
 
 namespace doppel {

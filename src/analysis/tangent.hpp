@@ -1,6 +1,5 @@
 #pragma once
 
-#include "analysis/natural_units.hpp"
 #include "integrate/stepper.hpp"
 #include "numeric/dual.hpp"
 #include "physics/pendulum.hpp"
@@ -10,6 +9,18 @@
 #include <memory>
 
 namespace doppel {
+
+/// What a pendulum's own motion is measured in: the mean link, and the time it takes for anything to happen.
+struct NaturalUnits {
+    double length;  // m
+    double time;    // s: 1 / √(g/l) or 1 / the greatest rate at the release, whichever is less; 1 where nothing moves
+
+    explicit NaturalUnits(const Pendulum<double>& p) : length(p.reach() / static_cast<double>(p.links())) {
+        double fastest = std::sqrt(std::abs(p.gravity) / length);
+        for (const double rate : p.rate) fastest = std::max(fastest, std::abs(rate));
+        time = fastest > 0 ? 1 / fastest : 1;
+    }
+};
 
 /// A model's state y and D tangents to it as one system of plain numbers, so that a method's control of its error sees
 /// them all:

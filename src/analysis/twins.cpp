@@ -1,6 +1,6 @@
 #include "analysis/twins.hpp"
 
-#include "analysis/distance.hpp"
+#include "analysis/difference.hpp"
 #include "base/error.hpp"
 #include "integrate/widths.hpp"
 #include "numeric/nan.hpp"

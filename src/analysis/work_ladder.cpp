@@ -1,7 +1,7 @@
 #include "analysis/work_ladder.hpp"
 
-#include "analysis/angle_error.hpp"
-#include "analysis/energy_error.hpp"
+#include "analysis/difference.hpp"
+#include "analysis/difference.hpp"
 #include "analysis/sensitivity.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/distance.hpp"
+#include "analysis/difference.hpp"
 #include "figure/kinds.hpp"
 #include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"

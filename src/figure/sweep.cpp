@@ -1,4 +1,4 @@
-#include "analysis/distance.hpp"
+#include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
 #include "analysis/twins.hpp"
 #include "figure/kinds.hpp"

@@ -1,6 +1,6 @@
 #include "film/run.hpp"
 
-#include "analysis/distance.hpp"
+#include "analysis/difference.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "film/film.hpp"

@@ -79,7 +79,7 @@ private:
 
     /// At the new state: its slope becomes the newest.
     void arrive() {
-        settle(model_, y_);
+        project(model_, y_);
         doppel::slope(model_, y_, past_[newest_]);
         ++evaluations_;
     }

@@ -92,8 +92,8 @@ private:
             }
             h_ *= Scalar(growth(error, 1, 1));
         }
-        settle(model_, y1_);
-        if (!error_needs_end || settles(model_)) {
+        project(model_, y1_);
+        if (!error_needs_end || projects(model_)) {
             doppel::slope(model_, y1_, k_[end]);
             ++evaluations_;
         }
@@ -102,7 +102,7 @@ private:
         interpolates_ = false;
     }
 
-    /// h_next / h; no more than `limit`. An error that is not a number shrinks the step.
+    /// h_next / h; no more than `limit`. An error that is NaN shrinks the step.
     static double growth(double error, double before, double limit) {
         constexpr StepControl control = pair.control;
         const double factor = control.safety * std::pow(error, -control.exponent) * std::pow(before, control.memory);
@@ -178,7 +178,7 @@ private:
         scratch_ = y1_ - y0_;
         out_ += Scalar(2) * scratch_ - span_ * (k_[0] + k_[end]);
         out_ = y0_ + s * (scratch_ + rest * (span_ * k_[0] - scratch_ + s * out_));
-        settle(model_, out_);
+        project(model_, out_);
     }
 
     Model& model_;

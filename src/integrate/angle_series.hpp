@@ -48,7 +48,7 @@ public:
     }
 
     void expand(const State& y) {
-        chain_.look(y);
+        chain_.update(y);
         for (Eigen::Index i = 0; i < links_; ++i) {
             const Scalar x = length(i) * chain_.cos[i], up = length(i) * chain_.sin[i], rate = y[links_ + i];
             at(0, i, &Term::x) = x;

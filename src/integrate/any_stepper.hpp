@@ -1,17 +1,18 @@
 #pragma once
 
-#include "integrate/method_stepper.hpp"
+#include "integrate/registry.hpp"
 
 namespace doppel {
 
 template <class State>
 std::unique_ptr<Stepper<State>> make_any_stepper(std::string_view method, AnySystem<State> system, const State& start,
-                                                 const typename State::Scalar& pace) {
+                                                 const typename State::Scalar& step_or_tolerance) {
     std::unique_ptr<Stepper<State>> stepper;
     for_each_method([&]<class Which>() {
         if constexpr (serves<Which, AnySystem<State>>)
             if (Which::method.name == method)
-                stepper = std::make_unique<MethodStepper<Which, AnySystem<State>>>(std::move(system), start, pace);
+                stepper = std::make_unique<MethodStepper<Which, AnySystem<State>>>(std::move(system), start,
+                                                                                   step_or_tolerance);
     });
     return stepper;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/euler_carried.hpp"
+#include "integrate/euler_carried_rods.hpp"
 #include "integrate/runge_kutta.hpp"
 
 #include <type_traits>
@@ -33,7 +33,7 @@ public:
             model_.rate(y_, dydt_);
             for (Eigen::Index j = n; j < 2 * n; ++j) y_[j] += h_ * dydt_[j];
             for (Eigen::Index j = 0; j < n; ++j) y_[j] += h_ * y_[n + j];
-            settle(model_, y_);
+            project(model_, y_);
         }
         evaluations_ += steps;
     }

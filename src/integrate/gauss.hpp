@@ -166,7 +166,7 @@ private:
     }
 
     /// Whether iterating is over: at the rate now / before the next change would be lost in the rounding of the moves;
-    /// or changes no longer shrink, and are small enough to be rounding. A change that is no number is neither.
+    /// or changes no longer shrink, and are small enough to be rounding. A change that is NaN is neither.
     template <class Values, class Moved>
     static bool is_done(const Scalar& now, const Scalar& before, const Values& values, const Moved& moved) {
         static const Scalar epsilon = std::numeric_limits<Scalar>::epsilon();

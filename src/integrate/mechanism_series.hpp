@@ -56,7 +56,7 @@ public:
         for (auto& rod : rods_) rod.r.start(places_[0]);
         for (auto& force : forces_) force.start(places_[0]);
         take(1);
-        model_.set_.look(places_[0], gradients_);
+        model_.set_.update(places_[0], gradients_);
         if (const auto row = factor(gradients_, gradients_); row < model_.set_.rows()) model_.fail(places_[0], row);
         for (int k = 0; k < order_; ++k) next(k);
         find_amount();
@@ -147,7 +147,7 @@ private:
             lambda[rod.row] = Scalar((k + 1) * (k + 2)) * Scalar(0.5) * rod.r.inner_square(k + 2);
         }
 
-        model_.set_.add_slip(gradients_, a, lambda);
+        model_.set_.add_constraint_velocity(gradients_, a, lambda);
         lambda = -lambda;
         model_.matrix_.solve(lambda);
         model_.set_.add_pull(gradients_, model_.masses_.w, lambda, a);
@@ -186,7 +186,7 @@ private:
     /// this is the last look.
     bool passes(const Scalar& h, bool last) {
         for (Eigen::Index c = 0; c < here_.size(); ++c) here_[c] = places_[0][c] + place_change(c, h);
-        model_.set_.look(here_, ahead_);
+        model_.set_.update(here_, ahead_);
         if (!Model::alike(ahead_, passed_gradients_)) return last;
         const auto row = factor(ahead_, passed_gradients_);
         if (last && row < model_.set_.rows()) model_.fail(here_, row);

@@ -40,18 +40,18 @@ concept AdaptiveStepper = Steps<S> && requires(S stepper, const typename S::Scal
     { stepper.smallest_step() } -> std::convertible_to<typename S::Scalar>;  // s, of those that error control chose
 };
 
-/// After every step a model may set the state right (projection onto its constraints): settle().
+/// After every step a model may project the state onto its constraints.
 template <class Model, class State>
-void settle(Model& model, State& y) {
-    if constexpr (requires { model.settle(y); }) model.settle(y);
+void project(Model& model, State& y) {
+    if constexpr (requires { model.project(y); }) model.project(y);
 }
 template <class Model>
-bool settles(const Model& model) {
-    if constexpr (requires { model.settles(); })
-        return model.settles();
+bool projects(const Model& model) {
+    if constexpr (requires { model.projects(); })
+        return model.projects();
     else
         return requires(Model & m, typename Model::State & y) {
-            m.settle(y);
+            m.project(y);
         };
 }
 
@@ -65,30 +65,30 @@ public:
     template <System Model>
     requires(!std::same_as<Model, AnySystem> &&
              std::same_as<typename Model::State, State>) explicit AnySystem(const Model& model)
-        : system_(std::make_unique<Held<Model>>(model)), settles_(doppel::settles(model)) {}
+        : system_(std::make_unique<Held<Model>>(model)), projects_(doppel::projects(model)) {}
 
     void rate(const State& y, State& dydt) { system_->rate(y, dydt); }
-    void settle(State& y) {
-        if (settles_) system_->settle(y);
+    void project(State& y) {
+        if (projects_) system_->project(y);
     }
-    bool settles() const { return settles_; }
+    bool projects() const { return projects_; }
 
 private:
     struct Interface {
         virtual ~Interface() = default;
         virtual void rate(const State& y, State& dydt) = 0;
-        virtual void settle(State& y) = 0;
+        virtual void project(State& y) = 0;
     };
     template <class Model>
     struct Held final : Interface {
         Model model;
         explicit Held(const Model& held) : model(held) {}
         void rate(const State& y, State& dydt) override { model.rate(y, dydt); }
-        void settle(State& y) override { doppel::settle(model, y); }
+        void project(State& y) override { doppel::project(model, y); }
     };
 
     std::unique_ptr<Interface> system_;
-    bool settles_;
+    bool projects_;
 };
 
 /// The right-hand side, for methods of many stages: called, not copied into every one of them, which costs them two

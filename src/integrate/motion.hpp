@@ -41,7 +41,7 @@ struct Observation {
     double energy_change = 0;  // J, since the start; in quad the difference is taken in quad
     double length_error = 0;   // of the worst rod, m
     /// In each rod, N, > 0 where it pulls, where it was wanted: in the chain's order, or in that of the mechanism's
-    /// constraints that are rods. Not a number where a constraint depends on others.
+    /// constraints that are rods. NaN where a constraint depends on others.
     std::vector<double> tension;
 };
 

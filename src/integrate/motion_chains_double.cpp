@@ -1,5 +1,4 @@
-#include "integrate/motion_angles.hpp"
-#include "integrate/motion_constraints.hpp"
+#include "integrate/motion_models.hpp"
 
 namespace doppel {
 

@@ -1,4 +1,4 @@
-#include "integrate/motion_mechanism.hpp"
+#include "integrate/motion_models.hpp"
 
 namespace doppel {
 

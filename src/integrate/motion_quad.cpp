@@ -1,7 +1,5 @@
 #include "integrate/any_stepper.hpp"
-#include "integrate/motion_angles.hpp"
-#include "integrate/motion_constraints.hpp"
-#include "integrate/motion_mechanism.hpp"
+#include "integrate/motion_models.hpp"
 
 namespace doppel {
 

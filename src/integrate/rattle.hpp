@@ -96,8 +96,8 @@ private:
 
     /// The forces of the constraints at the start: (J M⁻¹ Jᵀ) λ / s = −J̇ v − J a.
     void start_forces() {
-        model_.curvature(q_, v_, force_);
-        model_.slip(q_, a_, guess_);
+        model_.jdot_v(q_, v_, force_);
+        model_.constraint_velocity(q_, a_, guess_);
         force_ = -(force_ + guess_);
         model_.solve(q_, q_, force_);
         force_before_ = force_;

@@ -1,13 +1,17 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "integrate/adams.hpp"
 #include "integrate/dormand_prince.hpp"
 #include "integrate/euler.hpp"
 #include "integrate/gauss.hpp"
 #include "integrate/rattle.hpp"
 #include "integrate/runge_kutta.hpp"
+#include "integrate/stepper.hpp"
 #include "integrate/taylor.hpp"
 
+#include <memory>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 
@@ -29,6 +33,80 @@ constexpr void for_each_method(Visit&& visit) {
     [&]<class... Which>(std::type_identity<std::tuple<Which...>>) {
         (visit.template operator()<Which>(), ...);
     }(std::type_identity<Methods>());
+}
+
+/// A stepper of one method and the system that it owns.
+template <class Which, class Model>
+class MethodStepper final : public Stepper<typename Model::State> {
+public:
+    using State = typename Model::State;
+    using Scalar = typename Model::Scalar;
+
+    /// `step_or_tolerance` is the step, s, or the tolerance.
+    MethodStepper(Model model, const State& start, const Scalar& step_or_tolerance)
+        : model_(std::move(model)), method_(model_, start, step_or_tolerance) {}
+
+    void advance([[maybe_unused]] long steps) override {
+        if constexpr (!adaptive) method_.advance(steps);
+    }
+    void advance_by([[maybe_unused]] const Scalar& seconds) override {
+        if constexpr (adaptive) method_.advance(seconds);
+    }
+    State state() const override { return method_.state(); }
+    long evaluations() const override { return method_.evaluations(); }
+    long steps() const override {
+        if constexpr (adaptive) return method_.steps();
+        return 0;
+    }
+    Scalar smallest_step() const override {
+        if constexpr (adaptive) return method_.smallest_step();
+        return Scalar(0);
+    }
+
+private:
+    using Method = typename Which::template Stepper<Model>;
+    static constexpr bool adaptive = Which::method.adaptive;
+    static_assert(adaptive ? AdaptiveStepper<Method> : FixedStepper<Method>);
+
+    Model model_;
+    Method method_;
+};
+
+/// Whether a call costs more than it is worth: a few stages of a right-hand side of a few dozen operations. Called,
+/// midpoint takes 1.45 times as long as inlined, rk4 of three links 1.2 times.
+template <class Which, class Model>
+consteval bool gains_by_inlining() {
+    constexpr int size = Model::State::RowsAtCompileTime;
+    constexpr bool has_few_stages =
+        std::is_same_v<Which, SemiImplicitEuler> || std::is_same_v<Which, Midpoint> || std::is_same_v<Which, Rk4>;
+    if (std::is_same_v<Which, Euler>) return has_carried_euler<Model>;
+    return has_few_stages && Hamiltonian<Model> && std::is_same_v<typename Model::Scalar, double> &&
+           size != Eigen::Dynamic;
+}
+
+/// Whether a method steps this model through AnySystem: it needs no more of it than its right-hand side.
+template <class Which, class Model>
+inline constexpr bool serves_as_any =
+    serves<Which, AnySystem<typename Model::State>> && !gains_by_inlining<Which, Model>();
+
+/// The method of that name at work on `model`. Throws Error (exit 2) where it cannot step it.
+template <System Model>
+std::unique_ptr<Stepper<typename Model::State>> make_stepper(std::string_view method, const Model& model,
+                                                             const typename Model::State& start,
+                                                             const typename Model::Scalar& step_or_tolerance) {
+    using State = typename Model::State;
+    std::unique_ptr<Stepper<State>> stepper;
+    for_each_method([&]<class Which>() {
+        if constexpr (serves<Which, Model>)
+            if (Which::method.name == method) {
+                if constexpr (serves_as_any<Which, Model>)
+                    stepper = make_any_stepper<State>(method, AnySystem<State>(model), start, step_or_tolerance);
+                else
+                    stepper = std::make_unique<MethodStepper<Which, Model>>(model, start, step_or_tolerance);
+            }
+    });
+    if (!stepper) throw bad_input("the method \"{}\" does not serve this model", method);
+    return stepper;
 }
 
 }  // namespace doppel

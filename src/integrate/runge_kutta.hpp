@@ -64,7 +64,7 @@ private:
         // y + h Σ b_i k_i
         static constexpr auto b = table.b;
         move<b>(y, std::make_index_sequence<stages>());
-        settle(model_, y);
+        project(model_, y);
     }
 
     /// y ← y + h Σ_j weight_j k_j over the weights that are not zero; which those are is known to the compiler.

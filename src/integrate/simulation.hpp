@@ -1,12 +1,11 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "integrate/method_stepper.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
+#include "integrate/registry.hpp"
 #include "integrate/stabilise.hpp"
 #include "integrate/turns.hpp"
-#include "physics/tension.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,52 +16,6 @@ template <class Scalar>
 Scalar scalar_of(const Rational& value) {
     return Scalar(value.numerator) / Scalar(value.denominator);
 }
-
-/// The bobs of a chain in angles. Forces in rods are those of the state as doubles, for pictures.
-template <class Scalar>
-struct AnglesView {
-    static constexpr bool follows_turns = false;
-    Pendulum<Scalar> pendulum;
-
-    template <class State>
-    Bobs<Scalar> bobs(const State& y) const {
-        return bobs_of_angles(pendulum, y);
-    }
-    template <class State>
-    Scalar energy(const State&, const Bobs<Scalar>& seen) const {
-        return doppel::energy(seen, pendulum.gravity);
-    }
-    template <class State>
-    Scalar length_error(const State&, const Bobs<Scalar>&) const {
-        return Scalar(0);
-    }
-    std::vector<double> tension(const Bobs<double>& seen) const {
-        return tensions(pendulum.template cast<double>(), seen);
-    }
-};
-
-/// The bobs of a chain of particles.
-template <class Scalar>
-struct ParticlesView {
-    static constexpr bool follows_turns = true;
-    Pendulum<Scalar> pendulum;
-
-    template <class State>
-    Bobs<Scalar> bobs(const State& y) const {
-        return bobs_of_particles(pendulum, y);
-    }
-    template <class State>
-    Scalar energy(const State&, const Bobs<Scalar>& seen) const {
-        return doppel::energy(seen, pendulum.gravity);
-    }
-    template <class State>
-    Scalar length_error(const State&, const Bobs<Scalar>& seen) const {
-        return doppel::length_error(pendulum, seen);
-    }
-    std::vector<double> tension(const Bobs<double>& seen) const {
-        return tensions(pendulum.template cast<double>(), seen);
-    }
-};
 
 /// A whirl is watched every so many rad, so that an interruption is noticed within a sample of it; some 0.1 s of work.
 inline constexpr double most_unwatched = 1e4;
@@ -183,7 +136,7 @@ private:
 
 /// The step, s, or the tolerance.
 template <class Scalar>
-Scalar pace_of(const MotionSpec& spec) {
+Scalar step_or_tolerance_of(const MotionSpec& spec) {
     if (find_method(spec.method)->adaptive) return static_cast<Scalar>(spec.tolerance);
     return scalar_of<Scalar>(spec.sample_interval) / Scalar(spec.steps_per_sample);
 }
@@ -193,7 +146,7 @@ template <class Model, class View>
 std::unique_ptr<Motion> simulation(const MotionSpec& spec, const Model& model, const typename Model::State& start,
                                    const View& view) {
     return std::make_unique<Simulation<typename Model::State, View>>(
-        make_stepper(spec.method, model, start, pace_of<typename Model::Scalar>(spec)), start, view, spec);
+        make_stepper(spec.method, model, start, step_or_tolerance_of<typename Model::Scalar>(spec)), start, view, spec);
 }
 
 /// The same on a constrained model of `system`, stabilised as asked.
@@ -212,7 +165,7 @@ std::unique_ptr<Motion> stabilised(const MotionSpec& spec, const System& system,
     return simulation(spec, Model(system), start, view);
 }
 
-// One file each, so that they compile side by side.
+// Defined in integrate/motion_models.hpp; compiled in files of their own, side by side.
 template <class Scalar>
 std::unique_ptr<Motion> make_angles_motion(const MotionSpec& spec);
 template <class Scalar>

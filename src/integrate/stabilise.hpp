@@ -42,19 +42,19 @@ public:
     bool onto_constraints(Model& model, const Half& q0, Half& q) {
         lambda.setZero();
         for (int i = 0; i < limit; ++i) {
-            model.violation(q, c_);
+            model.residual(q, c_);
             if (i > 0 && within(floor_)) return true;
             if (i >= many && is_rounding(model, q)) return true;
             correct(model, q0, q);
             if (i > 0 && move_.cwiseAbs().maxCoeff() <= Scalar(2) * epsilon * q.cwiseAbs().maxCoeff()) return true;
         }
-        model.violation(q, c_);
+        model.residual(q, c_);
         return false;
     }
 
     /// v ← v + M⁻¹Jᵀ(q) λ with J v = 0.
     void along_constraints(Model& model, const Half& q, Half& v) {
-        model.slip(q, v, c_);
+        model.constraint_velocity(q, v, c_);
         model.solve(q, q, c_);
         lambda = -c_;
         model.pull(q, lambda, v);
@@ -114,7 +114,7 @@ public:
     explicit Projected(const Description& description)
         : Model(description), q_(half_of(Model::start(description))), v_(q_), newton_(*this, q_) {}
 
-    void settle(State& y) {
+    void project(State& y) {
         const auto n = q_.size();
         q_ = y.head(n);
         v_ = y.tail(n);
@@ -136,7 +136,7 @@ private:
 
 /// A model whose constraints pull back like damped springs (critically, at one rate α in 1/s):
 ///     C″ = −2α C′ − α² C ,     (J M⁻¹ Jᵀ) λ = −J̇ v − J M⁻¹ F − 2α J v − α² C .
-/// What explicit methods do to a violation bounds the step: α dt < 2 (Euler), < 2.785 (Runge–Kutta 4).
+/// What explicit methods do to a residual bounds the step: α dt < 2 (Euler), < 2.785 (Runge–Kutta 4).
 /// Source  Baumgarte 1972, Stabilization of constraints and integrals of motion in dynamical systems.
 template <Constrained Model>
 class Baumgarte : public Model {
@@ -163,12 +163,12 @@ public:
         q_ = y.head(n);
         v_ = y.tail(n);
         this->free_acceleration(q_, v_, a_);
-        this->curvature(q_, v_, lambda_);
-        this->slip(q_, a_, c_);
+        this->jdot_v(q_, v_, lambda_);
+        this->constraint_velocity(q_, a_, c_);
         lambda_ += c_;
-        this->slip(q_, v_, c_);
+        this->constraint_velocity(q_, v_, c_);
         lambda_ += (Scalar(2) * alpha_) * c_;
-        this->violation(q_, c_);
+        this->residual(q_, c_);
         lambda_ = -(lambda_ + (alpha_ * alpha_) * c_);
         this->solve(q_, q_, lambda_);
         this->pull(q_, lambda_, a_);

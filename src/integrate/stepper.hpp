@@ -27,6 +27,6 @@ public:
 /// models in stepper_double.cpp and motion_quad.cpp.
 template <class State>
 std::unique_ptr<Stepper<State>> make_any_stepper(std::string_view method, AnySystem<State> system, const State& start,
-                                                 const typename State::Scalar& pace);
+                                                 const typename State::Scalar& step_or_tolerance);
 
 }  // namespace doppel

@@ -61,7 +61,7 @@ public:
     const State& at(const Scalar& t) {
         series_.move(t, change_);
         out_ = base_ + (change_ + lost_);
-        settle(model_, out_);
+        project(model_, out_);
         return out_;
     }
     const Scalar& step() const { return step_; }
@@ -101,7 +101,7 @@ private:
         if (steps_ > 0) {
             series_.move(step_, change_);
             for (Eigen::Index i = 0; i < base_.size(); ++i) add(base_[i], lost_[i], change_[i]);
-            settle(model_, base_);
+            project(model_, base_);
             add(offset_, offset_lost_, -step_);
         }
         series_.expand(base_);

@@ -27,7 +27,7 @@ struct AngleChain {
     Pendulum<Scalar> pendulum;
     Half w;                  // 1/kg, inverse masses
     Half length, by_length;  // m, 1/m
-    Half sin, cos;           // of the angles last looked at
+    Half sin, cos;           // of the angles of the last update()
     Half s, c;               // of the angle between a rod and the next, over the mass between them, 1/kg
     Half tension;            // N
     Tridiagonal<Scalar, N> matrix;
@@ -58,7 +58,7 @@ struct AngleChain {
     /// dydt ← d/dt of the state.
     void rate(const State& y, State& dydt) {
         const auto n = w.size();
-        look(y);
+        update(y);
         for (Eigen::Index k = 0; k < n; ++k) tension[k] = length[k] * y[n + k] * y[n + k];
         tension[0] += pendulum.gravity * cos[0];
         matrix.solve(tension);
@@ -70,9 +70,9 @@ struct AngleChain {
         }
     }
 
-    /// Looks at the angles that `y` begins with: what depends on them alone, the matrix factored.
+    /// For the angles that `y` begins with: all that depends on them alone, the matrix factored.
     template <class Angles>
-    void look(const Angles& y) {
+    void update(const Angles& y) {
         const auto n = w.size();
         for (Eigen::Index k = 0; k < n; ++k) {
             const SinCos<Scalar> turn(y[k]);
@@ -89,7 +89,7 @@ struct AngleChain {
         matrix.factor(pendulum.mass[0], by_last_);
     }
 
-    /// a ← M⁻¹ f at the angles last looked at, in O(N): the accelerations that generalized forces f (N m) would cause,
+    /// a ← M⁻¹ f at the angles of the last update(), in O(N): the accelerations that generalized forces f (N m) would cause,
     /// or the rates that belong to momenta f (N m s). P_k = Σ_{j≥k} m_j q_j″ is f_k / l_k across rod k and τ_k along
     /// it, and τ solves the system of the tensions.
     void solve_mass(const Half& f, Half& a) {

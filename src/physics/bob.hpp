@@ -80,7 +80,7 @@ Scalar length_error(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {
     for (std::size_t i = 0; i < bobs.size(); ++i) {
         const Scalar rx = bobs[i].x - x, ry = bobs[i].y - y;
         const Scalar error = abs(sqrt(rx * rx + ry * ry) - p.length[i]);
-        if (!(error <= worst)) worst = error;  // not a number counts as worst
+        if (!(error <= worst)) worst = error;  // NaN counts as worst
         x = bobs[i].x;
         y = bobs[i].y;
     }

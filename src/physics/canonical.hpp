@@ -87,7 +87,7 @@ struct Canonical<AngleChain<S, N>> {
 
     void momenta(const State& y, State& z) {
         const auto n = mass.size();
-        model.look(y);
+        model.update(y);
         z.head(n) = y.head(n);
         z.tail(n).setZero();
         for (const Half* t : {&model.cos, &model.sin}) {
@@ -121,7 +121,7 @@ private:
     const Scalar& length(Eigen::Index k) const { return model.pendulum.length[at(k)]; }
 
     void solve(const State& z) {
-        model.look(z);
+        model.update(z);
         p = z.tail(mass.size());
         model.solve_mass(p, omega);
     }

@@ -48,7 +48,7 @@ End<To> cast_end(const End<Scalar>& end) {
 //     rows                 how many conditions C(q) = 0 it sets
 //     value(q)             C
 //     gradient(q, emit)    calls emit(row, particle, ∂C_row/∂q_particle) for every particle it ties, in one order
-//     curvature(v)         J̇ v, the part of C″ that is there without any acceleration
+//     jdot_v(v)            J̇ v, the part of C″ that is there without any acceleration
 //     error(q)             how far the particles are from where it wants them, m
 //     cast<To>()           the same in another scalar
 
@@ -73,7 +73,7 @@ struct Anchor {
         emit(1, particle, Place<Scalar>(Scalar(0), Scalar(1)));
     }
     template <class Vector>
-    std::array<Scalar, rows> curvature(const Vector&) const {
+    std::array<Scalar, rows> jdot_v(const Vector&) const {
         return {Scalar(0), Scalar(0)};
     }
     template <class Vector>
@@ -111,7 +111,7 @@ struct Rod {
         if (const auto* particle = std::get_if<std::size_t>(&b)) emit(0, *particle, Place<Scalar>(-r));
     }
     template <class Vector>
-    std::array<Scalar, rows> curvature(const Vector& v) const {
+    std::array<Scalar, rows> jdot_v(const Vector& v) const {
         const Place<Scalar> u = part_of(v, a) - velocity_of(b, v);
         return {u[0] * u[0] + u[1] * u[1]};
     }
@@ -134,8 +134,7 @@ private:
     }
 };
 
-/// A straight slot, without friction or ends, that a particle slides in: the line through p along d. |d| does not
-/// matter.
+/// A straight slot, without friction or ends, that a particle slides in: the line through p along d of any length.
 ///     C = d × (q − p) = d_x (q_y − p_y) − d_y (q_x − p_x)
 template <class Scalar>
 struct SlotLine {
@@ -156,7 +155,7 @@ struct SlotLine {
         emit(0, particle, Place<Scalar>(Scalar(-direction[1]), direction[0]));
     }
     template <class Vector>
-    std::array<Scalar, rows> curvature(const Vector&) const {
+    std::array<Scalar, rows> jdot_v(const Vector&) const {
         return {Scalar(0)};
     }
     template <class Vector>
@@ -192,8 +191,8 @@ struct SlotCircle {
         rod().gradient(q, emit);
     }
     template <class Vector>
-    std::array<Scalar, rows> curvature(const Vector& v) const {
-        return rod().curvature(v);
+    std::array<Scalar, rows> jdot_v(const Vector& v) const {
+        return rod().jdot_v(v);
     }
     template <class Vector>
     Scalar error(const Vector& q) const {

@@ -14,9 +14,9 @@ namespace doppel {
 ///
 /// For J M⁻¹ Jᵀ no interchange is needed, and without one the pivots have a meaning: pivot i is the squared length of
 /// what is left of gradient i beside the gradients before it. One that vanishes names the constraint that depends on
-/// others. Source  Golub & Van Loan, Matrix Computations, §4.3; George & Liu, Computer Solution of Large Sparse
-/// Positive
-///         Definite Systems, §4.
+/// others.
+/// Source  Golub & Van Loan, Matrix Computations, §4.3; George & Liu, Computer Solution of Large Sparse Positive Definite
+///         Systems, §4.
 template <class Scalar>
 class ConstraintMatrix {
 public:
@@ -45,7 +45,7 @@ public:
     Scalar& operator()(Index i, Index j) { return i == j ? diagonal_[i] : i > j ? lower(i, j) : upper(i, j); }
 
     /// Replaces the matrix by unit lower times upper. Returns the first row that depends on those before it so closely
-    /// that no more than a quarter of the digits would be right (or that holds no number); rows() where there is none.
+    /// that no more than a quarter of the digits would be right (or that is NaN); rows() where there is none.
     Index factor() {
         using std::abs;
         nearly_singular_ = false;

@@ -75,8 +75,8 @@ public:
 
     /// s ← J̇ v
     template <class Vector>
-    void curvature(const Vector& v, Column& s) const {
-        fill(s, [&](const auto& part) { return part.curvature(v); });
+    void jdot_v(const Vector& v, Column& s) const {
+        fill(s, [&](const auto& part) { return part.jdot_v(v); });
     }
 
     /// How far the constraint that is furthest from being met is from it, m.
@@ -85,7 +85,7 @@ public:
         Scalar worst(0);
         for (const auto& constraint : constraints_) {
             const Scalar error = std::visit([&](const auto& part) { return Scalar(part.error(q)); }, constraint);
-            if (!(error <= worst)) worst = error;  // not a number counts as worst
+            if (!(error <= worst)) worst = error;  // NaN counts as worst
         }
         return worst;
     }
@@ -106,7 +106,7 @@ public:
 
     /// gradients ← J(q)
     template <class Vector>
-    void look(const Vector& q, Gradients& gradients) const {
+    void update(const Vector& q, Gradients& gradients) const {
         auto next = gradients.begin();
         for (const auto& constraint : constraints_)
             std::visit(
@@ -118,7 +118,7 @@ public:
 
     /// s ← s + J v
     template <class Vector>
-    void add_slip(const Gradients& gradients, const Vector& v, Column& s) const {
+    void add_constraint_velocity(const Gradients& gradients, const Vector& v, Column& s) const {
         for (std::size_t k = 0; k < blocks_.size(); ++k) {
             const auto i = 2 * blocks_[k].particle;
             s[blocks_[k].row] += gradients[k][0] * v[i] + gradients[k][1] * v[i + 1];

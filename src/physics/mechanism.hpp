@@ -29,7 +29,7 @@ class MechanismSeries;
 ///
 ///     M q″ = F(q, q′) + Jᵀ λ ,   J = ∂C/∂q ,   (J M⁻¹ Jᵀ) λ = −J̇ q′ − J M⁻¹ F
 ///
-/// so that C″ = 0. Nothing pulls back what a method has let slip (stabilise = "none").
+/// so that C″ = 0. Nothing corrects what a method has let drift (stabilise = "none").
 ///
 /// State   (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN), m and m/s.
 /// Energy  zero at rest with all particles at y = 0, springs at their rest length, and attracting bodies infinitely far
@@ -91,34 +91,34 @@ struct Mechanism {
     void free_acceleration(const Half& q, const Half& v, Half& a) const { accelerate(q, v, a); }
 
     /// c ← C(q)
-    void violation(const Half& q, Multipliers& c) const { set_.value(q, c); }
+    void residual(const Half& q, Multipliers& c) const { set_.value(q, c); }
 
     /// c ← ε |q| Σ_j |J_ij|
     void rounding(const Half& q, Multipliers& c) {
-        set_.look(q, other_gradients_);
+        set_.update(q, other_gradients_);
         set_.rounding(other_gradients_, q, c);
     }
 
     /// s ← J(q) v
-    void slip(const Half& q, const Half& v, Multipliers& s) {
-        set_.look(q, other_gradients_);
+    void constraint_velocity(const Half& q, const Half& v, Multipliers& s) {
+        set_.update(q, other_gradients_);
         s.setZero();
-        set_.add_slip(other_gradients_, v, s);
+        set_.add_constraint_velocity(other_gradients_, v, s);
     }
 
     /// s ← J̇ v, the part of C″ that is there without any acceleration
-    void curvature(const Half&, const Half& v, Multipliers& s) const { set_.curvature(v, s); }
+    void jdot_v(const Half&, const Half& v, Multipliers& s) const { set_.jdot_v(v, s); }
 
     /// v ← v + M⁻¹ Jᵀ(q) λ
     void pull(const Half& q, const Multipliers& lambda, Half& v) {
-        set_.look(q, other_gradients_);
+        set_.update(q, other_gradients_);
         set_.add_pull(other_gradients_, masses_.w, lambda, v);
     }
 
     /// x ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ x
     void solve(const Half& q1, const Half& q0, Multipliers& x) {
         turn_to(q1);
-        set_.look(q0, other_gradients_);
+        set_.update(q0, other_gradients_);
         factor_and_watch(q1, other_gradients_);
         matrix_.solve(x);
     }
@@ -142,13 +142,13 @@ struct Mechanism {
     Scalar length_error(const State& y) const { return set_.worst_error(y.head(y.size() / 2)); }
 
     /// The forces in the rods, N, > 0 where one pulls, in the order of the constraints that are rods: the λ of C″ = 0,
-    /// without what a stabilisation adds. Not a number where a constraint depends on others, so that none is
+    /// without what a stabilisation adds. NaN where a constraint depends on others, so that none is
     /// determined.
     std::vector<Scalar> tensions(const State& y) {
         const auto q = y.head(y.size() / 2), v = y.tail(y.size() / 2);
         Half a(q.size());
         accelerate(q, v, a);
-        set_.look(q, other_gradients_);
+        set_.update(q, other_gradients_);
         set_.couple(other_gradients_, other_gradients_, masses_.w, matrix_);
         if (matrix_.factor() < matrix_.rows())
             lambda_.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
@@ -169,7 +169,7 @@ struct Mechanism {
 
     /// The first constraint that follows from those before it at positions q, if there is one.
     std::optional<Dependence> dependence(const Half& q) {
-        set_.look(q, other_gradients_);
+        set_.update(q, other_gradients_);
         set_.couple(other_gradients_, other_gradients_, masses_.w, matrix_);
         const auto row = matrix_.factor();
         if (row == matrix_.rows()) return std::nullopt;
@@ -201,8 +201,8 @@ private:
     /// λ from C″ = 0, of the factored matrix and the accelerations a without constraints
     template <class Vector, class Sum>
     void find_multipliers(const Gradients& gradients, const Vector& v, const Sum& a) {
-        set_.curvature(v, lambda_);
-        set_.add_slip(gradients, a, lambda_);
+        set_.jdot_v(v, lambda_);
+        set_.add_constraint_velocity(gradients, a, lambda_);
         lambda_ = -lambda_;
         matrix_.solve(lambda_);
     }
@@ -211,7 +211,7 @@ private:
     template <class Vector>
     void turn_to(const Vector& q) {
         gradients_.swap(gradients_before_);
-        set_.look(q, gradients_);
+        set_.update(q, gradients_);
     }
 
     /// Factors J(q) M⁻¹ J0ᵀ, and near a singular configuration looks whether one lies between this call and the one

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "numeric/tridiagonal.hpp"
-#include "physics/pendulum.hpp"
+#include "physics/bob.hpp"
 
 #include <cmath>
 #include <limits>
@@ -82,7 +82,7 @@ struct RodChain {
     }
 
     /// c ← C(q), m²
-    void violation(const Half& q, Multipliers& c) const {
+    void residual(const Half& q, Multipliers& c) const {
         for (Eigen::Index k = 0; k < w.size(); ++k) c[k] = (square(q, k) - l2[k]) * Scalar(0.5);
     }
 
@@ -97,13 +97,13 @@ struct RodChain {
     }
 
     /// s ← J(q) v
-    void slip(const Half& q, const Half& v, Multipliers& s) const {
+    void constraint_velocity(const Half& q, const Half& v, Multipliers& s) const {
         for (Eigen::Index k = 0; k < w.size(); ++k)
             s[k] = along(q, k, 0) * along(v, k, 0) + along(q, k, 1) * along(v, k, 1);
     }
 
     /// s ← J̇ v, the part of C″ that is there without any acceleration
-    void curvature(const Half&, const Half& v, Multipliers& s) const {
+    void jdot_v(const Half&, const Half& v, Multipliers& s) const {
         for (Eigen::Index k = 0; k < w.size(); ++k) s[k] = square(v, k);
     }
 
@@ -167,5 +167,25 @@ private:
     Matrix matrix_;
     Multipliers lambda_;
 };
+
+/// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) of bobs.
+template <class Scalar>
+State<Scalar, Eigen::Dynamic> particles_of(const Bobs<Scalar>& bobs) {
+    const auto n = static_cast<Eigen::Index>(bobs.size());
+    State<Scalar, Eigen::Dynamic> y(4 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto& bob = bobs[static_cast<std::size_t>(i)];
+        y.template segment<2>(2 * i) << bob.x, bob.y;
+        y.template segment<2>(2 * n + 2 * i) << bob.vx, bob.vy;
+    }
+    return y;
+}
+
+/// The forces in the rods of a chain whose bobs are there, N, from the pivot down: > 0 where a rod pulls, < 0 where it
+/// pushes. Whatever model the bobs are from, for they follow from places and velocities alone.
+template <class Scalar>
+std::vector<Scalar> tensions(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {
+    return RodChain<Scalar, Eigen::Dynamic>(p).tensions(particles_of(bobs));
+}
 
 }  // namespace doppel

@@ -1,7 +1,7 @@
 #include "scene/forecast.hpp"
 
-#include "analysis/error_course.hpp"
 #include "analysis/linear_stability.hpp"
+#include "analysis/reference_course.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "scene/method_choice.hpp"
 
-#include "analysis/error_course.hpp"
+#include "analysis/reference_course.hpp"
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
 

@@ -1,5 +1,5 @@
-#include "analysis/distance.hpp"
-#include "analysis/energy_error.hpp"
+#include "analysis/difference.hpp"
+#include "analysis/difference.hpp"
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
 

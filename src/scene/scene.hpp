@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "physics/mechanism_assembly.hpp"
+#include "scene/mechanism_lines.hpp"
 #include "scene/preset.hpp"
 
 #include <atomic>
@@ -77,7 +77,7 @@ struct Moment {
     long sample = 0;
     Observation a, b;
     std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
-    double distance = 0;                                   // state space, analysis/distance.hpp
+    double distance = 0;                                   // state space, analysis/difference.hpp
 };
 
 /// A side whose method broke down (exit 3).
@@ -99,7 +99,7 @@ public:
     /// set.
     Observation next(const std::atomic<bool>& stop);
 
-    /// Relative (analysis/energy_error.hpp); nothing where damping takes energy, so that no change of it is an error.
+    /// Relative (analysis/difference.hpp); nothing where damping takes energy, so that no change of it is an error.
     std::optional<double> energy_error(const Observation& seen) const;
     Effort effort() const { return motion_->effort(); }
 

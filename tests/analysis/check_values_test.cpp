@@ -1,5 +1,4 @@
-#include "analysis/distance.hpp"
-#include "analysis/energy_error.hpp"
+#include "analysis/difference.hpp"
 #include "integrate/support.hpp"
 #include "numeric/state.hpp"
 

@@ -1,4 +1,5 @@
-#include "analysis/error_course.hpp"
+#include "analysis/reference_course.hpp"
+
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
 

@@ -1,6 +1,5 @@
-#include "analysis/sensitivity.hpp"
-
-#include "analysis/angle_error.hpp"
+#include "analysis/difference.hpp"
+#include "analysis/exponent.hpp"
 #include "base/error.hpp"
 #include "integrate/motion.hpp"
 #include "integrate/pendulums.hpp"

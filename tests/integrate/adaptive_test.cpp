@@ -243,7 +243,7 @@ TYPED_TEST(Adaptively, RefusesATolerance) {
 struct OnTheCircle : RodChain<double, 1> {
     long settled = 0;
     explicit OnTheCircle(const Pendulum<double>& p) : RodChain(p) {}
-    void settle(State& y) {
+    void project(State& y) {
         y.head<2>().normalize();
         y.tail<2>() -= y.tail<2>().dot(y.head<2>()) * y.head<2>();
         ++settled;

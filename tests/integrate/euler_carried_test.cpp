@@ -95,7 +95,7 @@ TEST(CarriedEuler, TurnsByTheSeriesAsFarAsItMay) {
     // just within the largest turn the series must still give the sine and cosine of the sum
     TurningAngle<double> angle;
     for (double theta = -3; theta < 3; theta += 0.01) {
-        angle.look(1, theta);
+        angle.update(1, theta);
         const double d = TurningAngle<double>::largest;
         angle.turn(d, d * d);
         EXPECT_NEAR(angle.sin, std::sin(theta + d), 4e-16);  // measured 1.1e-16

@@ -128,7 +128,7 @@ struct Settled : Oscillator {
         last = y;
         Oscillator::rate(y, dydt);
     }
-    void settle(State& y) const { y.normalize(); }
+    void project(State& y) const { y.normalize(); }
 };
 
 TEST(Adams, TakesItsSlopesWhereTheModelSettled) {

@@ -208,7 +208,7 @@ TEST(Motion, CountsItsSteps) {
 }
 
 TEST(Motion, SeesTheForcesInTheRodsWhereWanted) {
-    // one motion by three models, in two precisions, with and without projection; forces of physics/tension.hpp
+    // one motion by three models, in two precisions, with and without projection; forces of physics/rod_chain.hpp
     auto p = released(90, -20);
     p.mass = {1, 2.5};
     p.rate = {2, -3};

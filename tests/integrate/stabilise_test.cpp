@@ -34,7 +34,7 @@ Errors errors_of(const Pendulum<double>& p, Model& model, double step, long step
         stepper.advance(1);
         const auto bobs = bobs_of_particles<double>(p, stepper.state());
         typename Model::Multipliers slip = model.w;
-        model.slip(stepper.state().head(4), stepper.state().tail(4), slip);
+        model.constraint_velocity(stepper.state().head(4), stepper.state().tail(4), slip);
         errors.rod = std::max(errors.rod, length_error(p, bobs));
         errors.energy = std::max(errors.energy, std::abs(energy(bobs, p.gravity) - start));
         errors.slip = std::max(errors.slip, slip.cwiseAbs().maxCoeff());
@@ -86,11 +86,11 @@ TEST(Projected, MovesToTheConstraintsAndNoFurther) {
     Projected<Chain> model(p);
     const Chain::State start = Chain::start(p);
     Chain::State y = start;
-    model.settle(y);
+    model.project(y);
     EXPECT_LT((y - start).cwiseAbs().maxCoeff(), 1e-15);  // measured 3e-16
     y[3] += 0.01;
     Chain::State settled = y;
-    model.settle(settled);
+    model.project(settled);
     const double light = (settled - y).head(2).norm(), heavy = (settled - y).segment<2>(2).norm();
     EXPECT_LT(heavy, 0.05 * light);                                            // measured 0.012
     EXPECT_LT(length_error(p, bobs_of_particles<double>(p, settled)), 5e-16);  // measured 0
@@ -102,7 +102,7 @@ TEST(Projected, ReachesTheDigitsOfTheScalar) {
     Projected<Model> model(p);
     auto y = Model::start(p);
     y[3] += Quad(0.01);
-    model.settle(y);
+    model.project(y);
     EXPECT_LT(static_cast<double>(length_error(p, bobs_of_particles<Quad>(p, y))), 5e-34);  // measured 0
 }
 
@@ -143,7 +143,7 @@ TEST(Projected, SaysWhenALightMassWouldHaveToJump) {
     auto y = Chain::start(p);
     y[0] += 1e-3;
     y[3] -= 1e-3;
-    EXPECT_THROW(model.settle(y), Error);
+    EXPECT_THROW(model.project(y), Error);
 }
 
 TEST(Projected, SaysWhenThereIsNoWayBack) {
@@ -152,7 +152,7 @@ TEST(Projected, SaysWhenThereIsNoWayBack) {
     Projected<Chain> model(p);
     Chain::State y = Chain::State::Zero();
     try {
-        model.settle(y);
+        model.project(y);
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::method_failed);
@@ -211,10 +211,10 @@ TEST(Baumgarte, PullsBackAsItsEquationSays) {
     model.rate(y, dydt);
     const Chain::Half q = y.head(4), v = y.tail(4), a = dydt.tail(4);
     Chain::Multipliers c, slip, second, bend;
-    model.violation(q, c);
-    model.slip(q, v, slip);
-    model.slip(q, a, second);
-    model.curvature(q, v, bend);
+    model.residual(q, c);
+    model.constraint_velocity(q, v, slip);
+    model.constraint_velocity(q, a, second);
+    model.jdot_v(q, v, bend);
     const Chain::Multipliers error = second + bend + 2 * alpha * slip + alpha * alpha * c;
     EXPECT_LT(error.cwiseAbs().maxCoeff(), 5e-15);  // measured 8e-16
     EXPECT_GT(c.cwiseAbs().maxCoeff(), 1e-3);

@@ -138,7 +138,7 @@ TEST(Lanes, SelectDecidesLaneByLane) {
     EXPECT_EQ(chosen[0], 10);
     EXPECT_EQ(chosen[1], 10);
     EXPECT_EQ(chosen[2], 20);
-    EXPECT_EQ(chosen[3], 20);  // what is no number is not small
+    EXPECT_EQ(chosen[3], 20);  // NaN is not small
 }
 
 TEST(Lanes, TheGreaterIsNoNumberWhereEitherIsNone) {

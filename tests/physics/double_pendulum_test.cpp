@@ -78,7 +78,7 @@ TEST(AngleChain, SolveMassIsTheInverseOfTheMassMatrix) {
     for (const std::size_t links : {1u, 2u, 3u, 9u}) {
         const auto p = random_pendulum(random, links);
         AngleChain<double, Eigen::Dynamic> chain(p);
-        chain.look(AngleChain<double, Eigen::Dynamic>::start(p));
+        chain.update(AngleChain<double, Eigen::Dynamic>::start(p));
         // at rest the forces are those of gravity alone, and M⁻¹ f the accelerations
         auto resting = p;
         resting.rate.assign(links, 0);

@@ -197,11 +197,11 @@ TEST(Mechanism, GradientsAreThoseOfTheValues) {
         for (auto* vector : {&q, &v})
             for (auto& x : *vector) x = S(number(random));
         const S h(1e-8);
-        model.violation(q + h * v, up);
-        model.violation(q, here);
-        model.violation(q - h * v, down);
-        model.slip(q, v, slip);
-        model.curvature(q, v, bend);
+        model.residual(q + h * v, up);
+        model.residual(q, here);
+        model.residual(q - h * v, down);
+        model.constraint_velocity(q, v, slip);
+        model.jdot_v(q, v, bend);
         for (Eigen::Index row = 0; row < model.constraints(); ++row) {
             const S first = (up[row] - down[row]) / (S(2) * h);
             const S second = (up[row] - S(2) * here[row] + down[row]) / (h * h);
@@ -212,7 +212,7 @@ TEST(Mechanism, GradientsAreThoseOfTheValues) {
 }
 
 TEST(Mechanism, SolvesForPullsAcrossTwoPlaces) {
-    // J(q1) M⁻¹ Jᵀ(q0) x, put together by pull() and slip(), must come back as x
+    // J(q1) M⁻¹ Jᵀ(q0) x, put together by pull() and constraint_velocity(), must come back as x
     auto parts = four_bars();
     parts.particles.push_back({1, P(1.5, 2)});  // braced: the matrix fills up as it is factored
     for (const std::size_t corner : {two, three}) parts.constraints.push_back(Rod<double>{5 - 1, corner, 1});
@@ -227,7 +227,7 @@ TEST(Mechanism, SolvesForPullsAcrossTwoPlaces) {
         for (auto& c : x) c = number(random);
         v.setZero();
         model.pull(q0, x, v);
-        model.slip(q1, v, image);
+        model.constraint_velocity(q1, v, image);
         model.solve(q1, q0, image);
         EXPECT_LT((image - x).norm(), 2e-15);  // measured 4e-16
     }
@@ -274,9 +274,9 @@ TEST(Mechanism, StepsWithoutAllocating) {
     const long before = allocations();
     model.rate(y, dydt);
     model.free_acceleration(q, q, v);
-    model.violation(q, c);
-    model.slip(q, v, c);
-    model.curvature(q, v, c);
+    model.residual(q, c);
+    model.constraint_velocity(q, v, c);
+    model.jdot_v(q, v, c);
     model.pull(q, c, v);
     model.solve(q, q, c);
     EXPECT_EQ(allocations() - before, 0);
@@ -320,26 +320,6 @@ TEST(Mechanism, SizeIsThatOfWhatItIsMadeOf) {
     EXPECT_DOUBLE_EQ(size({}, {Droplet<double>{P(0, 4), 1}, Droplet<double>{P(0, 3), 1}}), 3);
     EXPECT_DOUBLE_EQ(size({Rod<double>{one, P(1, 0), 1}}, {Droplet<double>{P(0, 4), 1}}), 1);
     EXPECT_DOUBLE_EQ(size({Anchor<double>{one, P(0, 0)}}, {Gravity<double>{}}), 1);
-}
-
-TEST(Mechanism, SaysWhatToDraw) {
-    using Kind = MechanismLine::Kind;
-    auto parts = four_bars();
-    parts.constraints.push_back(SlotLine<double>{two, P(0, 1), P(2, 0)});
-    parts.constraints.push_back(SlotCircle<double>{two, P(3, 1), 2});
-    parts.forces.push_back(Spring<double>{two, P(0, 2), 5, 0.5});
-    const auto lines = lines_of(parts);
-    ASSERT_EQ(lines.size(), 8u);
-    EXPECT_EQ(lines[0].kind, Kind::anchor);
-    EXPECT_EQ(lines[1].kind, Kind::rod);
-    EXPECT_EQ(std::get<std::size_t>(lines[1].from), two);
-    EXPECT_EQ(std::get<std::size_t>(lines[1].to), one);
-    EXPECT_EQ(lines[5].kind, Kind::slot_line);
-    EXPECT_EQ(std::get<P>(lines[5].to), P(2, 1));
-    EXPECT_EQ(lines[6].kind, Kind::slot_circle);
-    EXPECT_EQ(lines[6].radius, 2);
-    EXPECT_EQ(lines[7].kind, Kind::spring);
-    EXPECT_EQ(std::get<P>(lines[7].to), P(0, 2));
 }
 
 }  // namespace mechanism_test

@@ -1,6 +1,6 @@
 #include "scene/forecast.hpp"
 
-#include "analysis/error_course.hpp"
+#include "analysis/reference_course.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>

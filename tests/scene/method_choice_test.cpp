@@ -1,6 +1,6 @@
 #include "scene/method_choice.hpp"
 
-#include "analysis/angle_error.hpp"
+#include "analysis/difference.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
