@@ -178,6 +178,15 @@ TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
     EXPECT_NEAR(run(parts, parts).uncertainty, expected, 1e-14);  // of 0.24; measured 3e-17
 }
 
+TEST(Exponent, IsOfFiveHundredSecondsWhereNothingElseIsSaid) {
+    const auto p = from_rest({140, 0});
+    const auto told =
+                   largest_exponent(p, {.duration_s = 500, .transient_s = 50, .tolerance = 1e-7, .blocks = 20}, never),
+               usual = largest_exponent(p, {}, never);
+    EXPECT_EQ(usual.value, told.value);
+    EXPECT_EQ(usual.uncertainty, told.uncertainty);
+}
+
 TEST(Exponent, ScalesWithTheUnits) {
     // four times the lengths: the same motion at half the speed; masses cancel
     auto p = from_rest({130, 20});

@@ -138,6 +138,55 @@ TYPED_TEST(Adaptively, TheClockNeitherDriftsNorCoarsens) {
     EXPECT_LT((sampled.state() - at_once.state()).norm(), most);
 }
 
+/// The oscillator y″ = −y, which counts how often it is asked.
+struct Counting {
+    using Scalar = double;
+    using State = doppel::State<double, 2>;
+    void rate(const State& y, State& dydt) {
+        dydt << y[1], -y[0];
+        ++asked;
+    }
+    long asked = 0;
+};
+
+TYPED_TEST(Adaptively, CountsItsEvaluations) {
+    Counting model;
+    typename TypeParam::template Stepper<Counting> stepper(model, {1, 0}, 1e-9);
+    EXPECT_EQ(stepper.evaluations(), model.asked);
+    for (int i = 0; i < 100; ++i) {
+        stepper.advance(0.37);
+        EXPECT_EQ(stepper.evaluations(), model.asked) << i;
+    }
+}
+
+TYPED_TEST(Adaptively, SamplesTheEndOfAStepToo) {
+    const auto after_parts = [](double first, double second) {
+        Counting model;
+        typename TypeParam::template Stepper<Counting> stepper(model, {1, 0}, 1e-9);
+        stepper.advance(first);
+        if (second > 0) stepper.advance(second);
+        EXPECT_EQ(stepper.steps(), 1);
+        return std::pair(stepper.smallest_step(), stepper.state());
+    };
+    const double step = after_parts(1e-9, 0).first;
+    for (const auto& y : {after_parts(step, 0).second, after_parts(0.5 * step, 0.5 * step).second}) {
+        EXPECT_NEAR(y[0], std::cos(step), 2e-16);   // measured 0
+        EXPECT_NEAR(y[1], -std::sin(step), 2e-16);  // measured 2.8e-17
+    }
+}
+
+TYPED_TEST(Adaptively, SaysWhichToleranceIsTheFinest) {
+    Counting model;
+    try {
+        typename TypeParam::template Stepper<Counting> stepper(model, {1, 0}, 1e-16);
+        FAIL();
+    } catch (const Error& fault) {
+        EXPECT_EQ(std::string(fault.what()), std::string(TypeParam::method.name) +
+                                                 ": tolerance = 1e-16 cannot be met with "
+                                                 "16 digits; the finest is 9e-16");
+    }
+}
+
 TYPED_TEST(Adaptively, IsContinuousFromStepToStep) {
     using Model = DoublePendulum<double>;
     Model model(unequal());

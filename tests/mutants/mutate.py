@@ -8,6 +8,8 @@
     tests/mutants/mutate.py run /tmp/doppel-mutants       # goes on where it was interrupted
     tests/mutants/mutate.py report /tmp/doppel-mutants
 
+After tests were added there: build, cover, and run --again, which shows survivors what they have not been shown.
+
 All mutants stand in one program and are chosen at run time (mutants.hpp), so that one build serves all. A mutant is an
 operator exchanged (+ -, * /, a comparison), a condition turned round, a number changed, or a statement left out. It is
 caught when a test that reaches it fails, ends by a signal, or takes more than ten times as long and a minute when it runs
@@ -54,15 +56,20 @@ def candidates(path):
     lines, plain = text.split("\n"), masked(text).split("\n")
     found = []
     before = ";"
-    in_table = False  # constants over several lines, known to the compiler alone
+    in_table = None  # constants over several lines, known to the compiler alone
     for number, (line, code) in enumerate(zip(lines, plain)):
         stripped = code.replace("\x01", "").rstrip()
         if not stripped.strip():
             continue
         ends, before = before, stripped[-1]
-        opens = "constexpr" in stripped and (before not in ";{" or re.search(r"\w\{$", stripped))
-        in_table = opens or in_table and not re.search(r";$|\) (const |noexcept )*\{$", stripped)
-        if in_table or SKIP.search(stripped):
+        was_in_table = in_table
+        if "constexpr" in stripped and (before not in ";{" or re.search(r"\w\{$", stripped)):
+            in_table = r";$|\) (const |noexcept )*\{$"  # where it ends
+        if re.search(r"constexpr .* = \[\] \{$", stripped):
+            in_table = r"\}\(\);$"
+        if in_table and re.search(in_table, stripped):
+            in_table = None
+        if was_in_table or in_table or SKIP.search(stripped):
             continue
         constant = re.match(r"^\s*(static |inline )*constexpr [\w:]+ \w+ = ", stripped)
         if "constexpr" in stripped and not constant:
@@ -281,9 +288,10 @@ def run(tree, rooms, jobs, count, most_seconds, again):
     mutants, tests = load(tree), json.loads((tree / "tests.json").read_text())
     results = tree / "results.jsonl"
     lines = results.read_text().splitlines() if results.exists() else []
+    shown = {}  # what survivors are not shown again
     if again:
+        shown = {r["id"]: set(r["shown"]) for r in map(json.loads, lines) if not r["caught"]}
         lines = [line for line in lines if json.loads(line)["caught"]]
-        results.write_text("".join(line + "\n" for line in lines))
     known = {json.loads(line)["id"] for line in lines}
     left = collections.Counter()
     work = []
@@ -295,11 +303,11 @@ def run(tree, rooms, jobs, count, most_seconds, again):
 
     def one(mutant):
         worker = f"run-{mutant['id']}"
-        result = dict(id=mutant["id"], caught=None, tests=0, complete=True)
+        result = dict(id=mutant["id"], caught=None, complete=True, shown=sorted(shown.get(mutant["id"], ())))
         spent = 0
         for room in order_of(mutant["room"]):
-            reaching = sorted((t for t in tests if t["room"] == room and t["passes"] and mutant["id"] in t["reaches"]),
-                              key=lambda t: t["seconds"])
+            reaching = sorted((t for t in tests if t["room"] == room and t["passes"] and mutant["id"] in t["reaches"]
+                               and f"{room}:{t['name']}" not in shown.get(mutant["id"], ())), key=lambda t: t["seconds"])
             while reaching and not result["caught"]:
                 if spent > most_seconds:
                     result["complete"] = False
@@ -309,7 +317,7 @@ def run(tree, rooms, jobs, count, most_seconds, again):
                     several.append(reaching.pop(0))
                     seconds += several[-1]["seconds"]
                 spent += seconds
-                result["tests"] += len(several)
+                result["shown"] += [f"{room}:{test['name']}" for test in several]
                 caught = fault(tree, worker, room, several, mutant["id"])
                 result["caught"] = caught and f"{room}:{caught}"
             if result["caught"]:
@@ -325,7 +333,9 @@ def run(tree, rooms, jobs, count, most_seconds, again):
 
 def report(tree):
     mutants = {m["id"]: m for m in load(tree)}
-    results = [json.loads(line) for line in (tree / "results.jsonl").read_text().splitlines()]
+    lines = (tree / "results.jsonl").read_text().splitlines()
+    results = list({r["id"]: r for r in map(json.loads, lines)}.values())  # the last of each
+    results = [r for r in results if mutants[r["id"]]["state"] == "planted"]
     for room in ROOMS:
         of_room = [r for r in results if mutants[r["id"]]["room"] == room]
         if not of_room:
@@ -337,7 +347,7 @@ def report(tree):
         m = mutants[r["id"]]
         if not r["caught"]:
             line = m["original"]
-            print(f"{m['file']}:{m['line']}: mutant {m['id']}, {m['what']}, {r['tests']} tests"
+            print(f"{m['file']}:{m['line']}: mutant {m['id']}, {m['what']}, {len(r['shown'])} tests"
                   + ("" if r["complete"] else " (not all)"))
             print("    " + line[:m["start"]].lstrip() + "⟦" + line[m["start"]:m["end"]] + "⟧" + line[m["end"]:])
 
@@ -351,7 +361,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=60, help="of tests that run shows a mutant at most, by what they take without")
-    parser.add_argument("--again", action="store_true", help="run: show survivors the tests once more")
+    parser.add_argument("--again", action="store_true", help="run: show survivors the tests that they have not been shown")
     options = parser.parse_args()
     tree = options.tree.resolve()
     match options.step:

@@ -197,6 +197,13 @@ TEST(Samples, AreasAreCutToThePictureAndEvenWhereTheyMust) {
     EXPECT_TRUE(aligned(Samples::yuv420, {8, 0, 9, 2}, {8, 6}).empty());
 }
 
+TEST(Samples, HaveTheirPlanes) {
+    using enum Samples;
+    for (const Samples samples : {yuv420, yuv444, yuv420_10}) EXPECT_EQ(plane_count(samples), 3);
+    EXPECT_EQ(plane_count(yuva420), 4);
+    for (const Samples samples : {rgb, rgba}) EXPECT_EQ(plane_count(samples), 1);
+}
+
 TEST(Buffer, HasRoomForOneByte) {
     Buffer buffer;
     EXPECT_NE(buffer.make_room(1), nullptr);

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <barrier>
 #include <csignal>
@@ -305,6 +306,24 @@ TEST(Transaction, OneAloneIsKeptUnderAnotherName) {
     EXPECT_EQ(files.publish(), std::vector<fs::path>{out / "x.failed.csv"});
     EXPECT_EQ(listing(out), (Names{lock, "x.failed.csv"}));
     EXPECT_EQ(bytes_of(out / "x.failed.csv"), "table");
+}
+
+TEST(Transaction, AnErrorThatLeavesWhatIsFinishedKeepsItsCode) {
+    const auto out = fresh_folder();
+    Transaction files(out);
+    write_part(files, "x.mp4", "video");
+    files.finished("x.mp4");
+    expect_error(ExitCode::method_failed, {"it broke down; what is finished stays", "x.mp4.part"}, [&] {
+        files.keeping_finished([]() -> std::vector<fs::path> { throw method_failed("it broke down"); });
+    });
+}
+
+TEST(Folder, NamesAreInTheirOrder) {
+    const auto folder = fresh_folder();
+    std::vector<std::string> names;
+    for (int i = 0; i < 60; ++i) write_bytes(folder / names.emplace_back(fmt::format("{}", 37 * i % 60)), "");
+    std::ranges::sort(names);
+    EXPECT_EQ(Folder::at(folder).names(), names);
 }
 
 TEST(Transaction, HoldTheFolderForOneRunAtATime) {

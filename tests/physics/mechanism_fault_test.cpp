@@ -70,6 +70,8 @@ TEST(MechanismFault, OfParts) {
               "force 1 (spring 1–2): its rest length is -1 m; it must not be negative");
     EXPECT_EQ(fault_with(Force<double>(Spring<double>{one, two, 1, 1, -1})),
               "force 1 (spring 1–2): its damping is -1 N s/m; it must not be negative");
+    EXPECT_EQ(fault_with(Force<double>(Spring<double>{two, two, 1, 1})),
+              "force 1 (spring 2–2): it joins particle 2 with itself; it needs two different ones");
     EXPECT_EQ(fault_with(Force<double>(Attraction<double>{one, one})),
               "force 1 (attraction 1–1): it joins particle 1 with itself; it needs two different ones");
     EXPECT_EQ(fault_with(Force<double>(Droplet<double>{P(0.6, 0.8), 1})),
@@ -118,6 +120,14 @@ TEST(MechanismFault, OfAStartThatLeavesTheConstraints) {
               "constraint 1 (rod 1–fixed): the start violates it at 3 m/s; start particle 1 at (3.2, -2.4) m/s");
     pendulum.particles[0].velocity = P(3.2, -2.4);
     EXPECT_EQ(fault_of(pendulum), "no fault");
+}
+
+TEST(MechanismFault, OfAStartThatLeavesTheConstraintsNamesTheParticleOfTheConstraint) {
+    const Assembly<double> parts{.particles = {{1, P(0, 0)}, {1, P(3, 4), P(5, 0)}},
+                                 .constraints = {Rod<double>{two, P(0, 0), 5}},
+                                 .forces = {}};
+    EXPECT_EQ(fault_of(parts),
+              "constraint 1 (rod 2–fixed): the start violates it at 3 m/s; start particle 2 at (3.2, -2.4) m/s");
 }
 
 TEST(MechanismFault, OfRedundantConstraints) {

@@ -211,6 +211,13 @@ TEST(Mechanism, GradientsAreThoseOfTheValues) {
     }
 }
 
+TEST(Mechanism, ErrorsOfASlotAreDistancesFromIt) {
+    // the line through the origin along (4, 3): (0.6, 0.8) is 0.8 · 0.8 − 0.6 · 0.6 beside it, however long (4, 3) is
+    State<double, 2> q(0.6, 0.8);
+    EXPECT_NEAR((SlotLine<double>{one, P(0, 0), P(4, 3)}.error(q)), 0.28, 2e-16);        // measured 0
+    EXPECT_NEAR((SlotLine<double>{one, P(0, 0), P(0.04, 0.03)}.error(q)), 0.28, 2e-16);  // measured 0
+}
+
 TEST(Mechanism, SolvesForPullsAcrossTwoPlaces) {
     // J(q1) M⁻¹ Jᵀ(q0) x, put together by pull() and constraint_velocity(), must come back as x
     auto parts = four_bars();

@@ -45,6 +45,32 @@ TEST(Defaults, AreThoseOfTheReference) {
     EXPECT_EQ(chain.mass_kg, (std::vector<Quad>{1, 1, 1}));
     EXPECT_EQ(chain.length_m, (std::vector<Quad>{1, 1, 1}));
     EXPECT_EQ(read("[video]\nlayout = \"ensemble\"").video.members, 100);
+    const auto none = read("").a;
+    EXPECT_EQ(none.mass_kg, (std::vector<Quad>{1, 1}));
+    EXPECT_EQ(none.length_m, (std::vector<Quad>{1, 1}));
+    EXPECT_EQ(none.angle_deg, (std::vector<Quad>{90, 90}));
+    EXPECT_EQ(none.omega_deg_per_s, (std::vector<Quad>{0, 0}));
+}
+
+TEST(Defaults, OfADropletAndOfTransparency) {
+    const auto read = [](const std::string& text) { return read_preset({"x", "x.toml", text, "x.toml"}); };
+    EXPECT_EQ(read("[[system.force]]\nkind = \"droplet\"\nposition_m = [3, 0]").a.forces.at(0).mass_kg, 1);
+    EXPECT_TRUE(read("[video]\nformat = \"webm\"\ntransparent = true").video.transparent);
+    EXPECT_EQ(
+        error_of([&] { read("[video]\nformat = \"webm\"\ntransparent = true\npixel_format = \"yuv444p\""); }).first,
+        ExitCode::bad_input);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 1000").video.members, 1000);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 2").video.members, 2);
+    EXPECT_EQ(read("[video]\ncontact_sheet = [32, 1]").video.contact_sheet, (std::array{32, 1}));
+}
+
+TEST(Resolved, HasARateOfStabilisingWhereThereIsOne) {
+    const auto resolved = [](const std::string& stabilise) {
+        return resolved_toml(read_preset(
+            {"x", "x.toml", "[system]\nmodel = \"constraints\"\nstabilise = \"" + stabilise + "\"", "x.toml"}));
+    };
+    EXPECT_NE(resolved("baumgarte").find("\nstabilise_rate_per_s = 10\n"), std::string::npos);
+    EXPECT_EQ(resolved("projection").find("stabilise_rate_per_s"), std::string::npos);
 }
 
 TEST(Resolved, KeepsTheRangeOfEveryStrip) {

@@ -266,6 +266,15 @@ TEST(Choice, TakesLessWorkThanTheFinestWayNeedsWhereItMay) {
     EXPECT_LT(scene.a.choice->evaluations, 2 * 360);  // measured 163, by dop853
 }
 
+TEST(Choice, TakesAsFineStepsAsItNeedsHoweverFewTheSamples) {
+    const auto scene = make_scene(
+        preset_from("[scene]\nduration_s = 3\nsample_hz = 1\n[video]\nfps = 1\n[system]\naccuracy = 1e-10\nmodel = "
+                    "\"constraints\"\nangle_deg = 60"));
+    EXPECT_EQ(scene.a.motion.method, "adams");
+    EXPECT_EQ(scene.a.choice->horizon, 3);
+    EXPECT_GE(scene.a.motion.steps_per_sample, 100);  // measured 128
+}
+
 TEST(Choice, GivesTolerancesOfOneOrThreeOfAPowerOfTen) {
     std::set<char> digits;
     for (int half_decades = 2; half_decades <= 10; ++half_decades) {
@@ -308,6 +317,12 @@ TEST(Choice, SaysWhatIsWithinReach) {
     const auto at = beyond.find("within reach are ") + 17;
     const auto reachable = beyond.substr(at, beyond.find(' ', at) - at);
     EXPECT_EQ(fault_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "");
+    // of a regular motion, to the end as well
+    const std::string gentle = "[scene]\nduration_s = 30\n[system]\nangle_deg = [30, 0]\naccuracy = ";
+    const auto to_end = fault_of(gentle + "1e-16");
+    const auto end = to_end.find(" to the end;"), start = to_end.rfind(' ', end - 1);
+    ASSERT_NE(end, std::string::npos) << to_end;
+    EXPECT_EQ(fault_of(gentle + to_end.substr(start, end - start)), "") << to_end;
     // a spring whose ends meet has no direction: that is the method's fault, not the accuracy's
     EXPECT_NE(fault_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]")
                   .find("breaks down within 0.0083 s: taylor:"),

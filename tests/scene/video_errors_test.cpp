@@ -66,6 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"theme = \"drak\"",
              R"([video] theme must be "dark", "light" or "high-contrast"; it is "drak"; did you mean "dark"?)"},
         Case{"colors.backgruond = \"#000000\"", R"([video.colors] has no "backgruond"; did you mean "background"?)"},
+        Case{"colors.background = 3",
+             "[video.colors] background must be a colour such as \"#ff9f40\"; it is a whole number (3)"},
         Case{"widths_px.trail = 1000", "[video.widths_px] trail must be from 0 to 200 px; it is 1000"},
         Case{"fonts_px.title = 1", "[video.fonts_px] title must be from 4 to 400 px; it is 1"}));
 
