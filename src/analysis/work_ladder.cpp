@@ -2,7 +2,7 @@
 
 #include "analysis/difference.hpp"
 #include "analysis/difference.hpp"
-#include "analysis/sensitivity.hpp"
+#include "analysis/exponent.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/difference.hpp"
+#include "analysis/tangent.hpp"
 #include "figure/work_precision.hpp"
 #include "scene/method_choice.hpp"
 #include "scene/resolved.hpp"

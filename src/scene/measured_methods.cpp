@@ -136,7 +136,7 @@ std::vector<MeasuredMethod> measured_methods(const SideSpec& spec, double accura
     return all;
 }
 
-StepControl::StepControl(const SideSpec& spec, const Rational& sample_hz, const MeasuredMethod& measured,
+StepSettings::StepSettings(const SideSpec& spec, const Rational& sample_hz, const MeasuredMethod& measured,
                          double time_unit)
     : spec_(spec), sample_hz_(sample_hz), method_(*find_method(measured.method)) {
     spec_.accuracy.reset();
@@ -152,7 +152,7 @@ StepControl::StepControl(const SideSpec& spec, const Rational& sample_hz, const 
     }
 }
 
-Side StepControl::side(int level) const {
+Side StepSettings::side(int level) const {
     auto spec = spec_;
     if (method_.adaptive)
         spec.tolerance = parse_quad(tolerance_at(level));

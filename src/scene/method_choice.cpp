@@ -33,7 +33,8 @@ struct Trial {
 /// The loosest setting of one method that does.
 class Search {
 public:
-    Search(const StepControl& control, double accuracy, const ReferenceCourse& reference, const std::atomic<bool>& stop)
+    Search(const StepSettings& control, double accuracy, const ReferenceCourse& reference,
+           const std::atomic<bool>& stop)
         : control_(control), allowed_(margin * accuracy), reference_(reference), stop_(stop) {}
 
     /// To the last of `samples`, or close to where the finest gets; which is taken if it does not get to `least`.
@@ -77,7 +78,7 @@ private:
         return trials_.emplace(level, Trial{level, std::move(course), horizon}).first->second;
     }
 
-    const StepControl& control_;
+    const StepSettings& control_;
     double allowed_;
     const ReferenceCourse& reference_;
     const std::atomic<bool>& stop_;
@@ -145,7 +146,7 @@ std::vector<MeasuredMethod> cheapest_methods(const SideSpec& spec, double accura
 
 /// A method, and the trial of it that did best.
 struct Found {
-    StepControl control;
+    StepSettings control;
     Trial trial;
 
     /// Further; or as far, or short of the end nearly so, with less work.
@@ -159,7 +160,7 @@ struct Found {
     }
 };
 
-std::string why_words(const SideSpec& spec, const StepControl& chosen, double accuracy) {
+std::string why_words(const SideSpec& spec, const StepSettings& chosen, double accuracy) {
     const auto all = measured_methods(spec, accuracy);
     const auto of_method = [&](bool same) {
         return std::find_if(all.begin(), all.end(),
@@ -185,7 +186,7 @@ MethodChooser::MethodChooser(const SideSpec& spec, const Rational& duration, con
       stop_(stop),
       time_unit_(time_unit_of(spec, duration.value())),
       samples_(product(duration, sample_hz)->numerator) {
-    const StepControl any(spec, sample_hz, cheapest_methods(spec, finest_in_table).front(), time_unit_);
+    const StepSettings any(spec, sample_hz, cheapest_methods(spec, finest_in_table).front(), time_unit_);
     const auto side = any.side(any.finest());
     reference_ = reference_course(side.motion, samples_, side.reach, enough, stop);
 }
@@ -195,7 +196,7 @@ Side MethodChooser::choose(double accuracy) const {
     const long swing_samples = std::min(samples_, std::lround(std::ceil(swing * sample_hz_.value() * (1 - 1e-9))));
     std::optional<Found> best;
     for (const auto& measured : cheapest_methods(spec_, accuracy)) {
-        const StepControl control(spec_, sample_hz_, measured, time_unit_);
+        const StepSettings control(spec_, sample_hz_, measured, time_unit_);
         Found found{control, Search(control, accuracy, reference_, stop_).best(samples_, swing_samples)};
         if (!best || found.beats(*best, samples_)) best.emplace(std::move(found));
     }

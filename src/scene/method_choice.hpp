@@ -23,12 +23,12 @@ inline constexpr double finest_in_table = 1e-11;  // rad, that is asked of the t
 /// like it, cheapest first; for accuracies finer than the table's, in the order of its finest.
 std::vector<MeasuredMethod> measured_methods(const SideSpec& spec, double accuracy);
 
-/// Step control of a side that asks for an accuracy, by one model and method: tolerances 1 or 3 times a power of ten, or
+/// Step settings of a side that asks for an accuracy, by one model and method: tolerances 1 or 3 times a power of ten, or
 /// 1, 2, 3, 4, 6, 8, 12 … steps to a sample. Each level is finer than the one before; 0 is the loosest.
-class StepControl {
+class StepSettings {
 public:
     /// `time_unit` = √(l/g) or the like, s, in which the table measures steps.
-    StepControl(const SideSpec& spec, const Rational& sample_hz, const MeasuredMethod& measured, double time_unit);
+    StepSettings(const SideSpec& spec, const Rational& sample_hz, const MeasuredMethod& measured, double time_unit);
 
     int start() const { return start_; }    // what the table suggests
     int finest() const { return finest_; }  // that the precision allows; with steps, some sixty times the table's

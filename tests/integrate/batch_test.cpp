@@ -41,7 +41,7 @@ State<double, Eigen::Dynamic> alone(const Pendulum<double>& p) {
     return stepper.state();
 }
 
-template <class Which, class Model>
+template <class Which, class Lone>
 void expect_each_trial_as_alone(Model model, std::size_t links) {
     const auto trials = some_trials(links);
     for (const int width : register_widths()) {
@@ -49,7 +49,7 @@ void expect_each_trial_as_alone(Model model, std::size_t links) {
         batch.advance(100);
         batch.advance(steps - 100);
         for (std::size_t i = 0; i < trials.size(); ++i)
-            EXPECT_EQ(batch.state(i), (alone<Which, Model>(trials[i])))
+            EXPECT_EQ(batch.state(i), (alone<Which, Lone>(trials[i])))
                 << Which::method.name << ", width " << width << ", trial " << i;
     }
 }

@@ -54,7 +54,8 @@ TEST(Defaults, AreThoseOfTheReference) {
 
 TEST(Defaults, OfADropletAndOfTransparency) {
     const auto read = [](const std::string& text) { return read_preset({"x", "x.toml", text, "x.toml"}); };
-    EXPECT_EQ(read("[[system.force]]\nkind = \"droplet\"\nposition_m = [3, 0]").a.forces.at(0).mass_kg, 1);
+    const auto droplet = read("[[system.force]]\nkind = \"droplet\"\nposition_m = [3, 0]").a.forces.at(0).part;
+    EXPECT_EQ(std::get<DropletSpec>(droplet).mass_kg, 1);
     EXPECT_TRUE(read("[video]\nformat = \"webm\"\ntransparent = true").video.transparent);
     EXPECT_EQ(
         error_of([&] { read("[video]\nformat = \"webm\"\ntransparent = true\npixel_format = \"yuv444p\""); }).first,
