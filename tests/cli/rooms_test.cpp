@@ -64,8 +64,8 @@ TEST(Rooms, IncludeOnlyWhatTheyMay) {
 /// Charts are made of shapes and words: what draws them is not theirs to know.
 TEST(Rooms, PlotsKnowNoOpenGl) {
     for_each_include([](const fs::path& file, const std::string& header) {
-        if (file.parent_path().filename() == "plot")
-            EXPECT_FALSE(header.starts_with("render/gl") || header == "render/renderer.hpp") << file << ": " << header;
+        if (file.parent_path().filename() != "plot") return;
+        EXPECT_FALSE(header.starts_with("render/gl") || header == "render/renderer.hpp") << file << ": " << header;
     });
 }
 
