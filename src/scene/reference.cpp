@@ -27,7 +27,7 @@ Side a has the keys of `[system]` with those of `[a]` in their place, side b tho
 link may also be one number for all links. `[[a.particle]]`, `[[a.constraint]]` and `[[a.force]]` with the `name` of one
 in `[system]` change it; others are added.
 
-Presets of figures have `[scene]`, `[system]`, `[a]` and `[b]` as well, and tables of their own; the README tells more.
+Presets of figures have `[scene]`, `[system]`, `[a]` and `[b]` as well, and tables of their own: see [figures](figures.md).
 )";
 
 constexpr std::string_view particles_text =
