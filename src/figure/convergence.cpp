@@ -83,7 +83,8 @@ public:
             plot.curves.push_back(std::move(curve));
         }
         if (mark_step_)
-            plot.rules.push_back({Rule::Way::vertical, mark_step_->value(), fmt::format("{} s", mark_step_->text())});
+            plot.rules.push_back(
+                {Rule::Orientation::vertical, mark_step_->value(), fmt::format("{} s", mark_step_->text())});
         figure.panels.push_back(std::move(plot));
         figure.captions.push_back(words(numbers));
     }

@@ -62,7 +62,7 @@ public:
             }
             plot.curves.push_back(std::move(curve));
         }
-        plot.rules.push_back({Rule::Way::horizontal, 0, ""});
+        plot.rules.push_back({Rule::Orientation::horizontal, 0, ""});
         figure.panels.push_back(std::move(plot));
         std::string words;
         const auto& last = samples.back();

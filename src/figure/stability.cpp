@@ -269,7 +269,7 @@ private:
         constexpr double alike = 1e-4;
         if (std::isnan(*least)) return;
         if (*most < *least * (1 + alike)) {
-            plot.rules.push_back({Rule::Way::vertical, *least, fmt::format("limit {:.3g} s", *least)});
+            plot.rules.push_back({Rule::Orientation::vertical, *least, fmt::format("limit {:.3g} s", *least)});
             return;
         }
         curve.y.front() = rows_.from;

@@ -190,9 +190,9 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
     const float px_per_m = layout.panels.front().px_per_m;
     const float radius = px_per_m * static_cast<float>(std::max(view.width, view.height)) / 2;
     layout.reach = view.is_circle ? radius : 0;
-    // the bobs of a long chain do not hide its rods; nor do those of a crowd each other
+    // the bobs of a long chain do not hide its rods; nor do those of an ensemble each other
     const float link = view.is_circle ? radius / static_cast<float>(scene.a.mass.size()) : radius;
-    const float size = !view.is_circle || !scene.crowd.empty() ? 0.6f : 1;  // a mechanism has more to show
+    const float size = !view.is_circle || !scene.members.empty() ? 0.6f : 1;  // a mechanism has more to show
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), 0.8f);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);

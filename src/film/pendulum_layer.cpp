@@ -52,7 +52,7 @@ private:
     void extend(Path& path, const Bob<double>& bob) const;
     bool swing_as_one() const;
     void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
-    void draw_crowd(DisplayList& list) const;
+    void draw_members(DisplayList& list) const;
     void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
     void draw_tracks(std::size_t side, DisplayList& list) const;
     void draw_pivots(std::size_t side, DisplayList& list) const;
@@ -85,8 +85,8 @@ void PendulumLayer::backdrop(DisplayList& list) const {
             const float size = fitting_size(text, px(wanted), weight, width);
             list.push_back(label(text, {x, area.top + y}, size, color, words.align, weight));
         };
-        const auto color = state_.scene.crowd.empty() ? style_.theme.sides[words.side]
-                                                      : member_color(style_, static_cast<double>(words.side));
+        const auto color = state_.scene.members.empty() ? style_.theme.sides[words.side]
+                                                        : member_color(style_, static_cast<double>(words.side));
         add(words.heading, 50 * t, style_.font.heading, Weight::bold, color);
         add(words.note, 82 * t, style_.font.note, Weight::regular, style_.theme.quiet_text);
     }
@@ -117,7 +117,7 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
 
 void PendulumLayer::frame(DisplayList& list) const {
     const auto& theme = style_.theme;
-    if (!state_.shot.crowd.empty()) return draw_crowd(list);
+    if (!state_.shot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
     // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
     if (alone && !swing_as_one()) {
@@ -160,9 +160,9 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
 }
 
 /// The members of an ensemble, the last one behind: fine rods that let each other shine through, and the last bobs.
-void PendulumLayer::draw_crowd(DisplayList& list) const {
-    const auto& crowd = state_.shot.crowd;
-    const auto count = crowd.size();
+void PendulumLayer::draw_members(DisplayList& list) const {
+    const auto& members = state_.shot.members;
+    const auto count = members.size();
     const auto color_of = [&](std::size_t k) {
         return member_color(style_, static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(count - 1, 1)));
     };
@@ -170,10 +170,10 @@ void PendulumLayer::draw_crowd(DisplayList& list) const {
         style_.width.rod > 0 ? layout_.rod_radius : std::max(0.5f * layout_.rod_radius, 0.6f * layout_.unit);
     // the more there are, the more they let through
     const float alpha = std::clamp(6 / std::sqrt(static_cast<float>(count)), 0.16f, 0.9f);
-    for (std::size_t k = count; k-- > 0;) draw_lines(0, crowd[k], rod, color_of(k).with_alpha(alpha), list);
+    for (std::size_t k = count; k-- > 0;) draw_lines(0, members[k], rod, color_of(k).with_alpha(alpha), list);
     draw_pivots(0, list);
     for (std::size_t k = count; k-- > 0;)
-        draw_disc(at(crowd[k].back()), 0.45f * bob_radius(crowd[k].back()), color_of(k), list);
+        draw_disc(at(members[k].back()), 0.45f * bob_radius(members[k].back()), color_of(k), list);
 }
 
 /// Rods, and springs as thin zigzags.

@@ -6,16 +6,16 @@
 namespace doppel {
 namespace {
 
-/// Shots ahead: many of a pair, few of a crowd, whose shots are large.
-std::size_t most_ahead(bool with_crowd) {
-    return with_crowd ? 16 : 256;
+/// Shots ahead: many of a pair, few of an ensemble, whose shots are large.
+std::size_t most_ahead(bool with_members) {
+    return with_members ? 16 : 256;
 }
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop)
-    : ahead_(most_ahead(with_crowd)),
-      thread_(start_thread([this, &scene, last, with_crowd, &stop] { work(scene, last, with_crowd, stop); })) {}
+Simulation::Simulation(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop)
+    : ahead_(most_ahead(with_members)),
+      thread_(start_thread([this, &scene, last, with_members, &stop] { work(scene, last, with_members, stop); })) {}
 
 Shot Simulation::next() {
     auto shot = ahead_.pop();
@@ -28,16 +28,16 @@ std::pair<Effort, Effort> Simulation::efforts() {
     return efforts_;
 }
 
-void Simulation::work(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop) {
+void Simulation::work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop) {
     try {
         PairRun pair(scene);
-        std::optional<MotionBatch> crowd;
-        if (with_crowd && !scene.crowd.empty()) crowd.emplace(scene.crowd, 1);
+        std::optional<MotionBatch> members;
+        if (with_members && !scene.members.empty()) members.emplace(scene.members, 1);
         for (long sample = 0; sample < last; ++sample) {
             Shot shot{pair.next(stop), {}};
-            if (crowd) {
-                if (sample > 0) crowd->advance(stop);
-                for (std::size_t k = 0; k < crowd->size(); ++k) shot.crowd.push_back(crowd->bobs(k));
+            if (members) {
+                if (sample > 0) members->advance(stop);
+                for (std::size_t k = 0; k < members->size(); ++k) shot.members.push_back(members->bobs(k));
             }
             cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID);
             {

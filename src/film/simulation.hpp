@@ -17,16 +17,16 @@ namespace doppel {
 /// What there is to film at one sample: the pair, and of an ensemble where all its members are.
 struct Shot {
     Moment moment;
-    std::vector<Bobs<double>> crowd;
+    std::vector<Bobs<double>> members;
 };
 
 /// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of shots ahead of who takes
 /// them.
 class Simulation {
 public:
-    /// Shots 0 … last − 1. The members of an ensemble are stepped where `with_crowd`. Throws Error (exit 4) where there
+    /// Shots 0 … last − 1. The members of an ensemble are stepped where `with_members`. Throws Error (exit 4) where there
     /// is no thread to be had.
-    Simulation(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop);
+    Simulation(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
     ~Simulation() { ahead_.close(); }
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
@@ -39,7 +39,7 @@ public:
     std::pair<Effort, Effort> efforts();
 
 private:
-    void work(const Scene& scene, long last, bool with_crowd, const std::atomic<bool>& stop);
+    void work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
 
     Queue<Shot> ahead_;
     std::exception_ptr fault_;

@@ -239,8 +239,8 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, c
 
     float radius = curve.quiet ? 0.75f * style.marker : style.marker;
     if (curve.mark == Mark::line) radius = 0.8f * width;
-    if (drawn.crowd > many) {
-        const float share = static_cast<float>(many) / static_cast<float>(drawn.crowd);
+    if (drawn.marks_in_panel > many) {
+        const float share = static_cast<float>(many) / static_cast<float>(drawn.marks_in_panel);
         radius = std::max(radius * std::sqrt(share), 0.75f * style.unit);
         if (over_map) list.push_back(cloud_image(drawn.points, radius + casing, edge, area, style.scale));
         list.push_back(cloud_image(drawn.points, radius, color, area, style.scale));

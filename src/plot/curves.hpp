@@ -10,7 +10,7 @@ namespace doppel {
 struct DrawnCurve {
     std::vector<std::vector<Point>> lines;  // pieces
     std::vector<Point> points;              // where a mark is due
-    std::size_t crowd = 0;                  // marks in the whole panel: the more, the smaller
+    std::size_t marks_in_panel = 0;         // the more, the smaller they are drawn
 };
 
 /// Of many points in half a column of pixels the first, the last, the lowest and the highest stay: no pixel tells the

@@ -126,7 +126,7 @@ PlotRanges fitted_ranges(const Plot& plot) {
         for (const double edge : {map->x_low, map->x_high}) x.add(edge);
         for (const double edge : {map->y_low, map->y_high}) y.add(edge);
     }
-    for (const Rule& rule : plot.rules) (rule.way == Rule::Way::vertical ? x : y).add(rule.at);
+    for (const Rule& rule : plot.rules) (rule.orientation == Rule::Orientation::vertical ? x : y).add(rule.at);
     PlotRanges ranges{x.range(plot.x, spread ? 0.015 : 0), y.range(plot.y, spread ? 0.05 : 0), {}};
     if (plot.right) ranges.right = right.range(*plot.right, 0.05);
     return ranges;

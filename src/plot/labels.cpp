@@ -144,7 +144,7 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
     const Area& area = room.area();
     for (const Rule& rule : rules) {
         if (rule.label.empty()) continue;
-        const bool level = rule.way == Rule::Way::horizontal;
+        const bool level = rule.orientation == Rule::Orientation::horizontal;
         const double share = (level ? y : x).share(rule.at);
         if (!(share >= 0 && share <= 1)) continue;
         const float size = 0.9f * style.words, at = (level ? y : x).at(rule.at), gap = 0.35f * size;

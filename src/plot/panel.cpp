@@ -41,7 +41,7 @@ Panel make_panel(const Plot& plot, const PlotRanges& ranges, const Area& area) {
 /// Rules, dashed.
 void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& room, DisplayList& list) {
     for (const Rule& rule : panel.plot.rules) {
-        const bool level = rule.way == Rule::Way::horizontal;
+        const bool level = rule.orientation == Rule::Orientation::horizontal;
         const double share = (level ? panel.y : panel.x).share(rule.at);
         if (!(share >= 0 && share <= 1)) continue;
         const float at = std::floor((level ? panel.y : panel.x).at(rule.at)) + 0.5f;
@@ -68,9 +68,9 @@ void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& room, 
                 room.add_line({at.x - r, at.y + up}, {at.x + r, at.y + up}, who);
         draw_band(curves[i], panel.x, panel.y_of(curves[i]), panel.area, style, list);
     }
-    std::size_t crowd = 0;
-    for (const auto& curve : all) crowd += curve.points.size();
-    for (auto& curve : all) curve.crowd = crowd;
+    std::size_t marks_in_panel = 0;
+    for (const auto& curve : all) marks_in_panel += curve.points.size();
+    for (auto& curve : all) curve.marks_in_panel = marks_in_panel;
     // what is there to compare with lies below
     for (const bool quiet : {true, false})
         for (std::size_t i = 0; i < curves.size(); ++i)

@@ -38,7 +38,7 @@ struct Curve {
 
 /// A line across the chart with words at it: a limit, a moment.
 struct Rule {
-    enum class Way { horizontal, vertical } way = Way::horizontal;
+    enum class Orientation { horizontal, vertical } orientation = Orientation::horizontal;
     double at = 0;
     std::string label;
 };

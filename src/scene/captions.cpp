@@ -166,7 +166,7 @@ std::string scene_caption(const Scene& scene) {
     if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));
     if (scene.a.method.name == scene.b.method.name) common.emplace_back(scene.a.method.title);
     if (step_control_text(scene.a) == step_control_text(scene.b)) common.push_back(step_control_text(scene.a));
-    const auto number = scene.crowd.empty() ? std::string("two") : grouped(static_cast<long>(scene.crowd.size()));
+    const auto number = scene.members.empty() ? std::string("two") : grouped(static_cast<long>(scene.members.size()));
     return fmt::format("{} {}{}{}{}", number, system_words(scene.preset.a),
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));

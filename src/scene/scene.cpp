@@ -82,9 +82,9 @@ Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::a
 }
 
 /// The members of an ensemble, stepped as side a is.
-std::vector<MotionSpec> crowd_of(const Scene& scene) {
+std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto &first = scene.preset.a, &last = scene.preset.b;
-    std::vector<MotionSpec> crowd;
+    std::vector<MotionSpec> members;
     for (int k = 0; k < scene.preset.video.members; ++k) {
         const Quad share = Quad(k) / (scene.preset.video.members - 1);
         const auto between = [&](const Quad& from, const Quad& to) { return Quad(from + share * (to - from)); };
@@ -94,11 +94,11 @@ std::vector<MotionSpec> crowd_of(const Scene& scene) {
             std::transform((first.*numbers).begin(), (first.*numbers).end(), (last.*numbers).begin(),
                            (member.*numbers).begin(), between);
         member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
-        crowd.push_back(scene.a.motion);
-        crowd.back().chain = chain_of(member);
-        crowd.back().wants_tension = false;
+        members.push_back(scene.a.motion);
+        members.back().chain = chain_of(member);
+        members.back().wants_tension = false;
     }
-    return crowd;
+    return members;
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
                 .a = side_of(preset, preset.a, 'a', stop),
                 .b = side_of(preset, preset.b, 'b', stop),
                 .samples = product(preset.duration_s, preset.sample_hz)->numerator,
-                .crowd = {},
+                .members = {},
                 .fps = {},
                 .samples_per_frame = 1};
     const auto samples_a_second = *product(preset.sample_hz, preset.video.speed);
@@ -119,7 +119,7 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     };
     scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
     check_precision(scene);
-    if (preset.video.layout == Arrangement::ensemble) scene.crowd = crowd_of(scene);
+    if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
     return scene;
 }
 

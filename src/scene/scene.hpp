@@ -58,10 +58,10 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz);
 struct Scene {
     Preset preset;
     Side a, b;
-    long samples;                   // of the run: 0 … samples, both ends included
-    std::vector<MotionSpec> crowd;  // of an ensemble: from a to b in equal steps of all numbers, both included
-    Rational fps;                   // frames/s of the video
-    long samples_per_frame;         // frame k shows sample k · samples_per_frame
+    long samples;                     // of the run: 0 … samples, both ends included
+    std::vector<MotionSpec> members;  // of an ensemble: from a to b in equal steps of all numbers, both included
+    Rational fps;                     // frames/s of the video
+    long samples_per_frame;           // frame k shows sample k · samples_per_frame
 
     double time(long sample) const;  // s
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.

@@ -158,14 +158,14 @@ TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
 
 TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
     const auto scene = scene_of("fan", {"video.members=5", "scene.duration_s=1"});
-    ASSERT_EQ(scene.crowd.size(), 5u);
+    ASSERT_EQ(scene.members.size(), 5u);
     const auto degrees = [](const MotionSpec& spec) { return static_cast<double>(spec.chain->angle[0]) * 180 / pi; };
     for (std::size_t k = 0; k < 5; ++k)
-        EXPECT_NEAR(degrees(scene.crowd[k]), 120 + 0.025 * static_cast<double>(k), 1e-13);  // measured 1.4e-14
+        EXPECT_NEAR(degrees(scene.members[k]), 120 + 0.025 * static_cast<double>(k), 1e-13);  // measured 1.4e-14
     // its ends are the pair, to the last bit
     for_each_shot(scene, 60, [](const Shot& shot) {
-        EXPECT_EQ(shot.crowd.front().back().x, shot.moment.a.bobs.back().x) << shot.moment.sample;
-        EXPECT_EQ(shot.crowd.back().back().y, shot.moment.b.bobs.back().y) << shot.moment.sample;
+        EXPECT_EQ(shot.members.front().back().x, shot.moment.a.bobs.back().x) << shot.moment.sample;
+        EXPECT_EQ(shot.members.back().back().y, shot.moment.b.bobs.back().y) << shot.moment.sample;
     });
     // one for each at sample 0 on the line from member to member, the first in front
     const auto layout = make_layout(scene);

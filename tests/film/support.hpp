@@ -11,13 +11,13 @@ namespace doppel {
 template <class Visit>
 void for_each_shot(const Scene& scene, long last, Visit&& visit) {
     PairRun pair(scene);
-    std::optional<MotionBatch> crowd;
-    if (!scene.crowd.empty()) crowd.emplace(scene.crowd, 1);
+    std::optional<MotionBatch> members;
+    if (!scene.members.empty()) members.emplace(scene.members, 1);
     const std::atomic<bool> never = false;
     for (long n = 0; n <= last; ++n) {
         Shot shot{pair.next(never), {}};
-        if (crowd && n > 0) crowd->advance(never);
-        for (std::size_t k = 0; crowd && k < crowd->size(); ++k) shot.crowd.push_back(crowd->bobs(k));
+        if (members && n > 0) members->advance(never);
+        for (std::size_t k = 0; members && k < members->size(); ++k) shot.members.push_back(members->bobs(k));
         visit(shot);
     }
 }

@@ -27,7 +27,7 @@ inline Figure sweep() {
     plot.curves[0].uncertainty.assign(300, 0.1);
     plot.curves[1].right = true;
     plot.curves[2].quiet = plot.curves[2].dashed = true;
-    plot.rules = {{Rule::Way::vertical, 63, "first chaos"}, {Rule::Way::horizontal, 0, "regular"}};
+    plot.rules = {{Rule::Orientation::vertical, 63, "first chaos"}, {Rule::Orientation::horizontal, 0, "regular"}};
     return {.title = "Chaos sets in near 63°",
             .subtitle = "by release angle",
             .panels = {plot},
@@ -45,7 +45,7 @@ inline Figure convergence() {
         }
         plot.curves.push_back(made);
     }
-    plot.rules = {{Rule::Way::horizontal, 1e-15, "rounding of a double"}};
+    plot.rules = {{Rule::Orientation::horizontal, 1e-15, "rounding of a double"}};
     return {.title = "Eight orders", .subtitle = "error after one second", .panels = {plot}};
 }
 

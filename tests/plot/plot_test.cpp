@@ -83,8 +83,8 @@ TEST(Plot, WordsNeverTouchWhateverTheCurvesDo) {
             }
             plot.curves.push_back(walk);
         }
-        plot.rules = {{Rule::Way::vertical, between(0, 5), "a moment"},
-                      {Rule::Way::horizontal, between(1, 100), "a limit"}};
+        plot.rules = {{Rule::Orientation::vertical, between(0, 5), "a moment"},
+                      {Rule::Orientation::horizontal, between(1, 100), "a limit"}};
         const Size size{320 + 10 * trial, 240 + 4 * trial};
         SCOPED_TRACE(trial);
         expect_legible(compose({.title = "Walks", .panels = {plot}}, size, dark), size);

@@ -335,12 +335,12 @@ TEST(Particles, AreInTheOrderOfTheOtherSide) {
     EXPECT_EQ(fault("sun", "moon"), "nothing was thrown");
 }
 
-TEST(Crowd, GoesFromOneSideToTheOtherInEqualSteps) {
+TEST(Ensemble, GoesFromOneSideToTheOtherInEqualSteps) {
     const auto scene = scene_of("fan", {"video.members=5", "a.angle_deg=[90, 40]", "b.angle_deg=[98, 20]",
                                         "a.mass_kg=[1, 1]", "b.mass_kg=[1, 3]"});
-    ASSERT_EQ(scene.crowd.size(), 5u);
+    ASSERT_EQ(scene.members.size(), 5u);
     for (int k = 0; k < 5; ++k) {
-        const auto& chain = *scene.crowd[static_cast<std::size_t>(k)].chain;
+        const auto& chain = *scene.members[static_cast<std::size_t>(k)].chain;
         EXPECT_NEAR(static_cast<double>(chain.angle[0]), (90 + 2 * k) * pi / 180, 1e-15) << k;  // measured 0
         EXPECT_NEAR(static_cast<double>(chain.angle[1]), (40 - 5 * k) * pi / 180, 1e-15) << k;  // measured 0
         EXPECT_EQ(static_cast<double>(chain.mass[1]), 1 + 0.5 * k);
