@@ -31,7 +31,7 @@ struct StabilityRun {
 double released_energy(const Pendulum<double>& release);
 
 /// The greatest error of the energy within the run, of the energy released, for each release; not a number for a
-/// blow-up, which ends its run: an error beyond `blow_up`, a number that is none, or a method that gives up.
+/// blow-up, which ends its run: an error beyond `blow_up`, NaN, or a method that gives up.
 /// The releases have the same number of links. Throws Error: exit 2 where the method does not serve the model, exit 130
 /// soon after `stop` is set.
 std::vector<double> greatest_energy_errors(const StabilityRun& run, std::span<const Pendulum<Quad>> releases,
