@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <map>
 #include <sstream>
@@ -287,7 +288,8 @@ TEST(Faults, APresetIsReadOnce) {
 /// The most memory a run had, kB.
 long peak_memory(const fs::path& folder, const std::vector<std::string>& arguments) {
     const auto child = start(folder, arguments, [] {
-        setenv("ASAN_OPTIONS", "quarantine_size_mb=1", 1);  // which otherwise keeps what was freed
+        // which otherwise keeps what was freed, some of it a thread
+        setenv("ASAN_OPTIONS", "quarantine_size_mb=0:thread_local_quarantine_size_kb=0", 1);
     });
     int status = 0;
     rusage usage{};
@@ -299,15 +301,18 @@ long peak_memory(const fs::path& folder, const std::vector<std::string>& argumen
 TEST(Faults, MemoryStaysFlatOverALongFilm) {
     const auto folder = fresh_folder();
     for (const std::string command : {"render", "simulate"}) {
-        const auto peak = [&](const char* seconds) {
+        const auto peak = [&](int seconds) {
             auto line = with({command, "butterfly", "--set", "system.integrator=\"taylor\""},
                              {"--set", fmt::format("scene.duration_s={}", seconds), "--progress", "none"});
             if (command == "render") line = with(line, {"--size", "64x64", "--quality", "draft"});
             return peak_memory(folder, line);
         };
-        const long brief = peak("20"), lengthy = peak("120");
-        // measured 0.1 MB, and 1 MB from run to run; over 600 s, 72 001 frames, 4 MB: the video's index
-        EXPECT_LT(lengthy - brief, 3000) << command;
+        // Frames in flight differ from run to run, by 1 MB, with sanitizers on a busy machine by more than 3: what
+        // stays too large in four pairs of runs is kept. Measured 0.1 MB; over 600 s, 72 001 frames, 4 MB: the video's
+        // index.
+        long growth = peak(120) - peak(20);
+        for (int again = 0; again < 3 && growth >= 3000; ++again) growth = std::min(growth, peak(120) - peak(20));
+        EXPECT_LT(growth, 3000) << command;
     }
 }
 
