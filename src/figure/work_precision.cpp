@@ -185,9 +185,9 @@ private:
 
     /// Computed when it is first asked for, by any thread.
     const ReferenceSolution& reference(std::size_t problem, const std::atomic<bool>& stop) const {
-        auto& [once, solution] = references_[problem];
-        std::call_once(once, [&] { solution = reference_solution(problems_.all[problem], stop); });
-        return solution;
+        auto& shared = references_[problem];
+        std::call_once(shared.once, [&] { shared.solution = reference_solution(problems_.all[problem], stop); });
+        return shared.solution;
     }
 
     std::vector<Ladder> merged_ladders(std::span<const TrialNumbers> numbers) const {

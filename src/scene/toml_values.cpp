@@ -38,7 +38,8 @@ void TomlReader::demand(const Field& field, bool given) const {
 /// `element` = "[1]" of an array.
 template <class Number>
 void TomlReader::check(const Field& field, std::string_view element, const Number& value) const {
-    const auto& [low, high, is_open, zero, why] = field.bounds;
+    const auto& [low, high, is_open, zero, reason] = field.bounds;
+    const std::string_view why = reason;  // clang 14 captures no structured binding
     if (is_open ? value > low : value >= low)
         if (value <= high) return;
     const auto refuse = [&](const std::string& what) {
