@@ -15,6 +15,7 @@ std::string words(Verdict verdict) {
 class Audit final : public FigureWork {
 public:
     explicit Audit(FigureReader&) {}
+    static std::vector<FieldTable> tables() { return {}; }
 
     std::size_t trials() const override { return claims().size(); }
     std::string unit() const override { return "claims"; }
@@ -116,6 +117,6 @@ SideSpec with_droplet(SideSpec spec, bool droplet) {
     return spec;
 }
 
-const FigureKind audit_kind{"audit", read_as<Audit>};
+const FigureKind audit_kind{"audit", FigureKind::System::none, read_as<Audit>, Audit::tables};
 
 }  // namespace doppel

@@ -30,14 +30,10 @@ struct RungRow {
 /// The distance of the two sides of a pair over finer and finer steps, in double and in quad.
 class Convergence final : public FigureWork {
 public:
+    Convergence() = default;
     explicit Convergence(FigureReader& reader) : pair_(reader.pair()) {
         auto table = reader.table("convergence");
-        table.read_whole("halvings", halvings_, 1, 20);
-        table.read_whole("quad_halvings", quad_halvings_, 1, 20);
-        table.read_whole("decades", decades_, 1, 14);
-        table.read_whole("quad_decades", quad_decades_, 1, 29);
-        if (table.has("mark_step_s")) table.read_positive_ratio("mark_step_s", mark_step_.emplace());
-        table.read_texts("methods", methods_);
+        fields(table);
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         check_distinct(table, "methods", methods_);
         for (const auto precision : {Precision::in_double, Precision::in_quad})
@@ -45,6 +41,18 @@ public:
         for (const auto& [begin, ladder] : ladders_) check_methods(table, make_scene(pair_of(begin)));
         settings_ = table.finish();
     }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        constexpr auto halvings = from_to(1, 20);
+        visit({"halvings", "of the step in double; the coarsest is a sample's interval", "", halvings}, halvings_);
+        visit({"quad_halvings", "the same in quad", "", halvings}, quad_halvings_);
+        visit({"decades", "of the tolerance in double, from 1e-3 on", "", from_to(1, 14)}, decades_);
+        visit({"quad_decades", "the same in quad", "", from_to(1, 29)}, quad_decades_);
+        visit({"mark_step_s", "a step that a line marks", "s", positive}, mark_step_);
+        visit({"methods", "names of methods, or \"one/other\" for the two sides"}, methods_);
+    }
+    static std::vector<FieldTable> tables() { return {table_of<Convergence>("[convergence]")}; }
 
     std::size_t trials() const override { return ladders_.back().first + ladders_.back().second.rungs; }
 
@@ -218,6 +226,6 @@ private:
 
 }  // namespace
 
-const FigureKind convergence_kind{"convergence", read_as<Convergence>};
+const FigureKind convergence_kind{"convergence", FigureKind::System::pair, read_as<Convergence>, Convergence::tables};
 
 }  // namespace doppel

@@ -27,24 +27,20 @@ struct PairCurve {
 /// both agree.
 class Curves final : public FigureWork {
 public:
+    Curves() = default;
     explicit Curves(FigureReader& reader) {
         auto table = reader.table("curves");
-        table.read_choice("quantity", quantity_, quantities);
-        table.read_truth("logarithmic", logarithmic_);
-        if (table.has("check_tolerance")) table.read_positive("check_tolerance", check_tolerance_.emplace());
+        fields(table);
         settings_ = table.finish();
         const auto tables = reader.top.read_tables("curve");
         if (tables.empty()) curves_.push_back({quantity_, "", reader.pair()});
         for (std::size_t i = 0; i < tables.size(); ++i) {
             auto entry = reader.top.inner(tables[i], fmt::format("[[curve]] {}", i + 1));
             auto& curve = curves_.emplace_back();
-            entry.read_text("column", curve.column);
+            curve_fields(entry, curve);
             if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
             if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
                 throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
-            curve.label = curve.column;
-            entry.read_text("label", curve.label);
-            entry.demand_drawable("label", curve.label);
             curve.pair = reader.pair({&entry});
             entry.finish();
         }
@@ -57,6 +53,23 @@ public:
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
                 throw table.fault("check_tolerance", "takes methods that go by a tolerance on both sides");
         }
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({.key = "quantity", .help = "the distance in state space, or ln(d/d₀)", .names = quantities}, quantity_);
+        visit({"logarithmic", "the axis"}, logarithmic_);
+        visit({"check_tolerance", "runs every pair once more at this tolerance, to see how long both agree", "",
+               positive},
+              check_tolerance_);
+    }
+    static std::vector<FieldTable> tables() {
+        FieldTable curve{"[[curve]]",
+                         "A curve each; without any, the one of `[system]`, `[a]` and `[b]`. A curve may "
+                         "have `[curve.system]`, `[curve.a]` and\n`[curve.b]` on top of those.\n"};
+        PairCurve none;
+        curve_fields(curve, none);
+        return {table_of<Curves>("[curves]"), curve};
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
@@ -132,6 +145,14 @@ public:
     }
 
 private:
+    template <class Visit>
+    static void curve_fields(Visit& visit, PairCurve& curve) {
+        visit({"column", "its name in the CSV", "", {}, "must be given"}, curve.column);
+        curve.label = curve.column;
+        visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true},
+              curve.label);
+    }
+
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto scene = make_scene(pair_of(trial));
         PairRun run(scene);
@@ -177,6 +198,6 @@ private:
 
 }  // namespace
 
-const FigureKind curves_kind{"curves", read_as<Curves>};
+const FigureKind curves_kind{"curves", FigureKind::System::pair, read_as<Curves>, Curves::tables};
 
 }  // namespace doppel

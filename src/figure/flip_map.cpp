@@ -23,26 +23,36 @@ struct CheckRow {
 /// random releases with a reference ten thousand times finer.
 class FlipMap final : public FigureWork {
 public:
+    FlipMap() = default;
     explicit FlipMap(FigureReader& reader) : release_(reader.release()) {
         auto system = reader.table("system");
         if (release_.links() != 2 || system.has("angle_deg"))
             throw system.fault(system.has("angle_deg") ? "angle_deg" : "links",
                                "is not for a flip map, which releases two links at all angles");
         auto table = reader.table("flip_map");
-        table.read_whole("columns", columns_, 2, 20'000);
-        table.read_whole("rows", rows_, 2, 20'000);
-        table.read_positive("duration_s", spec_.duration);
-        spec_.tolerance = flip_tolerance(spec_.duration);
-        table.read_positive("tolerance", spec_.tolerance);
-        constexpr double finest = 1e-15;
-        if (spec_.tolerance < finest)
-            throw table.fault("tolerance", "must be at least {}; it is {}", finest, spec_.tolerance);
-        table.read_whole("checked", checked_, 0, 100'000);
+        fields(table);
         settings_ = table.finish();
         pendulum_ = chain_of(release_).cast<double>();
         const bool at_rest = pendulum_.rate[0] == 0 && pendulum_.rate[1] == 0;
         map_trials_ = static_cast<std::size_t>(at_rest ? (rows_ + 1) / 2 : rows_);
     }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        constexpr auto cells = from_to(2, 20'000);
+        visit({"columns", "angles of the upper link, from −180° to 180°", "", cells}, columns_);
+        visit({"rows", "angles of the lower link", "", cells}, rows_);
+        visit({"duration_s", "how long a flip is waited for", "s", positive}, spec_.duration);
+        spec_.tolerance = flip_tolerance(spec_.duration);
+        visit({"tolerance",
+               "of the Taylor series: what the last terms of a step may amount to",
+               "rad/s",
+               {.low = 1e-15, .is_positive = true},
+               "1e-8 up to 20 s, for longer times less"},
+              spec_.tolerance);
+        visit({"checked", "random releases that are compared with a reference", "", from_to(0, 100'000)}, checked_);
+    }
+    static std::vector<FieldTable> tables() { return {table_of<FlipMap>("[flip_map]")}; }
 
     std::size_t trials() const override {
         return map_trials_ + static_cast<std::size_t>((checked_ + a_check - 1) / a_check);
@@ -235,6 +245,6 @@ private:
 
 }  // namespace
 
-const FigureKind flip_map_kind{"flip-map", read_as<FlipMap>};
+const FigureKind flip_map_kind{"flip-map", FigureKind::System::release, read_as<FlipMap>, FlipMap::tables};
 
 }  // namespace doppel

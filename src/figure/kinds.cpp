@@ -7,13 +7,6 @@
 
 namespace doppel {
 
-void SettingsReader::read_texts(std::string_view key, std::vector<std::string>& into) {
-    if (const auto texts = TomlReader::read_texts(key)) into = *texts;
-    std::vector<std::string> quoted;
-    for (const auto& text : into) quoted.push_back(toml_text(text));
-    text_ += fmt::format("{} = [{}]\n", key, fmt::join(quoted, ", "));
-}
-
 Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
     Preset preset;
     preset.name = preset.title = name;
@@ -27,7 +20,7 @@ Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
 
 SideSpec FigureReader::release() {
     SideSpec side;
-    auto system = table("system");
+    auto system = document.table(top, "system");
     read_release(system, side);
     return side;
 }
@@ -37,7 +30,7 @@ const MethodEntry& method_named(const TomlReader& table, const std::string& name
     throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
 }
 
-const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const std::string_view> names) {
+const ReleaseParameter& release_parameter(std::string_view name) {
     static constexpr std::array<ReleaseParameter, 4> all{
         {{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& s, const Quad& x) { s.angle_deg[0] = x; }, 30, false},
          {"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& s, const Quad& x) { s.angle_deg[1] = x; }, 30, false},
@@ -45,8 +38,6 @@ const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const st
           true},
          {"length_ratio", "length ratio l₁/l₂", 2,
           [](SideSpec& s, const Quad& x) { s.length_m[0] = x * s.length_m[1]; }, 0, true}}};
-    std::string name(names.front());
-    table.read_choice("parameter", name, names);
     return *std::find_if(all.begin(), all.end(), [&](const auto& parameter) { return parameter.name == name; });
 }
 

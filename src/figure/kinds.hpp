@@ -4,8 +4,8 @@
 #include "figure/work.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "scene/preset_tables.hpp"
-#include "scene/resolved.hpp"
+#include "scene/field_table.hpp"
+#include "scene/preset_fields.hpp"
 
 #include <memory>
 #include <span>
@@ -13,62 +13,28 @@
 
 namespace doppel {
 
-/// Reads the table that is a kind's own, and keeps what it read as TOML, defaults included: one list of keys for both.
+/// Reads the table that is a kind's own, and keeps what it read as TOML, defaults included: reader(field, member).
 class SettingsReader : public TomlReader {
 public:
-    explicit SettingsReader(TomlReader table)
-        : TomlReader(std::move(table)), text_(fmt::format("\n[{}]\n", bare_name())) {}
+    explicit SettingsReader(TomlReader table) : TomlReader(std::move(table)) {}
 
-    void read_whole(std::string_view key, int& into, int least, int most) {
-        keep(key, into, [&] { TomlReader::read_whole(key, into, least, most); });
+    template <class T>
+    void operator()(const Field& field, T& into) {
+        TomlReader::operator()(field, into);
+        if constexpr (!std::is_same_v<T, Rational>)
+            writer_(field, into);
+        else if (field.only.holds)
+            writer_.add(field.key, toml_text(into.text()));
     }
-    void read_truth(std::string_view key, bool& into) {
-        keep(key, into, [&] { TomlReader::read_truth(key, into); });
-    }
-    template <class Number>  // double or Quad
-    void read_number(std::string_view key, Number& into) {
-        keep(key, into, [&] { TomlReader::read_number(key, into); });
-    }
-    template <class Number>
-    void read_positive(std::string_view key, Number& into) {
-        keep(key, into, [&] { TomlReader::read_positive(key, into); });
-    }
-    void read_positive_ratio(std::string_view key, Rational& into) {
-        keep(key, into, [&] { TomlReader::read_positive_ratio(key, into); });
-    }
-    void read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most) {
-        keep(key, into, [&] { TomlReader::read_positive_list(key, into, most); });
-    }
-    void read_text(std::string_view key, std::string& into) {
-        keep(key, into, [&] { TomlReader::read_text(key, into); });
-    }
-    void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices) {
-        keep(key, into, [&] { TomlReader::read_choice(key, into, choices); });
-    }
-    void read_texts(std::string_view key, std::vector<std::string>& into);
 
     /// "[table]" and its keys. Throws as TomlReader::finish() does.
-    const std::string& finish() const {
+    std::string finish() const {
         TomlReader::finish();
-        return text_;
+        return fmt::format("\n[{}]\n{}", bare_name(), writer_.text());
     }
 
 private:
-    template <class Value, class Read>
-    void keep(std::string_view key, const Value& value, Read&& read) {
-        read();
-        if constexpr (std::is_same_v<Value, Quad>)
-            text_ += fmt::format("{} = {}\n", key, text_of(value));
-        else if constexpr (std::is_same_v<Value, Rational>)
-            text_ += fmt::format("{} = {}\n", key, toml_text(value.text()));
-        else if constexpr (std::is_same_v<Value, std::string>)
-            text_ += fmt::format("{} = {}\n", key, toml_text(value));
-        else if constexpr (std::is_same_v<Value, std::vector<double>>)
-            text_ += fmt::format("{} = [{}]\n", key, fmt::join(value, ", "));
-        else
-            text_ += fmt::format("{} = {}\n", key, value);
-    }
-    std::string text_;
+    TomlWriter writer_;
 };
 
 /// A preset being read: each kind of figure takes the tables that are its own.
@@ -101,16 +67,38 @@ struct ReleaseParameter {
     double every;   // between ticks; 0 = as fits
     bool is_ratio;  // > 0
 };
-/// `parameter`, one of these, of which the first is the default. Throws Error (exit 2).
-const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const std::string_view> names);
+const ReleaseParameter& release_parameter(std::string_view name);
+/// `parameter`, one of these names.
+template <class Visit>
+void parameter_field(Visit& visit, std::span<const std::string_view> names, const ReleaseParameter*& parameter) {
+    std::string name(parameter->name);
+    visit({.key = "parameter", .help = "what the releases differ in", .names = names}, name);
+    parameter = &release_parameter(name);
+}
 
 /// Throws Error (exit 2) where one of the names of a key is there twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
 
+/// A kind of figure. Each is a class whose constructor takes a FigureReader, and whose tables are listed by
+/// fields(visit), which visits each key with its member, as the lists of scene/preset_fields.hpp do.
 struct FigureKind {
-    std::string_view name;  // of [scene] kind
+    enum class System { none, release, pair };  // what moves
+    std::string_view name;                      // of [scene] kind
+    System system;
     std::shared_ptr<const FigureWork> (*read)(FigureReader&);
+    std::vector<FieldTable> (*tables)();  // its own, with their defaults
 };
+
+template <class Work>
+std::shared_ptr<const FigureWork> read_as(FigureReader& reader) {
+    return std::make_shared<Work>(reader);
+}
+template <class Work>
+FieldTable table_of(std::string name) {
+    FieldTable table{std::move(name)};
+    Work().fields(table);
+    return table;
+}
 
 /// All of them; this list stands in figure/kinds.cpp and its names in scene/preset_tables.hpp.
 std::span<const FigureKind> figure_kinds();
@@ -118,10 +106,5 @@ std::span<const FigureKind> figure_kinds();
 // One file each.
 extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, flip_map_kind,
     links_kind, work_precision_kind, stability_kind, drift_kind, audit_kind;
-
-template <class Kind>
-std::shared_ptr<const FigureWork> read_as(FigureReader& reader) {
-    return std::make_shared<Kind>(reader);
-}
 
 }  // namespace doppel

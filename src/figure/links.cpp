@@ -24,17 +24,25 @@ struct ExponentRow {
 /// Chains of more and more links, all released alike: their largest exponent, and what a step costs.
 class Links final : public FigureWork {
 public:
+    Links() = default;
     explicit Links(FigureReader& reader) : release_(reader.release()) {
         auto table = reader.table("links");
-        table.read_whole("from", from_, 1, 1000);
-        table.read_whole("to", to_, from_, 1000);
-        table.read_positive("duration_s", spec_.duration_s);
+        fields(table);
         spec_.transient_s = spec_.duration_s / 10;
         settings_ = table.finish();
         if (release_.links() != 1)
             throw table.fault("from", "takes a [system] of one link, which all links are like; it has {}",
                               release_.links());
     }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        constexpr int most = 1000;
+        visit({"from", "links of the shortest chain", "", from_to(1, most)}, from_);
+        visit({"to", "links of the longest", "", from_to(from_, most)}, to_);
+        visit({"duration_s", "of the motion that an exponent is found by", "s", positive}, spec_.duration_s);
+    }
+    static std::vector<FieldTable> tables() { return {table_of<Links>("[links]")}; }
 
     /// The costs, all in one, so that they are measured in turn; then the exponent of each chain.
     std::size_t trials() const override { return chains() + 1; }
@@ -129,6 +137,6 @@ private:
 
 }  // namespace
 
-const FigureKind links_kind{"links", read_as<Links>};
+const FigureKind links_kind{"links", FigureKind::System::release, read_as<Links>, Links::tables};
 
 }  // namespace doppel

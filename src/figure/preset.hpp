@@ -2,6 +2,7 @@
 
 #include "analysis/external_method.hpp"
 #include "figure/work.hpp"
+#include "scene/field_table.hpp"
 #include "scene/preset.hpp"
 
 #include <memory>
@@ -36,5 +37,11 @@ struct FigurePreset {
 /// Errors as read_preset()'s. Work–precision diagrams also show `external_methods`, which outlive the figure.
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {},
                          std::span<const ExternalMethod> external_methods = {});
+
+/// What all figures have, then the tables that are a kind's own (figure/kinds.hpp).
+std::vector<FieldTable> figure_tables();
+
+/// docs/presets.md: all tables and keys of films and figures.
+std::string preset_reference();
 
 }  // namespace doppel

@@ -5,7 +5,6 @@
 #include "base/machine.hpp"
 #include "base/parallel_for.hpp"
 #include "integrate/widths.hpp"
-#include "output/transaction.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
 #include "output/workers.hpp"

@@ -30,6 +30,7 @@ std::vector<CrossingRow> crossings_of(const TrialNumbers& orbit) {
 /// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy.
 class Section final : public FigureWork {
 public:
+    Section() = default;
     explicit Section(FigureReader& reader) : release_(reader.release()) {
         auto system = reader.table("system");
         for (const char* key : {"angle_deg", "omega_deg_per_s"})
@@ -37,14 +38,25 @@ public:
                 throw system.fault(key, "is not for a section, whose orbits start all over their energy");
         auto table = reader.table("section");
         if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
-        table.read_positive_list("energy_J", energies_, 6);
-        table.read_whole("orbits", orbits_, 1, 10'000);
-        table.read_whole("crossings", spec_.crossings, 1, 1'000'000);
-        table.read_positive("tolerance", spec_.tolerance);
+        fields(table);
         settings_ = table.finish();
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
     }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({.key = "energy_J",
+               .help = "of each panel's orbits, above hanging at rest",
+               .unit = "J",
+               .bounds = positive,
+               .most = 6},
+              energies_);
+        visit({"orbits", "of each energy", "", from_to(1, 10'000)}, orbits_);
+        visit({"crossings", "of each orbit", "", from_to(1, 1'000'000)}, spec_.crossings);
+        visit({"tolerance", "of taylor: relative error of a step", "", positive}, spec_.tolerance);
+    }
+    static std::vector<FieldTable> tables() { return {table_of<Section>("[section]")}; }
 
     std::size_t trials() const override { return energies_.size() * orbits(); }
     std::string unit() const override { return "orbits"; }
@@ -112,6 +124,6 @@ private:
 
 }  // namespace
 
-const FigureKind section_kind{"section", read_as<Section>};
+const FigureKind section_kind{"section", FigureKind::System::release, read_as<Section>, Section::tables};
 
 }  // namespace doppel

@@ -14,19 +14,25 @@ namespace {
 /// All Lyapunov exponents of one motion, as their estimates settle.
 class Spectrum final : public FigureWork {
 public:
+    Spectrum() = default;
     explicit Spectrum(FigureReader& reader) : release_(reader.release()) {
         auto table = reader.table("spectrum");
         constexpr std::size_t most_links = 4;
         if (release_.links() > most_links)
             throw table.fault("duration_s", "is for 1 to {} links; there are {}", most_links, release_.links());
-        table.read_positive("duration_s", spec_.duration_s);
-        table.read_whole("samples", spec_.samples, 2, 100'000);
-        table.read_positive("tolerance", spec_.tolerance);
-        constexpr double finest = 1e-14, coarsest = 1e-2;
-        if (spec_.tolerance < finest || spec_.tolerance > coarsest)
-            throw table.fault("tolerance", "must be from {} to {}; it is {}", finest, coarsest, spec_.tolerance);
+        fields(table);
         settings_ = table.finish();
     }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({"duration_s", "of the motion", "s", positive}, spec_.duration_s);
+        visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000)},
+              spec_.samples);
+        constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true};
+        visit({"tolerance", "of dop853: relative error of a step", "", tolerances}, spec_.tolerance);
+    }
+    static std::vector<FieldTable> tables() { return {table_of<Spectrum>("[spectrum]")}; }
 
     std::size_t trials() const override { return 1; }
     std::string unit() const override { return "spectra"; }
@@ -117,6 +123,6 @@ private:
 
 }  // namespace
 
-const FigureKind spectrum_kind{"spectrum", read_as<Spectrum>};
+const FigureKind spectrum_kind{"spectrum", FigureKind::System::release, read_as<Spectrum>, Spectrum::tables};
 
 }  // namespace doppel

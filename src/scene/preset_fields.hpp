@@ -13,7 +13,8 @@ namespace doppel {
 // The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and ReferenceTable visit:
 // visit(field, member), visit.table(name, list). A table may be const. The reader checks what keys say together.
 
-inline const Field title_field{.key = "title", .help = "shown above the pictures", .absent = "the file's name"};
+inline const Field title_field{
+    .key = "title", .help = "shown above the pictures", .absent = "the file's name", .is_drawn = true};
 inline const Field kind_field{
     .key = "kind", .help = "\"pair\" is a film, the others are figures", .names = scene_kinds};
 

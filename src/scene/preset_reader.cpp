@@ -113,7 +113,7 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
         std::string name;
-        entry.read_text("name", name);
+        entry.read({.key = "name"}, name);
         if (std::find(others.begin(), others.end(), name) != others.end()) continue;
         const auto meant = nearest(name, others);
         throw entry.fault("name", "must be that of a particle on both sides; \"{}\" is on this one only{}", name,
@@ -162,6 +162,18 @@ void read_style(TomlReader& table, VideoSpec& video) {
         if (is_ensemble && value > 0)
             throw table.fault(key, "must be 0 for the layout \"ensemble\", whose members leave no trails; it is {}",
                               value);
+}
+
+void read_video(TomlReader& table, VideoSpec& video) {
+    table(size_field, video.size);
+    format_fields(table, video);
+    check_transparent(table, video);
+    time_fields(table, video);
+    layout_fields(table, video);
+    check_layout(table, video);
+    check_size(table, video);
+    read_style(table, video);
+    table.finish();
 }
 
 }  // namespace
@@ -214,32 +226,13 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
         throw scene.fault("duration_s", "must be at most {} samples; it is {}", most_samples, samples->numerator);
 }
 
-void read_picture_size(TomlReader& table, Size& into) {
-    table.read(size_field, into);
-}
-
-void read_theme(TomlReader& table, std::string& into) {
-    theme_field(table, into);
-}
-
-void read_video(TomlReader& table, VideoSpec& video) {
-    read_picture_size(table, video.size);
-    format_fields(table, video);
-    check_transparent(table, video);
-    time_fields(table, video);
-    layout_fields(table, video);
-    check_layout(table, video);
-    check_size(table, video);
-    read_style(table, video);
-    table.finish();
-}
-
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
     const auto document = parse_document(source, overrides);
     Preset preset;
     preset.name = preset.title = source.name;
     TomlReader top(&document.root, "", document.path, document.texts);
-    top.read_drawn_title(preset.title);
+    top.demand_title(preset.name);
+    top(title_field, preset.title);
 
     auto scene = document.table(top, "scene");
     if (read_kind(scene) != pair_kind)

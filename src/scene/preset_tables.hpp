@@ -36,11 +36,4 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
 /// Steps and samples must fall on each other exactly.
 void check_clock(const Preset& preset, const TomlReader& scene);
 
-/// [video].
-void read_video(TomlReader& table, VideoSpec& video);
-/// `size`: any that a picture may have.
-void read_picture_size(TomlReader& table, Size& into);
-/// `theme`, the name of one of themes.
-void read_theme(TomlReader& table, std::string& into);
-
 }  // namespace doppel

@@ -69,27 +69,10 @@ void TomlReader::demand_drawable(std::string_view key, std::string_view text) co
     if (const auto fault = not_drawable(text)) throw this->fault(key, "{}", *fault);
 }
 
-void TomlReader::read_drawn(std::string_view key, std::string& into) {
-    read_text(key, into);
-    demand_drawable(key, into);
-}
-
-void TomlReader::read_drawn_title(std::string& into) {
-    constexpr std::string_view key = "title";
-    if (!has(key))
-        if (const auto fault = not_drawable(into))
-            throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
-    read_drawn(key, into);
-}
-
-void TomlReader::read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most) {
-    const auto* node = find(key);
-    if (!node) return;
-    const auto* array = node->as_array();
-    if (!array || array->empty() || array->size() > most)
-        throw fault(key, "must be an array of 1 to {} numbers; {}", most, found(*node));
-    into.resize(array->size());
-    read({.key = key, .bounds = positive, .each = "each on its own"}, std::span(into));
+void TomlReader::demand_title(const std::string& name) {
+    if (has("title")) return;
+    if (const auto fault = not_drawable(name))
+        throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
 }
 
 std::optional<std::vector<std::string>> TomlReader::read_texts(std::string_view key) {

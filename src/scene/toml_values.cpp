@@ -25,6 +25,7 @@ std::string written(const Quad& value) {
 }  // namespace
 
 bool TomlReader::counts(const Field& field) {
+    if (field.only.hides) return field.only.holds;
     if (field.only.holds || field.only.fault.empty()) return true;
     if (has(field.key) && (!field.only.drops || from_command_line(field.key)))
         throw fault(field.key, "{}", field.only.fault);
@@ -38,7 +39,7 @@ void TomlReader::demand(const Field& field, bool given) const {
 /// `element` = "[1]" of an array.
 template <class Number>
 void TomlReader::check(const Field& field, std::string_view element, const Number& value) const {
-    const auto& [low, high, is_open, zero, why] = field.bounds;
+    const auto& [low, high, is_open, zero, why, is_positive] = field.bounds;
     if (is_open ? value > low : value >= low)
         if (value <= high) return;
     const auto refuse = [&](const std::string& what) {
@@ -47,9 +48,10 @@ void TomlReader::check(const Field& field, std::string_view element, const Numbe
     };
     // keys mostly name the unit
     const auto unit = field.unit.empty() || field.key.ends_with(field.unit) ? "" : fmt::format(" {}", field.unit);
+    if (is_positive && !(value > 0)) throw refuse("> 0");
     if (is_open && !(value > low)) throw refuse(fmt::format("> {}", low));
     if (is_open) throw refuse(fmt::format("at most {}{}", high, unit));
-    if (!field.bounds.has_high()) throw refuse(fmt::format("≥ {}", low));
+    if (!field.bounds.has_high()) throw refuse(fmt::format("{} {}", is_positive ? "at least" : "≥", low));
     throw refuse(fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero), high, unit,
                              why.empty() ? "" : fmt::format(": {}", why)));
 }
@@ -59,6 +61,7 @@ void TomlReader::read(const Field& field, std::string& into) {
     if (!node) return;
     if (!node->is_string()) throw fault(field.key, "must be a string; {}", found(*node));
     into = node->as_string()->get();
+    if (field.is_drawn) demand_drawable(field.key, into);
     if (field.names.empty() || std::find(field.names.begin(), field.names.end(), into) != field.names.end()) return;
     const auto meant = nearest(into, field.names);
     throw fault(field.key, "must be {}; it is \"{}\"{}", listed(field.names), into,
@@ -137,6 +140,27 @@ void TomlReader::read(const Field& field, std::span<double> into) {
     if (!node->is_array())
         throw fault(field.key, "must be an array of {} numbers, {}; {}", into.size(), field.each, found(*node));
     read_array(field, *node, into);
+}
+
+void TomlReader::read(const Field& field, std::vector<double>& into) {
+    const auto* node = find(field.key);
+    if (!node) return;
+    const auto* array = node->as_array();
+    if (!array || array->empty() || array->size() > field.most)
+        throw fault(field.key, "must be an array of 1 to {} numbers; {}", field.most, found(*node));
+    into.resize(array->size());
+    read_array(field, *node, std::span(into));
+}
+
+void TomlReader::read(const Field& field, std::vector<std::string>& into) {
+    const auto texts = read_texts(field.key);
+    if (!texts) return;
+    for (const auto& text : *texts) {
+        if (field.is_drawn) demand_drawable(field.key, text);
+        if (!field.names.empty() && std::find(field.names.begin(), field.names.end(), text) == field.names.end())
+            throw fault(field.key, "are of {}; \"{}\" is not", fmt::join(field.names, ", "), text);
+    }
+    into = *texts;
 }
 
 void TomlReader::read(const Field& field, std::span<Quad> into) {

@@ -1,5 +1,5 @@
 // docs/presets.md says what the lists of keys say.
-#include "scene/preset.hpp"
+#include "figure/preset.hpp"
 
 #include <gtest/gtest.h>
 
