@@ -1,7 +1,6 @@
 #include "figure/audit.hpp"
 
 #include "figure/kinds.hpp"
-#include "scene/scene.hpp"
 
 namespace doppel {
 namespace {
@@ -12,10 +11,9 @@ std::string words(Verdict verdict) {
 }
 
 /// The study's claims, measured one by one: a table.
-class Audit final : public FigureWork {
+class Audit final : public Experiment {
 public:
     explicit Audit(FigureReader&) {}
-    static std::vector<FieldTable> tables() { return {}; }
 
     std::size_t trials() const override { return claims().size(); }
     std::string unit() const override { return "claims"; }
@@ -51,8 +49,6 @@ public:
             all.push_back({std::string(claims()[i].key), words(claims()[i].judge(numbers[i]).verdict)});
         return all;
     }
-
-    std::string resolved() const override { return ""; }
 
 private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
@@ -117,6 +113,6 @@ SideSpec with_droplet(SideSpec spec, bool droplet) {
     return spec;
 }
 
-const FigureKind audit_kind{"audit", FigureKind::System::none, read_as<Audit>, Audit::tables};
+const FigureKind audit_kind = kind_of<Audit>("audit", FigureKind::System::none);
 
 }  // namespace doppel

@@ -2,8 +2,6 @@
 #include "integrate/methods.hpp"
 #include "numeric/nan.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,18 +26,18 @@ struct RungRow {
 };
 
 /// The distance of the two sides of a pair over finer and finer steps, in double and in quad.
-class Convergence final : public FigureWork {
+class Convergence final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "convergence";
     Convergence() = default;
     explicit Convergence(FigureReader& reader) : pair_(reader.pair()) {
-        auto table = reader.table("convergence");
-        fields(table);
+        auto table = reader.settings(*this);
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         check_distinct(table, "methods", methods_);
         for (const auto precision : {Precision::in_double, Precision::in_quad})
             for (const auto& name : methods_) add_ladder(table, name, precision);
         for (const auto& [begin, ladder] : ladders_) check_methods(table, make_scene(pair_of(begin)));
-        settings_ = table.finish();
+        settings_ = resolved_pair(pair_) + table.finish();
     }
 
     template <class Visit>
@@ -52,7 +50,6 @@ public:
         visit({"mark_step_s", "a step that a line marks", "s", positive}, mark_step_);
         visit({"methods", "names of methods, or \"one/other\" for the two sides"}, methods_);
     }
-    static std::vector<FieldTable> tables() { return {table_of<Convergence>("[convergence]")}; }
 
     std::size_t trials() const override { return ladders_.back().first + ladders_.back().second.rungs; }
 
@@ -120,8 +117,6 @@ public:
         all.push_back({"least_distance_in_quad", least_in_quad});
         return all;
     }
-
-    std::string resolved() const override { return resolved_pair(pair_) + settings_; }
 
 private:
     /// The order of convergence: with steps between the two finest, with tolerances over the middle third.
@@ -226,6 +221,6 @@ private:
 
 }  // namespace
 
-const FigureKind convergence_kind{"convergence", FigureKind::System::pair, read_as<Convergence>, Convergence::tables};
+const FigureKind convergence_kind = kind_of<Convergence>("convergence", FigureKind::System::pair);
 
 }  // namespace doppel

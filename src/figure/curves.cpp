@@ -1,10 +1,7 @@
 #include "analysis/difference.hpp"
 #include "figure/kinds.hpp"
-#include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,13 +22,13 @@ struct PairCurve {
 
 /// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see how long
 /// both agree.
-class Curves final : public FigureWork {
+class Curves final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "curves";
     Curves() = default;
     explicit Curves(FigureReader& reader) {
-        auto table = reader.table("curves");
-        fields(table);
-        settings_ = table.finish();
+        auto table = reader.settings(*this);
+        const auto own = table.finish();
         const auto tables = reader.top.read_tables("curve");
         if (tables.empty()) curves_.push_back({quantity_, "", reader.pair()});
         for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -53,6 +50,7 @@ public:
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
                 throw table.fault("check_tolerance", "takes methods that go by a tolerance on both sides");
         }
+        settings_ = resolved_settings(own);
     }
 
     template <class Visit>
@@ -63,13 +61,13 @@ public:
                positive},
               check_tolerance_);
     }
-    static std::vector<FieldTable> tables() {
+    static FieldTable other_table() {
         FieldTable curve{"[[curve]]",
                          "A curve each; without any, the one of `[system]`, `[a]` and `[b]`. A curve may "
                          "have `[curve.system]`, `[curve.a]` and\n`[curve.b]` on top of those.\n"};
         PairCurve none;
         curve_fields(curve, none);
-        return {table_of<Curves>("[curves]"), curve};
+        return curve;
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
@@ -134,16 +132,6 @@ public:
         return all;
     }
 
-    std::string resolved() const override {
-        const auto& base = curves_.front().pair;
-        auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
-                                base.sample_hz.text(), settings_);
-        for (const auto& curve : curves_)
-            text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\n{}", toml_text(curve.column),
-                                toml_text(curve.label), resolved_sides(curve.pair, "curve."));
-        return text;
-    }
-
 private:
     template <class Visit>
     static void curve_fields(Visit& visit, PairCurve& curve) {
@@ -151,6 +139,17 @@ private:
         curve.label = curve.column;
         visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true},
               curve.label);
+    }
+
+    /// `own` = [curves]
+    std::string resolved_settings(const std::string& own) const {
+        const auto& base = curves_.front().pair;
+        auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
+                                base.sample_hz.text(), own);
+        for (const auto& curve : curves_)
+            text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\n{}", toml_text(curve.column),
+                                toml_text(curve.label), resolved_sides(curve.pair, "curve."));
+        return text;
     }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
@@ -198,6 +197,6 @@ private:
 
 }  // namespace
 
-const FigureKind curves_kind{"curves", FigureKind::System::pair, read_as<Curves>, Curves::tables};
+const FigureKind curves_kind = kind_of<Curves>("curves", FigureKind::System::pair);
 
 }  // namespace doppel

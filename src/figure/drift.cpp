@@ -3,8 +3,6 @@
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,8 +41,9 @@ std::vector<double> worst_so_far(std::vector<double> worst) {
 }
 
 /// Errors of energy and rods over a long time, every method at the same cost.
-class Drift final : public FigureWork {
+class Drift final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "drift";
     Drift() {
         for (const auto& method : doppel::methods())
             if (method.angles || method.constraints) methods_.emplace_back(method.name);
@@ -52,8 +51,7 @@ public:
     explicit Drift(FigureReader& reader) : Drift() {
         release_ = reader.release();
         spec_.release = chain_of(release_);
-        auto table = reader.table("drift");
-        fields(table);
+        auto table = reader.settings(*this);
         find_times();
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         for (const auto& name : methods_)
@@ -67,7 +65,7 @@ public:
         }
         check_distinct(table, "methods", methods_);
         check_distinct(table, "projected", projected_);
-        settings_ = table.finish();
+        settings_ = resolved_release(release_) + table.finish();
     }
 
     template <class Visit>
@@ -81,7 +79,6 @@ public:
         visit({"methods", "names of methods", "", {}, "all that step chains"}, methods_);
         visit({"projected", "methods that are also shown with projection onto the constraints"}, projected_);
     }
-    static std::vector<FieldTable> tables() { return {table_of<Drift>("[drift]")}; }
 
     std::size_t trials() const override { return runs_.size(); }
     std::string unit() const override { return "motions"; }
@@ -155,8 +152,6 @@ public:
         }
         return all;
     }
-
-    std::string resolved() const override { return resolved_release(release_) + settings_; }
 
 private:
     /// From the first second on, at three digits.
@@ -287,6 +282,6 @@ private:
 
 }  // namespace
 
-const FigureKind drift_kind{"drift", FigureKind::System::release, read_as<Drift>, Drift::tables};
+const FigureKind drift_kind = kind_of<Drift>("drift", FigureKind::System::release);
 
 }  // namespace doppel

@@ -1,13 +1,15 @@
 #pragma once
 
 #include "analysis/external_method.hpp"
-#include "figure/work.hpp"
+#include "figure/experiment.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
 #include "scene/field_table.hpp"
 #include "scene/preset_fields.hpp"
+#include "scene/scene.hpp"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -44,8 +46,14 @@ struct FigureReader {
     TomlReader &top, &scene, &chart;  // of [chart], a kind may take keys of its own
     std::span<const ExternalMethod> external_methods = {};
 
-    SettingsReader table(std::string_view key) { return SettingsReader(document.table(top, key)); }
-    /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_tables.hpp).
+    /// The kind's own table, all of its fields read.
+    template <class Kind>
+    SettingsReader settings(Kind& kind) {
+        SettingsReader table(document.table(top, Kind::table_key));
+        kind.fields(table);
+        return table;
+    }
+    /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_fields.hpp).
     Preset pair(const std::vector<TomlReader*>& more = {});
     /// The chain that [system] describes, where the figure itself knows how to step it.
     SideSpec release();
@@ -79,28 +87,41 @@ void parameter_field(Visit& visit, std::span<const std::string_view> names, cons
 /// Throws Error (exit 2) where one of the names of a key is there twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
 
-/// A kind of figure. Each is a class whose constructor takes a FigureReader, and whose tables are listed by
-/// fields(visit), which visits each key with its member, as the lists of scene/preset_fields.hpp do.
+/// What moves in a figure of pairs, and how it is stepped: "two links in angles, θ₂ = 0, twins 0.003° apart; explicit
+/// Euler, 1/30 000 s". What sets the sides apart follows as "m₁ = 1 kg against m₁ = 1.01 kg".
+///
+/// `swept_angle`  the link, from 0, whose angle of release is not the same in all pairs and so is left out
+/// `apart`        what else sets the sides of all pairs apart, "twins 0.003° apart"; then it is not part of `scene`
+std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_angle = {},
+                          const std::string& apart = "");
+
+/// Whether both sides are released alike: then their distance at the start is 0.
+bool released_alike(const SideSpec& a, const SideSpec& b);
+
 struct FigureKind {
     enum class System { none, release, pair };  // what moves
     std::string_view name;                      // of [scene] kind
     System system;
-    std::shared_ptr<const FigureWork> (*read)(FigureReader&);
+    std::shared_ptr<const Experiment> (*read)(FigureReader&);
     std::vector<FieldTable> (*tables)();  // its own, with their defaults
 };
 
-template <class Work>
-std::shared_ptr<const FigureWork> read_as(FigureReader& reader) {
-    return std::make_shared<Work>(reader);
-}
-template <class Work>
-FieldTable table_of(std::string name) {
-    FieldTable table{std::move(name)};
-    Work().fields(table);
-    return table;
+/// A kind is a class that is made of a FigureReader. If it has keys of its own, `table_key` names their table and fields(visit)
+/// visits each with its member, as the lists of scene/preset_fields.hpp do; other_table() lists further ones.
+template <class Kind>
+constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
+    return {name, system,
+            [](FigureReader& reader) -> std::shared_ptr<const Experiment> { return std::make_shared<Kind>(reader); },
+            [] {
+                std::vector<FieldTable> tables;
+                if constexpr (requires { Kind::table_key; })
+                    Kind().fields(tables.emplace_back(FieldTable{fmt::format("[{}]", Kind::table_key)}));
+                if constexpr (requires { Kind::other_table(); }) tables.push_back(Kind::other_table());
+                return tables;
+            }};
 }
 
-/// All of them; this list stands in figure/kinds.cpp and its names in scene/preset_tables.hpp.
+/// All of them; the list stands in figure/kinds.cpp and its names in scene/preset_fields.hpp.
 std::span<const FigureKind> figure_kinds();
 
 // One file each.

@@ -2,8 +2,6 @@
 #include "base/clock.hpp"
 #include "figure/kinds.hpp"
 #include "integrate/motion.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,14 +20,14 @@ struct ExponentRow {
 };
 
 /// Chains of more and more links, all released alike: their largest exponent, and what a step costs.
-class Links final : public FigureWork {
+class Links final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "links";
     Links() = default;
     explicit Links(FigureReader& reader) : release_(reader.release()) {
-        auto table = reader.table("links");
-        fields(table);
+        auto table = reader.settings(*this);
         spec_.transient_s = spec_.duration_s / 10;
-        settings_ = table.finish();
+        settings_ = resolved_release(release_) + table.finish();
         if (release_.links() != 1)
             throw table.fault("from", "takes a [system] of one link, which all links are like; it has {}",
                               release_.links());
@@ -42,7 +40,6 @@ public:
         visit({"to", "links of the longest", "", from_to(from_, most)}, to_);
         visit({"duration_s", "of the motion that an exponent is found by", "s", positive}, spec_.duration_s);
     }
-    static std::vector<FieldTable> tables() { return {table_of<Links>("[links]")}; }
 
     /// The costs, all in one, so that they are measured in turn; then the exponent of each chain.
     std::size_t trials() const override { return chains() + 1; }
@@ -92,8 +89,6 @@ public:
                 {"constraints_step_ns_a_link_of_the_longest", rows_of<CostRow>(numbers[0]).back().constraints / to_}};
     }
 
-    std::string resolved() const override { return resolved_release(release_) + settings_; }
-
 private:
     std::size_t chains() const { return static_cast<std::size_t>(to_ - from_) + 1; }
     std::size_t links(std::size_t chain) const { return static_cast<std::size_t>(from_) + chain; }
@@ -137,6 +132,6 @@ private:
 
 }  // namespace
 
-const FigureKind links_kind{"links", FigureKind::System::release, read_as<Links>, Links::tables};
+const FigureKind links_kind = kind_of<Links>("links", FigureKind::System::release);
 
 }  // namespace doppel

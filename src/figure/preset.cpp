@@ -1,7 +1,6 @@
 #include "figure/preset.hpp"
 
 #include "figure/kinds.hpp"
-#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -82,8 +81,8 @@ Size FigurePreset::picture_size() const {
 }
 
 std::string FigurePreset::resolved_work() const {
-    return fmt::format("[scene]\nkind = {}\n{}\n[chart]\n{}", toml_text(kind), work->resolved(),
-                       work->resolved_chart());
+    return fmt::format("[scene]\nkind = {}\n{}\n[chart]\n{}", toml_text(kind), experiment->resolved(),
+                       experiment->resolved_chart());
 }
 
 std::string FigurePreset::resolved() const {
@@ -109,8 +108,8 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     auto chart = document.table(top, "chart");
     FigureReader reader{source.name, document, top, scene, chart, external_methods};
     for (const auto& kind : figure_kinds())
-        if (kind.name == figure.kind) figure.work = kind.read(reader);
-    if (!top.has("subtitle")) figure.subtitle = figure.work->subtitle();
+        if (kind.name == figure.kind) figure.experiment = kind.read(reader);
+    if (!top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();
     scene.finish();
     read_chart(chart, figure.chart);
     top.finish();

@@ -2,8 +2,6 @@
 #include "analysis/linear_stability.hpp"
 #include "figure/kinds.hpp"
 #include "numeric/nan.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,17 +25,17 @@ struct Cells {
 
 /// The energy error of each method over its step or tolerance and a parameter of the release, and the limit of linear
 /// theory. A trial is a column of one method's map: all releases at one step.
-class Stability final : public FigureWork {
+class Stability final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "stability";
     Stability() = default;
     explicit Stability(FigureReader& reader) : release_(reader.release()) {
-        auto table = reader.table("stability");
-        fields(table);
+        auto table = reader.settings(*this);
         check_rows(table);
         find_methods(table);
         check_columns(table);
-        settings_ = table.finish();
-        make_releases(reader.table("system"), table);
+        settings_ = resolved_release(release_) + table.finish();
+        make_releases(reader.document.table(reader.top, "system"), table);
     }
 
     template <class Visit>
@@ -63,7 +61,6 @@ public:
         visit({"tolerance_to", "of adaptive methods: the coarsest", "", positive, "", adaptive}, tolerances_.to);
         visit({"columns", "steps, or tolerances", "", from_to(1, 10'000)}, steps_.count);
     }
-    static std::vector<FieldTable> tables() { return {table_of<Stability>("[stability]")}; }
 
     std::size_t trials() const override { return methods_.size() * columns_; }
     std::string unit() const override { return "releases"; }
@@ -134,18 +131,15 @@ public:
         return all;
     }
 
-    std::string resolved() const override { return resolved_release(release_) + settings_; }
-
 private:
     void check_rows(const TomlReader& table) const {
         const bool is_ratio = parameter_->is_ratio;
         if (is_ratio && release_.links() != 2)
             throw table.fault("parameter", "\"{}\" takes two links; [system] has {}", parameter_->name,
                               release_.links());
-        const double most = is_ratio ? 1e6 : 180;
         if (!(is_ratio ? rows_.from > 0 : rows_.from >= 0))
             throw table.fault("from", "must be {} 0; it is {}", is_ratio ? ">" : "at least", rows_.from);
-        if (!(rows_.to > rows_.from && rows_.to <= most))
+        if (const double most = is_ratio ? 1e6 : 180; !(rows_.to > rows_.from && rows_.to <= most))
             throw table.fault("to", "must be more than from = {} and at most {}; it is {}", rows_.from, most, rows_.to);
     }
 
@@ -176,11 +170,10 @@ private:
                 throw table.fault(to, "must be more than {} = {}; it is {}", from, cells.from, cells.to);
         tolerances_.count = steps_.count;
         columns_ = static_cast<std::size_t>(steps_.count);
-        const double duration = duration_.value();
         constexpr double most_steps = 1e8;
-        if (steps_.to > duration)
-            throw table.fault("step_to_s", "must be at most duration_s = {}; it is {}", duration, steps_.to);
-        if (duration / steps_.from > most_steps)
+        if (steps_.to > duration_.value())
+            throw table.fault("step_to_s", "must be at most duration_s = {}; it is {}", duration_.value(), steps_.to);
+        if (duration_.value() / steps_.from > most_steps)
             throw table.fault("step_from_s", "must leave at most {} steps; it is {}", most_steps, steps_.from);
     }
 
@@ -271,9 +264,8 @@ private:
     /// A rule where it is the same for all rows, else a curve.
     void draw_limit(std::string_view method, Plot& plot) const {
         Curve curve{.label = "linear limit", .dashed = true, .quiet = true};
-        for (std::size_t row = 0; row < releases_.size(); ++row) {
+        for (std::size_t row = 0; row < releases_.size(); ++row)
             add_point(curve, limit_at(method, row), rows_.middle(static_cast<int>(row)));
-        }
         const auto [least, most] = std::minmax_element(curve.x.begin(), curve.x.end());
         constexpr double alike = 1e-4;
         if (std::isnan(*least)) return;
@@ -302,6 +294,6 @@ private:
 
 }  // namespace
 
-const FigureKind stability_kind{"stability", FigureKind::System::release, read_as<Stability>, Stability::tables};
+const FigureKind stability_kind = kind_of<Stability>("stability", FigureKind::System::release);
 
 }  // namespace doppel

@@ -2,10 +2,7 @@
 #include "analysis/exponent.hpp"
 #include "analysis/twins.hpp"
 #include "figure/kinds.hpp"
-#include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <array>
 #include <cmath>
@@ -19,19 +16,19 @@ struct SweepRow {
 };
 
 /// The study's sweeps: the average ln(d/d₀) of twins, and the Lyapunov exponent, over a range of one parameter.
-class Sweep final : public FigureWork {
+class Sweep final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "sweep";
     Sweep() = default;
     explicit Sweep(FigureReader& reader) : pair_(reader.pair()) {
-        auto table = reader.table("sweep");
-        fields(table);
+        auto table = reader.settings(*this);
         exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
         if (pair_.a.links() < parameter_->links || !pair_.a.particles.empty())
             throw table.fault("parameter", "\"{}\" takes a chain of {} links", parameter_->name, parameter_->links);
         check_range(table);
         if (exponent_ && pair_.a.is_mechanism())
             throw table.fault("exponent", "is that of a plain chain, without forces and constraints of its own");
-        settings_ = table.finish();
+        settings_ = resolved_pair(pair_) + table.finish();
         const auto scene = make_scene(twins(0));
         make_scene(twins(trials_ - 1));  // reports faults now
         run_ = fast_run(scene);
@@ -56,7 +53,6 @@ public:
                {.holds = exponent_, .hides = true}},
               exponent_spec_.duration_s);
     }
-    static std::vector<FieldTable> tables() { return {table_of<Sweep>("[sweep]")}; }
 
     std::size_t trials() const override { return trials_; }
     std::size_t together() const override {
@@ -153,8 +149,6 @@ public:
         if (exponent_) all.push_back({"regular_trials", regular});
         return all;
     }
-
-    std::string resolved() const override { return resolved_pair(pair_) + settings_; }
 
 private:
     SweepRow row_of_trial(const TrialNumbers& numbers) const {
@@ -286,6 +280,6 @@ private:
 
 }  // namespace
 
-const FigureKind sweep_kind{"sweep", FigureKind::System::pair, read_as<Sweep>, Sweep::tables};
+const FigureKind sweep_kind = kind_of<Sweep>("sweep", FigureKind::System::pair);
 
 }  // namespace doppel

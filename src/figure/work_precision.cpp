@@ -3,7 +3,6 @@
 #include "integrate/methods.hpp"
 #include "numeric/nan.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,20 +28,23 @@ struct ProblemRow {
 
 /// Error against cost of every method on a few problems. The trials: the reference solution of each problem, then all
 /// ladders, and all of them again for each repeat, so that other load on the machine affects all alike.
-class WorkPrecision final : public FigureWork {
+class WorkPrecision final : public Experiment {
 public:
-    WorkPrecision() {
+    static constexpr std::string_view table_key = "work_precision";
+    WorkPrecision()
+        : problem_names_(standard_problem_names().begin(), standard_problem_names().end()),
+          model_names_(names_of<Model>.begin(), names_of<Model>.end()) {
         for (const auto& method : doppel::methods()) methods_.emplace_back(method.name);
     }
     explicit WorkPrecision(FigureReader& reader) : WorkPrecision() {
         reader.chart(cost_field, cost_);
-        auto table = reader.table("work_precision");
-        fields(table);
+        auto table = reader.settings(*this);
         problems_ = scene_ ? problem_of(std::move(film_)) : standard_problems(problem_names_, table);
         references_ = std::make_unique<SharedReference[]>(problems_.all.size());
         find_solvers(table);
         for (const auto& method : reader.external_methods) solvers_.push_back({Model::angles, "", &method});
-        settings_ = table.finish();
+        settings_ = table.finish() + problems_.comment;
+        chart_settings_ = fmt::format("cost = {}\n", toml_value(cost_));
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
@@ -66,15 +68,13 @@ public:
         visit({.key = "models", .help = "the equations", .names = names_of<Model>}, model_names_);
         visit({"methods", "names of methods", "", {}, "all"}, methods_);
     }
-    static std::vector<FieldTable> tables() {
+    static FieldTable other_table() {
         FieldTable chart{"[chart] kind = \"work-precision\""};
         chart(cost_field, Cost::time);
-        return {table_of<WorkPrecision>("[work_precision]"), chart};
+        return chart;
     }
 
-    std::size_t trials() const override {
-        return problems_.all.size() + ladders_.size() * static_cast<std::size_t>(repeats());
-    }
+    std::size_t trials() const override { return problems_.all.size() + ladders_.size() * repeats(); }
     bool measures_time() const override { return cost_ == Cost::time; }
     std::string unit() const override { return "ladders"; }
     double units(std::size_t trial) const override { return trial < problems_.all.size() ? 0 : 1; }
@@ -123,9 +123,8 @@ public:
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             figure.panels.push_back(
                 work_plot({p, problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity, ladders, cost_}));
-        const bool floors = std::any_of(figure.panels.begin(), figure.panels.end(),
-                                        [](const Plot& plot) { return !plot.rules.empty(); });
-        figure.captions.push_back(legend_words(floors));
+        figure.captions.push_back(legend_words(std::any_of(figure.panels.begin(), figure.panels.end(),
+                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
         if (const auto words = winner_words(ladders); !words.empty())
             figure.captions.push_back(
                 fmt::format("The least {}: {}.", cost_ == Cost::time ? "time, µs" : "evaluations", words));
@@ -151,12 +150,8 @@ public:
         return all;
     }
 
-    std::string resolved() const override { return settings_ + problems_.comment; }
-
-    std::string resolved_chart() const override { return fmt::format("cost = {}\n", toml_value(cost_)); }
-
 private:
-    int repeats() const { return cost_ == Cost::time ? repeats_ : 1; }
+    std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
     bool has_angles() const { return problems_.all.front().has_angles(); }
 
     void find_solvers(TomlReader& table) {
@@ -164,9 +159,8 @@ private:
         check_distinct(table, "methods", methods_);
         for (const auto& model : model_names_)
             for (const auto& name : methods_)
-                if (const auto number = std::find(names_of<Model>.begin(), names_of<Model>.end(), model);
-                    serves(*find_method(name), static_cast<Model>(number - names_of<Model>.begin())))
-                    solvers_.push_back({static_cast<Model>(number - names_of<Model>.begin()), name});
+                if (serves(*find_method(name), value_named<Model>(model)))
+                    solvers_.push_back({value_named<Model>(model), name});
         if (solvers_.empty())
             throw table.fault(table.has("methods") ? "methods" : "models",
                               "must leave a method with a model that it serves");
@@ -286,8 +280,7 @@ private:
     Cost cost_ = Cost::time;
     std::optional<std::string> scene_;
     Preset film_;  // of the scene
-    std::vector<std::string> problem_names_{standard_problem_names().begin(), standard_problem_names().end()};
-    std::vector<std::string> model_names_{names_of<Model>.begin(), names_of<Model>.end()}, methods_;
+    std::vector<std::string> problem_names_, model_names_, methods_;
     WorkProblems problems_;
     struct SharedReference {
         std::once_flag once;
@@ -302,7 +295,6 @@ private:
 
 }  // namespace
 
-const FigureKind work_precision_kind{"work-precision", FigureKind::System::none, read_as<WorkPrecision>,
-                                     WorkPrecision::tables};
+const FigureKind work_precision_kind = kind_of<WorkPrecision>("work-precision", FigureKind::System::none);
 
 }  // namespace doppel

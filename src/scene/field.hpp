@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -58,6 +59,14 @@ template <class Choice>
 requires std::is_enum_v<Choice>
 constexpr std::string_view name_of(Choice choice) {
     return names_of<Choice>[static_cast<std::size_t>(choice)];
+}
+
+/// The value of that name, which is one of its names.
+template <class Choice>
+requires std::is_enum_v<Choice>
+constexpr Choice value_named(std::string_view name) {
+    return static_cast<Choice>(std::find(names_of<Choice>.begin(), names_of<Choice>.end(), name) -
+                               names_of<Choice>.begin());
 }
 
 template <class T>

@@ -1,5 +1,5 @@
+#include "base/text.hpp"
 #include "integrate/methods.hpp"
-#include "scene/nearest.hpp"
 #include "scene/preset_fields.hpp"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 
 #include "base/text.hpp"
 #include "render/font.hpp"
-#include "scene/nearest.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -77,7 +77,7 @@ public:
         } else if constexpr (std::is_enum_v<T>) {
             std::string name(name_of(into));
             read({.key = field.key, .names = names_of<T>}, name);
-            into = static_cast<T>(std::find(names_of<T>.begin(), names_of<T>.end(), name) - names_of<T>.begin());
+            into = value_named<T>(name);
         } else {
             read(field, into);
             if constexpr (requires { into.empty(); }) demand(field, !into.empty());

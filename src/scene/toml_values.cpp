@@ -1,4 +1,4 @@
-#include "scene/nearest.hpp"
+#include "base/text.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <algorithm>

@@ -31,8 +31,8 @@ inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
 inline std::string table_text(const FigurePreset& figure, const KnownTrials& trials) {
     const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("table-{}.csv", getpid());
     std::filesystem::create_directories(path.parent_path());
-    Csv table(path, figure.work->columns());
-    figure.work->write_rows(trials, table);
+    Csv table(path, figure.experiment->columns());
+    figure.experiment->write_rows(trials, table);
     table.finish();
     auto text = test::bytes_of(path);
     std::filesystem::remove(path);
@@ -85,7 +85,7 @@ inline Table table_of(const FigurePreset& figure) {
 
 inline std::string header_line(const FigurePreset& figure) {
     std::string line;
-    for (const auto& column : figure.work->columns()) line += (line.empty() ? "" : ",") + column;
+    for (const auto& column : figure.experiment->columns()) line += (line.empty() ? "" : ",") + column;
     return line;
 }
 

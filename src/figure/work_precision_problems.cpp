@@ -1,8 +1,6 @@
 #include "analysis/tangent.hpp"
 #include "figure/work_precision.hpp"
 #include "scene/method_choice.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
