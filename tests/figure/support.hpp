@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -87,6 +88,21 @@ inline std::string header_line(const FigurePreset& figure) {
     std::string line;
     for (const auto& column : figure.experiment->columns()) line += (line.empty() ? "" : ",") + column;
     return line;
+}
+
+/// Ten trials of half a second.
+inline const std::vector<std::string> small_chart{"sweep.to=9", "scene.duration_s=0.5", "chart.size=[320, 180]"};
+inline FigurePreset small_sweep(std::vector<std::string> more = {}) {
+    more.insert(more.end(), small_chart.begin(), small_chart.end());
+    return figure_of("fig2-right", more);
+}
+
+inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 /// What figures said on their way.
