@@ -8,47 +8,28 @@
 
 namespace doppel {
 
-/// What a key takes whose member has this type.
+/// What a key takes whose member is a T.
 template <class T>
-constexpr std::string_view type_words = "text";
-template <>
-inline constexpr std::string_view type_words<bool> = "`true` or `false`";
-template <>
-inline constexpr std::string_view type_words<int> = "whole number";
-template <>
-inline constexpr std::string_view type_words<double> = "number";
-template <>
-inline constexpr std::string_view type_words<Quad> = "number";
-template <>
-inline constexpr std::string_view type_words<Rational> = "number or \"a/b\"";
-template <>
-inline constexpr std::string_view type_words<std::vector<Quad>> = "numbers";
-template <>
-inline constexpr std::string_view type_words<std::vector<double>> = "numbers";
-template <>
-inline constexpr std::string_view type_words<std::vector<std::string>> = "list of text";
-template <>
-inline constexpr std::string_view type_words<QuadPair> = "[x, y]";
-template <>
-inline constexpr std::string_view type_words<EndSpec> = "text or [x, y]";
-template <>
-inline constexpr std::string_view type_words<Size> = "two whole numbers";
-template <>
-inline constexpr std::string_view type_words<std::array<int, 2>> = "two whole numbers";
-template <>
-inline constexpr std::string_view type_words<Range> = "two numbers";
-template <>
-inline constexpr std::string_view type_words<Panels> = "list of text";
-template <>
-inline constexpr std::string_view type_words<Color> = "\"#rrggbb\"";
-template <>
-inline constexpr std::string_view type_words<std::array<Color, 2>> = "two of \"#rrggbb\"";
-template <class T>
-constexpr std::string_view type_words<std::optional<T>> = type_words<T>;
+constexpr std::string_view type_words() {
+    if constexpr (is_optional<T>) return type_words<typename T::value_type>();
+    if constexpr (std::is_same_v<T, bool>) return "`true` or `false`";
+    if constexpr (std::is_same_v<T, int>) return "whole number";
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Quad>) return "number";
+    if constexpr (std::is_same_v<T, Rational>) return "number or \"a/b\"";
+    if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, std::vector<Quad>>) return "numbers";
+    if constexpr (std::is_same_v<T, std::vector<std::string>> || std::is_same_v<T, Panels>) return "list of text";
+    if constexpr (std::is_same_v<T, QuadPair>) return "[x, y]";
+    if constexpr (std::is_same_v<T, EndSpec>) return "text or [x, y]";
+    if constexpr (std::is_same_v<T, Size> || std::is_same_v<T, std::array<int, 2>>) return "two whole numbers";
+    if constexpr (std::is_same_v<T, Range>) return "two numbers";
+    if constexpr (std::is_same_v<T, Color>) return "\"#rrggbb\"";
+    if constexpr (std::is_same_v<T, std::array<Color, 2>>) return "two of \"#rrggbb\"";
+    return "text";
+}
 
 /// A key with what a list of fields says of it.
 struct ListedField {
-    std::string_view key, type, unit, help;  // `type` is one of type_words
+    std::string_view key, type, unit, help;  // `type` is one of type_words()
     std::string by_default;                  // Markdown
     std::vector<std::string> choices = {};   // of text, or of a list's elements
     Bounds bounds = {};
@@ -69,7 +50,7 @@ struct FieldTable {
             choices = {"pendulums"};
             choices.insert(choices.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
         }
-        fields.push_back({field.key, type_words<T>, field.unit, field.help, default_text(field, by_default),
+        fields.push_back({field.key, type_words<T>(), field.unit, field.help, default_text(field, by_default),
                           std::move(choices), field.bounds, field.most});
     }
     template <class Visit>

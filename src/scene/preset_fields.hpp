@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 12> scene_kinds{pair_kind,        
                                                               "spectrum",       "section",   "flip-map", "links",
                                                               "work-precision", "stability", "drift",    "audit"};
 
-// The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and ReferenceTable visit:
+// The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and FieldTable visit:
 // visit(field, member), visit.table(name, list). A table may be const. The reader checks what keys say together.
 
 inline const Field title_field{

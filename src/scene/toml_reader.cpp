@@ -54,11 +54,6 @@ bool TomlReader::has(std::string_view key) {
     return find(key) != nullptr;
 }
 
-bool TomlReader::is_text(std::string_view key) {
-    const auto* node = find(key);
-    return node && node->is_string();
-}
-
 bool TomlReader::from_command_line(std::string_view key) {
     const auto* node = find(key);
     return node && node->source().path && node->source().path->starts_with(command_line);
@@ -72,20 +67,6 @@ void TomlReader::demand_title(const std::string& name) {
     if (has("title")) return;
     if (const auto fault = not_drawable(name))
         throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
-}
-
-std::optional<std::vector<std::string>> TomlReader::read_texts(std::string_view key) {
-    const auto* node = find(key);
-    if (!node) return std::nullopt;
-    const auto* array = node->as_array();
-    if (!array) throw fault(key, "must be an array of strings; {}", found(*node));
-    std::vector<std::string> texts;
-    for (const auto& element : *array) {
-        if (!element.is_string())
-            throw fault(key, "must be an array of strings; {} is {}", shown(element), kind_of(element));
-        texts.push_back(element.as_string()->get());
-    }
-    return texts;
 }
 
 const toml::table* TomlReader::read_table(std::string_view key) {
