@@ -10,7 +10,7 @@ namespace doppel {
 Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
     Preset preset;
     preset.name = preset.title = name;
-    read_clock(scene, preset);
+    clock_fields(scene, preset);
     std::vector<TomlReader*> levels{&top};
     levels.insert(levels.end(), more.begin(), more.end());
     read_sides(document, levels, preset);

@@ -98,6 +98,7 @@ std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_a
 /// Whether both sides are released alike: then their distance at the start is 0.
 bool released_alike(const SideSpec& a, const SideSpec& b);
 
+/// An entry of the list of kinds.
 struct FigureKind {
     enum class System { none, release, pair };  // what moves
     std::string_view name;                      // of [scene] kind
@@ -106,8 +107,9 @@ struct FigureKind {
     std::vector<FieldTable> (*tables)();  // its own, with their defaults
 };
 
-/// A kind is a class that is made of a FigureReader. If it has keys of its own, `table_key` names their table and fields(visit)
-/// visits each with its member, as the lists of scene/preset_fields.hpp do; other_table() lists further ones.
+/// A kind is a class that is made of a FigureReader. If it has keys of its own, `table_key` names their table, and
+/// fields(visit) visits each with its member, as the lists of scene/preset_fields.hpp do; other_table() lists further
+/// ones.
 template <class Kind>
 constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
     return {name, system,

@@ -118,22 +118,25 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
 
 std::vector<FieldTable> figure_tables() {
     FigurePreset figure;
-    FieldTable top{"title, subtitle, erratum, captions"}, chart{"[chart]"};
+    const SideSpec side;
+    FieldTable top{"title, subtitle, erratum, captions"}, chart{"[chart]"}, release{"[system]"};
     top_fields(top, figure);
     chart_fields(chart, figure.chart);
+    chain_fields(release, side);
+    gravity_field(release, side);
+    std::vector<std::string_view> release_keys;
+    for (const auto& field : release.fields) release_keys.push_back(field.key);
+    const std::string systems[] = {
+        "", fmt::format(" What moves: `[system]`, of which it takes\n`{}`.", fmt::join(release_keys, "`, `")),
+        " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and `sample_hz` of `[scene]`, as in a film."};
     std::vector<FieldTable> all{top, chart};
-    for (const auto& kind : figure_kinds()) {
-        constexpr std::string_view systems[] = {
-            "",
-            " What moves: `links`, `mass_kg`, `length_m`, `angle_deg`, `omega_deg_per_s` and `gravity_m_per_s2` "
-            "of\n`[system]`.",
-            " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and `sample_hz` of `[scene]`, as in a film."};
-        auto tables = kind.tables();
-        if (!tables.empty())
-            tables.front().text =
-                fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, systems[static_cast<std::size_t>(kind.system)]);
-        all.insert(all.end(), tables.begin(), tables.end());
-    }
+    for (const auto& kind : figure_kinds())
+        for (auto& table : kind.tables()) {
+            if (table.text.empty())
+                table.text =
+                    fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, systems[static_cast<std::size_t>(kind.system)]);
+            all.push_back(std::move(table));
+        }
     return all;
 }
 
@@ -141,7 +144,7 @@ std::string preset_reference() {
     std::string text(film_introduction);
     for (const auto& table : film_tables()) text += table.markdown();
     text += figure_introduction;
-    for (auto& table : figure_tables()) text += table.markdown();
+    for (const auto& table : figure_tables()) text += table.markdown();
     return text;
 }
 

@@ -69,7 +69,7 @@ public:
         visit({"methods", "names of methods", "", {}, "all"}, methods_);
     }
     static FieldTable other_table() {
-        FieldTable chart{"[chart] kind = \"work-precision\""};
+        FieldTable chart{"[chart] kind = \"work-precision\"", "Besides those of all figures:\n"};
         chart(cost_field, Cost::time);
         return chart;
     }

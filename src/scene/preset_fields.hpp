@@ -244,9 +244,6 @@ void style_fields(Visit& visit, Video& video) {
 /// One of scene_kinds.
 std::string read_kind(TomlReader& scene);
 
-/// `duration_s` and `sample_hz` of [scene].
-void read_clock(TomlReader& scene, Preset& preset);
-
 /// [system], [a] or [b].
 void read_side(TomlReader& table, SideSpec& side);
 

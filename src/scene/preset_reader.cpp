@@ -184,10 +184,6 @@ std::string read_kind(TomlReader& scene) {
     return kind;
 }
 
-void read_clock(TomlReader& scene, Preset& preset) {
-    clock_fields(scene, preset);
-}
-
 void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset) {
     for (auto* level : levels) {
         auto system = document.table(*level, "system");
@@ -237,7 +233,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     auto scene = document.table(top, "scene");
     if (read_kind(scene) != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
-    read_clock(scene, preset);
+    clock_fields(scene, preset);
     scene.finish();
     read_sides(document, {&top}, preset);
     auto video = document.table(top, "video");
