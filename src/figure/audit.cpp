@@ -60,9 +60,7 @@ private:
 
 SideSpec side(std::vector<Quad> angle_deg, ModelChoice model) {
     SideSpec spec;
-    spec.mass_kg.assign(angle_deg.size(), 1);
-    spec.length_m.assign(angle_deg.size(), 1);
-    spec.omega_deg_per_s.assign(angle_deg.size(), 0);
+    spec.set_links(angle_deg.size());  // unit masses and lengths, at rest
     spec.angle_deg = std::move(angle_deg);
     spec.model = model;
     return spec;

@@ -53,11 +53,8 @@ WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational&
 
 WorkProblem standard_problem(const std::string& name, const StandardProblem& standard) {
     SideSpec side;
-    const auto links = standard.angle_deg.size();
-    side.mass_kg.assign(links, 1);
-    side.length_m.assign(links, 1);
+    side.set_links(standard.angle_deg.size());  // unit masses and lengths, at rest
     side.angle_deg.assign(standard.angle_deg.begin(), standard.angle_deg.end());
-    side.omega_deg_per_s.assign(links, 0);
     return make_problem(name, side, {standard.seconds, 1});
 }
 
