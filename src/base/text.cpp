@@ -1,6 +1,9 @@
 #include "base/text.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <numeric>
+#include <vector>
 
 namespace doppel {
 namespace {
@@ -23,6 +26,21 @@ std::size_t length_of_first(std::string_view text, char32_t& character) {
     well_formed = well_formed && !(length == 3 && (character < 0x800 || (character >> 11) == 0x1b)) &&
                   !(length == 4 && (character < 0x10000 || character > 0x10ffff));
     return well_formed ? length : 0;
+}
+
+/// Letters to add, drop or change to get from one to the other (Levenshtein 1965).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const auto swap = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({swap, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
 }
 
 }  // namespace
@@ -62,6 +80,21 @@ std::string on_one_line(std::string_view text) {
         text.remove_prefix(length > 0 ? length : 1);
     }
     return line;
+}
+
+std::string shortened(std::string_view text, std::size_t most) {
+    if (text.size() <= most) return std::string(text);
+    while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;  // not within a character
+    return std::string(text.substr(0, most)) + "…";
+}
+
+std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
+    constexpr std::size_t longest = 100;  // more is no typing error
+    if (word.size() > longest) return {};
+    const auto better = [&](auto a, auto b) { return edit_distance(word, a) < edit_distance(word, b); };
+    const auto best = std::min_element(candidates.begin(), candidates.end(), better);
+    if (best == candidates.end() || edit_distance(word, *best) > std::max<std::size_t>(2, word.size() / 3)) return {};
+    return std::string(*best);
 }
 
 }  // namespace doppel

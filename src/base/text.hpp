@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,5 +23,11 @@ bool is_control(char32_t character);
 /// The text as one line that any terminal can show: a space for every control character, U+FFFD for every byte that is
 /// not well-formed.
 std::string on_one_line(std::string_view text);
+
+/// The whole characters of its first `most` bytes, with "…" where there is more.
+std::string shortened(std::string_view text, std::size_t most);
+
+/// The candidate that is a typing error away from `word`, if there is one.
+std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace doppel

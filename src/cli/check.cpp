@@ -206,17 +206,17 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
 
 void print_figure(const FigurePreset& figure, const std::atomic<bool>& stop) {
     double units = 0;
-    for (std::size_t trial = 0; trial < figure.work->trials(); ++trial) units += figure.work->units(trial);
+    for (std::size_t trial = 0; trial < figure.experiment->trials(); ++trial) units += figure.experiment->units(trial);
     const auto size = figure.picture_size();
     print_line("{}: {}", figure.name, figure.title);
-    print_line("  kind   {}: {} {} in {} trials", figure.kind, grouped(std::lround(units)), figure.work->unit(),
-               grouped(static_cast<long>(figure.work->trials())));
+    print_line("  kind   {}: {} {} in {} trials", figure.kind, grouped(std::lround(units)), figure.experiment->unit(),
+               grouped(static_cast<long>(figure.experiment->trials())));
     print_line("  chart  {}×{} px, {}", size.width, size.height, figure.chart.theme);
-    const int threads = figure.work->measures_time() ? 1 : cores();
+    const int threads = figure.experiment->measures_time() ? 1 : cores();
     const auto estimate = estimated_computation(figure, threads, stop);
     print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
                estimate.seconds, threads, threads == 1 ? "" : "s", roughly(units / estimate.seconds),
-               figure.work->unit());
+               figure.experiment->unit());
 }
 
 }  // namespace

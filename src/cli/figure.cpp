@@ -65,7 +65,7 @@ public:
     void operator()(std::size_t figure, Tell&& tell) {
         const std::lock_guard hold(mutex_);
         auto& report = reports_[figure];
-        if (!report) report.emplace(style_, figures_[figure].name, figures_[figure].work->unit());
+        if (!report) report.emplace(style_, figures_[figure].name, figures_[figure].experiment->unit());
         tell(*report);
     }
 

@@ -3,7 +3,6 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/terminal.hpp"
-#include "scene/nearest.hpp"
 #include "scene/version.hpp"
 
 #include <CLI/CLI.hpp>
@@ -56,13 +55,8 @@ void fill_standard_streams() {
 
 /// One line that can be read, whatever the message quotes; throws nothing where nobody does.
 int failed(ExitCode code, std::string_view message) {
-    auto line = on_one_line(message);
     constexpr std::size_t most = 4000;  // bytes
-    if (line.size() > most) {
-        auto end = most;
-        while ((static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // not within a character
-        line.replace(end, std::string::npos, "…");
-    }
+    const auto line = shortened(on_one_line(message), most);
     std::fprintf(stderr, "doppel: %s\n", line.c_str());
     return static_cast<int>(code);
 }

@@ -1,7 +1,6 @@
 #include "figure/audit.hpp"
 
 #include "figure/kinds.hpp"
-#include "scene/scene.hpp"
 
 namespace doppel {
 namespace {
@@ -12,7 +11,7 @@ std::string words(Verdict verdict) {
 }
 
 /// The study's claims, measured one by one: a table.
-class Audit final : public FigureWork {
+class Audit final : public Experiment {
 public:
     explicit Audit(FigureReader&) {}
 
@@ -51,8 +50,6 @@ public:
         return all;
     }
 
-    std::string resolved() const override { return ""; }
-
 private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         return claims()[trial].measure(stop);
@@ -63,9 +60,7 @@ private:
 
 SideSpec side(std::vector<Quad> angle_deg, ModelChoice model) {
     SideSpec spec;
-    spec.mass_kg.assign(angle_deg.size(), 1);
-    spec.length_m.assign(angle_deg.size(), 1);
-    spec.omega_deg_per_s.assign(angle_deg.size(), 0);
+    spec.set_links(angle_deg.size());  // unit masses and lengths, at rest
     spec.angle_deg = std::move(angle_deg);
     spec.model = model;
     return spec;
@@ -116,6 +111,6 @@ SideSpec with_droplet(SideSpec spec, bool droplet) {
     return spec;
 }
 
-const FigureKind audit_kind{"audit", read_as<Audit>};
+const FigureKind audit_kind = kind_of<Audit>("audit", FigureKind::System::none);
 
 }  // namespace doppel

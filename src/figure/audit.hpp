@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/twins.hpp"
-#include "figure/work.hpp"
+#include "figure/experiment.hpp"
 #include "scene/preset.hpp"
 
 #include <functional>

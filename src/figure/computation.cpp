@@ -33,7 +33,7 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header, s
       report_(std::move(report)),
       known_(header.trials) {
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial)
-        total_units_ += figure_.work->units(trial);
+        total_units_ += figure_.experiment->units(trial);
     take_record();
     find_groups();
 }
@@ -45,10 +45,10 @@ void Computation::take_record() {
     if (part.header != header_)
         throw io_failed("{} belongs to another preset or version; remove it, or give another folder with --out",
                         record_->path.string());
-    part.take(*figure_.work, known_);
+    part.take(*figure_.experiment, known_);
     has_record_ = true;
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
-        if (!known_[trial].empty()) done_units_ += figure_.work->units(trial);
+        if (!known_[trial].empty()) done_units_ += figure_.experiment->units(trial);
     kept_units_ = done_units_;
     report_.note(fmt::format(
         "goes on from {}: {:.0f} % is done{}", record_->path.string(), percent(done_units_),
@@ -60,7 +60,7 @@ void Computation::take_record() {
 /// Runs of unknown trials, cut to what is best computed together. Of many groups, some evenly spaced ones come first, to
 /// estimate the time of the rest.
 void Computation::find_groups() {
-    const std::size_t most = figure_.work->together();
+    const std::size_t most = figure_.experiment->together();
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial) {
         if (!known_[trial].empty()) continue;
         if (!groups_.empty() && groups_.back().second == trial && trial - groups_.back().first < most)
@@ -86,9 +86,9 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
         const auto [first, last] = groups_[group];
         const double cpu_start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
         std::vector<TrialNumbers> numbers(last - first);
-        figure_.work->compute(first, numbers, stop);
+        figure_.experiment->compute(first, numbers, stop);
         for (std::size_t i = 0; i < numbers.size(); ++i)
-            if (!figure_.work->fits(first + i, numbers[i]))
+            if (!figure_.experiment->fits(first + i, numbers[i]))
                 throw method_failed("{}: trial {} came to a number that is infinite or none", figure_.name, first + i);
         return keep(groups_[group], std::move(numbers), seconds_of(CLOCK_THREAD_CPUTIME_ID) - cpu_start);
     } catch (const Error& fault) {
@@ -108,7 +108,7 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
     const std::lock_guard hold(mutex_);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         known_[group.first + i] = std::move(numbers[i]);
-        const double units = figure_.work->units(group.first + i);
+        const double units = figure_.experiment->units(group.first + i);
         computed_units_ += units;
         done_units_ += units;
     }
@@ -136,20 +136,20 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
 void Computation::tell_estimate(double time) {
     const double rate = computed_units_ / (time - start_s_), left = total_units_ - done_units_;
     report_.note(fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
-                             figure_.work->unit(), roughly(rate), threads_, duration_words(left / rate)));
+                             figure_.experiment->unit(), roughly(rate), threads_, duration_words(left / rate)));
 }
 
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
     constexpr double allowed_s = 1;
-    const auto& work = *figure.work;
-    const std::size_t trials = work.trials(), together = work.together();
+    const auto& experiment = *figure.experiment;
+    const std::size_t trials = experiment.trials(), together = experiment.together();
     double total = 0, done = 0;
     const double before = now();
     for (std::size_t trial = 0; trial < trials; ++trial) {
-        total += work.units(trial);
+        total += experiment.units(trial);
         // trials of 0 units are what others need: computed first, outside the estimate
         TrialNumbers numbers;
-        if (work.units(trial) == 0) work.compute(trial, {&numbers, 1}, stop);
+        if (experiment.units(trial) == 0) experiment.compute(trial, {&numbers, 1}, stop);
     }
     const double start = now();
     const TimeLimit limit(allowed_s, stop);
@@ -161,10 +161,10 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
         for (std::size_t i = 0; i < groups && !limit.reached(); ++i, place += golden - std::floor(place + golden)) {
             const auto first =
                 static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(groups)) * together;
-            if (work.units(first) == 0) continue;
+            if (experiment.units(first) == 0) continue;
             std::vector<TrialNumbers> numbers(std::min(together, trials - first));
-            work.compute(first, numbers, limit.reached());
-            for (std::size_t k = 0; k < numbers.size(); ++k) done += work.units(first + k);
+            experiment.compute(first, numbers, limit.reached());
+            for (std::size_t k = 0; k < numbers.size(); ++k) done += experiment.units(first + k);
         }
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::interrupted || stop) throw;

@@ -2,8 +2,6 @@
 #include "integrate/methods.hpp"
 #include "numeric/nan.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,22 +26,29 @@ struct RungRow {
 };
 
 /// The distance of the two sides of a pair over finer and finer steps, in double and in quad.
-class Convergence final : public FigureWork {
+class Convergence final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "convergence";
+    Convergence() = default;
     explicit Convergence(FigureReader& reader) : pair_(reader.pair()) {
-        auto table = reader.table("convergence");
-        table.read_whole("halvings", halvings_, 1, 20);
-        table.read_whole("quad_halvings", quad_halvings_, 1, 20);
-        table.read_whole("decades", decades_, 1, 14);
-        table.read_whole("quad_decades", quad_decades_, 1, 29);
-        if (table.has("mark_step_s")) table.read_positive_ratio("mark_step_s", mark_step_.emplace());
-        table.read_texts("methods", methods_);
+        auto table = reader.settings(*this);
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         check_distinct(table, "methods", methods_);
         for (const auto precision : {Precision::in_double, Precision::in_quad})
             for (const auto& name : methods_) add_ladder(table, name, precision);
         for (const auto& [begin, ladder] : ladders_) check_methods(table, make_scene(pair_of(begin)));
-        settings_ = table.finish();
+        settings_ = resolved_pair(pair_) + table.finish();
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        constexpr auto halvings = from_to(1, 20);
+        visit({"halvings", "of the step in double; the coarsest is a sample's interval", "", halvings}, halvings_);
+        visit({"quad_halvings", "the same in quad", "", halvings}, quad_halvings_);
+        visit({"decades", "of the tolerance in double, from 1e-3 on", "", from_to(1, 14)}, decades_);
+        visit({"quad_decades", "the same in quad", "", from_to(1, 29)}, quad_decades_);
+        visit({"mark_step_s", "a step that a line marks", "s", positive}, mark_step_);
+        visit({"methods", "names of methods, or \"one/other\" for the two sides"}, methods_);
     }
 
     std::size_t trials() const override { return ladders_.back().first + ladders_.back().second.rungs; }
@@ -112,8 +117,6 @@ public:
         all.push_back({"least_distance_in_quad", least_in_quad});
         return all;
     }
-
-    std::string resolved() const override { return resolved_pair(pair_) + settings_; }
 
 private:
     /// The order of convergence: with steps between the two finest, with tolerances over the middle third.
@@ -218,6 +221,6 @@ private:
 
 }  // namespace
 
-const FigureKind convergence_kind{"convergence", read_as<Convergence>};
+const FigureKind convergence_kind = kind_of<Convergence>("convergence", FigureKind::System::pair);
 
 }  // namespace doppel

@@ -1,10 +1,7 @@
 #include "analysis/difference.hpp"
 #include "figure/kinds.hpp"
-#include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,26 +22,22 @@ struct PairCurve {
 
 /// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see how long
 /// both agree.
-class Curves final : public FigureWork {
+class Curves final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "curves";
+    Curves() = default;
     explicit Curves(FigureReader& reader) {
-        auto table = reader.table("curves");
-        table.read_choice("quantity", quantity_, quantities);
-        table.read_truth("logarithmic", logarithmic_);
-        if (table.has("check_tolerance")) table.read_positive("check_tolerance", check_tolerance_.emplace());
-        settings_ = table.finish();
+        auto table = reader.settings(*this);
+        const auto own = table.finish();
         const auto tables = reader.top.read_tables("curve");
         if (tables.empty()) curves_.push_back({quantity_, "", reader.pair()});
         for (std::size_t i = 0; i < tables.size(); ++i) {
             auto entry = reader.top.inner(tables[i], fmt::format("[[curve]] {}", i + 1));
             auto& curve = curves_.emplace_back();
-            entry.read_text("column", curve.column);
+            curve_fields(entry, curve);
             if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
             if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
                 throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
-            curve.label = curve.column;
-            entry.read_text("label", curve.label);
-            entry.demand_drawable("label", curve.label);
             curve.pair = reader.pair({&entry});
             entry.finish();
         }
@@ -57,6 +50,24 @@ public:
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
                 throw table.fault("check_tolerance", "takes methods that go by a tolerance on both sides");
         }
+        settings_ = resolved_settings(own);
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({.key = "quantity", .help = "the distance in state space, or ln(d/d₀)", .names = quantities}, quantity_);
+        visit({"logarithmic", "the axis"}, logarithmic_);
+        visit({"check_tolerance", "runs every pair once more at this tolerance, to see how long both agree", "",
+               positive},
+              check_tolerance_);
+    }
+    static FieldTable other_table() {
+        FieldTable curve{"[[curve]]",
+                         "A curve each; without any, the one of `[system]`, `[a]` and `[b]`. A curve may "
+                         "have `[curve.system]`, `[curve.a]` and\n`[curve.b]` on top of those.\n"};
+        PairCurve none;
+        curve_fields(curve, none);
+        return curve;
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
@@ -121,17 +132,26 @@ public:
         return all;
     }
 
-    std::string resolved() const override {
+private:
+    template <class Visit>
+    static void curve_fields(Visit& visit, PairCurve& curve) {
+        visit({"column", "its name in the CSV", "", {}, "must be given"}, curve.column);
+        curve.label = curve.column;
+        visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true},
+              curve.label);
+    }
+
+    /// `own` = [curves]
+    std::string resolved_settings(const std::string& own) const {
         const auto& base = curves_.front().pair;
         auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
-                                base.sample_hz.text(), settings_);
+                                base.sample_hz.text(), own);
         for (const auto& curve : curves_)
             text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\n{}", toml_text(curve.column),
                                 toml_text(curve.label), resolved_sides(curve.pair, "curve."));
         return text;
     }
 
-private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto scene = make_scene(pair_of(trial));
         PairRun run(scene);
@@ -177,6 +197,6 @@ private:
 
 }  // namespace
 
-const FigureKind curves_kind{"curves", read_as<Curves>};
+const FigureKind curves_kind = kind_of<Curves>("curves", FigureKind::System::pair);
 
 }  // namespace doppel

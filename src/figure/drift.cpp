@@ -3,8 +3,6 @@
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,21 +41,18 @@ std::vector<double> worst_so_far(std::vector<double> worst) {
 }
 
 /// Errors of energy and rods over a long time, every method at the same cost.
-class Drift final : public FigureWork {
+class Drift final : public Experiment {
 public:
-    explicit Drift(FigureReader& reader) : release_(reader.release()) {
-        spec_.release = chain_of(release_);
-        auto table = reader.table("drift");
-        read_times(table);
-        table.read_positive("evaluations_per_s", spec_.evaluations_per_s);
-        constexpr double least = 10, most = 1e6;
-        if (spec_.evaluations_per_s < least || spec_.evaluations_per_s > most)
-            throw table.fault("evaluations_per_s", "must be from {} to {}; it is {}", least, most,
-                              spec_.evaluations_per_s);
+    static constexpr std::string_view table_key = "drift";
+    Drift() {
         for (const auto& method : doppel::methods())
             if (method.angles || method.constraints) methods_.emplace_back(method.name);
-        table.read_texts("methods", methods_);
-        table.read_texts("projected", projected_);
+    }
+    explicit Drift(FigureReader& reader) : Drift() {
+        release_ = reader.release();
+        spec_.release = chain_of(release_);
+        auto table = reader.settings(*this);
+        find_times();
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         for (const auto& name : methods_)
             if (known(table, "methods", name).angles) runs_.push_back({name, Model::angles});
@@ -70,7 +65,19 @@ public:
         }
         check_distinct(table, "methods", methods_);
         check_distinct(table, "projected", projected_);
-        settings_ = table.finish();
+        settings_ = resolved_release(release_) + table.finish();
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        constexpr Bounds durations{.low = 10, .high = 1e8, .is_positive = true},
+            costs{.low = 10, .high = 1e6, .is_positive = true};
+        visit({"duration_s", "of the motion", "s", durations}, duration_s_);
+        visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100)}, points_per_decade_);
+        visit({"evaluations_per_s", "of the right-hand side, a second of motion: the same for all methods", "", costs},
+              spec_.evaluations_per_s);
+        visit({"methods", "names of methods", "", {}, "all that step chains"}, methods_);
+        visit({"projected", "methods that are also shown with projection onto the constraints"}, projected_);
     }
 
     std::size_t trials() const override { return runs_.size(); }
@@ -146,25 +153,17 @@ public:
         return all;
     }
 
-    std::string resolved() const override { return resolved_release(release_) + settings_; }
-
 private:
     /// From the first second on, at three digits.
-    void read_times(SettingsReader& table) {
-        double duration = 1e5;
-        table.read_positive("duration_s", duration);
-        constexpr double least = 10, most = 1e8;
-        if (duration < least || duration > most)
-            throw table.fault("duration_s", "must be from {} to {}; it is {}", least, most, duration);
-        table.read_whole("points_per_decade", points_per_decade_, 1, 100);
+    void find_times() {
         for (int i = 0;; ++i) {
             const int decade = i / points_per_decade_;
             const double part = std::pow(10, static_cast<double>(i % points_per_decade_) / points_per_decade_);
             const double time = std::round(100 * part) / 100 * std::pow(10, decade);
-            if (time >= duration) break;
+            if (time >= duration_s_) break;
             spec_.times_s.push_back(time);
         }
-        spec_.times_s.push_back(duration);
+        spec_.times_s.push_back(duration_s_);
     }
 
     static const MethodEntry& known(const TomlReader& table, std::string_view key, const std::string& name) {
@@ -275,6 +274,7 @@ private:
 
     SideSpec release_;
     DriftSpec spec_;
+    double duration_s_ = 1e5;
     int points_per_decade_ = 10;
     std::vector<std::string> methods_, projected_;
     std::vector<DriftMethod> runs_;
@@ -282,6 +282,6 @@ private:
 
 }  // namespace
 
-const FigureKind drift_kind{"drift", read_as<Drift>};
+const FigureKind drift_kind = kind_of<Drift>("drift", FigureKind::System::release);
 
 }  // namespace doppel

@@ -3,8 +3,6 @@
 #include "integrate/flips.hpp"
 #include "numeric/nan.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,27 +19,37 @@ struct CheckRow {
 
 /// The time to the first flip over all releases θ1 × θ2. A trial is a row of the map; the last trials compare some
 /// random releases with a reference ten thousand times finer.
-class FlipMap final : public FigureWork {
+class FlipMap final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "flip_map";
+    FlipMap() = default;
     explicit FlipMap(FigureReader& reader) : release_(reader.release()) {
-        auto system = reader.table("system");
+        auto system = reader.document.table(reader.top, "system");
         if (release_.links() != 2 || system.has("angle_deg"))
             throw system.fault(system.has("angle_deg") ? "angle_deg" : "links",
                                "is not for a flip map, which releases two links at all angles");
-        auto table = reader.table("flip_map");
-        table.read_whole("columns", columns_, 2, 20'000);
-        table.read_whole("rows", rows_, 2, 20'000);
-        table.read_positive("duration_s", spec_.duration);
-        spec_.tolerance = flip_tolerance(spec_.duration);
-        table.read_positive("tolerance", spec_.tolerance);
-        constexpr double finest = 1e-15;
-        if (spec_.tolerance < finest)
-            throw table.fault("tolerance", "must be at least {}; it is {}", finest, spec_.tolerance);
-        table.read_whole("checked", checked_, 0, 100'000);
-        settings_ = table.finish();
+        auto table = reader.settings(*this);
+        settings_ = fmt::format("{}omega_deg_per_s = {}\n{}", resolved_chain(release_),
+                                toml_value(release_.omega_deg_per_s), table.finish());
         pendulum_ = chain_of(release_).cast<double>();
         const bool at_rest = pendulum_.rate[0] == 0 && pendulum_.rate[1] == 0;
         map_trials_ = static_cast<std::size_t>(at_rest ? (rows_ + 1) / 2 : rows_);
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        constexpr auto cells = from_to(2, 20'000);
+        visit({"columns", "angles of the upper link, from −180° to 180°", "", cells}, columns_);
+        visit({"rows", "angles of the lower link", "", cells}, rows_);
+        visit({"duration_s", "how long a flip is waited for", "s", positive}, spec_.duration);
+        spec_.tolerance = flip_tolerance(spec_.duration);
+        visit({"tolerance",
+               "of the Taylor series: what the last terms of a step may amount to",
+               "rad/s",
+               {.low = 1e-15, .is_positive = true},
+               "1e-8 up to 20 s, for longer times less"},
+              spec_.tolerance);
+        visit({"checked", "random releases that are compared with a reference", "", from_to(0, 100'000)}, checked_);
     }
 
     std::size_t trials() const override {
@@ -116,12 +124,6 @@ public:
                 {"checked_within_10_ms", checked_ == 0 ? 1 : static_cast<double>(found.agreeing) / checked_},
                 {"within_10_ms_at_least", share_at_least(found.agreeing, checked_)},
                 {"checked_median_error_s", found.median}};
-    }
-
-    std::string resolved() const override {
-        std::vector<std::string> rates;
-        for (const auto& rate : release_.omega_deg_per_s) rates.push_back(text_of(rate));
-        return fmt::format("{}omega_deg_per_s = [{}]\n{}", resolved_chain(release_), fmt::join(rates, ", "), settings_);
     }
 
 private:
@@ -235,6 +237,6 @@ private:
 
 }  // namespace
 
-const FigureKind flip_map_kind{"flip-map", read_as<FlipMap>};
+const FigureKind flip_map_kind = kind_of<FlipMap>("flip-map", FigureKind::System::release);
 
 }  // namespace doppel

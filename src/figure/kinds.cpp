@@ -1,23 +1,16 @@
 #include "figure/kinds.hpp"
 
-#include "scene/resolved.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <array>
 
 namespace doppel {
 
-void SettingsReader::read_texts(std::string_view key, std::vector<std::string>& into) {
-    if (const auto texts = TomlReader::read_texts(key)) into = *texts;
-    std::vector<std::string> quoted;
-    for (const auto& text : into) quoted.push_back(toml_text(text));
-    text_ += fmt::format("{} = [{}]\n", key, fmt::join(quoted, ", "));
-}
-
 Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
     Preset preset;
     preset.name = preset.title = name;
-    read_clock(scene, preset);
+    clock_fields(scene, preset);
     std::vector<TomlReader*> levels{&top};
     levels.insert(levels.end(), more.begin(), more.end());
     read_sides(document, levels, preset);
@@ -27,7 +20,7 @@ Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
 
 SideSpec FigureReader::release() {
     SideSpec side;
-    auto system = table("system");
+    auto system = document.table(top, "system");
     read_release(system, side);
     return side;
 }
@@ -37,7 +30,7 @@ const MethodEntry& method_named(const TomlReader& table, const std::string& name
     throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
 }
 
-const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const std::string_view> names) {
+const ReleaseParameter& release_parameter(std::string_view name) {
     static constexpr std::array<ReleaseParameter, 4> all{
         {{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& s, const Quad& x) { s.angle_deg[0] = x; }, 30, false},
          {"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& s, const Quad& x) { s.angle_deg[1] = x; }, 30, false},
@@ -45,8 +38,6 @@ const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const st
           true},
          {"length_ratio", "length ratio l₁/l₂", 2,
           [](SideSpec& s, const Quad& x) { s.length_m[0] = x * s.length_m[1]; }, 0, true}}};
-    std::string name(names.front());
-    table.read_choice("parameter", name, names);
     return *std::find_if(all.begin(), all.end(), [&](const auto& parameter) { return parameter.name == name; });
 }
 
@@ -54,6 +45,98 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
     for (const auto& name : names)
         if (std::count(names.begin(), names.end(), name) > 1)
             throw table.fault(key, "must differ; \"{}\" is named more than once", name);
+}
+
+namespace {
+
+std::string number_words(std::size_t number) {
+    constexpr std::array words{"no", "one", "two", "three", "four", "five", "six"};
+    return number < words.size() ? words[number] : grouped(static_cast<long>(number));
+}
+
+std::string degrees(const Quad& angle) {
+    return angle == 0 ? "0" : text_of(angle) + "°";
+}
+
+std::string system_words(const Scene& scene) {
+    const auto model = scene.a.motion.model;
+    const auto count = scene.preset.a.particles.empty() ? scene.preset.a.links() : scene.preset.a.particles.size();
+    const bool particles = !scene.preset.a.particles.empty() || model == Model::constraints;
+    auto words = fmt::format("{} {}{}", number_words(count), particles ? "particle" : "link", count == 1 ? "" : "s");
+    if (model == scene.b.motion.model)
+        words += model == Model::angles ? " in angles" : model == Model::constraints ? " on rods" : " as a mechanism";
+    return words;
+}
+
+/// The angles that both sides are released at: "90°/90°", or those that are named, "θ₂ = θ₃ = 0".
+std::string release_words(const Scene& scene, std::optional<std::size_t> swept_angle) {
+    constexpr std::size_t most = 3;
+    const auto &angles = scene.preset.a.angle_deg, &others = scene.preset.b.angle_deg;
+    if (!scene.preset.a.particles.empty() || angles.size() > most) return "";
+    std::string all, named;
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        all += fmt::format("{}{}°", all.empty() ? "" : "/", text_of(angles[i]));
+        if (i == swept_angle || angles[i] != others[i]) continue;
+        const bool same = !named.empty() && i > 0 && angles[i] == angles[i - 1] && i - 1 != swept_angle;
+        const auto name = fmt::format("θ{}", subscript(i + 1)), value = degrees(angles[i]);
+        if (same)
+            named.insert(named.rfind(" = "), " = " + name);
+        else
+            named += fmt::format("{}{} = {}", named.empty() ? "" : ", ", name, value);
+    }
+    return !swept_angle && angles == others ? all : named;
+}
+
+std::string rate_words(const SideSpec& a, const SideSpec& b) {
+    const auto& rates = a.omega_deg_per_s;
+    constexpr std::size_t most = 3;
+    const bool at_rest = std::all_of(rates.begin(), rates.end(), [](const Quad& rate) { return rate == 0; });
+    if (!a.particles.empty() || at_rest || rates != b.omega_deg_per_s || rates.size() > most) return "";
+    std::vector<std::string> texts;
+    for (const auto& rate : rates) texts.push_back(text_of(rate));
+    return fmt::format("ω = {} °/s", fmt::join(texts, "/"));
+}
+
+/// What both sides have in common of how they are stepped.
+std::string method_words(const Scene& scene) {
+    std::vector<std::string> words;
+    const auto &a = scene.a, &b = scene.b;
+    const auto &accuracy = scene.preset.a.accuracy, &other = scene.preset.b.accuracy;
+    if (accuracy && other && *accuracy == *other) {
+        words.push_back(fmt::format("accuracy {} rad", text_of(*accuracy)));
+    } else {
+        if (a.method.name == b.method.name) words.emplace_back(a.method.title);
+        if (step_control_text(a) == step_control_text(b)) words.push_back(step_control_text(a));
+    }
+    if (a.motion.precision == Precision::in_quad && b.motion.precision == Precision::in_quad)
+        words.emplace_back("in quad");
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace
+
+bool released_alike(const SideSpec& a, const SideSpec& b) {
+    const auto same = [](const ParticleSpec& one, const ParticleSpec& other) {
+        return one.mass_kg == other.mass_kg && one.position_m == other.position_m &&
+               one.velocity_m_per_s == other.velocity_m_per_s;
+    };
+    return a.mass_kg == b.mass_kg && a.length_m == b.length_m && a.angle_deg == b.angle_deg &&
+           a.omega_deg_per_s == b.omega_deg_per_s &&
+           std::equal(a.particles.begin(), a.particles.end(), b.particles.begin(), b.particles.end(), same);
+}
+
+std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_angle, const std::string& apart) {
+    std::vector<std::string> parts{system_words(scene)};
+    const auto add = [&](std::string words) {
+        if (!words.empty()) parts.push_back(std::move(words));
+    };
+    add(release_words(scene, swept_angle));
+    add(rate_words(scene.preset.a, scene.preset.b));
+    add(apart);
+    if (const auto sides = side_captions(scene); sides[0].heading != "a")
+        add(fmt::format("{} against {}", sides[0].heading, sides[1].heading));
+    const auto method = method_words(scene);
+    return fmt::format("{}{}{}", fmt::join(parts, ", "), method.empty() ? "" : "; ", method);
 }
 
 std::span<const FigureKind> figure_kinds() {

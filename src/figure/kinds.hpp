@@ -1,74 +1,42 @@
 #pragma once
 
 #include "analysis/external_method.hpp"
-#include "figure/work.hpp"
+#include "figure/experiment.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "scene/preset_tables.hpp"
-#include "scene/resolved.hpp"
+#include "scene/field_table.hpp"
+#include "scene/preset_fields.hpp"
+#include "scene/scene.hpp"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
 namespace doppel {
 
-/// Reads the table that is a kind's own, and keeps what it read as TOML, defaults included: one list of keys for both.
+/// Reads the table that is a kind's own, and keeps what it read as TOML, defaults included: reader(field, member).
 class SettingsReader : public TomlReader {
 public:
-    explicit SettingsReader(TomlReader table)
-        : TomlReader(std::move(table)), text_(fmt::format("\n[{}]\n", bare_name())) {}
+    explicit SettingsReader(TomlReader table) : TomlReader(std::move(table)) {}
 
-    void read_whole(std::string_view key, int& into, int least, int most) {
-        keep(key, into, [&] { TomlReader::read_whole(key, into, least, most); });
+    template <class T>
+    void operator()(const Field& field, T& into) {
+        TomlReader::operator()(field, into);
+        if constexpr (!std::is_same_v<T, Rational>)
+            writer_(field, into);
+        else if (field.only.holds)
+            writer_.add(field.key, toml_text(into.text()));
     }
-    void read_truth(std::string_view key, bool& into) {
-        keep(key, into, [&] { TomlReader::read_truth(key, into); });
-    }
-    template <class Number>  // double or Quad
-    void read_number(std::string_view key, Number& into) {
-        keep(key, into, [&] { TomlReader::read_number(key, into); });
-    }
-    template <class Number>
-    void read_positive(std::string_view key, Number& into) {
-        keep(key, into, [&] { TomlReader::read_positive(key, into); });
-    }
-    void read_positive_ratio(std::string_view key, Rational& into) {
-        keep(key, into, [&] { TomlReader::read_positive_ratio(key, into); });
-    }
-    void read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most) {
-        keep(key, into, [&] { TomlReader::read_positive_list(key, into, most); });
-    }
-    void read_text(std::string_view key, std::string& into) {
-        keep(key, into, [&] { TomlReader::read_text(key, into); });
-    }
-    void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices) {
-        keep(key, into, [&] { TomlReader::read_choice(key, into, choices); });
-    }
-    void read_texts(std::string_view key, std::vector<std::string>& into);
 
     /// "[table]" and its keys. Throws as TomlReader::finish() does.
-    const std::string& finish() const {
+    std::string finish() const {
         TomlReader::finish();
-        return text_;
+        return fmt::format("\n[{}]\n{}", bare_name(), writer_.text());
     }
 
 private:
-    template <class Value, class Read>
-    void keep(std::string_view key, const Value& value, Read&& read) {
-        read();
-        if constexpr (std::is_same_v<Value, Quad>)
-            text_ += fmt::format("{} = {}\n", key, text_of(value));
-        else if constexpr (std::is_same_v<Value, Rational>)
-            text_ += fmt::format("{} = {}\n", key, toml_text(value.text()));
-        else if constexpr (std::is_same_v<Value, std::string>)
-            text_ += fmt::format("{} = {}\n", key, toml_text(value));
-        else if constexpr (std::is_same_v<Value, std::vector<double>>)
-            text_ += fmt::format("{} = [{}]\n", key, fmt::join(value, ", "));
-        else
-            text_ += fmt::format("{} = {}\n", key, value);
-    }
-    std::string text_;
+    TomlWriter writer_;
 };
 
 /// A preset being read: each kind of figure takes the tables that are its own.
@@ -78,8 +46,14 @@ struct FigureReader {
     TomlReader &top, &scene, &chart;  // of [chart], a kind may take keys of its own
     std::span<const ExternalMethod> external_methods = {};
 
-    SettingsReader table(std::string_view key) { return SettingsReader(document.table(top, key)); }
-    /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_tables.hpp).
+    /// The kind's own table, all of its fields read.
+    template <class Kind>
+    SettingsReader settings(Kind& kind) {
+        SettingsReader table(document.table(top, Kind::table_key));
+        kind.fields(table);
+        return table;
+    }
+    /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_fields.hpp).
     Preset pair(const std::vector<TomlReader*>& more = {});
     /// The chain that [system] describes, where the figure itself knows how to step it.
     SideSpec release();
@@ -101,27 +75,59 @@ struct ReleaseParameter {
     double every;   // between ticks; 0 = as fits
     bool is_ratio;  // > 0
 };
-/// `parameter`, one of these, of which the first is the default. Throws Error (exit 2).
-const ReleaseParameter& read_parameter(SettingsReader& table, std::span<const std::string_view> names);
+const ReleaseParameter& release_parameter(std::string_view name);
+/// `parameter`, one of these names.
+template <class Visit>
+void parameter_field(Visit& visit, std::span<const std::string_view> names, const ReleaseParameter*& parameter) {
+    std::string name(parameter->name);
+    visit({.key = "parameter", .help = "what the releases differ in", .names = names}, name);
+    parameter = &release_parameter(name);
+}
 
 /// Throws Error (exit 2) where one of the names of a key is there twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
 
+/// What moves in a figure of pairs, and how it is stepped: "two links in angles, θ₂ = 0, twins 0.003° apart; explicit
+/// Euler, 1/30 000 s". What sets the sides apart follows as "m₁ = 1 kg against m₁ = 1.01 kg".
+///
+/// `swept_angle`  the link, from 0, whose angle of release is not the same in all pairs and so is left out
+/// `apart`        what else sets the sides of all pairs apart, "twins 0.003° apart"; then it is not part of `scene`
+std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_angle = {},
+                          const std::string& apart = "");
+
+/// Whether both sides are released alike: then their distance at the start is 0.
+bool released_alike(const SideSpec& a, const SideSpec& b);
+
+/// An entry of the list of kinds.
 struct FigureKind {
-    std::string_view name;  // of [scene] kind
-    std::shared_ptr<const FigureWork> (*read)(FigureReader&);
+    enum class System { none, release, pair };  // what moves
+    std::string_view name;                      // of [scene] kind
+    System system;
+    std::shared_ptr<const Experiment> (*read)(FigureReader&);
+    std::vector<FieldTable> (*tables)();  // its own, with their defaults
 };
 
-/// All of them; this list stands in figure/kinds.cpp and its names in scene/preset_tables.hpp.
+/// A kind is a class that is made of a FigureReader. If it has keys of its own, `table_key` names their table, and
+/// fields(visit) visits each with its member, as the lists of scene/preset_fields.hpp do; other_table() lists further
+/// ones.
+template <class Kind>
+constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
+    return {name, system,
+            [](FigureReader& reader) -> std::shared_ptr<const Experiment> { return std::make_shared<Kind>(reader); },
+            [] {
+                std::vector<FieldTable> tables;
+                if constexpr (requires { Kind::table_key; })
+                    Kind().fields(tables.emplace_back(FieldTable{fmt::format("[{}]", Kind::table_key)}));
+                if constexpr (requires { Kind::other_table(); }) tables.push_back(Kind::other_table());
+                return tables;
+            }};
+}
+
+/// All of them; the list stands in figure/kinds.cpp and its names in scene/preset_fields.hpp.
 std::span<const FigureKind> figure_kinds();
 
 // One file each.
 extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, flip_map_kind,
     links_kind, work_precision_kind, stability_kind, drift_kind, audit_kind;
-
-template <class Kind>
-std::shared_ptr<const FigureWork> read_as(FigureReader& reader) {
-    return std::make_shared<Kind>(reader);
-}
 
 }  // namespace doppel

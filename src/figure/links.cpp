@@ -2,8 +2,6 @@
 #include "base/clock.hpp"
 #include "figure/kinds.hpp"
 #include "integrate/motion.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,18 +20,25 @@ struct ExponentRow {
 };
 
 /// Chains of more and more links, all released alike: their largest exponent, and what a step costs.
-class Links final : public FigureWork {
+class Links final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "links";
+    Links() = default;
     explicit Links(FigureReader& reader) : release_(reader.release()) {
-        auto table = reader.table("links");
-        table.read_whole("from", from_, 1, 1000);
-        table.read_whole("to", to_, from_, 1000);
-        table.read_positive("duration_s", spec_.duration_s);
+        auto table = reader.settings(*this);
         spec_.transient_s = spec_.duration_s / 10;
-        settings_ = table.finish();
+        settings_ = resolved_release(release_) + table.finish();
         if (release_.links() != 1)
             throw table.fault("from", "takes a [system] of one link, which all links are like; it has {}",
                               release_.links());
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        constexpr int most = 1000;
+        visit({"from", "links of the shortest chain", "", from_to(1, most)}, from_);
+        visit({"to", "links of the longest", "", from_to(from_, most)}, to_);
+        visit({"duration_s", "of the motion that an exponent is found by", "s", positive}, spec_.duration_s);
     }
 
     /// The costs, all in one, so that they are measured in turn; then the exponent of each chain.
@@ -84,8 +89,6 @@ public:
                 {"constraints_step_ns_a_link_of_the_longest", rows_of<CostRow>(numbers[0]).back().constraints / to_}};
     }
 
-    std::string resolved() const override { return resolved_release(release_) + settings_; }
-
 private:
     std::size_t chains() const { return static_cast<std::size_t>(to_ - from_) + 1; }
     std::size_t links(std::size_t chain) const { return static_cast<std::size_t>(from_) + chain; }
@@ -129,6 +132,6 @@ private:
 
 }  // namespace
 
-const FigureKind links_kind{"links", read_as<Links>};
+const FigureKind links_kind = kind_of<Links>("links", FigureKind::System::release);
 
 }  // namespace doppel

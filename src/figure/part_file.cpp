@@ -176,7 +176,7 @@ PartHeader header_of(const FigurePreset& figure, int shard, int of) {
             std::string(version()),
             std::string(revision()),
             sha256_of_text(figure.resolved_work()),
-            figure.work->trials(),
+            figure.experiment->trials(),
             shard,
             of};
 }
@@ -205,10 +205,10 @@ std::vector<fs::path> other_resumes(const fs::path& folder, const PartHeader& he
     return found;
 }
 
-void PartFile::take(const FigureWork& work, KnownTrials& into) {
+void PartFile::take(const Experiment& experiment, KnownTrials& into) {
     for (std::size_t i = 0; i < trials.size(); ++i) {
         auto& [number, numbers] = trials[i];
-        if (number < header.first() || number >= header.last() || !work.fits(number, numbers)) {
+        if (number < header.first() || number >= header.last() || !experiment.fits(number, numbers)) {
             damaged_line = i + 2;
             break;
         }
@@ -272,7 +272,7 @@ KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, con
             throw bad_input("{} and {} are both part {}/{}; remove one of them", seen.string(), path.string(),
                             header.shard, of);
         seen = path;
-        part.take(*figure.work, all);
+        part.take(*figure.experiment, all);
         const auto refuse = [&](const std::string& why) {
             throw io_failed("{} {}; compute it again with --shard {}/{}", path.string(), why, header.shard, of);
         };

@@ -47,9 +47,9 @@ struct PartFile {
     std::vector<Trial> trials;     // a line each, up to the first that is damaged
     std::size_t damaged_line = 0;  // that line, the header being 1: not as it was written; 0 = none
 
-    /// Moves the numbers to where they belong. A trial whose numbers cannot be its own (FigureWork::fits) is a damaged
-    /// line. `into` has room for all trials of the work, whose file this is.
-    void take(const FigureWork& work, KnownTrials& into);
+    /// Moves the numbers to where they belong. A trial whose numbers cannot be its own (Experiment::fits) is a damaged
+    /// line. `into` has room for all trials of the experiment, whose file this is.
+    void take(const Experiment& experiment, KnownTrials& into);
 };
 
 /// Reads a file that PartWriter wrote; a last line without an end (the writer was killed) is left out. Every number is

@@ -1,7 +1,6 @@
 #include "figure/preset.hpp"
 
 #include "figure/kinds.hpp"
-#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +8,63 @@
 namespace doppel {
 namespace {
 
+constexpr std::string_view film_introduction = R"(# Presets: all tables and keys
+
+A preset is a TOML file that describes two pendulums and the film of them, or a figure. Every key has a default; units
+are part of the key. `doppel show NAME` prints a preset, `doppel check FILE` tells what it would run, and
+`--set TABLE.KEY=VALUE` sets a key from the command line. A key that is not in these tables is an error.
+
+```toml
+title = "Three thousandths of a degree"
+
+[scene]
+duration_s = 30
+
+[system]                  # both sides
+angle_deg = [90, 90]
+
+[b]                       # the second side, where it differs
+angle_deg = [90.003, 90]
+```
+
+Side a has the keys of `[system]` with those of `[a]` in their place, side b those of `[b]`. Arrays with one number a
+link may also be one number for all links. `[[a.particle]]`, `[[a.constraint]]` and `[[a.force]]` with the `name` of one
+in `[system]` change it; others are added.
+)";
+
+constexpr std::string_view figure_introduction = R"(
+# Presets of figures
+
+`kind` of `[scene]` says which figure it is; [figures](figures.md) shows them. In place of `[video]` there are `[chart]`
+and a table that is the kind's own.
+)";
+
+/// The keys outside all tables.
+template <class Visit>
+void top_fields(Visit& visit, FigurePreset& figure) {
+    visit(title_field, figure.title);
+    visit({.key = "subtitle",
+           .help = "below the title",
+           .absent = "of pairs: what moves, and how it is stepped",
+           .is_drawn = true},
+          figure.subtitle);
+    visit(
+        {.key = "erratum", .help = "below the picture: where a printed caption and the truth differ", .is_drawn = true},
+        figure.erratum);
+    visit({.key = "captions", .help = "below the picture", .is_drawn = true}, figure.captions);
+}
+
+/// [chart]
+template <class Visit, class Chart>
+void chart_fields(Visit& visit, Chart& chart) {
+    visit(size_field, chart.size);
+    theme_field(visit, chart.theme);
+    visit({"scale", "picture pixels to a pixel of `size`: 2 for print", "", {.low = 0, .high = 8, .is_open = true}},
+          chart.scale);
+}
+
 void read_chart(TomlReader& table, ChartSpec& chart) {
-    read_picture_size(table, chart.size);
-    read_theme(table, chart.theme);
-    table.read_positive("scale", chart.scale);
-    constexpr double most = 8;
-    if (chart.scale > most) throw table.fault("scale", "must be at most {}; it is {}", most, chart.scale);
+    chart_fields(table, chart);
     constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL takes, which says so itself
     const double width = chart.scale * chart.size.width, height = chart.scale * chart.size.height;
     if (std::min(width, height) < smallest || std::max(width, height) > largest)
@@ -31,18 +81,15 @@ Size FigurePreset::picture_size() const {
 }
 
 std::string FigurePreset::resolved_work() const {
-    return fmt::format("[scene]\nkind = {}\n{}\n[chart]\n{}", toml_text(kind), work->resolved(),
-                       work->resolved_chart());
+    return fmt::format("[scene]\nkind = {}\n{}\n[chart]\n{}", toml_text(kind), experiment->resolved(),
+                       experiment->resolved_chart());
 }
 
 std::string FigurePreset::resolved() const {
-    std::vector<std::string> quoted;
-    for (const auto& caption : captions) quoted.push_back(toml_text(caption));
-    return fmt::format(
-        "title = {}\nsubtitle = {}\ncaptions = [{}]\nerratum = {}\n\n{}size = [{}, {}]\ntheme = {}\nscale = "
-        "{}\n",
-        toml_text(title), toml_text(subtitle), fmt::join(quoted, ", "), toml_text(erratum), resolved_work(),
-        chart.size.width, chart.size.height, toml_text(chart.theme), chart.scale);
+    TomlWriter writer;
+    chart_fields(writer, chart);
+    return fmt::format("title = {}\nsubtitle = {}\ncaptions = {}\nerratum = {}\n\n{}{}", toml_text(title),
+                       toml_text(subtitle), toml_value(captions), toml_text(erratum), resolved_work(), writer.text());
 }
 
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
@@ -51,11 +98,8 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     FigurePreset figure;
     figure.name = figure.title = source.name;
     TomlReader top(&document.root, "", document.path, document.texts);
-    top.read_drawn_title(figure.title);
-    top.read_drawn("subtitle", figure.subtitle);
-    top.read_drawn("erratum", figure.erratum);
-    if (const auto captions = top.read_texts("captions")) figure.captions = *captions;
-    for (const auto& caption : figure.captions) top.demand_drawable("captions", caption);
+    top.demand_title(figure.name);
+    top_fields(top, figure);
 
     auto scene = document.table(top, "scene");
     figure.kind = read_kind(scene);
@@ -64,12 +108,44 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     auto chart = document.table(top, "chart");
     FigureReader reader{source.name, document, top, scene, chart, external_methods};
     for (const auto& kind : figure_kinds())
-        if (kind.name == figure.kind) figure.work = kind.read(reader);
-    if (!top.has("subtitle")) figure.subtitle = figure.work->subtitle();
+        if (kind.name == figure.kind) figure.experiment = kind.read(reader);
+    if (!top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();
     scene.finish();
     read_chart(chart, figure.chart);
     top.finish();
     return figure;
+}
+
+std::vector<FieldTable> figure_tables() {
+    FigurePreset figure;
+    const SideSpec side;
+    FieldTable top{"title, subtitle, erratum, captions"}, chart{"[chart]"}, release{"[system]"};
+    top_fields(top, figure);
+    chart_fields(chart, figure.chart);
+    chain_fields(release, side);
+    gravity_field(release, side);
+    std::vector<std::string_view> release_keys;
+    for (const auto& field : release.fields) release_keys.push_back(field.key);
+    const std::string systems[] = {
+        "", fmt::format(" What moves: `[system]`, of which it takes\n`{}`.", fmt::join(release_keys, "`, `")),
+        " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and `sample_hz` of `[scene]`, as in a film."};
+    std::vector<FieldTable> all{top, chart};
+    for (const auto& kind : figure_kinds())
+        for (auto& table : kind.tables()) {
+            if (table.text.empty())
+                table.text =
+                    fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, systems[static_cast<std::size_t>(kind.system)]);
+            all.push_back(std::move(table));
+        }
+    return all;
+}
+
+std::string preset_reference() {
+    std::string text(film_introduction);
+    for (const auto& table : film_tables()) text += table.markdown();
+    text += figure_introduction;
+    for (const auto& table : figure_tables()) text += table.markdown();
+    return text;
 }
 
 }  // namespace doppel

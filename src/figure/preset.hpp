@@ -1,7 +1,8 @@
 #pragma once
 
 #include "analysis/external_method.hpp"
-#include "figure/work.hpp"
+#include "figure/experiment.hpp"
+#include "scene/field_table.hpp"
 #include "scene/preset.hpp"
 
 #include <memory>
@@ -18,12 +19,12 @@ struct ChartSpec {
 /// A figure as a preset file describes it: read, complete and checked, nothing computed yet.
 struct FigurePreset {
     std::string name;             // of the file, without folder and ending
-    std::string title, subtitle;  // where they are not given: the name; what the work says of itself
+    std::string title, subtitle;  // where they are not given: the name; what the experiment says of itself
     std::vector<std::string> captions;
     std::string erratum;  // where the study's printed caption and the truth differ
     std::string kind;     // of [scene]
     ChartSpec chart;
-    std::shared_ptr<const FigureWork> work;
+    std::shared_ptr<const Experiment> experiment;
 
     /// The picture's size, px.
     Size picture_size() const;
@@ -36,5 +37,11 @@ struct FigurePreset {
 /// Errors as read_preset()'s. Work–precision diagrams also show `external_methods`, which outlive the figure.
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {},
                          std::span<const ExternalMethod> external_methods = {});
+
+/// What all figures have, then the tables that are a kind's own (figure/kinds.hpp).
+std::vector<FieldTable> figure_tables();
+
+/// docs/presets.md: all tables and keys of films and figures.
+std::string preset_reference();
 
 }  // namespace doppel

@@ -5,7 +5,6 @@
 #include "base/machine.hpp"
 #include "base/parallel_for.hpp"
 #include "integrate/widths.hpp"
-#include "output/transaction.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
 #include "output/workers.hpp"
@@ -23,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
-    if (const auto why = figure.work->nothing_to_draw(trials)) throw method_failed("{}: {}", figure.name, *why);
+    if (const auto why = figure.experiment->nothing_to_draw(trials)) throw method_failed("{}: {}", figure.name, *why);
     Figure page{.title = figure.title, .subtitle = figure.subtitle};
-    figure.work->draw(trials, page);
+    figure.experiment->draw(trials, page);
     page.captions.insert(page.captions.begin(), figure.captions.begin(), figure.captions.end());
     if (!figure.erratum.empty()) page.captions.push_back("Erratum: " + figure.erratum);
     return page;
@@ -62,7 +61,7 @@ struct FigureRecord {
 void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
                     const FigureRecord& record) {
     Json findings = Json::object();
-    for (const auto& finding : figure.work->findings(trials))
+    for (const auto& finding : figure.experiment->findings(trials))
         std::visit([&](const auto& value) { findings[finding.key] = value; }, finding.value);  // not a number: null
 
     Json manifest = {
@@ -116,8 +115,8 @@ public:
             files.finished(png);
             record.gl = renderer.description();
             check_stop();
-            Csv table(files.file(csv), figure.work->columns());
-            figure.work->write_rows(trials, table);
+            Csv table(files.file(csv), figure.experiment->columns());
+            figure.experiment->write_rows(trials, table);
             table.finish();
             files.finished(csv);
             record.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
@@ -172,7 +171,7 @@ public:
                 figure, header, FilePlace(folder, name), jobs,
                 ComputationReport{[&report, k](const FigureProgress& p) { report.progress(k, p); },
                                   [&report, k](const std::string& s) { report.note(k, s); }}));
-            auto& groups = figure.work->measures_time() ? timed_groups_ : groups_;
+            auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
         }

@@ -2,8 +2,6 @@
 
 #include "figure/kinds.hpp"
 #include "image/theme.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <cmath>
 
@@ -28,22 +26,33 @@ std::vector<CrossingRow> crossings_of(const TrialNumbers& orbit) {
 }
 
 /// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy.
-class Section final : public FigureWork {
+class Section final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "section";
+    Section() = default;
     explicit Section(FigureReader& reader) : release_(reader.release()) {
-        auto system = reader.table("system");
+        auto system = reader.document.table(reader.top, "system");
         for (const char* key : {"angle_deg", "omega_deg_per_s"})
             if (system.has(key))
                 throw system.fault(key, "is not for a section, whose orbits start all over their energy");
-        auto table = reader.table("section");
+        auto table = reader.settings(*this);
         if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
-        table.read_positive_list("energy_J", energies_, 6);
-        table.read_whole("orbits", orbits_, 1, 10'000);
-        table.read_whole("crossings", spec_.crossings, 1, 1'000'000);
-        table.read_positive("tolerance", spec_.tolerance);
-        settings_ = table.finish();
+        settings_ = resolved_chain(release_) + table.finish();
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({.key = "energy_J",
+               .help = "of each panel's orbits, above hanging at rest",
+               .unit = "J",
+               .bounds = positive,
+               .most = 6},
+              energies_);
+        visit({"orbits", "of each energy", "", from_to(1, 10'000)}, orbits_);
+        visit({"crossings", "of each orbit", "", from_to(1, 1'000'000)}, spec_.crossings);
+        visit({"tolerance", "of taylor: relative error of a step", "", positive}, spec_.tolerance);
     }
 
     std::size_t trials() const override { return energies_.size() * orbits(); }
@@ -74,9 +83,8 @@ public:
             plot.square = true;
             for (std::size_t orbit = 0; orbit < orbits(); ++orbit) {
                 Curve curve{.mark = Mark::points, .hue = static_cast<int>(orbit)};
-                for (const auto& crossing : crossings_of(numbers[panel * orbits() + orbit])) {
+                for (const auto& crossing : crossings_of(numbers[panel * orbits() + orbit]))
                     add_point(curve, crossing.theta2, crossing.p2);
-                }
                 plot.curves.push_back(std::move(curve));
             }
             figure.panels.push_back(std::move(plot));
@@ -90,8 +98,6 @@ public:
         for (const auto& orbit : numbers) points += orbit.front();
         return {{"points", points}};
     }
-
-    std::string resolved() const override { return resolved_chain(release_) + settings_; }
 
 private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
@@ -112,6 +118,6 @@ private:
 
 }  // namespace
 
-const FigureKind section_kind{"section", read_as<Section>};
+const FigureKind section_kind = kind_of<Section>("section", FigureKind::System::release);
 
 }  // namespace doppel

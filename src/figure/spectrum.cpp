@@ -2,8 +2,6 @@
 
 #include "figure/kinds.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <cmath>
 #include <numeric>
@@ -12,20 +10,25 @@ namespace doppel {
 namespace {
 
 /// All Lyapunov exponents of one motion, as their estimates settle.
-class Spectrum final : public FigureWork {
+class Spectrum final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "spectrum";
+    Spectrum() = default;
     explicit Spectrum(FigureReader& reader) : release_(reader.release()) {
-        auto table = reader.table("spectrum");
+        auto table = reader.settings(*this);
         constexpr std::size_t most_links = 4;
         if (release_.links() > most_links)
             throw table.fault("duration_s", "is for 1 to {} links; there are {}", most_links, release_.links());
-        table.read_positive("duration_s", spec_.duration_s);
-        table.read_whole("samples", spec_.samples, 2, 100'000);
-        table.read_positive("tolerance", spec_.tolerance);
-        constexpr double finest = 1e-14, coarsest = 1e-2;
-        if (spec_.tolerance < finest || spec_.tolerance > coarsest)
-            throw table.fault("tolerance", "must be from {} to {}; it is {}", finest, coarsest, spec_.tolerance);
-        settings_ = table.finish();
+        settings_ = resolved_release(release_) + table.finish();
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({"duration_s", "of the motion", "s", positive}, spec_.duration_s);
+        visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000)},
+              spec_.samples);
+        constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true};
+        visit({"tolerance", "of dop853: relative error of a step", "", tolerances}, spec_.tolerance);
     }
 
     std::size_t trials() const override { return 1; }
@@ -57,9 +60,7 @@ public:
         const auto samples = samples_of(numbers);
         for (std::size_t i = 0; i < exponents(); ++i) {
             Curve curve{.label = "λ" + subscript(i + 1), .hue = static_cast<int>(i)};
-            for (const auto& sample : samples) {
-                add_point(curve, sample.time_s, sample.exponents[i]);
-            }
+            for (const auto& sample : samples) add_point(curve, sample.time_s, sample.exponents[i]);
             plot.curves.push_back(std::move(curve));
         }
         plot.rules.push_back({Rule::Orientation::horizontal, 0, ""});
@@ -82,8 +83,6 @@ public:
         all.push_back({"pair_mismatch_per_s", pair_mismatch(last)});
         return all;
     }
-
-    std::string resolved() const override { return resolved_release(release_) + settings_; }
 
 private:
     std::size_t exponents() const { return 2 * release_.links(); }
@@ -117,6 +116,6 @@ private:
 
 }  // namespace
 
-const FigureKind spectrum_kind{"spectrum", read_as<Spectrum>};
+const FigureKind spectrum_kind = kind_of<Spectrum>("spectrum", FigureKind::System::release);
 
 }  // namespace doppel

@@ -2,8 +2,6 @@
 #include "analysis/linear_stability.hpp"
 #include "figure/kinds.hpp"
 #include "numeric/nan.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,15 +25,41 @@ struct Cells {
 
 /// The energy error of each method over its step or tolerance and a parameter of the release, and the limit of linear
 /// theory. A trial is a column of one method's map: all releases at one step.
-class Stability final : public FigureWork {
+class Stability final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "stability";
+    Stability() = default;
     explicit Stability(FigureReader& reader) : release_(reader.release()) {
-        auto table = reader.table("stability");
-        read_rows(table);
-        read_methods(table);
-        read_columns(table);
-        settings_ = table.finish();
-        make_releases(reader.table("system"), table);
+        auto table = reader.settings(*this);
+        check_rows(table);
+        find_methods(table);
+        check_columns(table);
+        settings_ = resolved_release(release_) + table.finish();
+        make_releases(reader.document.table(reader.top, "system"), table);
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        static constexpr std::array<std::string_view, 2> parameters{"theta1_deg", "mass_ratio"};
+        static constexpr std::array<std::string_view, 3> models{"auto", "angles", "constraints"};
+        parameter_field(visit, parameters, parameter_);
+        if (parameter_->is_ratio) rows_ = {0.01, 10, rows_.count, true};
+        visit({"from", "the lowest release", "", {}, "0; of ratios 0.01"}, rows_.from);
+        visit({"to", "the highest, to 180; of ratios to 1e6", "", {}, "180; of ratios 10"}, rows_.to);
+        visit({"rows", "releases", "", from_to(1, 10'000)}, rows_.count);
+        visit({.key = "model", .help = "the equations; auto: angles where the method serves them", .names = models},
+              model_);
+        method_names_ = names_that_serve();
+        visit({"methods", "names of methods", "", {}, "all that serve the model"}, method_names_);
+        visit({"duration_s", "of each motion", "s", positive}, duration_);
+        const Only fixed{named(false), "is for methods of fixed step, of which none is named"};
+        const Only adaptive{named(true), "is for methods that go by a tolerance, of which none is named"};
+        constexpr Bounds tolerances{.low = 1e-15, .is_positive = true};
+        visit({"step_from_s", "the finest step", "s", positive, "", fixed}, steps_.from);
+        visit({"step_to_s", "the coarsest", "s", positive, "", fixed}, steps_.to);
+        visit({"tolerance_from", "of adaptive methods: the finest", "", tolerances, "", adaptive}, tolerances_.from);
+        visit({"tolerance_to", "of adaptive methods: the coarsest", "", positive, "", adaptive}, tolerances_.to);
+        visit({"columns", "steps, or tolerances", "", from_to(1, 10'000)}, steps_.count);
     }
 
     std::size_t trials() const override { return methods_.size() * columns_; }
@@ -107,74 +131,50 @@ public:
         return all;
     }
 
-    std::string resolved() const override { return resolved_release(release_) + settings_; }
-
 private:
-    void read_rows(SettingsReader& table) {
-        constexpr std::array<std::string_view, 2> parameters{"theta1_deg", "mass_ratio"};
-        parameter_ = &read_parameter(table, parameters);
-        rows_.logarithmic = parameter_->is_ratio;
-        if (rows_.logarithmic && release_.links() != 2)
+    void check_rows(const TomlReader& table) const {
+        const bool is_ratio = parameter_->is_ratio;
+        if (is_ratio && release_.links() != 2)
             throw table.fault("parameter", "\"{}\" takes two links; [system] has {}", parameter_->name,
                               release_.links());
-        const double most = rows_.logarithmic ? 1e6 : 180;
-        rows_.from = rows_.logarithmic ? 0.01 : 0;
-        rows_.to = rows_.logarithmic ? 10 : 180;
-        table.read_number("from", rows_.from);
-        table.read_number("to", rows_.to);
-        if (!(rows_.logarithmic ? rows_.from > 0 : rows_.from >= 0))
-            throw table.fault("from", "must be {} 0; it is {}", rows_.logarithmic ? ">" : "at least", rows_.from);
-        if (!(rows_.to > rows_.from && rows_.to <= most))
+        if (!(is_ratio ? rows_.from > 0 : rows_.from >= 0))
+            throw table.fault("from", "must be {} 0; it is {}", is_ratio ? ">" : "at least", rows_.from);
+        if (const double most = is_ratio ? 1e6 : 180; !(rows_.to > rows_.from && rows_.to <= most))
             throw table.fault("to", "must be more than from = {} and at most {}; it is {}", rows_.from, most, rows_.to);
-        table.read_whole("rows", rows_.count, 1, 10'000);
     }
 
-    void read_methods(SettingsReader& table) {
-        constexpr std::array<std::string_view, 3> models{"auto", "angles", "constraints"};
-        table.read_choice("model", model_, models);
+    /// Those of fixed step first.
+    std::vector<std::string> names_that_serve() const {
         std::vector<std::string> names;
         for (const bool adaptive : {false, true})
             for (const auto& method : doppel::methods())
                 if (method.adaptive == adaptive && serves(method, model_of(method))) names.emplace_back(method.name);
-        table.read_texts("methods", names);
-        if (names.empty()) throw table.fault("methods", "must name at least one");
-        for (const auto& name : names) {
+        return names;
+    }
+
+    void find_methods(const TomlReader& table) {
+        if (method_names_.empty()) throw table.fault("methods", "must name at least one");
+        for (const auto& name : method_names_) {
             const auto* method = &method_named(table, name);
             if (!serves(*method, model_of(*method)))
                 throw table.fault("methods", "must serve model = \"{}\"; \"{}\" does not", model_, name);
             methods_.push_back(method);
         }
-        check_distinct(table, "methods", names);
+        check_distinct(table, "methods", method_names_);
     }
 
-    /// The range of the methods that go by a tolerance, or of those that do not.
-    void read_range(SettingsReader& table, bool adaptive, std::string_view from, std::string_view to, Cells& cells) {
-        for (const auto key : {from, to})
-            if (table.has(key) && !has(adaptive))
-                throw table.fault(key, "is for methods {}, of which none is named",
-                                  adaptive ? "that go by a tolerance" : "of fixed step");
-        if (!has(adaptive)) return;
-        table.read_positive(from, cells.from);
-        table.read_positive(to, cells.to);
-        if (!(cells.to > cells.from))
-            throw table.fault(to, "must be more than {} = {}; it is {}", from, cells.from, cells.to);
-    }
-
-    void read_columns(SettingsReader& table) {
-        table.read_positive_ratio("duration_s", duration_);
-        read_range(table, false, "step_from_s", "step_to_s", steps_);
-        read_range(table, true, "tolerance_from", "tolerance_to", tolerances_);
-        table.read_whole("columns", steps_.count, 1, 10'000);
+    void check_columns(const TomlReader& table) {
+        for (const auto& [from, to, cells] :
+             {std::tuple{"step_from_s", "step_to_s", steps_}, {"tolerance_from", "tolerance_to", tolerances_}})
+            if (!(cells.to > cells.from))
+                throw table.fault(to, "must be more than {} = {}; it is {}", from, cells.from, cells.to);
         tolerances_.count = steps_.count;
         columns_ = static_cast<std::size_t>(steps_.count);
-        const double duration = duration_.value();
-        constexpr double most_steps = 1e8, finest = 1e-15;
-        if (steps_.to > duration)
-            throw table.fault("step_to_s", "must be at most duration_s = {}; it is {}", duration, steps_.to);
-        if (duration / steps_.from > most_steps)
+        constexpr double most_steps = 1e8;
+        if (steps_.to > duration_.value())
+            throw table.fault("step_to_s", "must be at most duration_s = {}; it is {}", duration_.value(), steps_.to);
+        if (duration_.value() / steps_.from > most_steps)
             throw table.fault("step_from_s", "must leave at most {} steps; it is {}", most_steps, steps_.from);
-        if (tolerances_.from < finest)
-            throw table.fault("tolerance_from", "must be at least {}; it is {}", finest, tolerances_.from);
     }
 
     /// Errors are parts of the energy of a release, which must have some.
@@ -197,10 +197,12 @@ private:
     Model model_of(const MethodEntry& method) const {
         return model_ == "angles" || (model_ == "auto" && method.angles) ? Model::angles : Model::constraints;
     }
-    /// Whether there is a method that goes by a tolerance, or one that does not.
-    bool has(bool adaptive) const {
-        return std::any_of(methods_.begin(), methods_.end(),
-                           [&](auto* method) { return method->adaptive == adaptive; });
+    /// Whether a method is named that goes by a tolerance, or one that does not; unknown names are told later.
+    bool named(bool adaptive) const {
+        return std::any_of(method_names_.begin(), method_names_.end(), [&](const auto& name) {
+            const auto* method = find_method(name);
+            return !method || method->adaptive == adaptive;
+        });
     }
     const Cells& columns_of(const MethodEntry& method) const { return method.adaptive ? tolerances_ : steps_; }
 
@@ -262,9 +264,8 @@ private:
     /// A rule where it is the same for all rows, else a curve.
     void draw_limit(std::string_view method, Plot& plot) const {
         Curve curve{.label = "linear limit", .dashed = true, .quiet = true};
-        for (std::size_t row = 0; row < releases_.size(); ++row) {
+        for (std::size_t row = 0; row < releases_.size(); ++row)
             add_point(curve, limit_at(method, row), rows_.middle(static_cast<int>(row)));
-        }
         const auto [least, most] = std::minmax_element(curve.x.begin(), curve.x.end());
         constexpr double alike = 1e-4;
         if (std::isnan(*least)) return;
@@ -280,7 +281,8 @@ private:
     static constexpr double least_shown = 1e-12;
 
     SideSpec release_;
-    const ReleaseParameter* parameter_ = nullptr;
+    const ReleaseParameter* parameter_ = &release_parameter("theta1_deg");
+    std::vector<std::string> method_names_;
     std::vector<const MethodEntry*> methods_;
     std::string model_ = "auto";  // angles where a method serves them
     Rational duration_{10, 1};    // s
@@ -292,6 +294,6 @@ private:
 
 }  // namespace
 
-const FigureKind stability_kind{"stability", read_as<Stability>};
+const FigureKind stability_kind = kind_of<Stability>("stability", FigureKind::System::release);
 
 }  // namespace doppel

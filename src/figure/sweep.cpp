@@ -2,10 +2,7 @@
 #include "analysis/exponent.hpp"
 #include "analysis/twins.hpp"
 #include "figure/kinds.hpp"
-#include "figure/pair_subtitle.hpp"
 #include "numeric/nan.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <array>
 #include <cmath>
@@ -19,31 +16,42 @@ struct SweepRow {
 };
 
 /// The study's sweeps: the average ln(d/d₀) of twins, and the Lyapunov exponent, over a range of one parameter.
-class Sweep final : public FigureWork {
+class Sweep final : public Experiment {
 public:
+    static constexpr std::string_view table_key = "sweep";
+    Sweep() = default;
     explicit Sweep(FigureReader& reader) : pair_(reader.pair()) {
-        auto table = reader.table("sweep");
-        constexpr std::array<std::string_view, 4> parameters{"theta1_deg", "theta2_deg", "mass_ratio", "length_ratio"};
-        parameter_ = &read_parameter(table, parameters);
+        auto table = reader.settings(*this);
+        exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
         if (pair_.a.links() < parameter_->links || !pair_.a.particles.empty())
             throw table.fault("parameter", "\"{}\" takes a chain of {} links", parameter_->name, parameter_->links);
-        table.read_number("from", from_);
-        table.read_number("to", to_);
-        table.read_positive("step", step_);
-        table.read_number("difference", difference_);
         check_range(table);
-        table.read_truth("exponent", exponent_);
-        if (exponent_) {
-            if (pair_.a.is_mechanism())
-                throw table.fault("exponent", "is that of a plain chain, without forces and constraints of its own");
-            table.read_positive("exponent_duration_s", exponent_spec_.duration_s);
-            exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
-        }
-        settings_ = table.finish();
+        if (exponent_ && pair_.a.is_mechanism())
+            throw table.fault("exponent", "is that of a plain chain, without forces and constraints of its own");
+        settings_ = resolved_pair(pair_) + table.finish();
         const auto scene = make_scene(twins(0));
         make_scene(twins(trials_ - 1));  // reports faults now
         run_ = fast_run(scene);
         subtitle_ = words(scene);
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        static constexpr std::array<std::string_view, 4> names{"theta1_deg", "theta2_deg", "mass_ratio",
+                                                               "length_ratio"};
+        parameter_field(visit, names, parameter_);
+        visit({"from", "the first value"}, from_);
+        visit({"to", "the last"}, to_);
+        visit({"step", "between two values; from `from` to `to` a whole number of them", "", positive}, step_);
+        visit({"difference", "of the parameter between the two of a pair"}, difference_);
+        visit({"exponent", "the largest Lyapunov exponent of side a as well"}, exponent_);
+        visit({"exponent_duration_s",
+               "with `exponent`: of the motion that it is found by",
+               "s",
+               positive,
+               "",
+               {.holds = exponent_, .hides = true}},
+              exponent_spec_.duration_s);
     }
 
     std::size_t trials() const override { return trials_; }
@@ -141,8 +149,6 @@ public:
         if (exponent_) all.push_back({"regular_trials", regular});
         return all;
     }
-
-    std::string resolved() const override { return resolved_pair(pair_) + settings_; }
 
 private:
     SweepRow row_of_trial(const TrialNumbers& numbers) const {
@@ -263,7 +269,7 @@ private:
     }
 
     Preset pair_;
-    const ReleaseParameter* parameter_ = nullptr;
+    const ReleaseParameter* parameter_ = &release_parameter("theta1_deg");
     Quad from_ = 0, to_ = 180, step_ = 1, difference_ = 0;
     std::size_t trials_ = 0;
     bool exponent_ = false;
@@ -274,6 +280,6 @@ private:
 
 }  // namespace
 
-const FigureKind sweep_kind{"sweep", read_as<Sweep>};
+const FigureKind sweep_kind = kind_of<Sweep>("sweep", FigureKind::System::pair);
 
 }  // namespace doppel

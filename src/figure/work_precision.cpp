@@ -3,7 +3,6 @@
 #include "integrate/methods.hpp"
 #include "numeric/nan.hpp"
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,11 +12,6 @@
 
 namespace doppel {
 namespace {
-
-using namespace std::string_view_literals;
-
-constexpr std::array costs{"time"sv, "evaluations"sv};
-constexpr std::array model_names{"angles"sv, "constraints"sv, "mechanism"sv};  // in the order of Model
 
 /// Accuracies, rad, for which the cheapest method is named.
 struct Accuracy {
@@ -34,21 +28,23 @@ struct ProblemRow {
 
 /// Error against cost of every method on a few problems. The trials: the reference solution of each problem, then all
 /// ladders, and all of them again for each repeat, so that other load on the machine affects all alike.
-class WorkPrecision final : public FigureWork {
+class WorkPrecision final : public Experiment {
 public:
-    explicit WorkPrecision(FigureReader& reader) {
-        std::string cost = "time";
-        reader.chart.read_choice("cost", cost, costs);
-        cost_ = cost == "time" ? Cost::time : Cost::evaluations;
-        auto table = reader.table("work_precision");
-        problems_ = read_problems(table);
+    static constexpr std::string_view table_key = "work_precision";
+    WorkPrecision()
+        : problem_names_(standard_problem_names().begin(), standard_problem_names().end()),
+          model_names_(names_of<Model>.begin(), names_of<Model>.end()) {
+        for (const auto& method : doppel::methods()) methods_.emplace_back(method.name);
+    }
+    explicit WorkPrecision(FigureReader& reader) : WorkPrecision() {
+        reader.chart(cost_field, cost_);
+        auto table = reader.settings(*this);
+        problems_ = scene_ ? problem_of(std::move(film_)) : standard_problems(problem_names_, table);
         references_ = std::make_unique<SharedReference[]>(problems_.all.size());
-        table.read_whole("repeats", repeats_, 1, 99);
-        table.read_whole("most_evaluations", most_evaluations_, 100, 1'000'000'000);
-        table.read_positive("least_error", least_error_);
-        read_solvers(table);
+        find_solvers(table);
         for (const auto& method : reader.external_methods) solvers_.push_back({Model::angles, "", &method});
-        settings_ = table.finish();
+        settings_ = table.finish() + problems_.comment;
+        chart_settings_ = fmt::format("cost = {}\n", toml_value(cost_));
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
@@ -56,9 +52,29 @@ public:
             throw table.fault("models", "must name one that serves; {} takes \"mechanism\"", problems_.all[0].name);
     }
 
-    std::size_t trials() const override {
-        return problems_.all.size() + ladders_.size() * static_cast<std::size_t>(repeats());
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({"scene", "a film, by name or path, whose side a is the problem"}, scene_);
+        if constexpr (std::is_same_v<Visit, SettingsReader>)
+            if (scene_) film_ = film_named(*scene_, visit);
+        const Only standard{!scene_, "cannot stand beside \"scene\", which is one of its own"};
+        const Only of_scene{scene_.has_value(), "is for the motion of a \"scene\"; the problems have their own"};
+        visit({"problems", "the standard problems", "", {}, "", standard, "", standard_problem_names()},
+              problem_names_);
+        visit({"duration_s", "of the motion of `scene`", "s", positive, "the film's", of_scene}, film_.duration_s);
+        visit({"repeats", "of a measurement of time", "", from_to(1, 99)}, repeats_);
+        visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, most_evaluations_);
+        visit({"least_error", "below which no finer setting is taken", "", positive}, least_error_);
+        visit({.key = "models", .help = "the equations", .names = names_of<Model>}, model_names_);
+        visit({"methods", "names of methods", "", {}, "all"}, methods_);
     }
+    static FieldTable other_table() {
+        FieldTable chart{"[chart] kind = \"work-precision\"", "Besides those of all figures:\n"};
+        chart(cost_field, Cost::time);
+        return chart;
+    }
+
+    std::size_t trials() const override { return problems_.all.size() + ladders_.size() * repeats(); }
     bool measures_time() const override { return cost_ == Cost::time; }
     std::string unit() const override { return "ladders"; }
     double units(std::size_t trial) const override { return trial < problems_.all.size() ? 0 : 1; }
@@ -107,9 +123,8 @@ public:
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             figure.panels.push_back(
                 work_plot({p, problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity, ladders, cost_}));
-        const bool floors = std::any_of(figure.panels.begin(), figure.panels.end(),
-                                        [](const Plot& plot) { return !plot.rules.empty(); });
-        figure.captions.push_back(legend_words(floors));
+        figure.captions.push_back(legend_words(std::any_of(figure.panels.begin(), figure.panels.end(),
+                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
         if (const auto words = winner_words(ladders); !words.empty())
             figure.captions.push_back(
                 fmt::format("The least {}: {}.", cost_ == Cost::time ? "time, µs" : "evaluations", words));
@@ -135,34 +150,17 @@ public:
         return all;
     }
 
-    std::string resolved() const override { return settings_ + problems_.comment; }
-
-    std::string resolved_chart() const override {
-        return fmt::format("cost = \"{}\"\n", costs[cost_ == Cost::time ? 0 : 1]);
-    }
-
 private:
-    int repeats() const { return cost_ == Cost::time ? repeats_ : 1; }
+    std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
     bool has_angles() const { return problems_.all.front().has_angles(); }
 
-    void read_solvers(SettingsReader& table) {
-        std::vector<std::string> models(model_names.begin(), model_names.end());
-        table.read_texts("models", models);
-        std::vector<Model> chosen;
-        for (const auto& name : models) {
-            const auto found = std::find(model_names.begin(), model_names.end(), name);
-            if (found == model_names.end())
-                throw table.fault("models", "are of {}; \"{}\" is not", fmt::join(model_names, ", "), name);
-            chosen.push_back(static_cast<Model>(found - model_names.begin()));
-        }
-        std::vector<std::string> methods;
-        for (const auto& method : doppel::methods()) methods.emplace_back(method.name);
-        table.read_texts("methods", methods);
-        for (const auto& name : methods) method_named(table, name);
-        check_distinct(table, "methods", methods);
-        for (const auto model : chosen)
-            for (const auto& name : methods)
-                if (serves(*find_method(name), model)) solvers_.push_back({model, name});
+    void find_solvers(TomlReader& table) {
+        for (const auto& name : methods_) method_named(table, name);
+        check_distinct(table, "methods", methods_);
+        for (const auto& model : model_names_)
+            for (const auto& name : methods_)
+                if (serves(*find_method(name), value_named<Model>(model)))
+                    solvers_.push_back({value_named<Model>(model), name});
         if (solvers_.empty())
             throw table.fault(table.has("methods") ? "methods" : "models",
                               "must leave a method with a model that it serves");
@@ -277,7 +275,12 @@ private:
             repeats_, 100 * typical, 100 * worst);
     }
 
-    Cost cost_;
+    inline static const Field cost_field{.key = "cost", .help = "what the error is drawn over"};
+
+    Cost cost_ = Cost::time;
+    std::optional<std::string> scene_;
+    Preset film_;  // of the scene
+    std::vector<std::string> problem_names_, model_names_, methods_;
     WorkProblems problems_;
     struct SharedReference {
         std::once_flag once;
@@ -292,6 +295,6 @@ private:
 
 }  // namespace
 
-const FigureKind work_precision_kind{"work-precision", read_as<WorkPrecision>};
+const FigureKind work_precision_kind = kind_of<WorkPrecision>("work-precision", FigureKind::System::none);
 
 }  // namespace doppel

@@ -5,13 +5,21 @@
 
 namespace doppel {
 
-/// The problems that a preset's [work_precision] asks for. Throws Error (exit 2).
+template <>
+inline constexpr auto names_of<Cost> = std::to_array<std::string_view>({"time", "evaluations"});
+
+/// The problems that a preset's [work_precision] asks for.
 struct WorkProblems {
     std::vector<WorkProblem> all;
     std::string subtitle;  // what moves
     std::string comment;   // what else the numbers depend on, TOML
 };
-WorkProblems read_problems(SettingsReader& table);
+/// Those of the standard that are named. `table` = whose key `problems` has the names. Throws Error (exit 2).
+WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table);
+std::span<const std::string_view> standard_problem_names();
+/// The film of that name or path, `scene` of the table, whose side a is a problem. Throws Error (exit 2).
+Preset film_named(const std::string& name, const TomlReader& table);
+WorkProblems problem_of(Preset film);
 
 /// Everything that the diagram of one problem shows.
 struct WorkDiagram {

@@ -1,5 +1,5 @@
 #include "base/error.hpp"
-#include "scene/nearest.hpp"
+#include "base/text.hpp"
 #include "scene/scene.hpp"
 
 #include <algorithm>

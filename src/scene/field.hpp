@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -17,6 +18,7 @@ struct Bounds {
     double low = -infinity, high = infinity;
     bool is_open = false;                  // without `low` itself
     std::string_view zero = {}, why = {};  // what 0 means; why there are bounds
+    bool is_positive = false;              // numbers ≤ 0 are refused as such, whatever `low` is
 
     bool has_low() const { return low > -infinity; }
     bool has_high() const { return high < infinity; }
@@ -31,10 +33,11 @@ struct Only {
     bool holds = true;
     std::string fault = {};  // the error for a key that does not count; where empty, it is read and not written
     bool drops = false;      // the command line chose otherwise: what the file says is no error
+    bool hides = false;      // the table has no such key where it does not count
 };
 
-/// One key of a table. Lists of fields (preset_fields.hpp) serve the reader, the resolved preset and docs/presets.md;
-/// type and default are those of the member that a list pairs it with.
+/// One key of a table. Lists of fields (preset_fields.hpp, and those of each kind of figure) serve the reader, the
+/// resolved preset and docs/presets.md; type and default are those of the member that a list pairs it with.
 struct Field {
     std::string_view key, help;
     std::string_view unit = {};
@@ -42,8 +45,10 @@ struct Field {
     std::string_view absent = {};  // what holds where an optional key is not given
     Only only = {};
     std::string_view each = {};                    // what the numbers of an array are: "one a link"
-    std::span<const std::string_view> names = {};  // of a string: its choices
+    std::span<const std::string_view> names = {};  // of a string, or of those of a list: the choices
     std::string_view needed_by = {};               // an entry of this kind must have it
+    bool is_drawn = false;                         // pictures show it: of letters that the font has
+    std::size_t most = 0;                          // numbers of an array that may have 1 or more
 };
 
 /// The names of an enumeration's values in presets, in their order.
@@ -54,6 +59,14 @@ template <class Choice>
 requires std::is_enum_v<Choice>
 constexpr std::string_view name_of(Choice choice) {
     return names_of<Choice>[static_cast<std::size_t>(choice)];
+}
+
+/// The value of that name, which is one of its names.
+template <class Choice>
+requires std::is_enum_v<Choice>
+constexpr Choice value_named(std::string_view name) {
+    return static_cast<Choice>(std::find(names_of<Choice>.begin(), names_of<Choice>.end(), name) -
+                               names_of<Choice>.begin());
 }
 
 template <class T>

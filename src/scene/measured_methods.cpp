@@ -51,11 +51,6 @@ std::vector<Row> rows() {
     return all;
 }
 
-Model model_named(const std::string& name) {
-    const auto& names = names_of<Model>;
-    return static_cast<Model>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 /// Every model and method that reached `accuracy` (rad) on all pendulums of the table most like a system of `links`,
 /// cheapest first.
 std::vector<MeasuredMethod> methods_in_table(std::size_t links, double accuracy) {
@@ -76,7 +71,7 @@ std::vector<MeasuredMethod> methods_in_table(std::size_t links, double accuracy)
     std::vector<MeasuredMethod> all;
     for (const auto& [names, by_problem] : best) {
         if (by_problem.size() < problems.size()) continue;  // not reached on one of them
-        MeasuredMethod method{model_named(names.first), names.second, by_problem.begin()->second.setting, 0};
+        MeasuredMethod method{value_named<Model>(names.first), names.second, by_problem.begin()->second.setting, 0};
         for (const auto& [problem, row] : by_problem) {
             method.setting = std::min(method.setting, row.setting);
             method.cost += row.cost / static_cast<double>(by_problem.size());
@@ -137,7 +132,7 @@ std::vector<MeasuredMethod> measured_methods(const SideSpec& spec, double accura
 }
 
 StepSettings::StepSettings(const SideSpec& spec, const Rational& sample_hz, const MeasuredMethod& measured,
-                         double time_unit)
+                           double time_unit)
     : spec_(spec), sample_hz_(sample_hz), method_(*find_method(measured.method)) {
     spec_.accuracy.reset();
     spec_.integrator = measured.method;

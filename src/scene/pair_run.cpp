@@ -1,5 +1,4 @@
 #include "analysis/difference.hpp"
-#include "analysis/difference.hpp"
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
 

@@ -175,9 +175,6 @@ bool is_figure(const PresetText& source);
 /// value found and what would be right.
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides = {});
 
-/// docs/presets.md: all tables and keys of a film's preset.
-std::string preset_reference();
-
 /// The key=value of --set. Throws Error (exit 2) where it is not of that form.
 Override parse_set(const std::string& argument);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "integrate/methods.hpp"
-#include "scene/preset_tables.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,17 @@
 
 namespace doppel {
 
-// The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and ReferenceTable visit:
+/// `kind` of [scene]: of a film, and of the figures (figure/kinds.cpp).
+inline constexpr std::string_view pair_kind = "pair";
+inline constexpr std::array<std::string_view, 12> scene_kinds{pair_kind,        "sweep",     "curves",   "convergence",
+                                                              "spectrum",       "section",   "flip-map", "links",
+                                                              "work-precision", "stability", "drift",    "audit"};
+
+// The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and FieldTable visit:
 // visit(field, member), visit.table(name, list). A table may be const. The reader checks what keys say together.
 
-inline const Field title_field{.key = "title", .help = "shown above the pictures", .absent = "the file's name"};
+inline const Field title_field{
+    .key = "title", .help = "shown above the pictures", .absent = "the file's name", .is_drawn = true};
 inline const Field kind_field{
     .key = "kind", .help = "\"pair\" is a film, the others are figures", .names = scene_kinds};
 
@@ -230,5 +237,23 @@ void style_fields(Visit& visit, Video& video) {
     visit({"glow_px", "how far the light of trails and bobs reaches", "px", glow, of_theme}, video.glow_px);
     visit({"trail_s", "how long the path behind the last bob lasts; 0 of an ensemble", "s", trail}, video.trail_s);
 }
+
+// Readers of the tables that films and figures share. Each leaves alone what the table does not say, and throws Error
+// (exit 2) as TomlReader does.
+
+/// One of scene_kinds.
+std::string read_kind(TomlReader& scene);
+
+/// [system], [a] or [b].
+void read_side(TomlReader& table, SideSpec& side);
+
+/// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say.
+void read_release(TomlReader& table, SideSpec& side);
+
+/// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier.
+void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset);
+
+/// Steps and samples must fall on each other exactly.
+void check_clock(const Preset& preset, const TomlReader& scene);
 
 }  // namespace doppel

@@ -2,7 +2,6 @@
 #include "base/text.hpp"
 #include "embedded/scene.hpp"
 #include "output/folder.hpp"
-#include "scene/nearest.hpp"
 #include "scene/preset.hpp"
 
 #include <fcntl.h>

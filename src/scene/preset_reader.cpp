@@ -1,5 +1,5 @@
+#include "base/text.hpp"
 #include "integrate/methods.hpp"
-#include "scene/nearest.hpp"
 #include "scene/preset_fields.hpp"
 
 #include <algorithm>
@@ -113,7 +113,7 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
         std::string name;
-        entry.read_text("name", name);
+        entry.read({.key = "name"}, name);
         if (std::find(others.begin(), others.end(), name) != others.end()) continue;
         const auto meant = nearest(name, others);
         throw entry.fault("name", "must be that of a particle on both sides; \"{}\" is on this one only{}", name,
@@ -164,16 +164,24 @@ void read_style(TomlReader& table, VideoSpec& video) {
                               value);
 }
 
+void read_video(TomlReader& table, VideoSpec& video) {
+    table(size_field, video.size);
+    format_fields(table, video);
+    check_transparent(table, video);
+    time_fields(table, video);
+    layout_fields(table, video);
+    check_layout(table, video);
+    check_size(table, video);
+    read_style(table, video);
+    table.finish();
+}
+
 }  // namespace
 
 std::string read_kind(TomlReader& scene) {
     std::string kind(pair_kind);
     scene.read(kind_field, kind);
     return kind;
-}
-
-void read_clock(TomlReader& scene, Preset& preset) {
-    clock_fields(scene, preset);
 }
 
 void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset) {
@@ -214,37 +222,18 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
         throw scene.fault("duration_s", "must be at most {} samples; it is {}", most_samples, samples->numerator);
 }
 
-void read_picture_size(TomlReader& table, Size& into) {
-    table.read(size_field, into);
-}
-
-void read_theme(TomlReader& table, std::string& into) {
-    theme_field(table, into);
-}
-
-void read_video(TomlReader& table, VideoSpec& video) {
-    read_picture_size(table, video.size);
-    format_fields(table, video);
-    check_transparent(table, video);
-    time_fields(table, video);
-    layout_fields(table, video);
-    check_layout(table, video);
-    check_size(table, video);
-    read_style(table, video);
-    table.finish();
-}
-
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
     const auto document = parse_document(source, overrides);
     Preset preset;
     preset.name = preset.title = source.name;
     TomlReader top(&document.root, "", document.path, document.texts);
-    top.read_drawn_title(preset.title);
+    top.demand_title(preset.name);
+    top(title_field, preset.title);
 
     auto scene = document.table(top, "scene");
     if (read_kind(scene) != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
-    read_clock(scene, preset);
+    clock_fields(scene, preset);
     scene.finish();
     read_sides(document, {&top}, preset);
     auto video = document.table(top, "video");

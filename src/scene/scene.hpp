@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "scene/mechanism_lines.hpp"
+#include "physics/mechanism_assembly.hpp"
 #include "scene/preset.hpp"
 
 #include <atomic>
@@ -23,6 +23,18 @@ struct MethodChoice {
     std::string verified_by;  // the finer run: "tolerance 1e-12"
     double evaluations;       // of the right-hand side, up to the end
 };
+
+/// One thing to draw. A rod and a spring go from end to end; an anchor is at `from`; a straight slot goes from `from`
+/// to `to`; a circular one has its centre at `from`.
+struct MechanismLine {
+    enum class Kind { rod, spring, anchor, slot_line, slot_circle };
+    Kind kind;
+    End<double> from, to;
+    double radius = 0;  // m, of a circular slot
+};
+
+/// What a picture needs besides the particles: the constraints in their order, then the springs in theirs.
+std::vector<MechanismLine> lines_of(const Assembly<double>& assembly);
 
 /// One side with everything chosen.
 struct Side {

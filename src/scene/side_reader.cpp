@@ -47,7 +47,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.{}]] {}", table.bare_name(), key, i + 1));
         std::string name;
-        entry.read_text("name", name);
+        entry.read({.key = "name"}, name);
         if (!name.empty() && !given.insert(name).second)
             throw entry.fault("name", "must differ from those before it; \"{}\" is there already", name);
         auto same = std::find_if(entries.begin(), entries.end(),
@@ -88,7 +88,7 @@ void read_part(TomlReader& entry, Spec& spec, bool is_new) {
     if (is_new && !entry.has("kind"))
         throw entry.fault("kind", "is missing; there is \"{}\"", fmt::join(Spec::kinds, "\", \""));
     std::string kind(kind_name(spec));
-    entry.read_choice("kind", kind, Spec::kinds);
+    entry.read({.key = "kind", .names = Spec::kinds}, kind);
     if (kind != kind_name(spec))
         change_kind(spec.part, static_cast<std::size_t>(std::find(Spec::kinds.begin(), Spec::kinds.end(), kind) -
                                                         Spec::kinds.begin()));

@@ -1,3 +1,4 @@
+#include "base/text.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -215,7 +216,7 @@ std::string shown(const toml::node& node) {
     auto text = written(node);
     std::replace(text.begin(), text.end(), '\n', ' ');
     constexpr std::size_t most = 60;
-    return text.size() > most ? text.substr(0, most - 1) + "…" : text;
+    return text.size() > most ? shortened(text, most - 1) : text;
 }
 
 std::string found(const toml::node& node) {

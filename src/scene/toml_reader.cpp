@@ -2,7 +2,6 @@
 
 #include "base/text.hpp"
 #include "render/font.hpp"
-#include "scene/nearest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,11 +54,6 @@ bool TomlReader::has(std::string_view key) {
     return find(key) != nullptr;
 }
 
-bool TomlReader::is_text(std::string_view key) {
-    const auto* node = find(key);
-    return node && node->is_string();
-}
-
 bool TomlReader::from_command_line(std::string_view key) {
     const auto* node = find(key);
     return node && node->source().path && node->source().path->starts_with(command_line);
@@ -69,41 +63,10 @@ void TomlReader::demand_drawable(std::string_view key, std::string_view text) co
     if (const auto fault = not_drawable(text)) throw this->fault(key, "{}", *fault);
 }
 
-void TomlReader::read_drawn(std::string_view key, std::string& into) {
-    read_text(key, into);
-    demand_drawable(key, into);
-}
-
-void TomlReader::read_drawn_title(std::string& into) {
-    constexpr std::string_view key = "title";
-    if (!has(key))
-        if (const auto fault = not_drawable(into))
-            throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
-    read_drawn(key, into);
-}
-
-void TomlReader::read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most) {
-    const auto* node = find(key);
-    if (!node) return;
-    const auto* array = node->as_array();
-    if (!array || array->empty() || array->size() > most)
-        throw fault(key, "must be an array of 1 to {} numbers; {}", most, found(*node));
-    into.resize(array->size());
-    read({.key = key, .bounds = positive, .each = "each on its own"}, std::span(into));
-}
-
-std::optional<std::vector<std::string>> TomlReader::read_texts(std::string_view key) {
-    const auto* node = find(key);
-    if (!node) return std::nullopt;
-    const auto* array = node->as_array();
-    if (!array) throw fault(key, "must be an array of strings; {}", found(*node));
-    std::vector<std::string> texts;
-    for (const auto& element : *array) {
-        if (!element.is_string())
-            throw fault(key, "must be an array of strings; {} is {}", shown(element), kind_of(element));
-        texts.push_back(element.as_string()->get());
-    }
-    return texts;
+void TomlReader::demand_title(const std::string& name) {
+    if (has("title")) return;
+    if (const auto fault = not_drawable(name))
+        throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
 }
 
 const toml::table* TomlReader::read_table(std::string_view key) {

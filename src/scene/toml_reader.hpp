@@ -60,7 +60,6 @@ public:
     TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts);
 
     bool has(std::string_view key);
-    bool is_text(std::string_view key);
     /// Whether the key was given on the command line, and not in the preset's file.
     bool from_command_line(std::string_view key);
 
@@ -76,8 +75,8 @@ public:
             demand(field, into.has_value());
         } else if constexpr (std::is_enum_v<T>) {
             std::string name(name_of(into));
-            read_choice(field.key, name, names_of<T>);
-            into = static_cast<T>(std::find(names_of<T>.begin(), names_of<T>.end(), name) - names_of<T>.begin());
+            read({.key = field.key, .names = names_of<T>}, name);
+            into = value_named<T>(name);
         } else {
             read(field, into);
             if constexpr (requires { into.empty(); }) demand(field, !into.empty());
@@ -91,46 +90,15 @@ public:
         inside.finish();
     }
 
-    void read(const Field& field, std::string& into);  // of `names`, if there are some
-    void read(const Field& field, int& into);
-    void read(const Field& field, bool& into);
-    void read(const Field& field, double& into);    // finite
-    void read(const Field& field, Quad& into);      // to all digits of what is written
-    void read(const Field& field, Rational& into);  // a number, or "a/b" in quotes
-    void read(const Field& field, std::span<double> into);
-    void read(const Field& field, std::span<Quad> into);  // one number for all, or an array with one each
-    void read(const Field& field, std::vector<Quad>& into) { read(field, std::span(into)); }
-    void read(const Field& field, QuadPair& into);
-    void read(const Field& field, EndSpec& into);
-    void read(const Field& field, Size& into);
-    void read(const Field& field, std::array<int, 2>& into);
-    void read(const Field& field, Range& into);
-    void read(const Field& field, Panels& into);
-    void read(const Field& field, Color& into);  // "#rrggbb"
-    void read(const Field& field, std::array<Color, 2>& into);
-
-    // The same without a field.
-    void read_text(std::string_view key, std::string& into) { read({.key = key}, into); }
-    void read_choice(std::string_view key, std::string& into, std::span<const std::string_view> choices) {
-        read({.key = key, .names = choices}, into);
+    template <class T>
+    void read(const Field& field, T&& into) {
+        if (const auto* node = find(field.key)) read(field, *node, into);
     }
-    void read_whole(std::string_view key, int& into, int least, int most) {
-        read({.key = key, .bounds = from_to(least, most)}, into);
-    }
-    void read_truth(std::string_view key, bool& into) { read({.key = key}, into); }
-    void read_positive_ratio(std::string_view key, Rational& into) { read({.key = key, .bounds = positive}, into); }
-    void read_number(std::string_view key, auto& into) { read({.key = key}, into); }
-    void read_positive(std::string_view key, auto& into) { read({.key = key, .bounds = positive}, into); }
 
-    /// Text that pictures show: of letters that the font has.
-    void read_drawn(std::string_view key, std::string& into);
-    /// `title`; the name that stands in `into` where it is absent is drawn as well.
-    void read_drawn_title(std::string& into);
+    /// Throws where `name`, which is shown where there is no title, has a letter that the font lacks.
+    void demand_title(const std::string& name);
     /// Throws where the font lacks a letter of `text`, the value of `key`.
     void demand_drawable(std::string_view key, std::string_view text) const;
-    /// An array of 1 to `most` numbers > 0.
-    void read_positive_list(std::string_view key, std::vector<double>& into, std::size_t most);
-    std::optional<std::vector<std::string>> read_texts(std::string_view key);
     const toml::table* read_table(std::string_view key);
     /// The tables of [[key]]; none where it is absent.
     std::vector<const toml::table*> read_tables(std::string_view key);
@@ -157,6 +125,30 @@ public:
 
 private:
     const toml::node* find(std::string_view key);
+    void read(const Field& field, const toml::node& node, std::string& into);  // of `names`, if there are some
+    void read(const Field& field, const toml::node& node, int& into);
+    void read(const Field& field, const toml::node& node, bool& into);
+    void read(const Field& field, const toml::node& node, double& into);    // finite
+    void read(const Field& field, const toml::node& node, Quad& into);      // to all digits of what is written
+    void read(const Field& field, const toml::node& node, Rational& into);  // a number, or "a/b" in quotes
+    void read(const Field& field, const toml::node& node, std::span<double> into);
+    void read(const Field& field, const toml::node& node,
+              std::span<Quad> into);  // one number for all, or an array with one each
+    void read(const Field& field, const toml::node& node, std::vector<Quad>& into) {
+        read(field, node, std::span(into));
+    }
+    void read(const Field& field, const toml::node& node, std::vector<double>& into);  // 1 to `most`
+    void read(const Field& field, const toml::node& node,
+              std::vector<std::string>& into);  // each of `names`, if there are some
+    void read(const Field& field, const toml::node& node, QuadPair& into);
+    void read(const Field& field, const toml::node& node, EndSpec& into);
+    void read(const Field& field, const toml::node& node, Size& into);
+    void read(const Field& field, const toml::node& node, std::array<int, 2>& into);
+    void read(const Field& field, const toml::node& node, Range& into);
+    void read(const Field& field, const toml::node& node, Panels& into);
+    void read(const Field& field, const toml::node& node, Color& into);  // "#rrggbb"
+    void read(const Field& field, const toml::node& node, std::array<Color, 2>& into);
+    std::vector<std::string> texts_in(const Field& field, const toml::node& node) const;
     std::string subject(std::string_view key) const;
     bool counts(const Field& field);
     void demand(const Field& field, bool given) const;
@@ -166,7 +158,7 @@ private:
     void check(const Field& field, std::string_view element, const Number& value) const;
     template <class Number>
     void read_array(const Field& field, const toml::node& node, std::span<Number> into);
-    void read_whole_pair(const Field& field, std::string_view what, std::array<int, 2>& into);
+    void read_whole_pair(const Field& field, const toml::node& node, std::string_view what, std::array<int, 2>& into);
 
     const toml::table* table_;
     std::string name_, path_;

@@ -1,4 +1,4 @@
-#include "scene/nearest.hpp"
+#include "base/text.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <algorithm>
@@ -25,6 +25,7 @@ std::string written(const Quad& value) {
 }  // namespace
 
 bool TomlReader::counts(const Field& field) {
+    if (field.only.hides) return field.only.holds;
     if (field.only.holds || field.only.fault.empty()) return true;
     if (has(field.key) && (!field.only.drops || from_command_line(field.key)))
         throw fault(field.key, "{}", field.only.fault);
@@ -38,7 +39,7 @@ void TomlReader::demand(const Field& field, bool given) const {
 /// `element` = "[1]" of an array.
 template <class Number>
 void TomlReader::check(const Field& field, std::string_view element, const Number& value) const {
-    const auto& [low, high, is_open, zero, reason] = field.bounds;
+    const auto& [low, high, is_open, zero, reason, is_positive] = field.bounds;
     const std::string_view why = reason;  // clang 14 captures no structured binding
     if (is_open ? value > low : value >= low)
         if (value <= high) return;
@@ -48,39 +49,35 @@ void TomlReader::check(const Field& field, std::string_view element, const Numbe
     };
     // keys mostly name the unit
     const auto unit = field.unit.empty() || field.key.ends_with(field.unit) ? "" : fmt::format(" {}", field.unit);
+    if (is_positive && !(value > 0)) throw refuse("> 0");
     if (is_open && !(value > low)) throw refuse(fmt::format("> {}", low));
     if (is_open) throw refuse(fmt::format("at most {}{}", high, unit));
-    if (!field.bounds.has_high()) throw refuse(fmt::format("≥ {}", low));
+    if (!field.bounds.has_high()) throw refuse(fmt::format("{} {}", is_positive ? "at least" : "≥", low));
     throw refuse(fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero), high, unit,
                              why.empty() ? "" : fmt::format(": {}", why)));
 }
 
-void TomlReader::read(const Field& field, std::string& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    if (!node->is_string()) throw fault(field.key, "must be a string; {}", found(*node));
-    into = node->as_string()->get();
+void TomlReader::read(const Field& field, const toml::node& node, std::string& into) {
+    if (!node.is_string()) throw fault(field.key, "must be a string; {}", found(node));
+    into = node.as_string()->get();
+    if (field.is_drawn) demand_drawable(field.key, into);
     if (field.names.empty() || std::find(field.names.begin(), field.names.end(), into) != field.names.end()) return;
     const auto meant = nearest(into, field.names);
     throw fault(field.key, "must be {}; it is \"{}\"{}", listed(field.names), into,
                 meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
 }
 
-void TomlReader::read(const Field& field, int& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    if (!node->is_integer()) throw fault(field.key, "must be a whole number; {}", found(*node));
-    const auto value = node->as_integer()->get();
+void TomlReader::read(const Field& field, const toml::node& node, int& into) {
+    if (!node.is_integer()) throw fault(field.key, "must be a whole number; {}", found(node));
+    const auto value = node.as_integer()->get();
     if (static_cast<double>(value) < field.bounds.low || static_cast<double>(value) > field.bounds.high)
         throw fault(field.key, "must be from {} to {}; it is {}", field.bounds.low, field.bounds.high, value);
     into = static_cast<int>(value);
 }
 
-void TomlReader::read(const Field& field, bool& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    if (!node->is_boolean()) throw fault(field.key, "must be true or false; {}", found(*node));
-    into = node->as_boolean()->get();
+void TomlReader::read(const Field& field, const toml::node& node, bool& into) {
+    if (!node.is_boolean()) throw fault(field.key, "must be true or false; {}", found(node));
+    into = node.as_boolean()->get();
 }
 
 double TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, double) const {
@@ -107,17 +104,13 @@ Quad TomlReader::number(std::string_view key, std::string_view element, const to
     return value;
 }
 
-void TomlReader::read(const Field& field, double& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    into = number(field.key, "", *node, into);
+void TomlReader::read(const Field& field, const toml::node& node, double& into) {
+    into = number(field.key, "", node, into);
     check(field, "", into);
 }
 
-void TomlReader::read(const Field& field, Quad& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    into = number(field.key, "", *node, into);
+void TomlReader::read(const Field& field, const toml::node& node, Quad& into) {
+    into = number(field.key, "", node, into);
     check(field, "", into);
 }
 
@@ -132,42 +125,67 @@ void TomlReader::read_array(const Field& field, const toml::node& node, std::spa
     for (std::size_t i = 0; i < into.size(); ++i) check(field, element(i), into[i]);
 }
 
-void TomlReader::read(const Field& field, std::span<double> into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    if (!node->is_array())
-        throw fault(field.key, "must be an array of {} numbers, {}; {}", into.size(), field.each, found(*node));
-    read_array(field, *node, into);
+void TomlReader::read(const Field& field, const toml::node& node, std::span<double> into) {
+    if (!node.is_array())
+        throw fault(field.key, "must be an array of {} numbers, {}; {}", into.size(), field.each, found(node));
+    read_array(field, node, into);
 }
 
-void TomlReader::read(const Field& field, std::span<Quad> into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    if (node->is_array()) return read_array(field, *node, into);
-    if (!node->is_number())
+void TomlReader::read(const Field& field, const toml::node& node, std::vector<double>& into) {
+    const auto* array = node.as_array();
+    if (!array || array->empty() || array->size() > field.most)
+        throw fault(field.key, "must be an array of 1 to {} numbers; {}", field.most, found(node));
+    into.resize(array->size());
+    read_array(field, node, std::span(into));
+}
+
+std::vector<std::string> TomlReader::texts_in(const Field& field, const toml::node& node) const {
+    const auto* array = node.as_array();
+    if (!array) throw fault(field.key, "must be an array of strings; {}", found(node));
+    std::vector<std::string> texts;
+    for (const auto& element : *array) {
+        if (!element.is_string())
+            throw fault(field.key, "must be an array of strings; {} is {}", shown(element), kind_of(element));
+        texts.push_back(element.as_string()->get());
+    }
+    return texts;
+}
+
+void TomlReader::read(const Field& field, const toml::node& node, std::vector<std::string>& into) {
+    auto texts = texts_in(field, node);
+    for (const auto& text : texts) {
+        if (field.is_drawn) demand_drawable(field.key, text);
+        if (!field.names.empty() && std::find(field.names.begin(), field.names.end(), text) == field.names.end())
+            throw fault(field.key, "are of {}; \"{}\" is not", fmt::join(field.names, ", "), text);
+    }
+    into = std::move(texts);
+}
+
+void TomlReader::read(const Field& field, const toml::node& node, std::span<Quad> into) {
+    if (node.is_array()) return read_array(field, node, into);
+    if (!node.is_number())
         throw fault(field.key, "must be a number, or an array of {} numbers, {}; {}", into.size(), field.each,
-                    found(*node));
-    std::fill(into.begin(), into.end(), number(field.key, "", *node, Quad()));
+                    found(node));
+    std::fill(into.begin(), into.end(), number(field.key, "", node, Quad()));
     check(field, "[0]", into[0]);
 }
 
-void TomlReader::read(const Field& field, QuadPair& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    if (!node->is_array()) throw fault(field.key, "must be two numbers, [x, y]; {}", found(*node));
-    read_array({.key = field.key, .each = "x and y"}, *node, std::span<Quad>(into));
+void TomlReader::read(const Field& field, const toml::node& node, QuadPair& into) {
+    if (!node.is_array()) throw fault(field.key, "must be two numbers, [x, y]; {}", found(node));
+    read_array({.key = field.key, .each = "x and y"}, node, std::span<Quad>(into));
 }
 
-void TomlReader::read(const Field& field, EndSpec& into) {
-    if (is_text(field.key))
-        read(field, into.emplace<std::string>());
+void TomlReader::read(const Field& field, const toml::node& node, EndSpec& into) {
+    if (node.is_string())
+        read(field, node, into.emplace<std::string>());
     else
-        read(field, into.emplace<QuadPair>());
+        read(field, node, into.emplace<QuadPair>());
 }
 
-void TomlReader::read_whole_pair(const Field& field, std::string_view what, std::array<int, 2>& into) {
+void TomlReader::read_whole_pair(const Field& field, const toml::node& node, std::string_view what,
+                                 std::array<int, 2>& into) {
     std::array<double, 2> pair{double(into[0]), double(into[1])};
-    read({.key = field.key, .each = field.each}, std::span<double>(pair));
+    read({.key = field.key, .each = field.each}, node, std::span<double>(pair));
     for (const double number : pair)
         if (number != std::floor(number) || number < field.bounds.low || number > field.bounds.high)
             throw fault(field.key, "must be {} from {} to {}; it is [{}, {}]", what, field.bounds.low,
@@ -175,20 +193,20 @@ void TomlReader::read_whole_pair(const Field& field, std::string_view what, std:
     into = {static_cast<int>(pair[0]), static_cast<int>(pair[1])};
 }
 
-void TomlReader::read(const Field& field, std::array<int, 2>& into) {
-    read_whole_pair(field, "two whole numbers", into);
+void TomlReader::read(const Field& field, const toml::node& node, std::array<int, 2>& into) {
+    read_whole_pair(field, node, "two whole numbers", into);
 }
 
-void TomlReader::read(const Field& field, Size& into) {
+void TomlReader::read(const Field& field, const toml::node& node, Size& into) {
     std::array<int, 2> size{into.width, into.height};
-    read_whole_pair(field, "whole numbers", size);
+    read_whole_pair(field, node, "whole numbers", size);
     into = {size[0], size[1]};
 }
 
 /// Bounds above 0: an axis by powers of ten.
-void TomlReader::read(const Field& field, Range& into) {
+void TomlReader::read(const Field& field, const toml::node& node, Range& into) {
     std::array<double, 2> ends{};
-    read(field, std::span<double>(ends));
+    read(field, node, std::span<double>(ends));
     if (field.bounds.is_open && (!(ends[1] >= 10 * ends[0]) || ends[1] / ends[0] > 1e60))
         throw fault(field.key, "must rise by 1 to 60 powers of ten; it is [{}, {}]", ends[0], ends[1]);
     if (!(ends[1] > ends[0]) || !std::isfinite(ends[1] - ends[0]))
@@ -196,53 +214,46 @@ void TomlReader::read(const Field& field, Range& into) {
     into = {ends[0], ends[1]};
 }
 
-void TomlReader::read(const Field& field, Rational& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
+void TomlReader::read(const Field& field, const toml::node& node, Rational& into) {
     std::optional<Rational> value;
-    if (const auto* text = node->as_string()) {
+    if (const auto* text = node.as_string()) {
         value = parse_rational(text->get());
-        if (!value)
-            throw fault(field.key, "must be a number or a fraction such as \"1/30000\"; it is {}", shown(*node));
-    } else if (const auto* whole = node->as_integer()) {
+        if (!value) throw fault(field.key, "must be a number or a fraction such as \"1/30000\"; it is {}", shown(node));
+    } else if (const auto* whole = node.as_integer()) {
         value = reduced(whole->get(), 1);
     } else {
-        value = rational_from_decimal(number(field.key, "", *node, 0.0));
+        value = rational_from_decimal(number(field.key, "", node, 0.0));
     }
-    if (!value) throw fault(field.key, "has more digits than Doppel counts with; it is {}", shown(*node));
+    if (!value) throw fault(field.key, "has more digits than Doppel counts with; it is {}", shown(node));
     if (value->numerator < (field.bounds.is_open ? 1 : 0))
-        throw fault(field.key, "must be {} 0; it is {}", field.bounds.is_open ? ">" : "≥", shown(*node));
+        throw fault(field.key, "must be {} 0; it is {}", field.bounds.is_open ? ">" : "≥", shown(node));
     check(field, "", value->value());
     into = *value;
 }
 
-void TomlReader::read(const Field& field, Color& into) {
-    const auto* node = find(field.key);
-    if (!node) return;
-    const auto* text = node->as_string();
+void TomlReader::read(const Field& field, const toml::node& node, Color& into) {
+    const auto* text = node.as_string();
     const auto color = text ? parse_color(text->get()) : std::nullopt;
-    if (!color) throw fault(field.key, "must be a colour such as \"#ff9f40\"; {}", found(*node));
+    if (!color) throw fault(field.key, "must be a colour such as \"#ff9f40\"; {}", found(node));
     into = *color;
 }
 
-void TomlReader::read(const Field& field, std::array<Color, 2>& into) {
-    const auto colors = read_texts(field.key);
-    if (!colors) return;
-    if (colors->size() != 2) throw fault(field.key, "must have 2 colours, a and b; it has {}", colors->size());
+void TomlReader::read(const Field& field, const toml::node& node, std::array<Color, 2>& into) {
+    const auto colors = texts_in(field, node);
+    if (colors.size() != 2) throw fault(field.key, "must have 2 colours, a and b; it has {}", colors.size());
     for (std::size_t i = 0; i < 2; ++i) {
-        const auto color = parse_color((*colors)[i]);
-        if (!color) throw fault(field.key, "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, (*colors)[i]);
+        const auto color = parse_color(colors[i]);
+        if (!color) throw fault(field.key, "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
         into[i] = *color;
     }
 }
 
 /// "pendulums" and the strips, in their order.
-void TomlReader::read(const Field& field, Panels& into) {
-    const auto panels = read_texts(field.key);
-    if (!panels) return;
+void TomlReader::read(const Field& field, const toml::node& node, Panels& into) {
+    const auto panels = texts_in(field, node);
     const auto& names = names_of<StripKind>;
     into = {false, {}};
-    for (const auto& panel : *panels) {
+    for (const auto& panel : panels) {
         const auto strip = std::find(names.begin(), names.end(), panel);
         if (panel == "pendulums") {
             into.pendulums = true;
@@ -254,7 +265,7 @@ void TomlReader::read(const Field& field, Panels& into) {
             into.strips.push_back(kind);
         }
     }
-    if (panels->empty())
+    if (panels.empty())
         throw fault(field.key, "must hold at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
 }
 

@@ -46,5 +46,13 @@ TEST(Text, OnOneLineIsShownAndNotObeyed) {
     EXPECT_EQ(on_one_line(std::string_view("\0", 1)), " ");
 }
 
+TEST(Text, ShortenedEndsWithAWholeCharacter) {
+    EXPECT_EQ(shortened("90° ½", 7), "90° ½");  // all of it
+    EXPECT_EQ(shortened("90° ½", 6), "90° …");
+    EXPECT_EQ(shortened("90° ½", 3), "90…");
+    EXPECT_EQ(shortened("90° ½", 4), "90°…");
+    EXPECT_EQ(shortened("½", 0), "…");
+}
+
 }  // namespace text_test
 }  // namespace doppel

@@ -22,7 +22,7 @@ struct Found {
     std::map<std::string, std::string> words;
 
     explicit Found(const FigurePreset& figure) {
-        for (const auto& finding : figure.work->findings(computed(figure)))
+        for (const auto& finding : figure.experiment->findings(computed(figure)))
             if (const auto* number = std::get_if<double>(&finding.value))
                 numbers[finding.key] = *number;
             else

@@ -11,7 +11,7 @@ namespace kinds_test {
 
 std::map<std::string, double> findings_of(const FigurePreset& figure) {
     std::map<std::string, double> found;
-    for (const auto& finding : figure.work->findings(computed(figure)))
+    for (const auto& finding : figure.experiment->findings(computed(figure)))
         if (const auto* number = std::get_if<double>(&finding.value)) found[finding.key] = *number;
     return found;
 }
@@ -51,7 +51,7 @@ TEST(Section, SaysWhoseColourIsWhose) {
         const auto figure =
             figure_of("poincare", {"section.energy_J=[9.8]", "section.orbits=" + orbits, "section.crossings=1"});
         Figure page;
-        figure.work->draw(computed(figure), page);
+        figure.experiment->draw(computed(figure), page);
         return page.captions.front();
     };
     EXPECT_EQ(caption("8").find("Every colour is one orbit. Closed curves"), 0u);

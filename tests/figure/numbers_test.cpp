@@ -23,7 +23,7 @@ class Numbers : public testing::TestWithParam<Case> {};
 
 TEST_P(Numbers, FitWhereTheyWereComputedAndNoneElse) {
     const auto figure = figure_of(GetParam().name, GetParam().sets);
-    const auto& work = *figure.work;
+    const auto& work = *figure.experiment;
     const auto trials = computed(figure);
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const auto& numbers = trials[i];
@@ -78,7 +78,7 @@ TEST(NumbersOfWork, AreThoseOfWholeRungs) {
     const auto figure = figure_of(
         "speed-accuracy",
         {"work_precision.problems=[\"P1\"]", "work_precision.models=[\"angles\"]", "work_precision.methods=[\"rk4\"]"});
-    const auto& work = *figure.work;
+    const auto& work = *figure.experiment;
     const TrialNumbers rung{1e-3, 1e-6, none, 0, 1e-4, 400, 100};
     auto two = rung;
     two.insert(two.end(), rung.begin(), rung.end());
@@ -98,7 +98,7 @@ TEST(NumbersOfWork, AreThoseOfWholeRungs) {
 
 TEST(NumbersOfAudit, AreAsManyAsTheClaimTakes) {
     const auto figure = figure_of("audit");
-    const auto& work = *figure.work;
+    const auto& work = *figure.experiment;
     KnownTrials trials(work.trials());
     for (std::size_t i = 0; i < work.trials(); ++i) {
         std::size_t count = 1;
@@ -116,8 +116,8 @@ TEST(NumbersOfAudit, OfTheAveragesAreThoseOfTheStudy) {
     const std::atomic<bool> never = false;
     const auto measured = [&](std::size_t claim) {
         KnownTrials trial(1);
-        figure.work->compute(claim, trial, never);
-        EXPECT_TRUE(figure.work->fits(claim, trial[0])) << claim;
+        figure.experiment->compute(claim, trial, never);
+        EXPECT_TRUE(figure.experiment->fits(claim, trial[0])) << claim;
         return trial[0];
     };
     EXPECT_NEAR(measured(1).at(0), 2.205, 0.001);  // explicit Euler at 20°, as published

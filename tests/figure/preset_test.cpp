@@ -21,8 +21,8 @@ TEST(FigurePreset, EveryBuiltInOneReadsAndHasATitle) {
         const auto figure = read_figure(preset);
         EXPECT_EQ(figure.name, preset.name);
         EXPECT_NE(figure.title, preset.name) << preset.path;
-        EXPECT_GT(figure.work->trials(), 0u);
-        EXPECT_GE(figure.work->together(), 1u);
+        EXPECT_GT(figure.experiment->trials(), 0u);
+        EXPECT_GE(figure.experiment->together(), 1u);
         names.insert(preset.name);
     }
     for (const char* name :
@@ -57,7 +57,7 @@ TEST(FigurePreset, ResolvedReadsBackToTheSame) {
         const auto again = read_figure({preset.name, preset.name + ".resolved", figure.resolved()});
         EXPECT_EQ(again.resolved(), figure.resolved()) << preset.name;
         EXPECT_EQ(header_of(again), header_of(figure)) << preset.name;
-        EXPECT_EQ(again.work->columns(), figure.work->columns()) << preset.name;
+        EXPECT_EQ(again.experiment->columns(), figure.experiment->columns()) << preset.name;
         EXPECT_EQ(again.picture_size(), figure.picture_size()) << preset.name;
         EXPECT_EQ(again.title, figure.title);
         EXPECT_EQ(again.subtitle, figure.subtitle);

@@ -49,11 +49,11 @@ TEST_P(SameNumbers, InAnyGroups) {
     const auto expected = table_text(figure, computed(figure));
     const std::atomic<bool> never = false;
     for (const std::size_t together : {1u, 3u, 1000u}) {
-        KnownTrials trials(figure.work->trials());
+        KnownTrials trials(figure.experiment->trials());
         const auto groups = (trials.size() + together - 1) / together;
         for (std::size_t g = groups; g-- > 0;) {  // the last ones first
             const auto first = g * together, last = std::min(first + together, trials.size());
-            figure.work->compute(first, std::span(trials).subspan(first, last - first), never);
+            figure.experiment->compute(first, std::span(trials).subspan(first, last - first), never);
         }
         EXPECT_EQ(table_text(figure, trials), expected) << together << " at once";
     }
@@ -64,7 +64,7 @@ TEST_P(SameNumbers, AfterAMergeOfAnyParts) {
     const auto folder = fresh_folder();
     run_figure(figure, {.out = folder / "whole", .jobs = 1});
     const auto expected = table_and_picture(folder / "whole", figure);
-    for (const int of : {1, 3, static_cast<int>(figure.work->trials()) + 2}) {  // the last with parts of nothing
+    for (const int of : {1, 3, static_cast<int>(figure.experiment->trials()) + 2}) {  // the last with parts of nothing
         const auto out = folder / std::to_string(of);
         for (int i = of; i >= 1; --i) run_figure(figure, {.out = out, .jobs = 1 + i % 2, .shard = Shard{i, of}});
         run_figure(figure, {.out = out, .merge = true});
@@ -107,8 +107,8 @@ TEST(FlipMap, MirroredRowsAreThoseComputed) {
     auto pushed = small;
     pushed.emplace_back("system.omega_deg_per_s=[1e-300, 0]");
     const auto whole = figure_of("flip-map", pushed);
-    EXPECT_EQ(figure.work->trials(), 8u);
-    EXPECT_EQ(whole.work->trials(), 15u);
+    EXPECT_EQ(figure.experiment->trials(), 8u);
+    EXPECT_EQ(whole.experiment->trials(), 15u);
     EXPECT_EQ(table_text(figure, computed(figure)), table_text(whole, computed(whole)));
 }
 

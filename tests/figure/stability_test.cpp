@@ -103,7 +103,7 @@ TEST(Stability, IsTheSameForAnyJobsAndFromTheResolvedPreset) {
         const auto again = read_figure({figure.name, "resolved.toml", figure.resolved()});
         EXPECT_EQ(again.resolved(), figure.resolved());
         EXPECT_EQ(table_text(again, computed(again)), expected);
-        EXPECT_EQ(figure.work->trials(), 12u * 5);
+        EXPECT_EQ(figure.experiment->trials(), 12u * 5);
     }
 }
 

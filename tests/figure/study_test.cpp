@@ -20,7 +20,7 @@ using Values = std::vector<std::pair<double, double>>;
 
 void expect_averages(const FigurePreset& figure, const Values& values) {
     const auto table = table_of(figure);
-    EXPECT_EQ(table.rows.size(), figure.work->trials());
+    EXPECT_EQ(table.rows.size(), figure.experiment->trials());
     for (const auto& [parameter, expected] : values)
         EXPECT_NEAR(table.at(parameter, 1), expected, 6e-5) << figure.name << " at " << parameter;
 }
@@ -56,8 +56,8 @@ TEST(Study, SweepsOverTheMassRatio) {
 
 TEST(Study, HasItsWholeRangeInThePresets) {
     for (const char* name : {"fig2-right", "fig3-left", "fig4-right", "fig5-left", "fig8"})
-        EXPECT_EQ(figure_of(name).work->trials(), 181u) << name;
-    for (const char* name : {"fig3-right", "fig5-right"}) EXPECT_EQ(figure_of(name).work->trials(), 200u) << name;
+        EXPECT_EQ(figure_of(name).experiment->trials(), 181u) << name;
+    for (const char* name : {"fig3-right", "fig5-right"}) EXPECT_EQ(figure_of(name).experiment->trials(), 200u) << name;
 }
 
 TEST(Study, ColumnsAreThoseAgreedUpon) {
@@ -82,7 +82,7 @@ TEST(Study, PairOverTime) {
         EXPECT_NEAR(table.at(sample, 2), expected, slack) << sample;  // measured 0.941, 1.885, 3.384
     EXPECT_EQ(table.at(0, 2), 0);
     EXPECT_EQ(table.at(120, 1), 1);
-    EXPECT_EQ(figure_of("fig2-left").work->trials(), 1u);
+    EXPECT_EQ(figure_of("fig2-left").experiment->trials(), 1u);
 }
 
 TEST(Study, PairsOverAllSamples) {
@@ -107,7 +107,7 @@ TEST(Study, FormulationsPart) {
         EXPECT_NEAR(static_cast<double>(most - table.rows.begin()), static_cast<double>(at), 5);
     }
     // the manifest says the same
-    for (const auto& finding : figure.work->findings(trials))
+    for (const auto& finding : figure.experiment->findings(trials))
         if (finding.key == "greatest_distance_50") {
             EXPECT_NEAR(std::get<double>(finding.value), 1.044, 6e-4);
         }
@@ -167,7 +167,7 @@ TEST(Sweep, EndsWhereItWasTold) {
          {std::tuple{"0.3", "0.1", 4u}, {"1", "0.1", 11u}, {"0", "1", 1u}, {"2", "0.01", 201u}}) {
         const auto figure =
             figure_of("fig2-right", {fmt::format("sweep.to={}", to), fmt::format("sweep.step={}", step)});
-        EXPECT_EQ(figure.work->trials(), rows) << to << " by " << step;
+        EXPECT_EQ(figure.experiment->trials(), rows) << to << " by " << step;
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -31,8 +32,8 @@ inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
 inline std::string table_text(const FigurePreset& figure, const KnownTrials& trials) {
     const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("table-{}.csv", getpid());
     std::filesystem::create_directories(path.parent_path());
-    Csv table(path, figure.work->columns());
-    figure.work->write_rows(trials, table);
+    Csv table(path, figure.experiment->columns());
+    figure.experiment->write_rows(trials, table);
     table.finish();
     auto text = test::bytes_of(path);
     std::filesystem::remove(path);
@@ -85,8 +86,23 @@ inline Table table_of(const FigurePreset& figure) {
 
 inline std::string header_line(const FigurePreset& figure) {
     std::string line;
-    for (const auto& column : figure.work->columns()) line += (line.empty() ? "" : ",") + column;
+    for (const auto& column : figure.experiment->columns()) line += (line.empty() ? "" : ",") + column;
     return line;
+}
+
+/// Ten trials of half a second.
+inline const std::vector<std::string> small_chart{"sweep.to=9", "scene.duration_s=0.5", "chart.size=[320, 180]"};
+inline FigurePreset small_sweep(std::vector<std::string> more = {}) {
+    more.insert(more.end(), small_chart.begin(), small_chart.end());
+    return figure_of("fig2-right", more);
+}
+
+inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 /// What figures said on their way.

@@ -69,7 +69,7 @@ std::vector<Row> rows_of(const FigurePreset& figure) {
 TEST(WorkPrecision, SaysWhatMoves) {
     const auto subtitle = [](const FigurePreset& figure) {
         Figure page{.subtitle = figure.subtitle};
-        figure.work->draw(computed(figure), page);
+        figure.experiment->draw(computed(figure), page);
         return page.subtitle;
     };
     const std::vector<std::string> quick{"work_precision.methods=[\"rk4\"]", "work_precision.models=[\"angles\"]",
@@ -143,7 +143,7 @@ TEST(WorkPrecision, KnowsItsProblems) {
          "work_precision.methods=[\"euler\", \"taylor\"]", "work_precision.most_evaluations=20000"});
     const auto trials = computed(figure);
     std::map<std::string, double> found;
-    for (const auto& finding : figure.work->findings(trials))
+    for (const auto& finding : figure.experiment->findings(trials))
         if (const auto* value = std::get_if<double>(&finding.value)) found[finding.key] = *value;
     EXPECT_NEAR(found.at("P1_sensitivity"), 80, 1);
     EXPECT_NEAR(found.at("P3_sensitivity"), 320, 1);
@@ -187,7 +187,7 @@ TEST(GoldenFigureWorkPrecision, IsAsItWas) {
 TEST(WorkPrecision, IsTheSameForAnyNumberOfThreads) {
     const auto figure = second({"work_precision.methods=[\"rk4\", \"adams\", \"taylor\", \"rattle\"]",
                                 "work_precision.most_evaluations=20000"});
-    EXPECT_FALSE(figure.work->measures_time());
+    EXPECT_FALSE(figure.experiment->measures_time());
     EXPECT_EQ(table_text(figure, computed(figure, 1)), table_text(figure, computed(figure, 3)));
 }
 
@@ -195,8 +195,8 @@ TEST(WorkPrecision, TimesItsRuns) {
     const auto figure = second({"work_precision.models=[\"angles\"]", "work_precision.methods=[\"rk4\", \"taylor\"]",
                                 "work_precision.repeats=3", "work_precision.most_evaluations=20000"},
                                "time");
-    EXPECT_TRUE(figure.work->measures_time());
-    EXPECT_EQ(figure.work->trials(), 1u + 3 * 2);
+    EXPECT_TRUE(figure.experiment->measures_time());
+    EXPECT_EQ(figure.experiment->trials(), 1u + 3 * 2);
     double last = 0;
     for (const auto& row : rows_of(figure)) {
         const double seconds = row.number("cpu_seconds"), each = seconds / row.number("evaluations");
@@ -276,7 +276,7 @@ TEST(WorkPrecision, FailsWhereEveryRunBreaksDown) {
     const std::string one_that_ends = "work_precision.methods=[\"gauss4\", \"taylor\"]";
     const auto other = figure_of("speed-accuracy", {by_evaluations, "work_precision.problems=[\"P3\"]", one_that_ends,
                                                     "work_precision.most_evaluations=100"});
-    EXPECT_EQ(other.work->nothing_to_draw(computed(other)), std::nullopt);
+    EXPECT_EQ(other.experiment->nothing_to_draw(computed(other)), std::nullopt);
 }
 
 TEST(WorkPrecision, ReadsBackWhatItSaysOfItself) {

@@ -84,7 +84,7 @@ const std::map<std::string, FigurePreset>& figures() {
 }
 
 /// As many numbers 1 as fit each trial.
-KnownTrials plain_trials(const FigureWork& work) {
+KnownTrials plain_trials(const Experiment& work) {
     KnownTrials trials(work.trials());
     for (std::size_t i = 0; i < trials.size(); ++i)
         while (!work.fits(i, trials[i])) trials[i].push_back(1);
@@ -93,13 +93,13 @@ KnownTrials plain_trials(const FigureWork& work) {
 
 /// Draws and writes the trials of the file in the company of others.
 void show(const FigurePreset& figure, PartFile& part) {
-    auto trials = plain_trials(*figure.work);
-    part.take(*figure.work, trials);
+    auto trials = plain_trials(*figure.experiment);
+    part.take(*figure.experiment, trials);
     for (std::size_t i = 0; i < trials.size(); ++i)
-        if (!figure.work->fits(i, trials[i])) throw std::logic_error("numbers that do not fit were taken");
-    figure.work->findings(trials);
-    Csv table(std::filesystem::path("/dev/null"), figure.work->columns());
-    figure.work->write_rows(trials, table);
+        if (!figure.experiment->fits(i, trials[i])) throw std::logic_error("numbers that do not fit were taken");
+    figure.experiment->findings(trials);
+    Csv table(std::filesystem::path("/dev/null"), figure.experiment->columns());
+    figure.experiment->write_rows(trials, table);
     table.finish();
     try {
         compose_figure(figure, trials);
@@ -130,7 +130,7 @@ std::string read_part(std::string_view input) {
     return refusal_of(with_checksums(input), [](const fs::path& path) {
         auto part = read_part_file(path);
         const auto figure = figures().find(part.header.figure);
-        if (figure != figures().end() && part.header.trials == figure->second.work->trials())
+        if (figure != figures().end() && part.header.trials == figure->second.experiment->trials())
             show(figure->second, part);
     });
 }

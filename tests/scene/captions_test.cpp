@@ -1,7 +1,7 @@
 // What pictures and messages say.
 #include "scene/captions.hpp"
 
-#include "scene/nearest.hpp"
+#include "base/text.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 

@@ -1,6 +1,5 @@
-#include "scene/mechanism_lines.hpp"
-
 #include "physics/mechanisms.hpp"
+#include "scene/scene.hpp"
 
 #include <gtest/gtest.h>
 

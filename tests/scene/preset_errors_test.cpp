@@ -1,3 +1,4 @@
+#include "base/text.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>
@@ -156,6 +157,18 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[video]\ntrail_s = -1", "presets/x.toml:2:1: [video] trail_s must be from 0 (none) to 3600; it is -1"},
         Case{"[video]\ndistance_range = [1, 2]",
              "presets/x.toml:2:1: [video] distance_range must rise by 1 to 60 powers of ten; it is [1, 2]"}));
+
+/// Letters beyond ASCII are escaped.
+TEST(PresetErrors, AreShortAndUtf8WhateverTheValue) {
+    for (const char* start : {"", "a", "ab", "abc"}) {
+        std::string text(start);
+        for (int i = 0; i < 40; ++i) text += "é";
+        const auto message = message_of(("[scene]\nduration_s = \"" + text + "\"").c_str());
+        EXPECT_TRUE(is_utf8(message)) << message;
+        EXPECT_TRUE(message.ends_with("…")) << message;
+        EXPECT_LT(message.size(), 160u);
+    }
+}
 
 TEST(Overrides, NameTheOptionInPlaceOfALine) {
     const auto fault = [](const std::vector<std::string>& arguments) {

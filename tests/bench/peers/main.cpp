@@ -34,7 +34,7 @@ void make_figure(const RunCommandOptions& options) {
     const auto peers = all_peers();
     std::vector<FigurePreset> figures{read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};
     figures[0].captions.push_back(where_and_when());
-    ProgressReport show(progress_style(options.progress), figures[0].name, figures[0].work->unit());
+    ProgressReport show(progress_style(options.progress), figures[0].name, figures[0].experiment->unit());
     const FigureReport report{[&](std::size_t, const FigureProgress& progress) {
                                   show({std::lround(progress.done), std::lround(progress.total)});
                               },

@@ -98,11 +98,11 @@ struct Finding {
     std::variant<double, std::string, bool> value;
 };
 
-/// What a figure computes and shows: independent trials, and what becomes of their numbers. They may be computed in any
+/// What a figure computes and shows: independent trials, and the table, picture and findings of their numbers. They may be computed in any
 /// order, by any thread, in several runs on several machines; the numbers are the same to the bit.
-class FigureWork {
+class Experiment {
 public:
-    virtual ~FigureWork() = default;
+    virtual ~Experiment() = default;
 
     virtual std::size_t trials() const = 0;
     /// How many trials in a row one call of compute() takes best. Changes no result.
@@ -138,12 +138,12 @@ public:
     virtual std::string subtitle() const { return {}; }
 
     /// Everything that the numbers depend on, as the preset's tables would say it (TOML).
-    virtual std::string resolved() const = 0;
+    const std::string& resolved() const { return settings_; }
     /// The keys of [chart] among it.
-    virtual std::string resolved_chart() const { return {}; }
+    const std::string& resolved_chart() const { return chart_settings_; }
 
 protected:
-    std::string settings_;  // the kind's own table as it was read, TOML
+    std::string settings_, chart_settings_;
 
     /// One trial, of a kind that computes no two together.
     virtual TrialNumbers compute_trial(std::size_t /*trial*/, const std::atomic<bool>& /*stop*/) const { return {}; }

@@ -1,8 +1,6 @@
 #include "analysis/tangent.hpp"
 #include "figure/work_precision.hpp"
 #include "scene/method_choice.hpp"
-#include "scene/resolved.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,16 +10,12 @@ namespace {
 
 /// A standard problem: unit masses and lengths, from rest.
 struct StandardProblem {
-    std::string_view name;
     std::vector<int> angle_deg;
     int seconds;
 };
 
-const std::vector<StandardProblem>& standard_problems() {
-    static const std::vector<StandardProblem> all{
-        {"P1", {90, 90}, 10}, {"P2", {30, 0}, 60}, {"P3", {150, 90}, 5}, {"P4", {120, 0, 0}, 5}};
-    return all;
-}
+constexpr std::array<std::string_view, 4> names_of_all{"P1", "P2", "P3", "P4"};
+const std::array<StandardProblem, 4> all_standard{{{{90, 90}, 10}, {{30, 0}, 60}, {{150, 90}, 5}, {{120, 0, 0}, 5}}};
 
 std::string release_words(const SideSpec& side) {
     std::vector<std::string> angles;
@@ -57,35 +51,11 @@ WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational&
     return problem;
 }
 
-WorkProblem standard_problem(const StandardProblem& standard) {
+WorkProblem standard_problem(const std::string& name, const StandardProblem& standard) {
     SideSpec side;
-    const auto links = standard.angle_deg.size();
-    side.mass_kg.assign(links, 1);
-    side.length_m.assign(links, 1);
+    side.set_links(standard.angle_deg.size());  // unit masses and lengths, at rest
     side.angle_deg.assign(standard.angle_deg.begin(), standard.angle_deg.end());
-    side.omega_deg_per_s.assign(links, 0);
-    return make_problem(std::string(standard.name), side, {standard.seconds, 1});
-}
-
-WorkProblems read_standard(SettingsReader& table) {
-    std::vector<std::string> names;
-    for (const auto& standard : standard_problems()) names.emplace_back(standard.name);
-    table.read_texts("problems", names);
-    if (names.empty()) throw table.fault("problems", "must name at least one of P1, P2, P3, P4");
-    WorkProblems problems;
-    for (const auto& name : names) {
-        const auto& all = standard_problems();
-        const auto found = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.name == name; });
-        if (found == all.end()) throw table.fault("problems", "are of P1, P2, P3, P4; \"{}\" is not", name);
-        if (std::count(names.begin(), names.end(), name) > 1)
-            throw table.fault("problems", "must differ; \"{}\" is there twice", name);
-        problems.all.push_back(standard_problem(*found));
-    }
-    if (table.has("duration_s"))
-        throw table.fault("duration_s", "is for the motion of a \"scene\"; the problems have their own");
-    problems.subtitle =
-        "double and triple pendulums released at rest, links of 1 m and 1 kg, g = 9.8 m/s²; double precision, one core";
-    return problems;
+    return make_problem(name, side, {standard.seconds, 1});
 }
 
 /// "1", or "1, 2, 0.5" where they differ.
@@ -105,11 +75,27 @@ std::string system_words(const WorkProblem& problem) {
                        problem.plain ? "" : " and more", chain.gravity, computed);
 }
 
-/// Side a of a film. What it says stands beside its name, so that two films of one name are told apart.
-WorkProblems read_scene(SettingsReader& table) {
-    std::string name;
-    table.read_text("scene", name);
-    if (table.has("problems")) throw table.fault("problems", "cannot stand beside \"scene\", which is one of its own");
+}  // namespace
+
+std::span<const std::string_view> standard_problem_names() {
+    return names_of_all;
+}
+
+WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table) {
+    if (names.empty()) throw table.fault("problems", "must name at least one of {}", fmt::join(names_of_all, ", "));
+    WorkProblems problems;
+    for (const auto& name : names) {
+        if (std::count(names.begin(), names.end(), name) > 1)
+            throw table.fault("problems", "must differ; \"{}\" is there twice", name);
+        const auto number = std::find(names_of_all.begin(), names_of_all.end(), name) - names_of_all.begin();
+        problems.all.push_back(standard_problem(name, all_standard.at(static_cast<std::size_t>(number))));
+    }
+    problems.subtitle =
+        "double and triple pendulums released at rest, links of 1 m and 1 kg, g = 9.8 m/s²; double precision, one core";
+    return problems;
+}
+
+Preset film_named(const std::string& name, const TomlReader& table) {
     const auto source = [&] {
         try {
             return find_preset(name);
@@ -119,22 +105,19 @@ WorkProblems read_scene(SettingsReader& table) {
     }();
     table.demand_drawable("scene", source.name);
     if (is_figure(source)) throw table.fault("scene", "must name a film; \"{}\" is a figure", name);
-    auto film = read_preset(source);
-    table.read_positive_ratio("duration_s", film.duration_s);
+    return read_preset(source);
+}
+
+/// What the film says stands beside its name, so that two films of one name are told apart.
+WorkProblems problem_of(Preset film) {
     WorkProblems problems;
-    problems.all.push_back(make_problem(source.name, film.a, film.duration_s));
+    problems.all.push_back(make_problem(film.name, film.a, film.duration_s));
     problems.subtitle = system_words(problems.all.back());
     film.b = film.a;
     problems.comment = "#";
     for (const char c : resolved_sides(film)) problems.comment += c == '\n' ? std::string("\n# ") : std::string(1, c);
     problems.comment += "\n";
     return problems;
-}
-
-}  // namespace
-
-WorkProblems read_problems(SettingsReader& table) {
-    return table.has("scene") ? read_scene(table) : read_standard(table);
 }
 
 }  // namespace doppel

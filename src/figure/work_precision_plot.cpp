@@ -70,9 +70,8 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
 
 Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.ground = Ground::band};
-    for (const auto& point : front_of(diagram.index, diagram.ladders, diagram.cost, range_of(diagram))) {
+    for (const auto& point : front_of(diagram.index, diagram.ladders, diagram.cost, range_of(diagram)))
         add_point(curve, point.cost, point.error);
-    }
     return curve;
 }
 

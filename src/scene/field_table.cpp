@@ -1,0 +1,83 @@
+#include "scene/field_table.hpp"
+
+#include "scene/preset_fields.hpp"
+
+namespace doppel {
+namespace {
+
+/// The range of a number: "> 0", "0 (none) to 100".
+std::string range_text(const Bounds& bounds) {
+    if (bounds.is_open) return bounds.has_high() ? fmt::format("> 0, to {}", bounds.high) : "> 0";
+    if (!bounds.has_low()) return "";
+    if (!bounds.has_high()) return fmt::format("≥ {}", bounds.low);
+    return fmt::format("{}{} to {}", bounds.low, bounds.zero.empty() ? "" : fmt::format(" ({})", bounds.zero),
+                       bounds.high);
+}
+
+std::string takes_text(const ListedField& field) {
+    std::string text(field.type);
+    if (!field.choices.empty()) text = fmt::format("`\"{}\"`", fmt::join(field.choices, "\"`, `\""));
+    if (!field.choices.empty() && field.type.starts_with("list")) text = "list of " + text;
+    if (field.most > 0) text = fmt::format("1 to {} {}", field.most, text);
+    if (const auto range = range_text(field.bounds); !range.empty()) text += ", " + range;
+    return text;
+}
+
+template <class Spec>
+void add_part_tables(const std::string& name, std::vector<FieldTable>& tables) {
+    const auto add = [&]<class Part>(std::string_view kind, const Part& part) {
+        auto& table = tables.emplace_back(FieldTable{fmt::format("[[system.{}]] kind = \"{}\"", name, kind)});
+        table.fields.push_back({"name", "text", "", "by which `[a]` and `[b]` change it", "none"});
+        part_fields(table, part, kind);
+    };
+    [&]<class... Parts>(const std::variant<Parts...>&) {
+        auto kind = Spec::kinds.begin();
+        (add(*kind++, Parts()), ...);
+    }(Spec().part);
+}
+
+}  // namespace
+
+std::string FieldTable::markdown() const {
+    auto text = fmt::format("\n## `{}`\n\n{}{}| key | takes | unit | default | |\n|---|---|---|---|---|\n", name,
+                            this->text, this->text.empty() ? "" : "\n");
+    for (const auto& field : fields)
+        text += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, takes_text(field), field.unit,
+                            field.by_default, field.help);
+    for (const auto& table : tables) text += table.markdown();
+    return text;
+}
+
+std::vector<FieldTable> film_tables() {
+    const Preset preset;
+    const SideSpec& side = preset.a;
+    const ParticleSpec released;
+    FieldTable top{"title"}, scene{"[scene]"}, system{"[system], [a], [b]"}, video{"[video]"};
+    FieldTable particle{
+        "[[system.particle]]",
+        "In place of a chain, a system may have particles; constraints and forces may stand on top of a chain, too, "
+        "whose\nbobs are called `bob1`, `bob2` …\n"};
+    top(title_field, preset.title);
+    scene(kind_field, std::string(pair_kind));
+    clock_fields(scene, preset);
+    chain_fields(system, side);
+    gravity_field(system, side);
+    system(model_field, side.model);
+    system(accuracy_field, side.accuracy);
+    method_fields(system, side);
+    precision_fields(system, side);
+    particle.fields.push_back({"name", "text", "", "by which constraints and forces call it", "must be given"});
+    part_fields(particle, released);
+    video(size_field, preset.video.size);
+    format_fields(video, preset.video);
+    time_fields(video, preset.video);
+    layout_fields(video, preset.video);
+    style_fields(video, preset.video);
+    std::vector<FieldTable> tables{top, scene, system, particle};
+    add_part_tables<ConstraintSpec>("constraint", tables);
+    add_part_tables<ForceSpec>("force", tables);
+    tables.push_back(video);
+    return tables;
+}
+
+}  // namespace doppel

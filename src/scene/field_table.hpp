@@ -1,0 +1,79 @@
+#pragma once
+
+#include "scene/resolved.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace doppel {
+
+/// What a key takes whose member is a T.
+template <class T>
+constexpr std::string_view type_words() {
+    if constexpr (is_optional<T>) return type_words<typename T::value_type>();
+    if constexpr (std::is_same_v<T, bool>) return "`true` or `false`";
+    if constexpr (std::is_same_v<T, int>) return "whole number";
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Quad>) return "number";
+    if constexpr (std::is_same_v<T, Rational>) return "number or \"a/b\"";
+    if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, std::vector<Quad>>) return "numbers";
+    if constexpr (std::is_same_v<T, std::vector<std::string>> || std::is_same_v<T, Panels>) return "list of text";
+    if constexpr (std::is_same_v<T, QuadPair>) return "[x, y]";
+    if constexpr (std::is_same_v<T, EndSpec>) return "text or [x, y]";
+    if constexpr (std::is_same_v<T, Size> || std::is_same_v<T, std::array<int, 2>>) return "two whole numbers";
+    if constexpr (std::is_same_v<T, Range>) return "two numbers";
+    if constexpr (std::is_same_v<T, Color>) return "\"#rrggbb\"";
+    if constexpr (std::is_same_v<T, std::array<Color, 2>>) return "two of \"#rrggbb\"";
+    return "text";
+}
+
+/// A key with what a list of fields says of it.
+struct ListedField {
+    std::string_view key, type, unit, help;  // `type` is one of type_words()
+    std::string by_default;                  // Markdown
+    std::vector<std::string> choices = {};   // of text, or of a list's elements
+    Bounds bounds = {};
+    std::size_t most = 0;  // as in Field
+};
+
+/// A table of presets, "[scene]", and its keys: what a list of fields says, as data. table(field, default) takes a key.
+struct FieldTable {
+    std::string name, text = {};  // `text` stands above the keys in docs/presets.md
+    std::vector<ListedField> fields = {};
+    std::vector<FieldTable> tables = {};  // inside this one
+
+    template <class T>
+    void operator()(const Field& field, const T& by_default) {
+        std::vector<std::string> choices(field.names.begin(), field.names.end());
+        if constexpr (std::is_enum_v<T>) choices.assign(names_of<T>.begin(), names_of<T>.end());
+        if constexpr (std::is_same_v<T, Panels>) {
+            choices = {"pendulums"};
+            choices.insert(choices.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
+        }
+        fields.push_back({field.key, type_words<T>(), field.unit, field.help, default_text(field, by_default),
+                          std::move(choices), field.bounds, field.most});
+    }
+    template <class Visit>
+    void table(std::string_view key, const Visit& visit) {
+        visit(tables.emplace_back(FieldTable{fmt::format("[{}.{}]", name.substr(1, name.size() - 2), key)}));
+    }
+    static bool from_command_line(std::string_view) { return false; }
+
+    /// A section of docs/presets.md, with those of the tables inside.
+    std::string markdown() const;
+
+private:
+    template <class T>
+    static std::string default_text(const Field& field, const T& value) {
+        if (!field.needed_by.empty()) return "must be given";
+        if constexpr (is_optional<T>)
+            return field.absent.empty() ? "none" : std::string(field.absent);
+        else
+            return field.absent.empty() ? fmt::format("`{}`", toml_value(value)) : std::string(field.absent);
+    }
+};
+
+/// All tables of a film's preset.
+std::vector<FieldTable> film_tables();
+
+}  // namespace doppel

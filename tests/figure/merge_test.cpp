@@ -1,0 +1,165 @@
+// Figures joined from parts.
+#include "figure/run.hpp"
+#include "figure/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace merge_test {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::expect_error;
+using test::fresh_folder;
+using test::write_bytes;
+
+class Merge : public testing::Test {
+protected:
+    void SetUp() override {
+        out_ = fresh_folder();
+        folder_ = out_ / "fig2-right";
+        for (int i = 1; i <= 3; ++i) run_figure(small_sweep(), {.out = out_, .shard = Shard{i, 3}});
+    }
+    fs::path part(int i) const { return folder_ / fmt::format("fig2-right.{}-of-3.shard", i); }
+
+    void expect_refused(ExitCode code, const std::vector<std::string>& words, const FigurePreset& figure) const {
+        const auto before = names_in(folder_);
+        expect_error(code, words, [&] { run_figure(figure, {.out = out_, .merge = true}); });
+        EXPECT_EQ(names_in(folder_), before);
+    }
+    /// Words of a part's header replaced.
+    void edit(int i, const std::string& from, const std::string& to) const {
+        auto bytes = bytes_of(part(i));
+        const auto at = bytes.find(from);
+        ASSERT_LT(at, bytes.find('\n')) << bytes;
+        write_bytes(part(i), bytes.replace(at, from.size(), to));
+    }
+
+    fs::path out_, folder_;
+};
+
+TEST_F(Merge, JoinsWhatIsThereAndComputesNothing) {
+    EXPECT_EQ(names_in(folder_), (std::vector<std::string>{"fig2-right.1-of-3.shard", "fig2-right.2-of-3.shard",
+                                                           "fig2-right.3-of-3.shard"}));
+    const auto result = run_figure(small_sweep(), {.out = out_, .merge = true});
+    EXPECT_EQ(result.samples, 0);
+    EXPECT_EQ(bytes_of(folder_ / "fig2-right.csv"), table_text(small_sweep(), computed(small_sweep())));
+    EXPECT_TRUE(fs::exists(folder_ / "fig2-right.png"));
+    // another picture of the same numbers
+    run_figure(small_sweep({"chart.theme=\"dark\""}), {.out = out_, .merge = true});
+}
+
+TEST_F(Merge, NamesThePartsThatAreMissing) {
+    fs::remove(part(2));
+    expect_refused(ExitCode::bad_input, {"missing", "2/3"}, small_sweep());
+    fs::remove(part(3));
+    expect_refused(ExitCode::bad_input, {"missing", "2/3, 3/3"}, small_sweep());
+    fs::remove(part(1));
+    expect_refused(ExitCode::bad_input, {"holds no part of fig2-right", "--shard"}, small_sweep());
+}
+
+TEST_F(Merge, NamesTheFirstOfManyMissing) {
+    for (int i = 1; i <= 3; ++i) fs::remove(part(i));
+    run_figure(small_sweep(), {.out = out_, .shard = Shard{3, 100'000}});
+    const auto message = error_of([&] { run_figure(small_sweep(), {.out = out_, .merge = true}); }).second;
+    EXPECT_NE(message.find("missing parts: 1/100000, 2/100000, 4/100000, 5/100000, 6/100000 … 99999 in all"),
+              std::string::npos)
+        << message.substr(0, 1000);
+    EXPECT_LT(message.size(), folder_.string().size() + 150);
+}
+
+TEST_F(Merge, RefusesAPartThatIsThereTwice) {
+    const auto copy = folder_ / "fig2-right.1-of-3 (copy).shard";
+    fs::copy_file(part(1), copy);
+    expect_refused(ExitCode::bad_input, {part(1).string(), copy.string(), "both part 1/3"}, small_sweep());
+    fs::remove(copy);
+    fs::copy_file(part(1), part(2), fs::copy_options::overwrite_existing);
+    expect_refused(ExitCode::bad_input, {part(1).string(), part(2).string(), "both part 1/3"}, small_sweep());
+}
+
+TEST_F(Merge, BelievesNoChangedDigit) {
+    const auto bytes = bytes_of(part(2));
+    const auto header = bytes.find('\n') + 1, value = bytes.find(',', header) + 1, end = bytes.find(';', header);
+    const auto expect_damaged = [&](const std::string& changed, const std::string& why) {
+        write_bytes(part(2), changed);
+        expect_refused(ExitCode::io_failed, {part(2).string(), why, "--shard 2/3"}, small_sweep());
+    };
+    auto digit = bytes;
+    digit[value + 3] = digit[value + 3] == '4' ? '5' : '4';
+    expect_damaged(digit, "is damaged in line 2");
+    expect_damaged(std::string(bytes).replace(value, end - value, "nan"), "is damaged in line 2");
+    expect_damaged(std::string(bytes).replace(value - 1, end - value + 1, ""), "is damaged in line 2");
+    // lines of another part
+    expect_damaged(bytes + bytes_of(part(1)).substr(bytes_of(part(1)).find('\n') + 1), "is damaged in line 5");
+    // numbers that no trial has
+    PartWriter(part(2), header_of(small_sweep(), 2, 3), KnownTrials(10, {1, 2})).close();
+    expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged in line 2"}, small_sweep());
+}
+
+TEST_F(Merge, ReadsRegularFilesAlone) {
+    fs::rename(part(2), out_ / "elsewhere");
+    fs::create_symlink(out_ / "elsewhere", part(2));
+    expect_refused(ExitCode::io_failed, {part(2).string(), "symbolic link"}, small_sweep());
+    fs::remove(part(2));
+    ASSERT_EQ(mkfifo(part(2).c_str(), 0600), 0);
+    expect_refused(ExitCode::io_failed, {part(2).string(), "no regular file"}, small_sweep());
+}
+
+TEST_F(Merge, RefusesPartsOfAnotherPreset) {
+    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"sweep.difference=0.004"}));
+    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"sweep.step=0.5"}));
+}
+
+TEST_F(Merge, RefusesPartsOfAnotherVersionOrRevision) {
+    edit(2, "\"version\":\"", "\"version\":\"9");
+    expect_refused(ExitCode::bad_input, {part(2).string(), "another version: 9", "--shard 2/3"}, small_sweep());
+    edit(2, "\"version\":\"9", "\"version\":\"");
+    edit(3, "\"revision\":\"", "\"revision\":\"x");
+    expect_refused(ExitCode::bad_input, {part(3).string(), "another revision: x", "--shard 3/3"}, small_sweep());
+    edit(3, "\"revision\":\"x", "\"revision\":\"");
+    edit(3, "\"figure\":\"fig2", "\"figure\":\"fig4");
+    expect_refused(ExitCode::bad_input, {part(3).string(), "another figure: fig4-right"}, small_sweep());
+}
+
+TEST_F(Merge, RefusesPartsOfDifferentNumbers) {
+    run_figure(small_sweep(), {.out = out_, .shard = Shard{2, 4}});
+    expect_refused(ExitCode::bad_input, {"fig2-right.2-of-4.shard", "remove those that do not belong"}, small_sweep());
+}
+
+TEST_F(Merge, RefusesAPartThatIsCut) {
+    const auto bytes = bytes_of(part(2));
+    write_bytes(part(2), bytes.substr(0, bytes.size() - 1));
+    expect_refused(ExitCode::io_failed, {part(2).string(), "not whole", "--shard 2/3"}, small_sweep());
+    write_bytes(part(2), "my diary");
+    expect_refused(ExitCode::io_failed, {part(2).string()}, small_sweep());
+}
+
+TEST_F(Merge, IgnoresPartsOfOtherNames) {
+    write_bytes(folder_ / "fig2-right-mine.1-of-2.shard", "my diary");
+    write_bytes(folder_ / "fig2-right.1-of-3.shard.part", "cut");
+    run_figure(small_sweep(), {.out = out_, .merge = true});
+    EXPECT_TRUE(fs::exists(folder_ / "fig2-right.csv"));
+}
+
+TEST(MergeOfNothing, SaysHowToMakeParts) {
+    const auto out = fresh_folder() / "out";
+    expect_error(ExitCode::bad_input, {"fig2-right", "--shard I/N"},
+                 [&] { run_figure(small_sweep(), {.out = out, .merge = true}); });
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
+}
+
+/// An orbit may never come back to the section; it has no points, and is computed nonetheless.
+TEST(MergeOfNothing, KnowsTrialsWithoutNumbers) {
+    const auto out = fresh_folder();
+    const auto figure = figure_from(
+        "[scene]\nkind = \"section\"\n[system]\ngravity_m_per_s2 = 1e-9\n[section]\nenergy_J = [1e-6]\n"
+        "orbits = 2\ncrossings = 1\n[chart]\nsize = [320, 180]");
+    const auto trials = computed(figure);
+    const bool any_empty = std::any_of(trials.begin(), trials.end(), [](const auto& t) { return t.empty(); });
+    for (int i = 1; i <= 2; ++i) run_figure(figure, {.out = out, .shard = Shard{i, 2}});
+    run_figure(figure, {.out = out, .merge = true});
+    EXPECT_EQ(bytes_of(out / "x/x.csv"), table_text(figure, trials)) << any_empty;
+}
+
+}  // namespace merge_test
+}  // namespace doppel
