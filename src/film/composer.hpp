@@ -19,7 +19,7 @@ public:
     DisplayList backdrop() const;
 
     /// The next shot, in order from sample 0.
-    void add(const Shot& shot);
+    void add(const Snapshot& snapshot);
 
     /// The picture of the shot added last.
     DisplayList frame() const;

@@ -167,7 +167,7 @@ void Film::keep(const Picture& picture) {
     sheet_.insert(sheet_.end(), static_cast<std::size_t>(times), reduced(picture, {width, height}));
 }
 
-void Film::shoot(RunRecord& record) {
+void Film::write_frame(RunRecord& record) {
     const long number = sample_ / scene_.samples_per_frame;
     const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
     if (record.frames == 0) first_number_ = is_first ? 0 : schedule_.title + schedule_.hold_start + number;

@@ -37,13 +37,13 @@ public:
          const std::atomic<bool>& stop);
 
     /// Every sample, from 0 on.
-    void add(const Shot& shot) {
-        sample_ = shot.moment.sample;
-        composer_.add(shot);
+    void add(const Snapshot& snapshot) {
+        sample_ = snapshot.pair.sample;
+        composer_.add(snapshot);
     }
 
     /// The shot added last becomes a frame; before the first of all comes the title, after the last the end.
-    void shoot(RunRecord& record);
+    void write_frame(RunRecord& record);
 
     /// The film is whole; writes what was kept.
     void finish();

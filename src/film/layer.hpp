@@ -12,13 +12,13 @@ namespace doppel {
 struct FilmState {
     const Scene& scene;
     const Layout layout;
-    Shot shot{};  // added last
+    Snapshot snapshot{};  // added last
     double start_distance = 0, largest_distance = 0;
     std::optional<double> parted{};  // s
 
-    double time() const { return scene.time(shot.moment.sample); }
+    double time() const { return scene.time(snapshot.pair.sample); }
     const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
-    const Observation& seen(std::size_t side) const { return side == 0 ? shot.moment.a : shot.moment.b; }
+    const Observation& seen(std::size_t side) const { return side == 0 ? snapshot.pair.a : snapshot.pair.b; }
     bool start_as_one() const;  // else there is no parting to speak of
 };
 

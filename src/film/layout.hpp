@@ -35,14 +35,14 @@ Color member_color(const Style& style, double share);
 /// A panel of pendulums and how metres become pixels in it.
 struct PendulumPanel {
     /// What is said of a side, at the panel's top.
-    struct Words {
+    struct Caption {
         std::size_t side = 0;
         std::string heading, note;  // what differs; what else defines the side
         Align align = Align::left;
     };
     Area area;
     std::vector<std::size_t> sides;  // whose pendulum it shows, the front one first
-    std::vector<Words> words;
+    std::vector<Caption> captions;
     Point center;                       // px, where (center_x, center_y) is
     double center_x = 0, center_y = 0;  // m: the pivot of a chain
     float px_per_m = 1;

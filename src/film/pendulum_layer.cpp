@@ -14,7 +14,7 @@ namespace {
 
 /// The part of from…to that is in the area, if any.
 std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area& area) {
-    const auto within = shares_within(area, from.x, from.y, to.x, to.y);
+    const auto within = clip_segment(area, from.x, from.y, to.x, to.y);
     if (!within) return std::nullopt;
     const auto at = [&](double share) {
         return Point{static_cast<float>(std::lerp(from.x, to.x, share)),
@@ -77,18 +77,18 @@ void PendulumLayer::backdrop(DisplayList& list) const {
     if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), style_.theme.grid});
     for (const auto side : panel_.sides) draw_tracks(side, list);
 
-    const float share = panel_.words.size() > 1 ? 0.48f : 1;  // of the width, where there are words in both corners
+    const float share = panel_.captions.size() > 1 ? 0.48f : 1;  // of the width, where there are words in both corners
     const float width = share * (area.width() - 56 * u);
-    for (const auto& words : panel_.words) {
-        const float x = words.align == Align::right ? area.right - 28 * u : area.left + 28 * u;
+    for (const auto& caption : panel_.captions) {
+        const float x = caption.align == Align::right ? area.right - 28 * u : area.left + 28 * u;
         const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color) {
             const float size = fitting_size(text, px(wanted), weight, width);
-            list.push_back(label(text, {x, area.top + y}, size, color, words.align, weight));
+            list.push_back(label(text, {x, area.top + y}, size, color, caption.align, weight));
         };
-        const auto color = state_.scene.members.empty() ? style_.theme.sides[words.side]
-                                                        : member_color(style_, static_cast<double>(words.side));
-        add(words.heading, 50 * t, style_.font.heading, Weight::bold, color);
-        add(words.note, 82 * t, style_.font.note, Weight::regular, style_.theme.quiet_text);
+        const auto color = state_.scene.members.empty() ? style_.theme.sides[caption.side]
+                                                        : member_color(style_, static_cast<double>(caption.side));
+        add(caption.heading, 50 * t, style_.font.heading, Weight::bold, color);
+        add(caption.note, 82 * t, style_.font.note, Weight::regular, style_.theme.quiet_text);
     }
 }
 
@@ -117,7 +117,7 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
 
 void PendulumLayer::frame(DisplayList& list) const {
     const auto& theme = style_.theme;
-    if (!state_.shot.members.empty()) return draw_members(list);
+    if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
     // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
     if (alone && !swing_as_one()) {
@@ -161,7 +161,7 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
 
 /// The members of an ensemble, the last one behind: fine rods that let each other shine through, and the last bobs.
 void PendulumLayer::draw_members(DisplayList& list) const {
-    const auto& members = state_.shot.members;
+    const auto& members = state_.snapshot.members;
     const auto count = members.size();
     const auto color_of = [&](std::size_t k) {
         return member_color(style_, static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(count - 1, 1)));

@@ -15,8 +15,8 @@
 namespace doppel {
 
 /// What there is to film at one sample: the pair, and of an ensemble where all its members are.
-struct Shot {
-    Moment moment;
+struct Snapshot {
+    PairState pair;
     std::vector<Bobs<double>> members;
 };
 
@@ -32,7 +32,7 @@ public:
     Simulation& operator=(const Simulation&) = delete;
 
     /// The next shot; rethrows what stopped the simulation.
-    Shot next();
+    Snapshot next();
 
     /// CPU time of the thread, s, and what the sides have cost; whole once the last shot was taken.
     double cpu_s() const { return cpu_s_; }
@@ -41,7 +41,7 @@ public:
 private:
     void work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
 
-    Queue<Shot> ahead_;
+    Queue<Snapshot> ahead_;
     std::exception_ptr fault_;
     std::atomic<double> cpu_s_ = 0;
     std::mutex mutex_;

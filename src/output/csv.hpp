@@ -2,6 +2,7 @@
 
 #include "output/folder.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,9 @@ public:
     void add(double value);
     /// In quotes where it holds a comma, a quote or the end of a line.
     void add(std::string_view text);
-    void add_empty();
-    /// Empty where the value is not a number.
+    /// An empty cell where there is no value.
+    void add(std::optional<double> value);
+    /// The same for a value that is NaN.
     void add_or_empty(double value);
     /// Ends the row. The number of cells must be that of the columns; std::logic_error where it is not.
     void end_row();

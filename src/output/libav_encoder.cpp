@@ -27,7 +27,7 @@ Libav<T> owned(T* thing) {
 }
 
 Libav<AVFormatContext> open_format(const char* container) {
-    keep_libav_log();
+    capture_libav_log();
     AVFormatContext* format = nullptr;
     avformat_alloc_output_context2(&format, nullptr, container, "film");
     return owned(format);
@@ -183,13 +183,13 @@ void Encoder::finish(std::string_view ending, int replaced) {
 
 void Encoder::check(int result, std::string_view what) const {
     if (result >= 0) {
-        take_libav_word();  // what did no harm
+        take_libav_error();  // what did no harm
         return;
     }
     std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
     av_strerror(result, reason.data(), reason.size());
-    const auto word = take_libav_word();
-    throw io_failed("{}: {}: {}{}{}", path_, what, word, word.empty() ? "" : ": ", reason.data());
+    const auto error = take_libav_error();
+    throw io_failed("{}: {}: {}{}{}", path_, what, error, error.empty() ? "" : ": ", reason.data());
 }
 
 std::string libav_description() {

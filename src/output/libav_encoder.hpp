@@ -2,7 +2,6 @@
 
 #include "image/picture.hpp"
 #include "output/folder.hpp"
-#include "output/samples.hpp"
 #include "output/video.hpp"
 
 extern "C" {
@@ -19,11 +18,11 @@ extern "C" {
 namespace doppel {
 
 /// libav, and the encoders behind it, print nothing from now on; what went wrong last is kept, for each thread.
-void keep_libav_log();
+void capture_libav_log();
 
 /// What libav said last in this thread of what went wrong: one line without its end; empty where it said nothing since
 /// it was asked last.
-std::string take_libav_word();
+std::string take_libav_error();
 
 /// The file that a muxer of libav fills, opened as create_file() does: libav itself, given a name, would follow links.
 class LibavFile {
@@ -63,7 +62,7 @@ const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID cod
 struct Encoding {
     const char* container;   // libav's name of it
     const AVCodec* encoder;  // of find_encoder()
-    AVPixelFormat pixels;    // those in Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
+    AVPixelFormat pixels;    // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
     Size size;
     AVRational frame_rate;
     AVRational tick;  // s; the times of frames are counted in it
@@ -76,10 +75,8 @@ struct Encoding {
 /// Throws as check_video() for everything but a missing encoder.
 void check_options(const VideoOptions& options);
 
-/// What libav has to do, of checked options, and what it takes the pictures as (gif: rgb, before they get a palette).
-/// Throws Error (exit 4) where it lacks the encoder.
+/// What libav has to do, of checked options. Throws Error (exit 4) where it lacks the encoder.
 Encoding encoding_of(const VideoOptions& options);
-Samples samples_of(const VideoOptions& options);
 
 /// An encoder and the file it fills. All throw Error: exit 4 with the path and libav's reason, exit 130 soon after
 /// `stop` is set.
@@ -89,6 +86,7 @@ public:
     /// before it had one.
     Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bool>& stop);
 
+    AVPixelFormat pixels() const { return encoding_.pixels; }
     /// The picture as it is now: its planes can be written to.
     AVFrame& frame();
     /// The picture is the next frame; it starts at this time and lasts so long, in ticks.

@@ -144,13 +144,13 @@ void keep(void* /*source*/, int level, const char* format, va_list arguments) {
 
 }  // namespace
 
-void keep_libav_log() {
+void capture_libav_log() {
     av_log_set_callback(keep);
     // SVT-AV1 has a log of its own, and asks the environment alone
     setenv("SVT_LOG", "0", 0);
 }
 
-std::string take_libav_word() {
+std::string take_libav_error() {
     if (auto rest = cleaned(std::move(line)); !rest.empty()) last_line = std::move(rest);
     line.clear();
     return std::exchange(last_line, {});

@@ -81,7 +81,7 @@ void Transaction::recover() {
         written_ = written_files(folder_);
         for (const auto& step : left.steps)
             if (is_waiting(folder_, step))
-                refuse_strangers(step.name, folder_.entry(part_name(step.name)).kind == Kind::folder);
+                refuse_foreign_files(step.name, folder_.entry(part_name(step.name)).kind == Kind::folder);
         put_in_place(folder_, left);
     }
     if (left.state == Publication::State::withdraw) take_back(folder_, left);
@@ -94,7 +94,7 @@ void Transaction::recover() {
     journal_->leave(false);
 }
 
-void Transaction::refuse_strangers(const std::string& name, bool is_folder) const {
+void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
     const auto path = folder_.path() / name;
     switch (folder_.entry(name).kind) {
         case Kind::none:
@@ -124,7 +124,7 @@ void Transaction::refuse_strangers(const std::string& name, bool is_folder) cons
 }
 
 Transaction::Part& Transaction::add_part(const std::string& name, bool is_folder) {
-    refuse_strangers(name, is_folder);
+    refuse_foreign_files(name, is_folder);
     const auto part = part_name(name);
     for (const auto& taken : {part, aside_name(name)})
         if (folder_.entry(taken).kind != Kind::none) throw not_ours(folder_.path() / taken);
@@ -179,7 +179,7 @@ std::string Transaction::keep() {
 }
 
 FilePlace Transaction::keep_only(const std::string& name, const std::string& new_name) {
-    refuse_strangers(new_name, false);
+    refuse_foreign_files(new_name, false);
     note_part(new_name);
     std::erase_if(parts_, [&](const Part& part) {
         if (part.name == name) return false;
@@ -224,7 +224,7 @@ Publication Transaction::publication() {
     Publication publication{.state = Publication::State::publish};
     for (const Part& part : parts_) {
         const FilePlace place{folder_, part_name(part.name)};
-        refuse_strangers(part.name, part.contents != nullptr);
+        refuse_foreign_files(part.name, part.contents != nullptr);
         const Entry entry = folder_.entry(place.name);
         if (entry.kind == Kind::none) throw cannot(place.path, "published", ENOENT);
         if (part.contents)

@@ -76,7 +76,7 @@ private:
     void recover();
     std::string keep();
     Part& add_part(const std::string& name, bool is_folder);
-    void refuse_strangers(const std::string& name, bool is_folder) const;
+    void refuse_foreign_files(const std::string& name, bool is_folder) const;
     Publication publication();
 
     std::vector<std::filesystem::path> made_;  // folders, outermost first

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace doppel {
 
@@ -26,5 +27,10 @@ std::string maker_of_picture(const Folder& folder, const std::string& name);
 /// "frames/"), or it says so itself (a PNG of Doppel's, a manifest, the table of a film, the trials of a figure).
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written,
                 const std::string& within = {});
+
+/// SHA-256 of a file's bytes, 64 lower-case hexadecimal digits. Throws Error (exit 4) where it cannot be read.
+std::string sha256_of_file(const FilePlace& place);
+/// The same of a text.
+std::string sha256_of_text(std::string_view text);
 
 }  // namespace doppel

@@ -30,7 +30,7 @@ struct Axis {
 std::string power_of_ten(int exponent);
 
 /// What the words at the ticks of an axis need.
-struct TickWords {
+struct TickLabels {
     float size = 19;     // px an em
     float gap = 12;      // px between words
     float spacing = 40;  // px between ticks, at least
@@ -45,6 +45,6 @@ struct TickWords {
 /// logarithmic axis whole decades (and nameless ticks within), over less than two decades also their double and
 /// fivefold; where `every` is given, each so many decades are named. Never more digits than the step has; "1.5 × 10⁻⁷" below 0.0001 and from a million on; a true minus sign.
 /// None where a double cannot tell neighbours apart.
-std::vector<Tick> chart_ticks(const Axis& axis, const TickWords& words, std::optional<double> every = {});
+std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every = {});
 
 }  // namespace doppel

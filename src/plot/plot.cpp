@@ -94,7 +94,7 @@ Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style, b
 
 /// Whether what stands in the body can be read there.
 bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
-    if (figure.table) return fitting_table_size(*figure.table, body, style) >= 0.8f * style.words;
+    if (figure.table) return fitting_table_size(*figure.table, body, style) >= 0.8f * style.text;
     if (figure.panels.empty()) return body.height() >= 0;
     const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
     const int rows = (panels + columns - 1) / columns;

@@ -42,7 +42,7 @@ private:
 
 }  // namespace
 
-Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale) {
+Image scatter_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale) {
     CoverageRaster coverage(area, scale);
     const float reach = std::max(radius * scale, 0.5f);
     for (const Point& point : points) {

@@ -9,7 +9,7 @@ namespace doppel {
 // px.
 
 /// Discs around many points, which do not add up where they overlap; cut off at the edges of `area`.
-Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale);
+Image scatter_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale);
 
 /// The area between low[i] and high[i] over x[i], px; where one is not a number there is a gap.
 struct Band {

@@ -146,7 +146,7 @@ float total(const std::vector<Row>& rows, float pad) {
 }  // namespace
 
 float fitting_table_size(const PlotTable& table, const Area& area, const PlotStyle& style) {
-    const float largest = 1.1f * style.words;
+    const float largest = 1.1f * style.text;
     float size = largest;
     while (total(laid_out(table, area, size, style.theme), 0.42f * size) > area.height() && size > 0.1f * largest)
         size *= 0.96f;

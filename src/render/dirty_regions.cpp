@@ -11,14 +11,14 @@
 namespace doppel {
 namespace {
 
-constexpr long price_of_a_rect = 3000;  // as many pixels could be restored and read in the time one more costs
+constexpr long rect_overhead = 3000;  // as many pixels could be restored and read in the time one more costs
 
 long area(const Rect& r) {
     return long{r.right - r.left} * (r.bottom - r.top);
 }
 
 bool cheaper_as_one(const Rect& a, const Rect& b) {
-    return area(united(a, b)) <= area(a) + area(b) + price_of_a_rect;
+    return area(united(a, b)) <= area(a) + area(b) + rect_overhead;
 }
 
 /// Adds what of `rect` lies outside all of disjoint[from…].
@@ -37,7 +37,7 @@ void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint
 }
 
 /// Gathers rectangles that come one after another along a path.
-class Gatherer {
+class RectChain {
 public:
     void add(const Rect& rect) {
         if (!rects_.empty() && cheaper_as_one(rects_.back(), rect)) {
@@ -61,9 +61,9 @@ std::size_t hash_of(const Primitive& q) {
 }
 
 /// The primitives of a part, to be looked up.
-class Known {
+class PrimitiveSet {
 public:
-    Known(const RenderList& items, const RenderList::Part& part) : items_(items) {
+    PrimitiveSet(const RenderList& items, const RenderList::Part& part) : items_(items) {
         for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(items.primitives[i]), i);
         std::sort(places_.begin(), places_.end());
     }
@@ -89,7 +89,7 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
     const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
     if (shorter < 3 * thick || !(primitive.half.x > 2 * primitive.half.y) || std::min(across, down) < 0.05f)
         return visit(bounds);
-    // cut along the axis that it follows more; a hair of room for rounding
+    // cut along the axis that it follows most closely; 0.05 px for rounding
     const bool steep = down > across;
     const float slope = steep ? primitive.axis.x / primitive.axis.y : primitive.axis.y / primitive.axis.x;
     const float margin = primitive.half.y / std::max(across, down) + 0.05f;
@@ -117,7 +117,7 @@ void compare_masks(const RenderList& before, RenderList::Part old, const RenderL
     };
     while (old.begin < old.end && now.begin < now.end && same(old.begin, now.begin)) ++old.begin, ++now.begin;
     while (old.begin < old.end && now.begin < now.end && same(old.end - 1, now.end - 1)) --old.end, --now.end;
-    const Known olds(before, old), news(after, now);
+    const PrimitiveSet olds(before, old), news(after, now);
     for (std::size_t i = old.begin; i < old.end; ++i)
         if (!news.has(before.primitives[i], before.bounds[i]))
             for_each_band(before.primitives[i], before.bounds[i], add);
@@ -145,7 +145,7 @@ std::vector<Rect> merged(std::vector<Rect> rects) {
 }
 
 std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& after) {
-    Gatherer touched;
+    RectChain touched;
     for (std::size_t p = 0; p < std::max(before.parts.size(), after.parts.size()); ++p) {
         const RenderList::Part none{.kind = Kind::shape};
         const RenderList::Part& old = p < before.parts.size() ? before.parts[p] : none;

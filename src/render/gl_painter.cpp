@@ -9,7 +9,8 @@ namespace doppel::gl {
 namespace {
 
 constexpr std::size_t most_quads = 16384;  // of one call: what 16-bit indices reach
-constexpr const char* inputs[6] = {"at", "place_of", "shape_of", "more_of", "bow_of", "tint_of"};
+constexpr const char* inputs[6] = {"vertex_position", "vertex_frame",    "vertex_shape",
+                                   "vertex_params",   "vertex_parabola", "vertex_tint"};
 
 /// The texture that is bound shows its texels as they are.
 void set_crisp() {
@@ -61,8 +62,8 @@ Painter::Painter(Size size)
     input(0, 2, GL_FLOAT, offsetof(Vertex, at));
     input(1, 4, GL_FLOAT, offsetof(Vertex, origin));
     input(2, 4, GL_FLOAT, offsetof(Vertex, shape));
-    input(3, 4, GL_FLOAT, offsetof(Vertex, more));
-    input(4, 2, GL_FLOAT, offsetof(Vertex, bow));
+    input(3, 4, GL_FLOAT, offsetof(Vertex, params));
+    input(4, 2, GL_FLOAT, offsetof(Vertex, parabola));
     input(5, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
 
     BindTexture(GL_TEXTURE_2D, atlas_);
@@ -136,7 +137,7 @@ void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vec
         for (std::size_t i = 2; i < outline_.size(); i += 2)
             for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
                 vertices_.push_back({outline_[corner], primitive.origin, primitive.axis, primitive.shape,
-                                     primitive.more, primitive.bow, primitive.tint});
+                                     primitive.params, primitive.parabola, primitive.tint});
     }
 }
 

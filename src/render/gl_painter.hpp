@@ -24,8 +24,8 @@ private:
     struct Vertex {
         Point at, origin, axis;
         std::array<float, 4> shape;
-        std::array<float, 4> more;
-        std::array<float, 2> bow;
+        std::array<float, 4> params;
+        std::array<float, 2> parabola;
         std::array<std::uint8_t, 4> tint;
     };
     /// Parts drawn together.

@@ -78,9 +78,9 @@ public:
             add({.origin = {middle.x - s.axis.y * bend / 2, middle.y + s.axis.x * bend / 2},
                  .axis = s.axis,
                  .shape = {s.length / 2, (from.width + to.width) / 4, alpha, (to.alpha - from.alpha) * per_px},
-                 .more = {(to.width - from.width) / 2 * per_px, (from.glow + to.glow) / 2,
-                          (to.glow - from.glow) * per_px, half_length},
-                 .bow = {bend / 2, 4 * bend * per_px * per_px},
+                 .params = {(to.width - from.width) / 2 * per_px, (from.glow + to.glow) / 2,
+                            (to.glow - from.glow) * per_px, half_length},
+                 .parabola = {bend / 2, 4 * bend * per_px * per_px},
                  .tint = color},
                 {half_length, reach + std::abs(bend) / 2});
         }
@@ -183,7 +183,7 @@ private:
         add({.origin = center,
              .axis = axis,
              .shape = {half.x - corner, half.y - corner, corner, 0},
-             .more = {glow > 0 ? 1 / glow : 0, glow > 0 ? 1.0f / 3 : 0},
+             .params = {glow > 0 ? 1 / glow : 0, glow > 0 ? 1.0f / 3 : 0},
              .tint = tint(color, opacity)},
             {half.x + beyond, half.y + beyond});
     }
@@ -200,8 +200,8 @@ private:
 
 bool operator==(const Primitive& a, const Primitive& b) {
     return a.origin.x == b.origin.x && a.origin.y == b.origin.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
-           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.more == b.more && a.bow == b.bow &&
-           a.tint == b.tint && a.image == b.image;
+           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.params == b.params &&
+           a.parabola == b.parabola && a.tint == b.tint && a.image == b.image;
 }
 
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made) {

@@ -14,8 +14,8 @@ struct Primitive {
     Point axis{1, 0};                    // unit vector along the first of them
     Point half;                          // how far it reaches along them to either side, px; 0 where it does not turn
     std::array<float, 4> shape{};        // see the shader
-    std::array<float, 4> more{};         // likewise
-    std::array<float, 2> bow{};          // likewise
+    std::array<float, 4> params{};       // likewise
+    std::array<float, 2> parabola{};     // likewise
     std::array<std::uint8_t, 4> tint{};  // sRGB and opacity
     const Picture* image = nullptr;      // one of RenderList::images
     friend bool operator==(const Primitive&, const Primitive&);

@@ -61,7 +61,7 @@ std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_
 
 }  // namespace
 
-std::optional<Shares> shares_within(const Area& area, double x0, double y0, double x1, double y1) {
+std::optional<Shares> clip_segment(const Area& area, double x0, double y0, double x1, double y1) {
     Shares within;
     const double dx = x1 - x0, dy = y1 - y0;
     // on the inner side of an edge where share · step ≤ room

@@ -27,7 +27,7 @@ struct Chord {
 struct Shares {
     double from = 0, to = 1;
 };
-std::optional<Shares> shares_within(const Area& area, double x0, double y0, double x1, double y1);
+std::optional<Shares> clip_segment(const Area& area, double x0, double y0, double x1, double y1);
 
 /// A part of a stroke that is drawn at once: from vertex `first` to vertex `last` along a parabola that swerves `bend`
 /// px to the right of the straight line between them. Opacity, width and glow vary linearly along that line.

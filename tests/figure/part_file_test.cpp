@@ -2,7 +2,7 @@
 
 #include "figure/computation.hpp"
 #include "figure/support.hpp"
-#include "output/sha256.hpp"
+#include "output/written.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

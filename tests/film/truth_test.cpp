@@ -141,8 +141,8 @@ TEST(Truth, ABlowUpStaysInItsPanel) {
     const std::atomic<bool> never = false;
     long sample = 0;
     for (; sample < 2400 && !outside; ++sample) {
-        const auto moment = pair.next(never);
-        const auto& bob = moment.a.bobs[1];
+        const auto state = pair.next(never);
+        const auto& bob = state.a.bobs[1];
         outside = !layout.panels.front().area.holds(layout.panels.front().at(bob.x, bob.y));
     }
     ASSERT_TRUE(outside);

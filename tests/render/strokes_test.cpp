@@ -112,12 +112,12 @@ TEST(Stroke, BendsToTheRightAsFarAsItSays) {
     const Picture picture = drawn({arc});
     for (int x = 24; x < 136; ++x) {
         const double share = (x + 0.5 - 20) / 120, middle = 60 + 4 * 7 * share * (1 - share);
-        double sum = 0, moment = 0;
+        double sum = 0, state = 0;
         for (int y = 0; y < size.height; ++y) {
             sum += picture.at(x, y)[0];
-            moment += picture.at(x, y)[0] * (y + 0.5);
+            state += picture.at(x, y)[0] * (y + 0.5);
         }
-        EXPECT_NEAR(moment / sum, middle, 0.02) << x;  // measured 0.014
+        EXPECT_NEAR(state / sum, middle, 0.02) << x;  // measured 0.014
     }
 }
 
