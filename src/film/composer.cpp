@@ -35,7 +35,7 @@ public:
         const auto& theme = style_.theme;
         if (const auto& video = state_.scene.preset.video; !video.transparent)
             list.push_back(filled(video.size, theme.background));
-        // long words shrink until they fit beside the clock
+        // long text shrinks until it fits beside the clock
         const auto fitted = [&](const std::string& text, float y, double wanted, Weight weight, Color color,
                                 const std::string& beside, double beside_size) {
             const float width = page_.width() - text_width(beside, px(beside_size)) - 30 * layout_.text;
@@ -63,7 +63,7 @@ private:
     const float title_ = page_.top + 38 * layout_.text;  // baseline
 };
 
-/// A line of words on a card.
+/// A line of text on a card.
 struct CardLine {
     std::string text;
     double size;  // px

@@ -42,7 +42,7 @@ public:
         composer_.add(snapshot);
     }
 
-    /// The shot added last becomes a frame; before the first of all comes the title, after the last the end.
+    /// The snapshot added last becomes a frame; before the first of all comes the title, after the last the end.
     void write_frame(RunRecord& record);
 
     /// The film is whole; writes what was kept.

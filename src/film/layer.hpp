@@ -22,16 +22,16 @@ struct FilmState {
     bool start_as_one() const;  // else there is no parting to speak of
 };
 
-/// A part of a film's picture. What it draws depends on the scene and on the shots so far, and on nothing else.
+/// A part of a film's picture. What it draws depends on the scene and on the snapshots so far, and on nothing else.
 class Layer {
 public:
     virtual ~Layer() = default;
 
     /// What never changes.
     virtual void backdrop(DisplayList& list) const = 0;
-    /// The next shot, in order from sample 0, is that of the state.
+    /// The next snapshot, in order from sample 0, is that of the state.
     virtual void add() {}
-    /// What lies on the backdrop at the shot added last.
+    /// What lies on the backdrop at the snapshot added last.
     virtual void frame(DisplayList& list) const = 0;
 };
 

@@ -27,7 +27,7 @@ bool is_dark(const Theme& theme) {
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
 }
 
-/// The places that a mechanism visits as large as the panel allows, below the words.
+/// The places that a mechanism visits as large as the panel allows, below the captions.
 void place_mechanism(PendulumPanel& panel, float captions_bottom, const View& view, float margin) {
     const Area& area = panel.area;
     const float width = area.width() - 2 * margin, height = area.bottom - captions_bottom - 2 * margin;
@@ -35,7 +35,7 @@ void place_mechanism(PendulumPanel& panel, float captions_bottom, const View& vi
     panel.px_per_m = std::min(width / static_cast<float>(view.width), height / static_cast<float>(view.height));
 }
 
-/// The circle of the outstretched chain as large as the panel allows, beside or below the words in its top corners.
+/// The circle of the outstretched chain as large as the panel allows, beside or below the captions in its top corners.
 void place_pendulum(PendulumPanel& panel, const std::vector<Area>& captions, const View& view, float margin) {
     const Area& area = panel.area;
     float radius = std::min(area.width(), area.height()) / 2 - margin;
@@ -78,7 +78,7 @@ float share_of(StripKind kind) {
     return 0.11f;
 }
 
-/// From the bottom up: words of the time axis, then the strips, each with a line of words above it. Returns where the
+/// From the bottom up: labels of the time axis, then the strips, each with a heading above it. Returns where the
 /// room for panels ends.
 float place_strips(Layout& layout, const Scene& scene, float header, const std::optional<MotionBounds>& seen) {
     const auto& video = scene.preset.video;
@@ -128,7 +128,7 @@ std::vector<Area> panel_areas(const Area& room, std::size_t count, bool stacked,
     return areas;
 }
 
-/// The panels' areas, and which sides each shows with which words.
+/// The panels' areas, and which sides each shows with which captions.
 void place_panels(Layout& layout, const Scene& scene, const Area& room) {
     const auto& video = scene.preset.video;
     const bool apart = video.layout == Arrangement::side_by_side || video.layout == Arrangement::portrait;
@@ -156,7 +156,7 @@ void place_panels(Layout& layout, const Scene& scene, const Area& room) {
         axes, {.low = -180, .high = 180, .from = axes.left, .to = axes.right}, {.from = axes.bottom, .to = axes.top}};
 }
 
-/// The areas of the words in a panel's corners.
+/// The areas of the captions in a panel's corners.
 std::vector<Area> caption_areas(const PendulumPanel& panel, const Layout& layout, float widest) {
     std::vector<Area> areas;
     for (const auto& caption : panel.captions) {

@@ -23,10 +23,6 @@ std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area&
     return std::pair{at(within->from), at(within->to)};
 }
 
-float apart(Point a, Point b) {
-    return std::hypot(a.x - b.x, a.y - b.y);
-}
-
 class PendulumLayer final : public Layer {
 public:
     PendulumLayer(const FilmState& state, const PendulumPanel& panel)
@@ -77,7 +73,7 @@ void PendulumLayer::backdrop(DisplayList& list) const {
     if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), style_.theme.grid});
     for (const auto side : panel_.sides) draw_tracks(side, list);
 
-    const float share = panel_.captions.size() > 1 ? 0.48f : 1;  // of the width, where there are words in both corners
+    const float share = panel_.captions.size() > 1 ? 0.48f : 1;  // of the width: captions in both corners
     const float width = share * (area.width() - 56 * u);
     for (const auto& caption : panel_.captions) {
         const float x = caption.align == Align::right ? area.right - 28 * u : area.left + 28 * u;
@@ -97,12 +93,12 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     const float piece = std::max(8 * layout_.unit, 2.0f), least = std::max(1.5f * layout_.unit, 0.5f);  // px
     const double now = state_.time();
     const auto go_on = [&](Point to, double time) {
-        if (const auto end = path.trail.end(); !end || apart(to, *end) >= least) path.trail.add(to, time, now);
+        if (const auto end = path.trail.end(); !end || distance(to, *end) >= least) path.trail.add(to, time, now);
     };
     if (path.last) {
         const auto& [from, from_time] = *path.last;
         const double dt = now - from_time;
-        const int pieces = std::clamp(static_cast<int>(std::ceil(apart(at(from), at(bob)) / piece)), 1, 32);
+        const int pieces = std::clamp(static_cast<int>(std::ceil(distance(at(from), at(bob)) / piece)), 1, 32);
         for (int i = 1; i <= pieces; ++i) {
             const double s = static_cast<double>(i) / pieces;
             go_on(panel_.at(hermite(from.x, from.vx, bob.x, bob.vx, dt, s),
@@ -134,7 +130,7 @@ void PendulumLayer::frame(DisplayList& list) const {
 /// Whether the two cannot be told apart in this panel.
 bool PendulumLayer::swing_as_one() const {
     const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
-        return a.mass == b.mass && apart(at(a), at(b)) < 0.1f;  // px
+        return a.mass == b.mass && distance(at(a), at(b)) < 0.1f;  // px
     };
     const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
         return a.kind == b.kind && a.from == b.from && a.to == b.to;
@@ -192,7 +188,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
         if (line.kind != MechanismLine::Kind::spring) continue;
         constexpr int turns = 16;
         const Point from = end_at(line.from), to = end_at(line.to), along{to.x - from.x, to.y - from.y};
-        const float length = std::max(apart(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
+        const float length = std::max(distance(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
         Point last = from;
         for (int i = 1; i <= turns; ++i) {
             const float share = (static_cast<float>(i) - 0.5f) / turns, aside = i % 2 == 0 ? swing : -swing;
@@ -217,7 +213,7 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
         if (line.kind != MechanismLine::Kind::slot_line || !to) continue;
         // on beyond both ends, to the edges of the panel
         const Point end = at(*to), along{end.x - start.x, end.y - start.y};
-        const float far = (panel_.area.width() + panel_.area.height()) / std::max(apart(start, end), 1e-3f);
+        const float far = (panel_.area.width() + panel_.area.height()) / std::max(distance(start, end), 1e-3f);
         if (const auto seen = clipped({start.x - far * along.x, start.y - far * along.y},
                                       {start.x + far * along.x, start.y + far * along.y}, panel_.area))
             list.push_back(Capsule{seen->first, seen->second, width / 2, color});

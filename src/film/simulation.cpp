@@ -6,7 +6,7 @@
 namespace doppel {
 namespace {
 
-/// Shots ahead: many of a pair, few of an ensemble, whose shots are large.
+/// Snapshots ahead: many of a pair, few of an ensemble, whose snapshots are large.
 std::size_t most_ahead(bool with_members) {
     return with_members ? 16 : 256;
 }

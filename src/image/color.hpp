@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -19,6 +20,11 @@ struct Color {
 /// A channel as a byte, rounded.
 inline std::uint8_t byte_of(double channel) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.0, 1.0)));
+}
+
+/// Red, green, blue and opacity as bytes.
+inline std::array<std::uint8_t, 4> bytes_of(const Color& color) {
+    return {byte_of(color.r), byte_of(color.g), byte_of(color.b), byte_of(color.a)};
 }
 
 /// From 0xRRGGBB, opaque.

@@ -112,8 +112,7 @@ Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px
     const int count = static_cast<int>(pictures.size()), across = std::min(columns, count);
     const int rows = (count + columns - 1) / columns;
     Picture sheet({gap_px + across * (width + gap_px), gap_px + rows * (height + gap_px)});
-    const std::array fill = {byte_of(background.r), byte_of(background.g), byte_of(background.b),
-                             byte_of(background.a)};
+    const auto fill = bytes_of(background);
     for (std::size_t i = 0; i < sheet.rgba.size(); ++i) sheet.rgba[i] = fill[i % 4];
     for (int k = 0; k < count; ++k) {
         const Picture& picture = pictures[static_cast<std::size_t>(k)];

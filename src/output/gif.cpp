@@ -37,8 +37,8 @@ T* checked(T* thing) {
 }
 
 /// The 255 colours that stand best for all that was counted, by libimagequant (median cut, refined by k-means, in a
-/// perceptual colour space). Each pixel becomes the nearest colour, without dithering, which would flicker from frame to
-/// frame and compress badly. Pixels are rectangles of opaque RGBA, rows from the top down, no padding.
+/// perceptual colour space). Each pixel becomes the nearest colour, without dithering, which would flicker from frame
+/// to frame and compress badly. Pixels are rectangles of opaque RGBA, rows from the top down, no padding.
 class Palette {
 public:
     Palette() {
@@ -98,8 +98,7 @@ Size size_of(const Rect& area) {
     return {area.right - area.left, area.bottom - area.top};
 }
 
-/// A comment as GIF has it (GIF89a, 24): a line for each text, in blocks of at most 255 bytes; then the byte that ends
-/// the file.
+/// A comment extension (GIF89a, 24) with a line for each text, in blocks of at most 255 bytes; then the trailer.
 std::string comment_and_end(const Metadata& metadata) {
     std::vector<std::string> lines;
     for (const auto& [key, text] : metadata) lines.push_back(key + ": " + text);
@@ -135,7 +134,7 @@ public:
     }
 
 private:
-    /// First pass: what colours there are.
+    /// First pass: counts colours.
     void count(SampledAreas& changes) {
         std::uint8_t* rgba = changes.bytes.data();
         for (const Rect& area : changes.areas) {
@@ -159,10 +158,10 @@ private:
             AVFrame& frame = encoder_.frame();
             std::ranges::copy(colours, reinterpret_cast<std::uint32_t*>(frame.data[1]));
             paste(changes, frame);
-            const std::int64_t start = time_of(k), lasting = time_of(k + 1) - start;
-            // what the last frame lasts, libav has to be told
-            encoder_.set_option("final_delay", fmt::to_string(lasting));
-            encoder_.send_frame(start, lasting);
+            const std::int64_t start = time_of(k), duration = time_of(k + 1) - start;
+            // the muxer cannot know how long the last frame lasts
+            encoder_.set_option("final_delay", fmt::to_string(duration));
+            encoder_.send_frame(start, duration);
         }
     }
 
@@ -246,7 +245,7 @@ void Spool::fail(const char* what) const {
 
 std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options,
                                     const std::atomic<bool>& stop) {
-    // libimagequant's OpenMP starts one a core for each thread that calls it, and ends the program where it cannot
+    // libimagequant's OpenMP starts one thread a core for each caller, and ends the program where it cannot
     need_threads(2 * std::size_t{std::thread::hardware_concurrency()});
     return std::make_unique<GifSink>(place, options, stop);
 }

@@ -22,13 +22,13 @@
 namespace doppel {
 namespace {
 
-/// Memory of a thread for stb_image_write, which asks for the same few blocks of megabytes for each picture: given back
-/// to the system and asked for again, they would cost a third of the work in page faults.
+/// A thread's memory for stb_image_write, which allocates the same few blocks of megabytes for each picture: malloc
+/// would return them to the system each time, and page faults would cost a third of the work.
 class Arena {
 public:
     /// Null where memory is out.
     void* take(std::size_t size) {
-        // the smallest that fits; else the largest makes room
+        // the smallest free block that fits, else the largest, which grows
         Block* best = nullptr;
         for (Block& block : blocks_)
             if (!block.taken && (!best || (best->size < size ? block.size > best->size
@@ -130,7 +130,7 @@ std::optional<std::string> latin1(std::string_view text) {
     return result;
 }
 
-// flat colours compress best as they are; any filter takes 1.7 times as long for a larger file
+// flat colours compress best unfiltered; any filter takes 1.7 times as long for a larger file
 [[maybe_unused]] const int no_filter = stbi_write_force_png_filter = 0;
 
 AVPixelFormat pixels_of(const PngOptions& options) {
@@ -239,7 +239,7 @@ std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int
 }
 
 int png_threads(int jobs, Size size) {
-    // what waits, what is at work, its rows with their filters, compressed, and the file
+    // a thread's queued picture, its current one, filtered rows, compressed rows, and the file
     const std::size_t bytes = 5 * byte_count(AV_PIX_FMT_RGBA, all_of(size));
     return static_cast<int>(in_hand(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }

@@ -10,7 +10,7 @@ extern "C" {
 #include <bit>
 #include <cstring>
 
-// The loops are compiled twice, and the processor chooses when the program starts. Sanitizers cannot work that early.
+// The loops are compiled twice, chosen at program start by the processor (too early for sanitizers).
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(DOPPEL_SANITIZE)
 #define DOPPEL_WIDEST_SIMD __attribute__((target_clones("avx2", "default")))
 #else
@@ -62,11 +62,11 @@ constexpr int fixed(double x) {
     return static_cast<int>(x * (1 << fraction_bits) + (x < 0.0 ? -0.5 : 0.5));
 }
 
-/// What a sample takes of each colour, in units of 2^-16.
+/// The weight of each colour in a sample, in units of 2^-16.
 struct Weights {
     int r, g, b;
 };
-// green takes the rest, so that a grey has exactly its luma, and no chroma
+// green completes the sum, so that greys have exact luma and no chroma
 constexpr Weights with_green(int r, int b, int sum) {
     return {r, sum - r - b, b};
 }
@@ -137,7 +137,7 @@ DOPPEL_INLINE void alpha(const std::uint8_t* __restrict rgba, int width, std::ui
 }
 
 DOPPEL_INLINE void colors(const std::uint8_t* __restrict rgba, int width, std::uint8_t* __restrict rgb) {
-    // each pixel as four bytes, of which the next takes one away: quicker than three
+    // four bytes a pixel, the last overwritten by the next pixel: faster than three
     for (int i = 0; i < width - 1; ++i) std::memcpy(rgb + 3 * i, rgba + 4 * i, 4);
     std::memcpy(rgb + 3 * (width - 1), rgba + 4 * (width - 1), 3);
 }

@@ -13,8 +13,8 @@ extern "C" {
 
 namespace doppel {
 
-// Pictures as encoders take them, in libav's pixel formats RGB24, RGBA, YUV420P, YUV444P, YUV420P10LE and YUVA420P. Y, Cb
-// and Cr are BT.709, limited range: of 8 bits Y is 16…235, Cb and Cr 16…240; of 10 bits four times that. In 4:2:0 a
+// Pictures as encoders take them, in libav's pixel formats RGB24, RGBA, YUV420P, YUV444P, YUV420P10LE and YUVA420P. Y,
+// Cb and Cr are BT.709, limited range: of 8 bits Y is 16…235, Cb and Cr 16…240; of 10 bits four times that. In 4:2:0 a
 // chroma sample is the mean of 2×2 pixels, sited in their centre. Alpha is kept as it is.
 
 /// Where a rectangle of a picture lies in one of its planes.
@@ -28,8 +28,8 @@ PlaneArea plane_area(AVPixelFormat format, int plane, const Rect& area);
 std::size_t byte_count(AVPixelFormat format, const Rect& area);
 std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas);
 
-/// The smallest rectangle around `area` that shares no sample with pixels outside: even edges in 4:2:0. What lies outside
-/// the picture (whose sides are even then) is cut off.
+/// The smallest rectangle around `area` that shares no sample with pixels outside: even edges in 4:2:0. What lies
+/// outside the picture (whose sides are even then) is cut off.
 Rect aligned(AVPixelFormat format, const Rect& area, Size picture);
 
 /// Converts an aligned rectangle: plane after plane, rows from the top down, no padding. A sample depends on its own
@@ -37,10 +37,10 @@ Rect aligned(AVPixelFormat format, const Rect& area, Size picture);
 /// filters chroma over more pixels, and converts no areas.)
 void convert(const Picture& picture, const Rect& area, AVPixelFormat format, std::uint8_t* to);
 
-/// Bytes to be filled; they keep their memory from one use to the next.
+/// Uninitialised bytes; the memory is kept from one use to the next.
 class Buffer {
 public:
-    /// Room for `count` bytes; what was in it is forgotten.
+    /// Room for `count` bytes; their contents are undefined.
     std::uint8_t* make_room(std::size_t count) {
         if (count > capacity_) {
             bytes_ = std::make_unique_for_overwrite<std::uint8_t[]>(count);
@@ -56,13 +56,13 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// What changed in a picture, converted: each area's bytes follow those of the area before.
+/// The changed areas of a picture, converted: the bytes of each area in turn.
 struct SampledAreas {
     std::vector<Rect> areas;  // aligned
     Buffer bytes;
 };
 
-/// Converts what changed into `to`, which keeps its memory.
+/// Converts the changed areas.
 void convert(const Picture& picture, const std::vector<Rect>& changed, AVPixelFormat format, SampledAreas& to);
 
 }  // namespace doppel

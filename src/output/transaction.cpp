@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 using Kind = Entry::Kind;
 
-/// The folder that the runs of one preset share: links lead to the folder it is in, none to itself.
+/// Opens the folder; its parents may be links, it may not.
 Folder open_last(const fs::path& folder, const std::vector<fs::path>& made) {
     try {
         if (!folder.has_filename() || folder.filename() == "." || folder.filename() == "..") return Folder::at(folder);
@@ -47,7 +47,7 @@ void remove_quietly(const Folder& folder, const std::string& name) {
     try {
         folder.remove(name);
     } catch (const Error&) {
-        // somebody put something there; it stays
+        // something foreign there stays
     }
 }
 
@@ -73,10 +73,10 @@ Transaction::~Transaction() {
     remove_folders(made_);
 }
 
-/// Ends what a killed run had begun, and removes what it left.
+/// Completes or reverts what a killed run had begun, and removes what it left.
 void Transaction::recover() {
     const auto left = journal_->left();
-    journal_->leave();  // for another try, where this fails
+    journal_->leave();  // for the next run, where this fails
     if (left.state == Publication::State::publish) {
         written_ = written_files(folder_);
         for (const auto& step : left.steps)
@@ -106,7 +106,7 @@ void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) 
         case Kind::file:
             if (is_folder) throw io_failed("{} is a file; Doppel would make a folder there", path.string());
             if (!is_written(folder_, name, written_)) throw not_ours(path);
-            // what nobody may rename (chattr +i) is told before work starts; a file that is only read-only can be
+            // an immutable file (chattr +i) cannot be renamed, a read-only one can: say so before work starts
             if (faccessat(folder_.descriptor(), name.c_str(), W_OK, 0) != 0 && errno == EPERM)
                 throw cannot(path, "replaced");
             return;
@@ -167,7 +167,7 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
     }
 }
 
-/// What is finished stays; the words that say so.
+/// Keeps what is finished; returns the sentence that says so.
 std::string Transaction::keep() {
     std::string names;
     for (const Part& part : parts_)
@@ -219,7 +219,7 @@ WrittenFiles Transaction::earlier_files() const {
     return earlier;
 }
 
-/// What is to be published, on the disk.
+/// What is to be published; all flushed to the disk.
 Publication Transaction::publication() {
     Publication publication{.state = Publication::State::publish};
     for (const Part& part : parts_) {
@@ -248,7 +248,7 @@ std::vector<fs::path> Transaction::publish() {
         journal_->note("publish", true);
         put_in_place(folder_, published);
     } catch (...) {
-        // where this fails too, all stays as it stands for the next run to sort
+        // where this fails too, the next run reverts
         auto parts = std::exchange(parts_, {});
         journal_->leave();
         journal_->note("withdraw", true);
@@ -263,7 +263,7 @@ std::vector<fs::path> Transaction::publish() {
     try {
         clear_away(folder_, published);
     } catch (const Error&) {
-        journal_->leave();  // somebody put something there: the next run says so
+        journal_->leave();  // something foreign is there: the next run reports it
     }
     return files;
 }

@@ -73,7 +73,7 @@ bool is_yuv(const VideoOptions& options) {
     return options.format == VideoFormat::mp4 || options.format == VideoFormat::webm;
 }
 
-/// libav counts a picture's bytes, with room to spare, in 31 bits.
+/// libav's limit: a picture's bytes, with padding, in 31 bits.
 bool libav_takes(Size size) {
     capture_libav_log();
     return av_image_check_size(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height), 0, nullptr) >= 0;
@@ -124,7 +124,7 @@ void check_rate(const VideoOptions& options) {
         case VideoFormat::webm:
             limit(1000, "WebM counts milliseconds");
             break;
-        // a frame of 1/100 s is shown for 1/10 s by most that show it
+        // most viewers show a frame of 1/100 s for 1/10 s
         case VideoFormat::gif:
             limit(50, "GIF counts 1/100 s and needs two of them a frame");
             break;
@@ -144,7 +144,7 @@ Metadata vpx_options(const VideoOptions& options) {
     Metadata result{{"deadline", "good"}, {"cpu-used", fmt::to_string(find_preset(options.preset)->vpx)},
                     {"row-mt", "1"},      {"tile-columns", "2"},
                     {"b", "0"},           {"crf", fmt::to_string(options.crf)}};
-    // hidden frames of the colours would have no partner among those of alpha
+    // hidden frames of the colour stream would have no counterpart in that of alpha
     if (options.transparent) result.emplace_back("auto-alt-ref", "0");
     return result;
 }

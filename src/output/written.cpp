@@ -89,7 +89,7 @@ WrittenFiles written_files(const Folder& folder) {
             if (const auto earlier = manifest.find("earlier_files"); earlier != manifest.end())
                 add_files(written, *earlier);
         } catch (const Json::exception&) {
-            // somebody changed it: what it says further is not believed
+            // not as Doppel wrote it: the rest is ignored
         }
     }
     return written;

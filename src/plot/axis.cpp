@@ -77,7 +77,7 @@ std::string tick_text(const Step& step, long long k, double most) {
     return fmt::format("{} × {}", decimal(number, step.exponent - power), power_of_ten(power));
 }
 
-/// Whether the words stand apart and the ticks too.
+/// Whether labels and ticks are far enough apart.
 bool fits(const std::vector<Tick>& ticks, const Axis& axis, const TickLabels& labels) {
     const Tick* before = nullptr;
     for (const Tick& tick : ticks) {
@@ -143,7 +143,7 @@ std::vector<Tick> asked_ticks(const Axis& axis, const TickLabels& labels, double
     return {};
 }
 
-/// 1, 2 and 5 times each decade, in words.
+/// 1, 2 and 5 times each decade, with labels.
 std::vector<Tick> subdivided(double low, double high) {
     std::vector<Tick> ticks;
     const bool plain = low >= 1e-4 && high < 1e6;
@@ -159,7 +159,7 @@ std::vector<Tick> subdivided(double low, double high) {
     return ticks;
 }
 
-/// Every n-th decade in words, those between without; with ticks inside the decades where these are wide.
+/// Every n-th decade with a label, the others without; with ticks inside the decades where these are wide.
 std::vector<Tick> decades(const Axis& axis, double low, double high, int every) {
     std::vector<Tick> ticks;
     const int first = decade_below(low), last = decade_below(high);

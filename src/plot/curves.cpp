@@ -1,6 +1,5 @@
 #include "plot/curves.hpp"
 
-#include "plot/raster.hpp"
 #include "render/stroke.hpp"
 
 #include <algorithm>
@@ -127,7 +126,7 @@ void draw_dashes(const std::vector<Point>& line, float dash, float gap, Pen& pen
     pen.down(line.front());
     for (std::size_t i = 1; i < line.size(); ++i) {
         const Point from = line[i - 1], to = line[i];
-        const float length = std::hypot(to.x - from.x, to.y - from.y);
+        const float length = distance(from, to);
         float gone = 0;
         while (length - gone > left) {
             gone += left;

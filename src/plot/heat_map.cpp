@@ -11,9 +11,9 @@
 namespace doppel {
 namespace {
 
+/// Opaque.
 void set_pixel(Picture& picture, int x, int y, Color color) {
-    std::uint8_t* rgba = picture.at(x, y);
-    rgba[0] = byte_of(color.r), rgba[1] = byte_of(color.g), rgba[2] = byte_of(color.b), rgba[3] = 255;
+    std::ranges::copy(bytes_of(color.with_alpha(1)), picture.at(x, y));
 }
 
 constexpr float heading_width = 7.5f;  // em
@@ -41,10 +41,7 @@ Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
     bar.axis.from = std::round(bar.none.empty() ? height : std::max(bar.none_top - 0.8f * em, 0.3f * height));
     bar.axis.to = 0;
     bar.ticks = chart_ticks(bar.axis, {.size = em, .gap = 0.6f * em, .spacing = 2.4f * em, .across = false});
-    float widest = 0;
-    for (const Tick& tick : bar.ticks) widest = std::max(widest, text_width(tick.text, em));
-    for (const std::string& line : bar.none) widest = std::max(widest, text_width(line, em));
-    bar.width = bar.text_left + widest;
+    bar.width = bar.text_left + std::max(widest(bar.ticks, em), widest(bar.none, em));
     return bar;
 }
 
@@ -146,10 +143,8 @@ Color none_color(const HeatMap& map, const Theme& theme) {
 }
 
 float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
-    float widest = 0;
-    for (const std::string& line : bar_heading(map, style).lines)
-        widest = std::max(widest, text_width(line, style.tick));
-    return 1.2f * style.tick + std::max(widest, make_bar(map, below_heading(map, height, style), style).width);
+    return 1.2f * style.tick + std::max(widest(bar_heading(map, style).lines, style.tick),
+                                        make_bar(map, below_heading(map, height, style), style).width);
 }
 
 void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
@@ -178,7 +173,7 @@ void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle&
             horizontal_line(area.top + y, ticks_left, ticks_left + 0.25f * em, style.line, style.theme.frame));
         write(tick.text, y);
     }
-    // centred on the tick as all words are, so none is above the panel by more than half a line
+    // centred on the tick as all labels are, so none is above the panel by more than half a line
     if (bar.none.empty()) return;
     const float top = std::round(area.top + bar.none_top + 0.1f * em);
     list.push_back(

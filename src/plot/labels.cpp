@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-/// Words of a curve, or of a rule, before they have a place.
+/// The label of a curve or rule before it has a place.
 struct LabelText {
     std::string text;
     float size;
@@ -30,7 +30,7 @@ struct Found {
     float cost;
 };
 
-/// Words on a map need a ground of their own.
+/// A label; on a map with a dark box behind it.
 void write(const Label& label, bool over_map, DisplayList& list) {
     if (over_map) {
         const Area box = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
@@ -47,7 +47,7 @@ std::vector<Point> places(const DrawnCurve& curve) {
         for (std::size_t i = 0; i < line.size(); ++i) {
             if (i > 0) {
                 // long straight pieces have places within
-                const float length = std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
+                const float length = distance(line[i], line[i - 1]);
                 const int parts = static_cast<int>(std::min(length / 24, 40.0f));
                 for (int k = 1; k < parts; ++k) {
                     const float part = static_cast<float>(k) / static_cast<float>(parts);
@@ -93,7 +93,7 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
                                                                  : 0);
                 if (best && cost >= best->cost) continue;
                 if (!placer.is_free(box.grown(air, 0.5f * air)) || placer.ink(box.grown(air, 0.5f * air)) > 0) continue;
-                // whose words they are must be plain
+                // near other curves it is unclear whose label it is
                 if (placer.ink(box.grown(1.0f * text.size, 0.8f * text.size), owner) > 0) cost += 0.7f;
                 if (!best || cost < best->cost) best = Found{text.at(left, top), cost};
             }
@@ -102,7 +102,7 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
     return best;
 }
 
-/// A place upon the curve, where the words hide least of the others.
+/// A place on the curve, where the label hides least of the others.
 std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const LabelText& text,
                           const LabelPlacer& placer) {
     std::optional<Found> best;
@@ -116,7 +116,7 @@ std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const Labe
     return best;
 }
 
-/// A place above or below a single mark, off all lines, with a line that leads to it.
+/// A place above or below a single mark, off all lines, and the leader line to it.
 std::optional<Found> with_leader(Point mark, const LabelText& text, const LabelPlacer& placer, Capsule& leader) {
     constexpr int farthest = 12;  // half lines
     const float w = text.width(), h = text.height(), air = 0.15f * text.size;
@@ -177,7 +177,7 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
 
 void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
                   bool over_map, LabelPlacer& placer, DisplayList& list) {
-    constexpr std::size_t most_marks = 60;  // marks that no word can stand beside
+    constexpr std::size_t most_marks = 60;  // beyond this no label has room beside marks
     constexpr int many = 10;                // curves that leave little room beside each
     const bool dense =
         std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;

@@ -12,12 +12,6 @@
 namespace doppel {
 namespace {
 
-float widest(const std::vector<Tick>& ticks, float size) {
-    float width = 0;
-    for (const Tick& tick : ticks) width = std::max(width, text_width(tick.text, size));
-    return width;
-}
-
 Axis placed(Axis axis, float from, float to) {
     axis.from = from;
     axis.to = to;
@@ -96,7 +90,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     made.left = 0.55f * em + widest(y_ticks(placed(ranges.y, tall, 0), plot.y, style), em);
     if (ranges.right) made.right = 0.55f * em + widest(y_ticks(placed(*ranges.right, tall, 0), *plot.right, style), em);
     if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
-    // the first and the last words below the axis reach out by half
+    // the first and the last label below the axis reach out by half
     const float wide = std::max(width - made.left - made.right, 1.0f);
     const auto below = x_ticks(placed(ranges.x, 0, wide), plot.x, style);
     const float half = widest(below, em) / 2;
@@ -111,7 +105,7 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
               std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
     Area held = cell;
     if (plot.square) {
-        // in the middle of its cell, words and all
+        // in the middle of its cell, labels included
         const float side = std::min(area.width(), area.height());
         const float right = std::floor((area.width() - side) / 2), down = std::floor((area.height() - side) / 2);
         held = held.grown(-right, -down);

@@ -1,5 +1,3 @@
-#include "render/dirty_regions.hpp"
-
 #include "render/render_list.hpp"
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 namespace doppel {
 namespace {
 
-constexpr long rect_overhead = 3000;  // as many pixels could be restored and read in the time one more costs
+constexpr long rect_overhead = 3000;  // pixels that are restored and read in the time that one more rectangle costs
 
 long area(const Rect& r) {
     return long{r.right - r.left} * (r.bottom - r.top);
@@ -36,7 +34,7 @@ void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint
     disjoint.push_back(rect);
 }
 
-/// Gathers rectangles that come one after another along a path.
+/// Rectangles along a path: joins neighbours that are cheaper as one.
 class RectChain {
 public:
     void add(const Rect& rect) {
@@ -80,8 +78,7 @@ private:
     std::vector<std::pair<std::size_t, std::size_t>> places_;
 };
 
-/// Calls visit(part) for rectangles, none overlapping, that together hold what the primitive touches of its bounds:
-/// one, or bands if it is long and slants.
+/// Calls visit(rect) for disjoint rectangles that cover the primitive: its bounds, or bands if it is long and slanted.
 template <class Visit>
 void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& visit) {
     const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
@@ -107,7 +104,7 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
     }
 }
 
-/// Strokes: their primitives may come in any order, and more than once, without a change to the picture.
+/// Strokes: order and repetition of their primitives do not change the picture.
 template <class Add>
 void compare_masks(const RenderList& before, RenderList::Part old, const RenderList& after, RenderList::Part now,
                    const Add& add) {
@@ -128,7 +125,7 @@ void compare_masks(const RenderList& before, RenderList::Part old, const RenderL
 }  // namespace
 
 std::vector<Rect> merged(std::vector<Rect> rects) {
-    // take each rectangle in turn; what it swallows makes it larger, so it looks at all others again
+    // a rectangle that grows is compared with all others again
     for (std::size_t i = 0; i < rects.size(); ++i) {
         for (std::size_t j = 0; j < rects.size(); ++j) {
             if (i == j || !cheaper_as_one(rects[i], rects[j])) continue;

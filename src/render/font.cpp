@@ -23,7 +23,7 @@ struct Coverage {
     std::vector<std::uint8_t> values;
 };
 
-// how far bold moves the outline to either side, em: stems grow more than bars, as type designers have it
+// how far bold moves the outline to either side, em: vertical stems grow more than horizontal bars
 constexpr float bold_across = 0.0215f;
 constexpr float bold_along = 0.0130f;
 constexpr float bold_spacing = 0.0300f;
@@ -99,7 +99,7 @@ float overlap(int i, float from, float to) {
     return std::max(0.0f, std::min(pixel + 1, to) - std::max(pixel, from));
 }
 
-/// The hollow box in place of what the font lacks; its own sign for that is empty.
+/// The hollow box for a missing glyph; the font's own is empty.
 Coverage missing_box(float size, Weight weight, float shift) {
     const float pen = size * (weight == Weight::bold ? 0.09f : 0.06f);
     const float left = shift + 0.1f * size, right = shift + 0.5f * size, height = 0.7f * size;

@@ -25,7 +25,7 @@ Functions load(const std::function<Function(const char* name)>& find) {
         return function;
     };
     Functions functions;
-#define X(type, name) functions.name = reinterpret_cast<type>(found("gl" #name));
+#define X(name) functions.name = reinterpret_cast<decltype(functions.name)>(found("gl" #name));
     DOPPEL_GL_FUNCTIONS(X)
 #undef X
     return functions;

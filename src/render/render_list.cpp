@@ -12,7 +12,7 @@ namespace {
 constexpr float edge = 1;  // px, the width of a soft edge: half of it lies beyond the shape
 
 std::array<std::uint8_t, 4> tint(const Color& color, float opacity = 1) {
-    return {byte_of(color.r), byte_of(color.g), byte_of(color.b), byte_of(color.a * opacity)};
+    return bytes_of(color.with_alpha(color.a * opacity));
 }
 
 /// Turns items into primitives. What is thinner than a pixel is drawn a pixel thin and fainter.

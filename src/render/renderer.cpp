@@ -1,9 +1,9 @@
 #include "render/renderer.hpp"
 
 #include "base/error.hpp"
-#include "render/dirty_regions.hpp"
 #include "render/gl_context.hpp"
 #include "render/gl_painter.hpp"
+#include "render/render_list.hpp"
 
 #include <algorithm>
 #include <new>
@@ -12,7 +12,6 @@
 
 namespace doppel {
 
-/// What the renderer is made of: a context, a canvas, the backdrop, and the render list of the last picture.
 class Renderer::State {
 public:
     State(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop)
@@ -45,8 +44,8 @@ public:
         changed_ = first_ ? std::vector{all_of(size_)} : dirty_regions(last_, now_);
         first_ = true;  // until this one is whole
 
-        // each switch between putting back, drawing and reading makes OpenGL finish what it has in hand: one of each a
-        // turn. Putting back from memory is a mere copy; a blit would draw, and finish, for every rectangle.
+        // each switch between upload, drawing and reading makes OpenGL finish: one of each a turn. Restoring the
+        // backdrop from memory is a copy; a blit would draw, and finish, for every rectangle.
         for (const auto& places : turns(changed_)) {
             if (stop) throw interrupted();
             gl::PixelStorei(GL_UNPACK_ROW_LENGTH, size_.width);
@@ -69,8 +68,7 @@ public:
 private:
     static Error interrupted() { return {ExitCode::interrupted, "interrupted"}; }
 
-    /// What to draw at once: all of it, or of a large picture band after band, so that whoever wants to stop need not
-    /// wait long.
+    /// What to draw at once: all, or a large picture band by band, so that a stop takes effect soon.
     static std::vector<std::vector<Rect>> turns(const std::vector<Rect>& places) {
         constexpr long most = 16'000'000;  // px
         long pixels = 0;

@@ -4,6 +4,7 @@
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
 #include "render/font.hpp"
+#include "render/pixels.hpp"
 #include "scene/resolved.hpp"
 
 #include <gtest/gtest.h>
@@ -12,11 +13,6 @@
 
 namespace doppel {
 namespace layouts_test {
-
-bool is_color(const std::uint8_t* pixel, Color color, int slack = 3) {
-    const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
-    return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
-}
 
 const std::uint8_t* pixel_at(const Picture& picture, Point at) {
     return picture.at(static_cast<int>(at.x), static_cast<int>(at.y));
@@ -53,7 +49,7 @@ Area box_of(const Label& label) {
     return {left, label.anchor.y - 0.73f * label.size, left + width, label.anchor.y + 0.24f * label.size};
 }
 
-/// The words of the picture after the shots 0 … last.
+/// The words of the picture after the snapshots 0 … last.
 std::vector<Label> labels_of(const Scene& scene, long last) {
     Composer composer(scene);
     for_each_snapshot(scene, last, [&](const Snapshot& snapshot) { composer.add(snapshot); });

@@ -7,7 +7,7 @@
 
 namespace doppel {
 
-/// Calls visit(shot) for the samples 0 … last.
+/// Calls visit(snapshot) for the samples 0 … last.
 template <class Visit>
 void for_each_snapshot(const Scene& scene, long last, Visit&& visit) {
     PairRun pair(scene);

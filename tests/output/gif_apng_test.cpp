@@ -16,13 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr Size small{160, 90};
 
-fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
-    const auto sink = make_video_sink(path, options);
-    for (long k = 0; k < frames; ++k) sink->take(moving_scene(options.size, k), whole(options.size));
-    sink->finish();
-    return path;
-}
-
 unsigned big_endian(const std::string& bytes, std::size_t at, int count) {
     unsigned number = 0;
     for (int i = 0; i < count; ++i) number = number << 8 | static_cast<unsigned char>(bytes[at + std::size_t(i)]);

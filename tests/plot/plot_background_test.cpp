@@ -8,7 +8,7 @@
 #include <set>
 
 namespace doppel {
-namespace plot_ground_test {
+namespace plot_background_test {
 
 // Lines for others to lie on, and words where curves are many.
 
@@ -93,5 +93,5 @@ TEST(Plot, AMarkAmongManyCurvesIsLedTo) {
     EXPECT_EQ(thin, 1);
 }
 
-}  // namespace plot_ground_test
+}  // namespace plot_background_test
 }  // namespace doppel

@@ -13,7 +13,7 @@ namespace strokes_test {
 constexpr Size size{160, 120};
 
 Picture drawn(const DisplayList& list) {
-    Renderer renderer(size, {background(size, black)});
+    Renderer renderer(size, {filled(size, black)});
     return renderer.draw(list);
 }
 
@@ -168,7 +168,7 @@ TEST(Stroke, GlowsBeyondItsEdge) {
 TEST(Stroke, LeavesOthersAndTheBackdropAlone) {
     const Color color = rgb(0x4fb0ff);
     const Picture picture =
-        drawn({background(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
+        drawn({filled(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
     for (const int y : {10, 30, 50}) {
         EXPECT_EQ(picture.at(40, y)[0], 0x4f);
         EXPECT_EQ(picture.at(40, y)[2], 0xff);
