@@ -28,13 +28,12 @@ std::string speed_text(const Rational& speed) {
 /// The background, the title, and what is said beside it: the speed and the time.
 class PageLayer final : public Layer {
 public:
-    explicit PageLayer(const FilmState& state) : state_(state) {}
+    using Layer::Layer;
 
     void backdrop(DisplayList& list) const override {
         const auto& font = style_.font;
-        const auto& theme = style_.theme;
         if (const auto& video = state_.scene.preset.video; !video.transparent)
-            list.push_back(filled(video.size, theme.background));
+            list.push_back(filled(video.size, theme_.background));
         // long text shrinks until it fits beside the clock
         const auto fitted = [&](const std::string& text, float y, double wanted, Weight weight, Color color,
                                 const std::string& beside, double beside_size) {
@@ -45,20 +44,17 @@ public:
         const auto speed = speed_text(state_.scene.preset.video.speed);
         const auto longest = clock(state_.scene, state_.scene.time(state_.scene.samples));
         const float second = page_.top + 74 * layout_.text;
-        fitted(layout_.title, title_, font.title, Weight::bold, theme.text, longest, font.clock);
-        fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme.quiet_text, speed, font.subtitle);
-        list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme.quiet_text, Align::right));
+        fitted(layout_.title, title_, font.title, Weight::bold, theme_.text, longest, font.clock);
+        fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme_.quiet_text, speed, font.subtitle);
+        list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme_.quiet_text, Align::right));
     }
 
     void frame(DisplayList& list) const override {
         list.push_back(label(clock(state_.scene, state_.time()), {page_.right, title_}, px(style_.font.clock),
-                             style_.theme.text, Align::right));
+                             theme_.text, Align::right));
     }
 
 private:
-    const FilmState& state_;
-    const Layout& layout_ = state_.layout;
-    const Style& style_ = layout_.style;
     const Area& page_ = layout_.page;
     const float title_ = page_.top + 38 * layout_.text;  // baseline
 };

@@ -25,6 +25,7 @@ struct FilmState {
 /// A part of a film's picture. What it draws depends on the scene and on the snapshots so far, and on nothing else.
 class Layer {
 public:
+    explicit Layer(const FilmState& state) : state_(state) {}
     virtual ~Layer() = default;
 
     /// What never changes.
@@ -33,6 +34,12 @@ public:
     virtual void add() {}
     /// What lies on the backdrop at the snapshot added last.
     virtual void frame(DisplayList& list) const = 0;
+
+protected:
+    const FilmState& state_;
+    const Layout& layout_ = state_.layout;
+    const Style& style_ = layout_.style;
+    const Theme& theme_ = style_.theme;
 };
 
 // `state` outlives the layers.

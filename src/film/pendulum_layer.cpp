@@ -26,7 +26,7 @@ std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area&
 class PendulumLayer final : public Layer {
 public:
     PendulumLayer(const FilmState& state, const PendulumPanel& panel)
-        : state_(state),
+        : Layer(state),
           panel_(panel),
           heaviest_(std::max(std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass))),
           paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {}
@@ -57,10 +57,7 @@ private:
     Point at(const Bob<double>& bob) const { return panel_.at(bob.x, bob.y); }
     Point at(const Place<double>& place) const { return panel_.at(place[0], place[1]); }
 
-    const FilmState& state_;
     const PendulumPanel& panel_;
-    const Layout& layout_ = state_.layout;
-    const Style& style_ = layout_.style;
     double heaviest_;  // kg
     std::array<Path, 2> paths_;
 };
@@ -69,8 +66,8 @@ void PendulumLayer::backdrop(DisplayList& list) const {
     const float t = layout_.text, u = layout_.unit;
     const auto& area = panel_.area;
     if (!state_.scene.preset.video.transparent)
-        list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, style_.theme.panel});
-    if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), style_.theme.grid});
+        list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
+    if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), theme_.grid});
     for (const auto side : panel_.sides) draw_tracks(side, list);
 
     const float share = panel_.captions.size() > 1 ? 0.48f : 1;  // of the width: captions in both corners
@@ -81,10 +78,10 @@ void PendulumLayer::backdrop(DisplayList& list) const {
             const float size = fitting_size(text, px(wanted), weight, width);
             list.push_back(label(text, {x, area.top + y}, size, color, caption.align, weight));
         };
-        const auto color = state_.scene.members.empty() ? style_.theme.sides[caption.side]
+        const auto color = state_.scene.members.empty() ? theme_.sides[caption.side]
                                                         : member_color(style_, static_cast<double>(caption.side));
         add(caption.heading, 50 * t, style_.font.heading, Weight::bold, color);
-        add(caption.note, 82 * t, style_.font.note, Weight::regular, style_.theme.quiet_text);
+        add(caption.note, 82 * t, style_.font.note, Weight::regular, theme_.quiet_text);
     }
 }
 
@@ -112,13 +109,12 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
 }
 
 void PendulumLayer::frame(DisplayList& list) const {
-    const auto& theme = style_.theme;
     if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
     // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
     if (alone && !swing_as_one()) {
         const std::size_t other = 1 - panel_.sides.front();
-        const Color ghost = mixed(theme.panel, theme.sides[other], 0.26f);
+        const Color ghost = mixed(theme_.panel, theme_.sides[other], 0.26f);
         draw_lines(other, state_.seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
         for (const auto& bob : state_.seen(other).bobs) draw_disc(at(bob), bob_radius(bob), ghost, list);
     }
@@ -141,17 +137,16 @@ bool PendulumLayer::swing_as_one() const {
 
 /// Rods, then the pivot and the bobs, each on a rim that sets it off. Where two share a panel all of each has its hue.
 void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& list) const {
-    const auto& theme = style_.theme;
     const auto& bobs = state_.seen(side).bobs;
-    const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme.sides[side], share); };
-    draw_lines(side, bobs, layout_.rod_radius, hued(theme.rod, 0.55f), list);
+    const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme_.sides[side], share); };
+    draw_lines(side, bobs, layout_.rod_radius, hued(theme_.rod, 0.55f), list);
     draw_pivots(side, list);
     for (const auto& bob : bobs) {
         const bool last = &bob == &bobs.back();
         const float radius = last ? std::max(bob_radius(bob), layout_.last_bob_radius) : bob_radius(bob);
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
-        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme.panel, list);
-        draw_disc(at(bob), radius, last ? theme.sides[side] : hued(theme.bob, 0.4f), list, last ? style_.glow : 0);
+        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme_.panel, list);
+        draw_disc(at(bob), radius, last ? theme_.sides[side] : hued(theme_.bob, 0.4f), list, last ? style_.glow : 0);
     }
 }
 
@@ -203,7 +198,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
 /// Slots that bobs slide in.
 void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
     const float width = px(style_.width.grid);
-    const auto& color = style_.theme.grid;
+    const auto& color = theme_.grid;
     for (const auto& line : state_.side(side).lines) {
         const auto *from = std::get_if<Place<double>>(&line.from), *to = std::get_if<Place<double>>(&line.to);
         if (!from) continue;
@@ -229,7 +224,7 @@ void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
         const bool one_end = line.kind == Kind::anchor;
         for (const auto* end : {&line.from, one_end ? nullptr : &line.to})
             if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr)
-                draw_disc(at(*place), radius, style_.theme.pivot, list);
+                draw_disc(at(*place), radius, theme_.pivot, list);
     }
 }
 

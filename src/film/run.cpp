@@ -75,11 +75,10 @@ void PairTable::add_side(const Side& side, const Observation& seen, std::optiona
     csv_.add(seen.length_error);
 }
 
-void watch_worst(WorstErrors& worst, const PairState& state) {
-    worst.energy_a = std::max(worst.energy_a, std::abs(state.energy_error_a.value_or(0)));
-    worst.energy_b = std::max(worst.energy_b, std::abs(state.energy_error_b.value_or(0)));
-    worst.length_a = std::max(worst.length_a, state.a.length_error);
-    worst.length_b = std::max(worst.length_b, state.b.length_error);
+/// Keeps the largest errors.
+void watch(SideRecord& record, const Observation& seen, std::optional<double> energy_error) {
+    record.energy_error = std::max(record.energy_error, std::abs(energy_error.value_or(0)));
+    record.length_error = std::max(record.length_error, seen.length_error);
 }
 
 /// Whether the side comes to `sample`; `effort` ← what it took.
@@ -190,7 +189,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     PairTable table(parts.file(csv_name), scene);
 
     Simulation simulation(scene, last, options.pictures, stop);
-    const auto take_efforts = [&] { std::tie(record.effort_a, record.effort_b) = simulation.efforts(); };
+    const auto take_efforts = [&] { std::tie(record.a.effort, record.b.effort) = simulation.efforts(); };
     double start_distance = 0;
     for (long sample = 0, done = 0; sample < last; ++sample) {
         Snapshot snapshot;
@@ -206,7 +205,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
         check_distance(scene, state);
         if (sample == 0) start_distance = state.distance;
-        watch_worst(record.worst, state);
+        watch(record.a, state.a, state.energy_error_a);
+        watch(record.b, state.b, state.energy_error_b);
         record.largest_distance = std::max(record.largest_distance, state.distance);
         if (film) film->add(snapshot);
         if (sample < first) continue;

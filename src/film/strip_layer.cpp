@@ -37,7 +37,7 @@ struct StripValue {
 
 class StripLayer final : public Layer {
 public:
-    StripLayer(const FilmState& state, std::size_t index) : state_(state), index_(index) {}
+    StripLayer(const FilmState& state, std::size_t index) : Layer(state), index_(index) {}
 
     void backdrop(DisplayList& list) const override {
         draw_horizon(list);
@@ -60,11 +60,7 @@ private:
     void draw_time_labels(DisplayList& list) const;
     void draw_parting(float free_from, DisplayList& list) const;
 
-    const FilmState& state_;
     const std::size_t index_;
-    const Layout& layout_ = state_.layout;
-    const Style& style_ = layout_.style;
-    const Theme& theme_ = style_.theme;
     const StripLayout& strip_ = layout_.strips[index_];
     const float size_ = px(style_.font.strip), heading_base_ = strip_.area.top - 12 * layout_.text;
     // J: one for both sides, or the side that starts near E = 0 would look far worse

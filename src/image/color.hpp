@@ -45,7 +45,7 @@ std::optional<Color> parse_color(std::string_view text);
 /// The colour of `share` (0…1, beyond: the nearest end) of a scale: dark violet through blue and green to pale yellow.
 ///
 /// Equal shares look equally far apart: the scale runs through OKLab (Ottosson 2020) at constant speed, and lightness
-/// only grows, so that it holds in grey and for the colour-blind. Not a number: the lower end.
+/// only grows, so that it holds in grey and for the colour-blind. NaN: the lower end.
 Color map_color(double share);
 
 }  // namespace doppel

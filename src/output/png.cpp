@@ -26,22 +26,16 @@ namespace {
 /// would return them to the system each time, and page faults would cost a third of the work.
 class Arena {
 public:
-    /// Null where memory is out.
+    /// The first free block, enlarged where it is too small. Null where memory is out.
     void* take(std::size_t size) {
-        // the smallest free block that fits, else the largest, which grows
-        Block* best = nullptr;
-        for (Block& block : blocks_)
-            if (!block.taken && (!best || (best->size < size ? block.size > best->size
-                                                             : block.size >= size && block.size < best->size)))
-                best = &block;
-        if (!best) return nullptr;
-        if (best->size < size) {
-            best->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
-            best->size = best->bytes ? size : 0;
-            if (!best->bytes) return nullptr;
+        const auto block = std::ranges::find(blocks_, false, &Block::taken);
+        if (block == blocks_.end()) return nullptr;
+        if (block->size < size) {
+            block->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
+            block->size = block->bytes ? size : 0;
         }
-        best->taken = true;
-        return best->bytes.get();
+        block->taken = block->bytes != nullptr;
+        return block->bytes.get();
     }
 
     void give_back(const void* bytes) {
@@ -50,15 +44,12 @@ public:
     }
 
 private:
-    struct Free {
-        void operator()(std::byte* bytes) const { std::free(bytes); }
-    };
     struct Block {
-        std::unique_ptr<std::byte, Free> bytes;
+        Owned<std::byte, std::free> bytes;
         std::size_t size = 0;
         bool taken = false;
     };
-    std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed, the file: all that it holds at once
+    std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed rows, the file
 };
 
 thread_local Arena arena;

@@ -8,8 +8,6 @@ extern "C" {
 }
 
 #include <nlohmann/json.hpp>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -44,18 +42,14 @@ private:
     Owned<AVSHA, av_free> sha_;
 };
 
-/// The first bytes of a file, `most` of them; none where it cannot be read.
+/// The first bytes of a file, at most `most`; none where it cannot be read.
 std::string head_of(const Folder& folder, const std::string& name, std::size_t most) {
     try {
-        const Descriptor file = open_file({folder, name});
+        const FilePlace place{folder, name};
+        const Stream file = stream_of(open_file(place), "rb", place.path, "read");
         std::string bytes(std::min<std::size_t>(most, folder.entry(name).bytes), '\0');
-        std::size_t got = 0;
-        while (got < bytes.size()) {
-            const auto more = read(file.number(), bytes.data() + got, bytes.size() - got);
-            if (more <= 0) break;
-            got += static_cast<std::size_t>(more);
-        }
-        return bytes.substr(0, got);
+        bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+        return bytes;
     } catch (const Error&) {
         return {};
     }

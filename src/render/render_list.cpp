@@ -153,7 +153,7 @@ private:
 
     /// Adds the primitive, which touches no pixels but those that [from, to] reaches into.
     void add(const Primitive& primitive, Point from, Point to) {
-        // fmin and fmax, for they lose what is not a number
+        // fmin and fmax, which ignore NaN
         const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
         const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
                           static_cast<int>(std::ceil(within(to.x, size_.width))),
