@@ -34,8 +34,8 @@ void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
     for (const double force : side.tension) include(seen.rod_force, force);
 }
 
-/// With a tenth of air; zero is on it.
-Range airy(const Range& seen) {
+/// With a margin of a tenth; includes zero.
+Range padded(const Range& seen) {
     const double low = std::min(seen.low, 0.0), high = std::max(seen.high, 0.0), width = high - low;
     if (!(width > 0) || !std::isfinite(width)) return {0, 1};
     return {low < 0 ? low - width / 10 : 0, high > 0 ? high + width / 10 : 0};
@@ -142,9 +142,9 @@ Range fitted_range(StripKind kind, const Scene& scene, const std::optional<Motio
         case StripKind::distance:
             return fitted_distance(scene, seen);
         case StripKind::exponent:
-            return airy(seen ? seen->exponent : Range{});
+            return padded(seen ? seen->exponent : Range{});
         case StripKind::rod_force:
-            return airy(seen ? seen->rod_force : Range{});
+            return padded(seen ? seen->rod_force : Range{});
         case StripKind::energy:
         case StripKind::rod_error:
             break;

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-constexpr double parted_at = 1;                  // state-space distance from which the two count as strangers
+constexpr double parted_at = 1;                  // state-space distance from which the two count as parted
 constexpr double together_at = 0.1 * parted_at;  // up to which a pair starts as one, and can part
 
 /// As many decimals as tell one frame from the next.

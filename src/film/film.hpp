@@ -26,7 +26,7 @@ Schedule schedule_of(const Scene& scene);
 
 /// How opaque a card is on frame `k` of `count`: the last (or first, where it comes up) half second is a fade, but
 /// never more than half of the card.
-double card_opacity(long k, long count, double fps, bool comes_up);
+double card_opacity(long k, long count, double fps, bool fades_in);
 
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
 class Film {
@@ -50,7 +50,7 @@ public:
 
 private:
     const Picture& take(const DisplayList& list, RunRecord& record);
-    void take_card(long frames, bool comes_up, RunRecord& record);
+    void take_card(long frames, bool fades_in, RunRecord& record);
     void keep(const Picture& picture);
     const Picture& drawn(const DisplayList& list);
 

@@ -16,7 +16,7 @@ Rect united(const Rect& a, const Rect& b) {
     return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right), std::max(a.bottom, b.bottom)};
 }
 
-Rect common(const Rect& a, const Rect& b) {
+Rect intersection(const Rect& a, const Rect& b) {
     return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
@@ -81,7 +81,7 @@ void add_row(const Picture& picture, int row, double share, std::vector<double>&
 
 }  // namespace
 
-Picture reduced(const Picture& picture, Size size) {
+Picture downscaled(const Picture& picture, Size size) {
     const auto [width, height] = picture.size;
     if (size.width < 1 || size.height < 1 || size.width > width || size.height > height)
         throw bad_input("a picture of {}x{} px cannot be reduced to {}x{}; 1x1 … {}x{} would do", width, height,

@@ -179,7 +179,7 @@ std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas) {
 }
 
 Rect aligned(AVPixelFormat format, const Rect& area, Size picture) {
-    const Rect inside = common(area, {0, 0, picture.width, picture.height});
+    const Rect inside = intersection(area, {0, 0, picture.width, picture.height});
     if (!has_halved_chroma(format) || inside.empty()) return inside;
     return {inside.left & ~1, inside.top & ~1, (inside.right + 1) & ~1, (inside.bottom + 1) & ~1};
 }

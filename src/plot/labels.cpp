@@ -140,12 +140,14 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
                 const float left = across == 1 ? p.x + gap : across == 0 ? p.x - gap - w : p.x - w / 2;
                 const float top = down == 1 ? p.y + gap : down == 0 ? p.y - gap - h : p.y - h / 2;
                 const Area box{left, top, left + w, top + h};
-                const float air = 0.28f * text.size;
+                const float margin = 0.28f * text.size;
                 float cost = 1.2f * far_left + (down == 0.5f     ? (end && across == 1 ? -0.3f : 0.4f)
                                                 : across == 0.5f ? 0.15f
                                                                  : 0);
                 if (best && cost >= best->cost) continue;
-                if (!placer.is_free(box.grown(air, 0.5f * air)) || placer.ink(box.grown(air, 0.5f * air)) > 0) continue;
+                if (!placer.is_free(box.grown(margin, 0.5f * margin)) ||
+                    placer.ink(box.grown(margin, 0.5f * margin)) > 0)
+                    continue;
                 // near other curves it is unclear whose label it is
                 if (placer.ink(box.grown(1.0f * text.size, 0.8f * text.size), owner) > 0) cost += 0.7f;
                 if (!best || cost < best->cost) best = Found{text.at(left, top), cost};
@@ -159,11 +161,11 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
 std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const LabelText& text,
                           const LabelPlacer& placer) {
     std::optional<Found> best;
-    const float w = text.width(), h = text.height(), air = 0.15f * text.size;
+    const float w = text.width(), h = text.height(), margin = 0.15f * text.size;
     for (const Point& p : places(curve)) {
         const Area box{p.x - w / 2, p.y - h / 2, p.x + w / 2, p.y + h / 2};
-        if (!placer.is_free(box.grown(2 * air, air))) continue;
-        const auto cost = static_cast<float>(placer.ink(box.grown(air, air), owner));
+        if (!placer.is_free(box.grown(2 * margin, margin))) continue;
+        const auto cost = static_cast<float>(placer.ink(box.grown(margin, margin), owner));
         if (!best || cost < best->cost) best = Found{text.at(box.left, box.top), cost};
     }
     return best;
@@ -172,13 +174,13 @@ std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const Labe
 /// A place above or below a single mark, off all lines, and the leader line to it.
 std::optional<Found> with_leader(Point mark, const LabelText& text, const LabelPlacer& placer, Capsule& leader) {
     constexpr int farthest = 12;  // half lines
-    const float w = text.width(), h = text.height(), air = 0.15f * text.size;
+    const float w = text.width(), h = text.height(), margin = 0.15f * text.size;
     for (int away = 2; away <= farthest; ++away)
         for (const float across : {0.5f, 0.8f, 0.2f, 1.0f, 0.0f})
             for (const float way : {-1.0f, 1.0f}) {
                 const float middle = mark.y + 0.5f * way * static_cast<float>(away) * h;
                 const Area box{mark.x - across * w, middle - h / 2, mark.x + (1 - across) * w, middle + h / 2};
-                if (!placer.is_free(box.grown(2 * air, 0)) || placer.ink(box.grown(air, 0)) > 0) continue;
+                if (!placer.is_free(box.grown(2 * margin, 0)) || placer.ink(box.grown(margin, 0)) > 0) continue;
                 leader = {mark, {mark.x, way < 0 ? box.bottom : box.top}, 0, text.color};
                 return Found{text.at(box.left, box.top), 0};
             }

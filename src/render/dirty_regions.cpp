@@ -23,7 +23,7 @@ bool cheaper_as_one(const Rect& a, const Rect& b) {
 void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint) {
     if (rect.empty()) return;
     for (std::size_t i = from; i < disjoint.size(); ++i) {
-        const Rect hole = common(rect, disjoint[i]);
+        const Rect hole = intersection(rect, disjoint[i]);
         if (hole.empty()) continue;
         add_outside({rect.left, rect.top, rect.right, hole.top}, i + 1, disjoint);
         add_outside({rect.left, hole.bottom, rect.right, rect.bottom}, i + 1, disjoint);
@@ -99,7 +99,7 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
         const float at_b = middle + slope * (static_cast<float>(b) - start);
         const int low = static_cast<int>(std::floor(std::min(at_a, at_b) - margin));
         const int high = static_cast<int>(std::ceil(std::max(at_a, at_b) + margin));
-        const Rect band = common(bounds, steep ? Rect{low, a, high, b} : Rect{a, low, b, high});
+        const Rect band = intersection(bounds, steep ? Rect{low, a, high, b} : Rect{a, low, b, high});
         if (!band.empty()) visit(band);
     }
 }

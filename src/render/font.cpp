@@ -195,7 +195,7 @@ float text_width(std::string_view text, float size, Weight weight) {
     return lay_out(text, size, weight).width;
 }
 
-std::string_view lacking_character(std::string_view text) {
+std::string_view missing_character(std::string_view text) {
     while (!text.empty()) {
         const auto from = text;
         const auto character = next_character(text);
@@ -204,11 +204,11 @@ std::string_view lacking_character(std::string_view text) {
     return {};
 }
 
-const GlyphAtlas::Slot& GlyphAtlas::slot(int glyph, float size, Weight weight, int stop) {
-    const Key key{glyph, size, weight, stop};
+const GlyphAtlas::Slot& GlyphAtlas::slot(int glyph, float size, Weight weight, int subpixel) {
+    const Key key{glyph, size, weight, subpixel};
     if (const auto found = slots_.find(key); found != slots_.end()) return found->second;
 
-    const Coverage drawn = rasterised(glyph, size, weight, static_cast<float>(stop) / stops);
+    const Coverage drawn = rasterised(glyph, size, weight, static_cast<float>(subpixel) / subpixels);
     if (pen_ + drawn.size.width > width) {
         pen_ = 0;
         shelf_ += shelf_height_;

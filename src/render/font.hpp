@@ -31,13 +31,13 @@ struct TextLine {
 TextLine lay_out(std::string_view text, float size, Weight weight);
 
 /// The first character of `text` that the font lacks, or that is a control character. Empty where there is none.
-std::string_view lacking_character(std::string_view text);
+std::string_view missing_character(std::string_view text);
 
 /// Coverage of the glyphs drawn so far, in one image. It fills shelf by shelf and grows downward: slots never move.
 class GlyphAtlas {
 public:
     /// Subpixel positions of the pen.
-    static constexpr int stops = 4;
+    static constexpr int subpixels = 4;
     static constexpr int width = 1024;  // px
 
     struct Slot {
@@ -50,7 +50,7 @@ public:
     explicit GlyphAtlas(int max_height) : max_height_(max_height) {}
 
     /// Rasterises the glyph if it is new. Throws Error where the atlas is full.
-    const Slot& slot(int glyph, float size, Weight weight, int stop);
+    const Slot& slot(int glyph, float size, Weight weight, int subpixel);
 
     const std::vector<std::uint8_t>& values() const { return values_; }
     int height() const { return static_cast<int>(values_.size()) / width; }

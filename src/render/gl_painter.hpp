@@ -16,9 +16,9 @@ class Painter {
 public:
     explicit Painter(Size size);
 
-    /// Draws the render list within the `places`, which must not overlap. Throws Error where an image is larger than
+    /// Draws the render list within the `regions`, which must not overlap. Throws Error where an image is larger than
     /// OpenGL takes.
-    void paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas);
+    void paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas);
 
 private:
     struct Vertex {
@@ -42,8 +42,8 @@ private:
         std::unique_ptr<Texture> texture;
     };
 
-    void make_batches(const RenderList& items, const std::vector<Rect>& places);
-    void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places);
+    void make_batches(const RenderList& items, const std::vector<Rect>& regions);
+    void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& regions);
     void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);

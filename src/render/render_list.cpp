@@ -95,11 +95,11 @@ public:
         // the whole pixels aside, so that moving by whole pixels changes nothing
         const float whole = std::floor(start);
         for (const TextLine::Glyph& glyph : line.glyphs) {
-            const int stop = static_cast<int>(std::lround((start - whole + glyph.pen) * GlyphAtlas::stops));
+            const int subpixel = static_cast<int>(std::lround((start - whole + glyph.pen) * GlyphAtlas::subpixels));
             const GlyphAtlas::Slot& slot =
-                atlas_.slot(glyph.number, label.size, label.weight, stop % GlyphAtlas::stops);
+                atlas_.slot(glyph.number, label.size, label.weight, subpixel % GlyphAtlas::subpixels);
             if (slot.size.width == 0) continue;
-            const Point corner{whole + static_cast<float>(stop / GlyphAtlas::stops + slot.left),
+            const Point corner{whole + static_cast<float>(subpixel / GlyphAtlas::subpixels + slot.left),
                                baseline + static_cast<float>(slot.top)};
             add({.origin = corner,
                  .shape = {static_cast<float>(slot.x), static_cast<float>(slot.y)},

@@ -112,7 +112,7 @@ TEST(Renderer, DrawsTheSamePixelsAsIfItDrewAllAnew) {
                 for (int x = 0; x < size.width; ++x) {
                     const Rect pixel{x, y, x + 1, y + 1};
                     if (std::any_of(changed.begin(), changed.end(),
-                                    [&](const Rect& r) { return !common(r, pixel).empty(); })) {
+                                    [&](const Rect& r) { return !intersection(r, pixel).empty(); })) {
                         continue;
                     }
                     ++left_alone;

@@ -49,7 +49,7 @@ TEST(Box, OnWholePixelsHasNoFringe) {
         const Picture picture = drawn({box});
         for (int y = 0; y < size.height; ++y) {
             for (int x = 0; x < size.width; ++x) {
-                const bool inside = !common(r, {x, y, x + 1, y + 1}).empty();
+                const bool inside = !intersection(r, {x, y, x + 1, y + 1}).empty();
                 ASSERT_EQ(picture.at(x, y)[1], inside ? 255 : 0) << x << ' ' << y;
             }
         }
