@@ -1,4 +1,4 @@
-// cover.frag: a stroke's colour; blending lays it on through the mask in the alpha channel and sets that back to 1.
+// cover.frag: a stroke's colour; blending weights it by the mask in the alpha channel and sets that back to 1.
 // in   tint  sRGB colour
 // out  color  the same, opaque
 #version 330 core

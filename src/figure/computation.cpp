@@ -89,7 +89,7 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
         figure_.experiment->compute(first, numbers, stop);
         for (std::size_t i = 0; i < numbers.size(); ++i)
             if (!figure_.experiment->fits(first + i, numbers[i]))
-                throw method_failed("{}: trial {} came to a number that is infinite or none", figure_.name, first + i);
+                throw method_failed("{}: trial {} came to a number that is infinite or NaN", figure_.name, first + i);
         return keep(groups_[group], std::move(numbers), seconds_of(CLOCK_THREAD_CPUTIME_ID) - cpu_start);
     } catch (const Error& fault) {
         throw with_record(fault);

@@ -1,7 +1,7 @@
 #include "figure/part_file.hpp"
 
 #include "base/error.hpp"
-#include "output/sha256.hpp"
+#include "output/written.hpp"
 #include "scene/manifest_json.hpp"
 #include "scene/version.hpp"
 

@@ -106,9 +106,8 @@ public:
         }
         figure.captions.push_back(fmt::format(
             "Dashed: the step at which linear theory has small oscillations gain {:g} times their energy in {:g} s; "
-            "Gauss collocation has none. A blow-up: an error beyond {:g} times the energy released, a number that is "
-            "none, or a method that gives up, as gauss and rattle do where they do not find their stages or "
-            "multipliers.",
+            "Gauss collocation has none. A blow-up: an error beyond {:g} times the energy released, NaN, or a method "
+            "that gives up, as gauss and rattle do where they do not find their stages or multipliers.",
             blow_up, duration_.value(), blow_up));
     }
 

@@ -51,7 +51,7 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
                 .hue = look.hue,
                 .dashed = look.dashed && best,
                 .quiet = external != nullptr,
-                .ground = best ? Ground::none : Ground::line};
+                .background = best ? Background::none : Background::line};
     const auto useful = useful_rungs(ladder, diagram.cost, range_of(diagram));
     for (const std::size_t i : useful) add_point(curve, cost_of(ladder.rungs[i], diagram.cost), ladder.rungs[i].error);
     if (diagram.cost == Cost::evaluations || !best) return curve;
@@ -69,7 +69,7 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
 }
 
 Curve front_curve(const WorkDiagram& diagram) {
-    Curve curve{.ground = Ground::band};
+    Curve curve{.background = Background::band};
     for (const auto& point : front_of(diagram.index, diagram.ladders, diagram.cost, range_of(diagram)))
         add_point(curve, point.cost, point.error);
     return curve;

@@ -34,8 +34,8 @@ void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
     for (const double force : side.tension) include(seen.rod_force, force);
 }
 
-/// With a tenth of air; zero is on it.
-Range airy(const Range& seen) {
+/// With a margin of a tenth; includes zero.
+Range padded(const Range& seen) {
     const double low = std::min(seen.low, 0.0), high = std::max(seen.high, 0.0), width = high - low;
     if (!(width > 0) || !std::isfinite(width)) return {0, 1};
     return {low < 0 ? low - width / 10 : 0, high > 0 ? high + width / 10 : 0};
@@ -44,7 +44,7 @@ Range airy(const Range& seen) {
 /// How far apart two chains can get in state space: as fast as each can be, in opposite directions, each bob as far
 /// from where it hangs at rest as it can be, on opposite sides. With the energy E above rest, a bob of mass m rises by
 /// at most E/(m g), and one that hangs a length l below the pivot is within √(2 l · rise) of its place at rest.
-double farthest(const Scene& scene, const Moment& start) {
+double farthest(const Scene& scene, const PairState& start) {
     const auto energy = [](const Side& side, const Observation& seen) {
         return std::max(seen.energy + side.energy_unit / 2, 0.0);  // J, above rest
     };
@@ -88,27 +88,27 @@ Range fitted_error(const Scene& scene) {
 
 }  // namespace
 
-std::optional<double> exponent_so_far(const Scene& scene, const Moment& moment, double start_distance) {
-    if (moment.sample == 0 || 20 * moment.sample < scene.samples) return std::nullopt;
-    if (!(moment.distance > 0 && start_distance > 0)) return std::nullopt;
-    return std::log(moment.distance / start_distance) / scene.time(moment.sample);
+std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance) {
+    if (state.sample == 0 || 20 * state.sample < scene.samples) return std::nullopt;
+    if (!(state.distance > 0 && start_distance > 0)) return std::nullopt;
+    return std::log(state.distance / start_distance) / scene.time(state.sample);
 }
 
 std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<bool>& stop) {
     if (!is_needed(scene)) return std::nullopt;
     PairRun pair(scene);
-    auto moment = pair.next(stop);
-    const auto& first = moment.a.bobs.front();
+    auto state = pair.next(stop);
+    const auto& first = state.a.bobs.front();
     MotionBounds seen{first.x, first.x, first.y, first.y};
-    const double start_distance = moment.distance;
+    const double start_distance = state.distance;
     try {
         for (;;) {
-            add(seen, scene, moment.a);
-            add(seen, scene, moment.b);
-            seen.largest_distance = std::max(seen.largest_distance, moment.distance);
-            if (const auto exponent = exponent_so_far(scene, moment, start_distance)) include(seen.exponent, *exponent);
-            if (moment.sample == scene.samples) break;
-            moment = pair.next(stop);
+            add(seen, scene, state.a);
+            add(seen, scene, state.b);
+            seen.largest_distance = std::max(seen.largest_distance, state.distance);
+            if (const auto exponent = exponent_so_far(scene, state, start_distance)) include(seen.exponent, *exponent);
+            if (state.sample == scene.samples) break;
+            state = pair.next(stop);
         }
     } catch (const BreakDown&) {  // the run itself will say so
     }
@@ -142,9 +142,9 @@ Range fitted_range(StripKind kind, const Scene& scene, const std::optional<Motio
         case StripKind::distance:
             return fitted_distance(scene, seen);
         case StripKind::exponent:
-            return airy(seen ? seen->exponent : Range{});
+            return padded(seen ? seen->exponent : Range{});
         case StripKind::rod_force:
-            return airy(seen ? seen->rod_force : Range{});
+            return padded(seen ? seen->rod_force : Range{});
         case StripKind::energy:
         case StripKind::rod_error:
             break;

@@ -20,7 +20,7 @@ struct MotionBounds {
 std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<bool>& stop);
 
 /// ln(d/d0) / t, 1/s: nothing in the first twentieth of the scene, when it says nothing yet, or where a distance is 0.
-std::optional<double> exponent_so_far(const Scene& scene, const Moment& moment, double start_distance);
+std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance);
 
 /// The part of the plane that the pendulums' panels show, m.
 struct View {

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-constexpr double parted_at = 1;                  // state-space distance from which the two count as strangers
+constexpr double parted_at = 1;                  // state-space distance from which the two count as parted
 constexpr double together_at = 0.1 * parted_at;  // up to which a pair starts as one, and can part
 
 /// As many decimals as tell one frame from the next.
@@ -20,7 +20,7 @@ std::string clock(const Scene& scene, double time) {
     return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
 }
 
-std::string speed_words(const Rational& speed) {
+std::string speed_text(const Rational& speed) {
     if (speed == Rational{1, 1}) return "real time";
     return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
 }
@@ -28,42 +28,38 @@ std::string speed_words(const Rational& speed) {
 /// The background, the title, and what is said beside it: the speed and the time.
 class PageLayer final : public Layer {
 public:
-    explicit PageLayer(const FilmState& state) : state_(state) {}
+    using Layer::Layer;
 
     void backdrop(DisplayList& list) const override {
         const auto& font = style_.font;
-        const auto& theme = style_.theme;
         if (const auto& video = state_.scene.preset.video; !video.transparent)
-            list.push_back(filled(video.size, theme.background));
-        // long words shrink until they fit beside the clock
-        const auto fitted = [&](const std::string& words, float y, double wanted, Weight weight, Color color,
+            list.push_back(filled(video.size, theme_.background));
+        // long text shrinks until it fits beside the clock
+        const auto fitted = [&](const std::string& text, float y, double wanted, Weight weight, Color color,
                                 const std::string& beside, double beside_size) {
             const float width = page_.width() - text_width(beside, px(beside_size)) - 30 * layout_.text;
-            const float size = fitting_size(words, px(wanted), weight, width);
-            list.push_back(label(words, {page_.left, y}, size, color, Align::left, weight));
+            const float size = fitting_size(text, px(wanted), weight, width);
+            list.push_back(label(text, {page_.left, y}, size, color, Align::left, weight));
         };
-        const auto speed = speed_words(state_.scene.preset.video.speed);
+        const auto speed = speed_text(state_.scene.preset.video.speed);
         const auto longest = clock(state_.scene, state_.scene.time(state_.scene.samples));
         const float second = page_.top + 74 * layout_.text;
-        fitted(layout_.title, title_, font.title, Weight::bold, theme.text, longest, font.clock);
-        fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme.quiet_text, speed, font.subtitle);
-        list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme.quiet_text, Align::right));
+        fitted(layout_.title, title_, font.title, Weight::bold, theme_.text, longest, font.clock);
+        fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme_.quiet_text, speed, font.subtitle);
+        list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme_.quiet_text, Align::right));
     }
 
     void frame(DisplayList& list) const override {
         list.push_back(label(clock(state_.scene, state_.time()), {page_.right, title_}, px(style_.font.clock),
-                             style_.theme.text, Align::right));
+                             theme_.text, Align::right));
     }
 
 private:
-    const FilmState& state_;
-    const Layout& layout_ = state_.layout;
-    const Style& style_ = layout_.style;
     const Area& page_ = layout_.page;
     const float title_ = page_.top + 38 * layout_.text;  // baseline
 };
 
-/// A line of words on a card.
+/// A line of text on a card.
 struct CardLine {
     std::string text;
     double size;  // px
@@ -109,12 +105,12 @@ DisplayList Composer::backdrop() const {
     return list;
 }
 
-void Composer::add(const Shot& shot) {
-    state_.shot = shot;
-    const auto& moment = shot.moment;
-    if (moment.sample == 0) state_.start_distance = moment.distance;
-    state_.largest_distance = std::max(state_.largest_distance, moment.distance);
-    if (state_.start_as_one() && !state_.parted && moment.distance >= parted_at) state_.parted = state_.time();
+void Composer::add(const Snapshot& snapshot) {
+    state_.snapshot = snapshot;
+    const auto& state = snapshot.pair;
+    if (state.sample == 0) state_.start_distance = state.distance;
+    state_.largest_distance = std::max(state_.largest_distance, state.distance);
+    if (state_.start_as_one() && !state_.parted && state.distance >= parted_at) state_.parted = state_.time();
     for (const auto& layer : layers_) layer->add();
 }
 
@@ -128,12 +124,12 @@ DisplayList Composer::title_card(double opacity) const {
     const auto& layout = state_.layout;
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
-    const auto words = side_captions(state_.scene);
+    const auto captions = side_captions(state_.scene);
     return card({{layout.title, font.card, Weight::bold, theme.text},
                  {layout.subtitle, 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
                  {"", font.subtitle, Weight::regular, theme.text},
-                 {words[0].heading, 1.3 * font.heading, Weight::bold, theme.sides[0]},
-                 {words[1].heading, 1.3 * font.heading, Weight::bold, theme.sides[1]}},
+                 {captions[0].heading, 1.3 * font.heading, Weight::bold, theme.sides[0]},
+                 {captions[1].heading, 1.3 * font.heading, Weight::bold, theme.sides[1]}},
                 state_.scene.preset.video.size, theme.background, opacity);
 }
 

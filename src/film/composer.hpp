@@ -6,8 +6,8 @@
 
 namespace doppel {
 
-/// Turns a film's shots into display lists, layer by layer. The list of a shot depends on the scene and on the shots so
-/// far, and on nothing else: any frame can be drawn alone.
+/// Turns a film's snapshots into display lists, layer by layer. A list depends only on the scene and the snapshots so
+/// far: any frame can be drawn alone.
 class Composer {
 public:
     /// Throws as make_layout() does.
@@ -15,13 +15,13 @@ public:
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 
-    /// What never changes: the page, the panels, the axes and their words.
+    /// What never changes: the page, the panels, the axes and their labels.
     DisplayList backdrop() const;
 
-    /// The next shot, in order from sample 0.
-    void add(const Shot& shot);
+    /// The next snapshot, in order from sample 0.
+    void add(const Snapshot& snapshot);
 
-    /// The picture of the shot added last.
+    /// The picture of the snapshot added last.
     DisplayList frame() const;
 
     Color page_color() const { return state_.layout.style.theme.background; }

@@ -61,9 +61,9 @@ Schedule schedule_of(const Scene& scene) {
             .end = frames(video.end_card_s)};
 }
 
-double card_opacity(long k, long count, double fps, bool comes_up) {
+double card_opacity(long k, long count, double fps, bool fades_in) {
     const double fade = std::max(1.0, std::min(0.5 * fps, static_cast<double>(count) / 2));  // frames
-    const double left = static_cast<double>(comes_up ? k + 1 : count - k);
+    const double left = static_cast<double>(fades_in ? k + 1 : count - k);
     const double share = std::clamp(left / (fade + 1), 0.0, 1.0);
     return share * share * (3 - 2 * share);
 }
@@ -145,11 +145,11 @@ const Picture& Film::take(const DisplayList& list, RunRecord& record) {
 }
 
 /// The frame shown last under a card that goes, or comes up.
-void Film::take_card(long frames, bool comes_up, RunRecord& record) {
+void Film::take_card(long frames, bool fades_in, RunRecord& record) {
     for (long k = 0; k < frames; ++k) {
-        const double opacity = card_opacity(k, frames, scene_.fps.value(), comes_up);
+        const double opacity = card_opacity(k, frames, scene_.fps.value(), fades_in);
         auto list = composer_.frame();
-        const auto card = comes_up ? composer_.end_card(opacity) : composer_.title_card(opacity);
+        const auto card = fades_in ? composer_.end_card(opacity) : composer_.title_card(opacity);
         list.insert(list.end(), card.begin(), card.end());
         take(list, record);
     }
@@ -164,10 +164,10 @@ void Film::keep(const Picture& picture) {
     constexpr int sheet_width = 1920;  // px, about
     const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
     const int height = std::max(1, static_cast<int>(std::lround(double(width) * video.size.height / video.size.width)));
-    sheet_.insert(sheet_.end(), static_cast<std::size_t>(times), reduced(picture, {width, height}));
+    sheet_.insert(sheet_.end(), static_cast<std::size_t>(times), downscaled(picture, {width, height}));
 }
 
-void Film::shoot(RunRecord& record) {
+void Film::write_frame(RunRecord& record) {
     const long number = sample_ / scene_.samples_per_frame;
     const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
     if (record.frames == 0) first_number_ = is_first ? 0 : schedule_.title + schedule_.hold_start + number;

@@ -26,7 +26,7 @@ Schedule schedule_of(const Scene& scene);
 
 /// How opaque a card is on frame `k` of `count`: the last (or first, where it comes up) half second is a fade, but
 /// never more than half of the card.
-double card_opacity(long k, long count, double fps, bool comes_up);
+double card_opacity(long k, long count, double fps, bool fades_in);
 
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
 class Film {
@@ -37,20 +37,20 @@ public:
          const std::atomic<bool>& stop);
 
     /// Every sample, from 0 on.
-    void add(const Shot& shot) {
-        sample_ = shot.moment.sample;
-        composer_.add(shot);
+    void add(const Snapshot& snapshot) {
+        sample_ = snapshot.pair.sample;
+        composer_.add(snapshot);
     }
 
-    /// The shot added last becomes a frame; before the first of all comes the title, after the last the end.
-    void shoot(RunRecord& record);
+    /// The snapshot added last becomes a frame; before the first of all comes the title, after the last the end.
+    void write_frame(RunRecord& record);
 
     /// The film is whole; writes what was kept.
     void finish();
 
 private:
     const Picture& take(const DisplayList& list, RunRecord& record);
-    void take_card(long frames, bool comes_up, RunRecord& record);
+    void take_card(long frames, bool fades_in, RunRecord& record);
     void keep(const Picture& picture);
     const Picture& drawn(const DisplayList& list);
 

@@ -12,27 +12,34 @@ namespace doppel {
 struct FilmState {
     const Scene& scene;
     const Layout layout;
-    Shot shot{};  // added last
+    Snapshot snapshot{};  // added last
     double start_distance = 0, largest_distance = 0;
     std::optional<double> parted{};  // s
 
-    double time() const { return scene.time(shot.moment.sample); }
+    double time() const { return scene.time(snapshot.pair.sample); }
     const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
-    const Observation& seen(std::size_t side) const { return side == 0 ? shot.moment.a : shot.moment.b; }
+    const Observation& seen(std::size_t side) const { return side == 0 ? snapshot.pair.a : snapshot.pair.b; }
     bool start_as_one() const;  // else there is no parting to speak of
 };
 
-/// A part of a film's picture. What it draws depends on the scene and on the shots so far, and on nothing else.
+/// A part of a film's picture. What it draws depends on the scene and on the snapshots so far, and on nothing else.
 class Layer {
 public:
+    explicit Layer(const FilmState& state) : state_(state) {}
     virtual ~Layer() = default;
 
     /// What never changes.
     virtual void backdrop(DisplayList& list) const = 0;
-    /// The next shot, in order from sample 0, is that of the state.
+    /// The next snapshot, in order from sample 0, is that of the state.
     virtual void add() {}
-    /// What lies on the backdrop at the shot added last.
+    /// What lies on the backdrop at the snapshot added last.
     virtual void frame(DisplayList& list) const = 0;
+
+protected:
+    const FilmState& state_;
+    const Layout& layout_ = state_.layout;
+    const Style& style_ = layout_.style;
+    const Theme& theme_ = style_.theme;
 };
 
 // `state` outlives the layers.

@@ -27,27 +27,28 @@ bool is_dark(const Theme& theme) {
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
 }
 
-/// The places that a mechanism visits as large as the panel allows, below the words.
-void place_mechanism(PendulumPanel& panel, float words_bottom, const View& view, float margin) {
+/// The places that a mechanism visits as large as the panel allows, below the captions.
+void place_mechanism(PendulumPanel& panel, float captions_bottom, const View& view, float margin) {
     const Area& area = panel.area;
-    const float width = area.width() - 2 * margin, height = area.bottom - words_bottom - 2 * margin;
-    panel.center = {(area.left + area.right) / 2, (words_bottom + area.bottom) / 2};
+    const float width = area.width() - 2 * margin, height = area.bottom - captions_bottom - 2 * margin;
+    panel.center = {(area.left + area.right) / 2, (captions_bottom + area.bottom) / 2};
     panel.px_per_m = std::min(width / static_cast<float>(view.width), height / static_cast<float>(view.height));
 }
 
-/// The circle of the outstretched chain as large as the panel allows, beside or below the words in its top corners.
-void place_pendulum(PendulumPanel& panel, const std::vector<Area>& words, const View& view, float margin) {
+/// The circle of the outstretched chain as large as the panel allows, beside or below the captions in its top corners.
+void place_pendulum(PendulumPanel& panel, const std::vector<Area>& captions, const View& view, float margin) {
     const Area& area = panel.area;
     float radius = std::min(area.width(), area.height()) / 2 - margin;
     float x = (area.left + area.right) / 2;
     float y = (area.top + area.bottom) / 2;
     const auto clear = [&] {
-        return std::all_of(words.begin(), words.end(), [&](const Area& word) {
-            const float dx = std::max({0.0f, x - word.right, word.left - x}), dy = std::max(0.0f, y - word.bottom);
+        return std::all_of(captions.begin(), captions.end(), [&](const Area& caption) {
+            const float dx = std::max({0.0f, x - caption.right, caption.left - x}),
+                        dy = std::max(0.0f, y - caption.bottom);
             return dx * dx + dy * dy >= radius * radius;
         });
     };
-    if (words.size() == 1)
+    if (captions.size() == 1)
         while (!clear() && x + radius + margin < area.right) x += 1;
     const float least = radius / 2;
     while (!clear() && radius > least) {
@@ -77,7 +78,7 @@ float share_of(StripKind kind) {
     return 0.11f;
 }
 
-/// From the bottom up: words of the time axis, then the strips, each with a line of words above it. Returns where the
+/// From the bottom up: labels of the time axis, then the strips, each with a heading above it. Returns where the
 /// room for panels ends.
 float place_strips(Layout& layout, const Scene& scene, float header, const std::optional<MotionBounds>& seen) {
     const auto& video = scene.preset.video;
@@ -127,24 +128,25 @@ std::vector<Area> panel_areas(const Area& room, std::size_t count, bool stacked,
     return areas;
 }
 
-/// The panels' areas, and which sides each shows with which words.
+/// The panels' areas, and which sides each shows with which captions.
 void place_panels(Layout& layout, const Scene& scene, const Area& room) {
     const auto& video = scene.preset.video;
     const bool apart = video.layout == Arrangement::side_by_side || video.layout == Arrangement::portrait;
     const bool has_phase = video.layout == Arrangement::phase;
     const auto areas = panel_areas(room, apart || has_phase ? 2 : 1, is_tall(video), std::round(24 * layout.unit));
     const auto said = side_captions(scene);
-    using Words = PendulumPanel::Words;
+    using Caption = PendulumPanel::Caption;
     if (apart) {
         for (std::size_t side = 0; side < 2; ++side)
-            layout.panels.push_back(
-                {.area = areas[side], .sides = {side}, .words = {Words{side, said[side].heading, said[side].note}}});
+            layout.panels.push_back({.area = areas[side],
+                                     .sides = {side},
+                                     .captions = {Caption{side, said[side].heading, said[side].note}}});
         return;
     }
-    layout.panels.push_back(
-        {.area = areas[0],
-         .sides = {0, 1},
-         .words = {Words{0, said[0].heading, said[0].note}, Words{1, said[1].heading, said[1].note, Align::right}}});
+    layout.panels.push_back({.area = areas[0],
+                             .sides = {0, 1},
+                             .captions = {Caption{0, said[0].heading, said[0].note},
+                                          Caption{1, said[1].heading, said[1].note, Align::right}}});
     if (!has_phase) return;
     const float t = layout.text;
     const Area& area = areas[1];
@@ -154,13 +156,13 @@ void place_panels(Layout& layout, const Scene& scene, const Area& room) {
         axes, {.low = -180, .high = 180, .from = axes.left, .to = axes.right}, {.from = axes.bottom, .to = axes.top}};
 }
 
-/// The areas of the words in a panel's corners.
-std::vector<Area> words_in(const PendulumPanel& panel, const Layout& layout, float widest) {
+/// The areas of the captions in a panel's corners.
+std::vector<Area> caption_areas(const PendulumPanel& panel, const Layout& layout, float widest) {
     std::vector<Area> areas;
-    for (const auto& words : panel.words) {
-        const float bottom = panel.area.top + (words.note.empty() ? 60 : 92) * layout.text;
+    for (const auto& caption : panel.captions) {
+        const float bottom = panel.area.top + (caption.note.empty() ? 60 : 92) * layout.text;
         const float width = 36 * layout.unit + widest;
-        if (words.align == Align::right)
+        if (caption.align == Align::right)
             areas.push_back({panel.area.right - width, panel.area.top, panel.area.right, bottom});
         else
             areas.push_back({panel.area.left, panel.area.top, panel.area.left + width, bottom});
@@ -175,17 +177,17 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
     const auto view = fitted_view(scene, seen);
     float widest = 0;
     for (const auto& panel : layout.panels)
-        for (const auto& words : panel.words)
-            widest = std::max({widest, text_width(words.heading, px(style.font.heading), Weight::bold),
-                               text_width(words.note, px(style.font.note))});
+        for (const auto& caption : panel.captions)
+            widest = std::max({widest, text_width(caption.heading, px(style.font.heading), Weight::bold),
+                               text_width(caption.note, px(style.font.note))});
     for (auto& panel : layout.panels) {
-        const auto words = words_in(panel, layout, widest);
+        const auto captions = caption_areas(panel, layout, widest);
         panel.center_x = view.x;
         panel.center_y = view.y;
         if (view.is_circle)
-            place_pendulum(panel, words, view, 30 * u);
+            place_pendulum(panel, captions, view, 30 * u);
         else
-            place_mechanism(panel, words.front().bottom, view, 40 * u);
+            place_mechanism(panel, captions.front().bottom, view, 40 * u);
     }
     const float px_per_m = layout.panels.front().px_per_m;
     const float radius = px_per_m * static_cast<float>(std::max(view.width, view.height)) / 2;
@@ -226,12 +228,12 @@ Point PendulumPanel::at(double x_m, double y_m) const {
 }
 
 std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across) {
-    const TickWords words{.size = size, .gap = 0, .spacing = spacing, .across = across};
+    const TickLabels labels{.size = size, .gap = 0, .spacing = spacing, .across = across};
     if (axis.logarithmic) {
         const float decade = std::abs(axis.to - axis.from) / static_cast<float>(std::log10(axis.high / axis.low));
-        return chart_ticks(axis, words, std::max(1.0f, std::ceil(spacing / decade)));
+        return chart_ticks(axis, labels, std::max(1.0f, std::ceil(spacing / decade)));
     }
-    auto ticks = chart_ticks(axis, words);
+    auto ticks = chart_ticks(axis, labels);
     for (auto& tick : ticks) tick.text = fmt::format("{:.6g}", tick.value);
     return ticks;
 }

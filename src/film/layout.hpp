@@ -26,7 +26,7 @@ struct Style {
     float glow = 0;
 };
 
-/// `unit` = px of the picture to one of 1920×1080; `text` = the same for words.
+/// `unit` = px of the picture to one of 1920×1080; `text` = the same for text.
 Style make_style(const VideoSpec& video, float unit, float text);
 
 /// The colour of an ensemble's member: from the first, 0, to the last, 1.
@@ -35,14 +35,14 @@ Color member_color(const Style& style, double share);
 /// A panel of pendulums and how metres become pixels in it.
 struct PendulumPanel {
     /// What is said of a side, at the panel's top.
-    struct Words {
+    struct Caption {
         std::size_t side = 0;
         std::string heading, note;  // what differs; what else defines the side
         Align align = Align::left;
     };
     Area area;
     std::vector<std::size_t> sides;  // whose pendulum it shows, the front one first
-    std::vector<Words> words;
+    std::vector<Caption> captions;
     Point center;                       // px, where (center_x, center_y) is
     double center_x = 0, center_y = 0;  // m: the pivot of a chain
     float px_per_m = 1;
@@ -62,13 +62,13 @@ struct StripLayout {
     Axis time, value;
 };
 
-/// Ticks `spacing` px apart or more, in words of `size` px an em; whole numbers and the fewest decimals.
+/// Ticks `spacing` px apart or more, labels of `size` px an em; whole numbers and the fewest decimals.
 std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
 
 /// Where everything of a film's picture goes: a function of the scene alone.
 struct Layout {
     float unit = 1;  // 1 px of a 1920×1080 picture
-    float text = 1;  // the same for words, which stay legible in small pictures
+    float text = 1;  // the same for text, which stays legible in small pictures
     Style style;
     Area page;  // within the margins
     std::string title, subtitle;

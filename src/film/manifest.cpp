@@ -13,7 +13,7 @@
 namespace doppel {
 namespace {
 
-Json side_json(const Scene& scene, const Side& side, const Effort& effort, double energy_error, double length_error) {
+Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
     if (side.method.adaptive) {
         json["tolerance"] = static_cast<double>(side.motion.tolerance);
@@ -27,12 +27,12 @@ Json side_json(const Scene& scene, const Side& side, const Effort& effort, doubl
                             {"horizon_s", scene.time(side.choice->horizon)},
                             {"holds_to_the_end", side.choice->horizon == scene.samples},
                             {"verified_by", side.choice->verified_by}};
-    json["steps"] = effort.steps;
-    json["evaluations"] = effort.evaluations;
-    json["smallest_step_s"] = effort.smallest_step;
+    json["steps"] = record.effort.steps;
+    json["evaluations"] = record.effort.evaluations;
+    json["smallest_step_s"] = record.effort.smallest_step;
     json["conserves_energy"] = side.conserves_energy;
-    json["worst_energy_error"] = side.conserves_energy ? Json(energy_error) : Json(nullptr);
-    json["worst_length_error_m"] = length_error;
+    json["worst_energy_error"] = side.conserves_energy ? Json(record.energy_error) : Json(nullptr);
+    json["worst_length_error_m"] = record.length_error;
     return json;
 }
 
@@ -46,9 +46,9 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
         {"frames",
          {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", scene.samples_per_frame}}},
-        {"steps", record.effort_a.steps + record.effort_b.steps},
-        {"a", side_json(scene, scene.a, record.effort_a, record.worst.energy_a, record.worst.length_a)},
-        {"b", side_json(scene, scene.b, record.effort_b, record.worst.energy_b, record.worst.length_b)},
+        {"steps", record.a.effort.steps + record.b.effort.steps},
+        {"a", side_json(scene, scene.a, record.a)},
+        {"b", side_json(scene, scene.b, record.b)},
         {"largest_distance", record.largest_distance},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",

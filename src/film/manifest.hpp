@@ -8,12 +8,14 @@
 
 namespace doppel {
 
-struct WorstErrors {
-    double energy_a = 0, energy_b = 0;  // relative
-    double length_a = 0, length_b = 0;  // m
+/// A side's largest errors, and its cost.
+struct SideRecord {
+    double energy_error = 0;  // relative
+    double length_error = 0;  // m
+    Effort effort;
 };
 
-/// What a run has to tell about itself besides the scene.
+/// What the manifest says of a run besides the scene.
 struct RunRecord {
     long first_sample = 0, last_sample = 0;  // in the table, both included
     long frames = 0;
@@ -21,9 +23,8 @@ struct RunRecord {
     double simulate_cpu_s = 0, draw_cpu_s = 0, write_cpu_s = 0;  // by the threads' clocks; write = convert, hand over
     double encode_cpu_s = 0;  // the rest of the process: encoder or compressor threads
     double wall_s = 0, cpu_s = 0;
-    WorstErrors worst;
+    SideRecord a, b;
     double largest_distance = 0;
-    Effort effort_a, effort_b;
     std::string failure;  // what ended the run, where something did
 };
 

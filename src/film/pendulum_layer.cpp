@@ -14,7 +14,7 @@ namespace {
 
 /// The part of from…to that is in the area, if any.
 std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area& area) {
-    const auto within = shares_within(area, from.x, from.y, to.x, to.y);
+    const auto within = clip_segment(area, from.x, from.y, to.x, to.y);
     if (!within) return std::nullopt;
     const auto at = [&](double share) {
         return Point{static_cast<float>(std::lerp(from.x, to.x, share)),
@@ -23,14 +23,10 @@ std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area&
     return std::pair{at(within->from), at(within->to)};
 }
 
-float apart(Point a, Point b) {
-    return std::hypot(a.x - b.x, a.y - b.y);
-}
-
 class PendulumLayer final : public Layer {
 public:
     PendulumLayer(const FilmState& state, const PendulumPanel& panel)
-        : state_(state),
+        : Layer(state),
           panel_(panel),
           heaviest_(std::max(std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass))),
           paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {}
@@ -61,10 +57,7 @@ private:
     Point at(const Bob<double>& bob) const { return panel_.at(bob.x, bob.y); }
     Point at(const Place<double>& place) const { return panel_.at(place[0], place[1]); }
 
-    const FilmState& state_;
     const PendulumPanel& panel_;
-    const Layout& layout_ = state_.layout;
-    const Style& style_ = layout_.style;
     double heaviest_;  // kg
     std::array<Path, 2> paths_;
 };
@@ -73,22 +66,22 @@ void PendulumLayer::backdrop(DisplayList& list) const {
     const float t = layout_.text, u = layout_.unit;
     const auto& area = panel_.area;
     if (!state_.scene.preset.video.transparent)
-        list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, style_.theme.panel});
-    if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), style_.theme.grid});
+        list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
+    if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), theme_.grid});
     for (const auto side : panel_.sides) draw_tracks(side, list);
 
-    const float share = panel_.words.size() > 1 ? 0.48f : 1;  // of the width, where there are words in both corners
+    const float share = panel_.captions.size() > 1 ? 0.48f : 1;  // of the width: captions in both corners
     const float width = share * (area.width() - 56 * u);
-    for (const auto& words : panel_.words) {
-        const float x = words.align == Align::right ? area.right - 28 * u : area.left + 28 * u;
+    for (const auto& caption : panel_.captions) {
+        const float x = caption.align == Align::right ? area.right - 28 * u : area.left + 28 * u;
         const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color) {
             const float size = fitting_size(text, px(wanted), weight, width);
-            list.push_back(label(text, {x, area.top + y}, size, color, words.align, weight));
+            list.push_back(label(text, {x, area.top + y}, size, color, caption.align, weight));
         };
-        const auto color = state_.scene.members.empty() ? style_.theme.sides[words.side]
-                                                        : member_color(style_, static_cast<double>(words.side));
-        add(words.heading, 50 * t, style_.font.heading, Weight::bold, color);
-        add(words.note, 82 * t, style_.font.note, Weight::regular, style_.theme.quiet_text);
+        const auto color = state_.scene.members.empty() ? theme_.sides[caption.side]
+                                                        : member_color(style_, static_cast<double>(caption.side));
+        add(caption.heading, 50 * t, style_.font.heading, Weight::bold, color);
+        add(caption.note, 82 * t, style_.font.note, Weight::regular, theme_.quiet_text);
     }
 }
 
@@ -97,12 +90,12 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     const float piece = std::max(8 * layout_.unit, 2.0f), least = std::max(1.5f * layout_.unit, 0.5f);  // px
     const double now = state_.time();
     const auto go_on = [&](Point to, double time) {
-        if (const auto end = path.trail.end(); !end || apart(to, *end) >= least) path.trail.add(to, time, now);
+        if (const auto end = path.trail.end(); !end || distance(to, *end) >= least) path.trail.add(to, time, now);
     };
     if (path.last) {
         const auto& [from, from_time] = *path.last;
         const double dt = now - from_time;
-        const int pieces = std::clamp(static_cast<int>(std::ceil(apart(at(from), at(bob)) / piece)), 1, 32);
+        const int pieces = std::clamp(static_cast<int>(std::ceil(distance(at(from), at(bob)) / piece)), 1, 32);
         for (int i = 1; i <= pieces; ++i) {
             const double s = static_cast<double>(i) / pieces;
             go_on(panel_.at(hermite(from.x, from.vx, bob.x, bob.vx, dt, s),
@@ -116,13 +109,12 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
 }
 
 void PendulumLayer::frame(DisplayList& list) const {
-    const auto& theme = style_.theme;
-    if (!state_.shot.members.empty()) return draw_members(list);
+    if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
     // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
     if (alone && !swing_as_one()) {
         const std::size_t other = 1 - panel_.sides.front();
-        const Color ghost = mixed(theme.panel, theme.sides[other], 0.26f);
+        const Color ghost = mixed(theme_.panel, theme_.sides[other], 0.26f);
         draw_lines(other, state_.seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
         for (const auto& bob : state_.seen(other).bobs) draw_disc(at(bob), bob_radius(bob), ghost, list);
     }
@@ -134,7 +126,7 @@ void PendulumLayer::frame(DisplayList& list) const {
 /// Whether the two cannot be told apart in this panel.
 bool PendulumLayer::swing_as_one() const {
     const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
-        return a.mass == b.mass && apart(at(a), at(b)) < 0.1f;  // px
+        return a.mass == b.mass && distance(at(a), at(b)) < 0.1f;  // px
     };
     const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
         return a.kind == b.kind && a.from == b.from && a.to == b.to;
@@ -145,23 +137,22 @@ bool PendulumLayer::swing_as_one() const {
 
 /// Rods, then the pivot and the bobs, each on a rim that sets it off. Where two share a panel all of each has its hue.
 void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& list) const {
-    const auto& theme = style_.theme;
     const auto& bobs = state_.seen(side).bobs;
-    const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme.sides[side], share); };
-    draw_lines(side, bobs, layout_.rod_radius, hued(theme.rod, 0.55f), list);
+    const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme_.sides[side], share); };
+    draw_lines(side, bobs, layout_.rod_radius, hued(theme_.rod, 0.55f), list);
     draw_pivots(side, list);
     for (const auto& bob : bobs) {
         const bool last = &bob == &bobs.back();
         const float radius = last ? std::max(bob_radius(bob), layout_.last_bob_radius) : bob_radius(bob);
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
-        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme.panel, list);
-        draw_disc(at(bob), radius, last ? theme.sides[side] : hued(theme.bob, 0.4f), list, last ? style_.glow : 0);
+        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme_.panel, list);
+        draw_disc(at(bob), radius, last ? theme_.sides[side] : hued(theme_.bob, 0.4f), list, last ? style_.glow : 0);
     }
 }
 
 /// The members of an ensemble, the last one behind: fine rods that let each other shine through, and the last bobs.
 void PendulumLayer::draw_members(DisplayList& list) const {
-    const auto& members = state_.shot.members;
+    const auto& members = state_.snapshot.members;
     const auto count = members.size();
     const auto color_of = [&](std::size_t k) {
         return member_color(style_, static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(count - 1, 1)));
@@ -192,7 +183,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
         if (line.kind != MechanismLine::Kind::spring) continue;
         constexpr int turns = 16;
         const Point from = end_at(line.from), to = end_at(line.to), along{to.x - from.x, to.y - from.y};
-        const float length = std::max(apart(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
+        const float length = std::max(distance(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
         Point last = from;
         for (int i = 1; i <= turns; ++i) {
             const float share = (static_cast<float>(i) - 0.5f) / turns, aside = i % 2 == 0 ? swing : -swing;
@@ -207,7 +198,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
 /// Slots that bobs slide in.
 void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
     const float width = px(style_.width.grid);
-    const auto& color = style_.theme.grid;
+    const auto& color = theme_.grid;
     for (const auto& line : state_.side(side).lines) {
         const auto *from = std::get_if<Place<double>>(&line.from), *to = std::get_if<Place<double>>(&line.to);
         if (!from) continue;
@@ -217,7 +208,7 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
         if (line.kind != MechanismLine::Kind::slot_line || !to) continue;
         // on beyond both ends, to the edges of the panel
         const Point end = at(*to), along{end.x - start.x, end.y - start.y};
-        const float far = (panel_.area.width() + panel_.area.height()) / std::max(apart(start, end), 1e-3f);
+        const float far = (panel_.area.width() + panel_.area.height()) / std::max(distance(start, end), 1e-3f);
         if (const auto seen = clipped({start.x - far * along.x, start.y - far * along.y},
                                       {start.x + far * along.x, start.y + far * along.y}, panel_.area))
             list.push_back(Capsule{seen->first, seen->second, width / 2, color});
@@ -233,7 +224,7 @@ void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
         const bool one_end = line.kind == Kind::anchor;
         for (const auto* end : {&line.from, one_end ? nullptr : &line.to})
             if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr)
-                draw_disc(at(*place), radius, style_.theme.pivot, list);
+                draw_disc(at(*place), radius, theme_.pivot, list);
     }
 }
 

@@ -33,7 +33,7 @@ std::optional<double> upward_passage(const Bob<double>& from, const Bob<double>&
 class PhaseLayer final : public Layer {
 public:
     PhaseLayer(const FilmState& state, const PhasePanel& panel)
-        : state_(state), panel_(panel), trails_{Trail(state.scene, style_, 0), Trail(state.scene, style_, 1)} {}
+        : Layer(state), panel_(panel), trails_{Trail(state.scene, style_, 0), Trail(state.scene, style_, 1)} {}
 
     void backdrop(DisplayList& list) const override;
     void add() override {
@@ -51,10 +51,8 @@ private:
     Point at(const Bob<double>& bob) const { return at(bob.theta, bob.omega); }
     void add_to_section(std::size_t side);
 
-    const FilmState& state_;
     const PhasePanel& panel_;
     const VideoSpec& video_ = state_.scene.preset.video;
-    const Style& style_ = state_.layout.style;
     const std::size_t link_ = static_cast<std::size_t>(video_.phase_link - 1);
     std::array<Trail, 2> trails_;
     std::array<std::optional<Bobs<double>>, 2> last_bobs_;  // of a section
@@ -62,32 +60,30 @@ private:
 };
 
 void PhaseLayer::backdrop(DisplayList& list) const {
-    const auto& theme = style_.theme;
-    const float t = state_.layout.text, size = px(style_.font.axis), line = px(style_.width.grid);
-    const Area &area = panel_.area, around = state_.layout.panels.back().area;
+    const float t = layout_.text, size = px(style_.font.axis), line = px(style_.width.grid);
+    const Area &area = panel_.area, around = layout_.panels.back().area;
     if (!video_.transparent) {
         // the panel that the axes lie in: as large as the pendulums', beside or below it
         const bool below = area.top > around.bottom;
         const float left = below ? around.left : area.left - std::round(96 * t),
                     top = below ? area.top - std::round(66 * t) : around.top;
-        list.push_back(
-            Box{left, top, left + around.width(), top + around.height(), 14 * state_.layout.unit, theme.panel});
+        list.push_back(Box{left, top, left + around.width(), top + around.height(), 14 * layout_.unit, theme_.panel});
     }
     for (const double angle : {-180.0, -90.0, 0.0, 90.0, 180.0}) {
         const float x = panel_.angle.at(angle);
-        list.push_back(Capsule{{x, area.top}, {x, area.bottom}, line / 2, theme.grid});
+        list.push_back(Capsule{{x, area.top}, {x, area.bottom}, line / 2, theme_.grid});
         list.push_back(
-            label(fmt::format("{:g}°", angle), {x, area.bottom + 1.5f * size}, size, theme.quiet_text, Align::center));
+            label(fmt::format("{:g}°", angle), {x, area.bottom + 1.5f * size}, size, theme_.quiet_text, Align::center));
     }
     for (const auto& tick : axis_ticks(panel_.rate, size, 3 * size, false)) {
         const float y = panel_.rate.at(tick.value);
-        list.push_back(Capsule{{area.left, y}, {area.right, y}, line / 2, theme.grid});
-        list.push_back(label(tick.text, {area.left - 12 * t, y + 0.36f * size}, size, theme.quiet_text, Align::right));
+        list.push_back(Capsule{{area.left, y}, {area.right, y}, line / 2, theme_.grid});
+        list.push_back(label(tick.text, {area.left - 12 * t, y + 0.36f * size}, size, theme_.quiet_text, Align::right));
     }
     const auto heading = fmt::format("ω{0} over θ{0}, °/s{1}", subscript(link_ + 1),
                                      video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
     const float fits = fitting_size(heading, px(style_.font.strip), Weight::regular, area.width() + 20 * t);
-    list.push_back(label(heading, {area.left, area.top - 20 * t}, fits, theme.text));
+    list.push_back(label(heading, {area.left, area.top - 20 * t}, fits, theme_.text));
 }
 
 /// A point where the way from the last sample crosses the section.
@@ -107,7 +103,7 @@ void PhaseLayer::add_to_section(std::size_t side) {
 void PhaseLayer::frame(DisplayList& list) const {
     const float dot = px(1.2 * style_.width.trace), head = std::max(2.3f * px(style_.width.trace), 2.0f);
     for (std::size_t side = 2; side-- > 0;) {
-        const auto color = style_.theme.sides[side];
+        const auto color = theme_.sides[side];
         for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
         if (video_.phase != PhaseKind::rate) continue;
         // a path that leaves at ±180° comes back at the other end

@@ -43,7 +43,7 @@ public:
 
     /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers. Throws Error (exit 3) where the
     /// distance is beyond the range of double.
-    void add(const Moment& moment, double start_distance);
+    void add(const PairState& state, double start_distance);
     void finish() { csv_.finish(); }
 
 private:
@@ -53,16 +53,13 @@ private:
     Csv csv_;
 };
 
-void PairTable::add(const Moment& moment, double start_distance) {
-    csv_.add(moment.sample);
-    csv_.add(scene_.time(moment.sample));
-    add_side(scene_.a, moment.a, moment.energy_error_a);
-    add_side(scene_.b, moment.b, moment.energy_error_b);
-    csv_.add(moment.distance);
-    if (const auto ratio = log_ratio(moment.distance, start_distance))
-        csv_.add(*ratio);
-    else
-        csv_.add_empty();
+void PairTable::add(const PairState& state, double start_distance) {
+    csv_.add(state.sample);
+    csv_.add(scene_.time(state.sample));
+    add_side(scene_.a, state.a, state.energy_error_a);
+    add_side(scene_.b, state.b, state.energy_error_b);
+    csv_.add(state.distance);
+    csv_.add(log_ratio(state.distance, start_distance));
     csv_.end_row();
 }
 
@@ -74,18 +71,14 @@ void PairTable::add_side(const Side& side, const Observation& seen, std::optiona
     for (const auto& bob : seen.bobs)
         for (const double value : {bob.x, bob.y, bob.vx, bob.vy}) csv_.add(value);
     csv_.add(seen.energy);
-    if (energy_error)
-        csv_.add(*energy_error);
-    else
-        csv_.add_empty();
+    csv_.add(energy_error);
     csv_.add(seen.length_error);
 }
 
-void watch_worst(WorstErrors& worst, const Moment& moment) {
-    worst.energy_a = std::max(worst.energy_a, std::abs(moment.energy_error_a.value_or(0)));
-    worst.energy_b = std::max(worst.energy_b, std::abs(moment.energy_error_b.value_or(0)));
-    worst.length_a = std::max(worst.length_a, moment.a.length_error);
-    worst.length_b = std::max(worst.length_b, moment.b.length_error);
+/// Keeps the largest errors.
+void watch(SideRecord& record, const Observation& seen, std::optional<double> energy_error) {
+    record.energy_error = std::max(record.energy_error, std::abs(energy_error.value_or(0)));
+    record.length_error = std::max(record.length_error, seen.length_error);
 }
 
 /// Whether the side comes to `sample`; `effort` ← what it took.
@@ -196,29 +189,30 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     PairTable table(parts.file(csv_name), scene);
 
     Simulation simulation(scene, last, options.pictures, stop);
-    const auto take_efforts = [&] { std::tie(record.effort_a, record.effort_b) = simulation.efforts(); };
+    const auto take_efforts = [&] { std::tie(record.a.effort, record.b.effort) = simulation.efforts(); };
     double start_distance = 0;
     for (long sample = 0, done = 0; sample < last; ++sample) {
-        Shot shot;
+        Snapshot snapshot;
         try {
-            shot = simulation.next();
+            snapshot = simulation.next();
         } catch (const BreakDown& fault) {
             take_efforts();
             table.finish();
             film.reset();  // its threads write into what goes now
             keep_failed(scene, fault, record, parts, stop);
         }
-        const auto& moment = shot.moment;
+        const auto& state = snapshot.pair;
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
-        check_distance(scene, moment);
-        if (sample == 0) start_distance = moment.distance;
-        watch_worst(record.worst, moment);
-        record.largest_distance = std::max(record.largest_distance, moment.distance);
-        if (film) film->add(shot);
+        check_distance(scene, state);
+        if (sample == 0) start_distance = state.distance;
+        watch(record.a, state.a, state.energy_error_a);
+        watch(record.b, state.b, state.energy_error_b);
+        record.largest_distance = std::max(record.largest_distance, state.distance);
+        if (film) film->add(snapshot);
         if (sample < first) continue;
-        table.add(moment, start_distance);
+        table.add(state, start_distance);
         if (sample % stride != 0) continue;
-        if (film) film->shoot(record);
+        if (film) film->write_frame(record);
         report({++done, total});
     }
     take_efforts();

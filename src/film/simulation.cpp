@@ -6,7 +6,7 @@
 namespace doppel {
 namespace {
 
-/// Shots ahead: many of a pair, few of an ensemble, whose shots are large.
+/// Snapshots ahead: many of a pair, few of an ensemble, whose snapshots are large.
 std::size_t most_ahead(bool with_members) {
     return with_members ? 16 : 256;
 }
@@ -17,10 +17,10 @@ Simulation::Simulation(const Scene& scene, long last, bool with_members, const s
     : ahead_(most_ahead(with_members)),
       thread_(start_thread([this, &scene, last, with_members, &stop] { work(scene, last, with_members, stop); })) {}
 
-Shot Simulation::next() {
-    auto shot = ahead_.pop();
-    if (!shot) std::rethrow_exception(fault_);
-    return std::move(*shot);
+Snapshot Simulation::next() {
+    auto snapshot = ahead_.pop();
+    if (!snapshot) std::rethrow_exception(fault_);
+    return std::move(*snapshot);
 }
 
 std::pair<Effort, Effort> Simulation::efforts() {
@@ -34,17 +34,17 @@ void Simulation::work(const Scene& scene, long last, bool with_members, const st
         std::optional<MotionBatch> members;
         if (with_members && !scene.members.empty()) members.emplace(scene.members, 1);
         for (long sample = 0; sample < last; ++sample) {
-            Shot shot{pair.next(stop), {}};
+            Snapshot snapshot{pair.next(stop), {}};
             if (members) {
                 if (sample > 0) members->advance(stop);
-                for (std::size_t k = 0; k < members->size(); ++k) shot.members.push_back(members->bobs(k));
+                for (std::size_t k = 0; k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
             }
             cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID);
             {
                 const std::lock_guard hold(mutex_);
                 efforts_ = {pair.effort_a(), pair.effort_b()};
             }
-            if (!ahead_.push(std::move(shot))) return;
+            if (!ahead_.push(std::move(snapshot))) return;
         }
     } catch (...) {
         fault_ = std::current_exception();

@@ -14,34 +14,33 @@
 
 namespace doppel {
 
-/// What there is to film at one sample: the pair, and of an ensemble where all its members are.
-struct Shot {
-    Moment moment;
+/// The state at one sample: the pair, and the bobs of an ensemble's members.
+struct Snapshot {
+    PairState pair;
     std::vector<Bobs<double>> members;
 };
 
-/// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of shots ahead of who takes
-/// them.
+/// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of snapshots ahead.
 class Simulation {
 public:
-    /// Shots 0 … last − 1. The members of an ensemble are stepped where `with_members`. Throws Error (exit 4) where there
-    /// is no thread to be had.
+    /// Snapshots 0 … last − 1. The members of an ensemble are stepped where `with_members`. Throws Error (exit 4) where
+    /// there is no thread to be had.
     Simulation(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
     ~Simulation() { ahead_.close(); }
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
-    /// The next shot; rethrows what stopped the simulation.
-    Shot next();
+    /// The next snapshot; rethrows what stopped the simulation.
+    Snapshot next();
 
-    /// CPU time of the thread, s, and what the sides have cost; whole once the last shot was taken.
+    /// CPU time of the thread, s, and what the sides have cost; complete once the last snapshot was taken.
     double cpu_s() const { return cpu_s_; }
     std::pair<Effort, Effort> efforts();
 
 private:
     void work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
 
-    Queue<Shot> ahead_;
+    Queue<Snapshot> ahead_;
     std::exception_ptr fault_;
     std::atomic<double> cpu_s_ = 0;
     std::mutex mutex_;

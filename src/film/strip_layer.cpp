@@ -37,7 +37,7 @@ struct StripValue {
 
 class StripLayer final : public Layer {
 public:
-    StripLayer(const FilmState& state, std::size_t index) : state_(state), index_(index) {}
+    StripLayer(const FilmState& state, std::size_t index) : Layer(state), index_(index) {}
 
     void backdrop(DisplayList& list) const override {
         draw_horizon(list);
@@ -60,11 +60,7 @@ private:
     void draw_time_labels(DisplayList& list) const;
     void draw_parting(float free_from, DisplayList& list) const;
 
-    const FilmState& state_;
     const std::size_t index_;
-    const Layout& layout_ = state_.layout;
-    const Style& style_ = layout_.style;
-    const Theme& theme_ = style_.theme;
     const StripLayout& strip_ = layout_.strips[index_];
     const float size_ = px(style_.font.strip), heading_base_ = strip_.area.top - 12 * layout_.text;
     // J: one for both sides, or the side that starts near E = 0 would look far worse
@@ -92,10 +88,10 @@ std::vector<StripValue> StripLayer::values() const {
     const double width = style_.width.trace;
     // of two lines the first is wider, so that it still shows where both run as one
     const std::array widths{1.5 * width, 0.64 * width};
-    const auto& moment = state_.shot.moment;
-    if (strip_.kind == StripKind::distance) return {{moment.distance, theme_.trace, width}};
+    const auto& state = state_.snapshot.pair;
+    if (strip_.kind == StripKind::distance) return {{state.distance, theme_.trace, width}};
     if (strip_.kind == StripKind::exponent)
-        return {{exponent_so_far(state_.scene, moment, state_.start_distance), theme_.trace, width}};
+        return {{exponent_so_far(state_.scene, state, state_.start_distance), theme_.trace, width}};
     std::vector<StripValue> values;
     for (std::size_t side = 0; side < 2; ++side) {
         const auto& seen = state_.seen(side);
@@ -165,9 +161,9 @@ void StripLayer::draw_horizon(DisplayList& list) const {
     add_dashed_line(x, area, 3 * t, px(style_.width.mark), theme_.quiet_text, list);
     if (index_ > 0) return;
     // at the foot: traces are high up by then
-    const auto words = fmt::format("predictable to {:.1f} s", *horizon);
-    const bool left = x - area.left > text_width(words, size) + 20 * t;
-    list.push_back(label(words, {x + (left ? -10 : 10) * t, area.bottom - 10 * t}, size, theme_.quiet_text,
+    const auto text = fmt::format("predictable to {:.1f} s", *horizon);
+    const bool left = x - area.left > text_width(text, size) + 20 * t;
+    list.push_back(label(text, {x + (left ? -10 : 10) * t, area.bottom - 10 * t}, size, theme_.quiet_text,
                          left ? Align::right : Align::left));
 }
 
@@ -186,13 +182,13 @@ void StripLayer::frame(DisplayList& list) const {
     const auto now = values();
 
     // the number now, or which line is which, beside the heading
-    float words = strip_.area.left + text_width(heading(), size_) + 18 * t;
+    float left = strip_.area.left + text_width(heading(), size_) + 18 * t;
     const auto say = [&](const std::string& text, Color color, float room) {
-        list.push_back(label(text, {words, heading_base_}, size_, color));
-        words += std::max(room, text_width(text, size_) + 14 * t);
+        list.push_back(label(text, {left, heading_base_}, size_, color));
+        left += std::max(room, text_width(text, size_) + 14 * t);
     };
     if (strip_.kind == StripKind::distance)
-        say(scientific(state_.shot.moment.distance), now[0].color, 110 * t);
+        say(scientific(state_.snapshot.pair.distance), now[0].color, 110 * t);
     else if (strip_.kind == StripKind::exponent && now[0].value)
         say(fmt::format("{:.2f}", *now[0].value), now[0].color, 110 * t);
     else if (strip_.kind == StripKind::exponent && state_.start_distance == 0)
@@ -202,7 +198,7 @@ void StripLayer::frame(DisplayList& list) const {
     for (const auto& value : now)
         if (!value.name.empty()) say(value.name, value.color, 0);
 
-    if (state_.parted && index_ == 0) draw_parting(words, list);
+    if (state_.parted && index_ == 0) draw_parting(left, list);
     list.push_back(vertical_line(x, strip_.area.top, strip_.area.bottom, px(style_.width.mark), theme_.cursor));
     for (std::size_t k = 0; k < now.size(); ++k)
         list.push_back(Stroke{.vertices = traces_[k].vertices(), .width = px(now[k].width), .color = now[k].color});

@@ -24,7 +24,7 @@ public:
     /// The path goes on to a place, where it was at `time`, s. What has faded by `now` goes.
     void add(Point at, double time, double now);
 
-    /// Up to the head, where there is one; broken where it leaves the area, or where a point is no number, and between
+    /// Up to the head, where there is one; broken where it leaves the area, or where a point is NaN, and between
     /// points more than `jump` px apart across.
     void draw(const Area& area, double now, std::optional<Point> head, DisplayList& list,
               float jump = std::numeric_limits<float>::infinity()) const;

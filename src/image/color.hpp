@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -21,6 +22,11 @@ inline std::uint8_t byte_of(double channel) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.0, 1.0)));
 }
 
+/// Red, green, blue and opacity as bytes.
+inline std::array<std::uint8_t, 4> bytes_of(const Color& color) {
+    return {byte_of(color.r), byte_of(color.g), byte_of(color.b), byte_of(color.a)};
+}
+
 /// From 0xRRGGBB, opaque.
 constexpr Color rgb(unsigned hex) {
     return {static_cast<float>((hex >> 16) & 0xff) / 255.0f, static_cast<float>((hex >> 8) & 0xff) / 255.0f,
@@ -39,7 +45,7 @@ std::optional<Color> parse_color(std::string_view text);
 /// The colour of `share` (0…1, beyond: the nearest end) of a scale: dark violet through blue and green to pale yellow.
 ///
 /// Equal shares look equally far apart: the scale runs through OKLab (Ottosson 2020) at constant speed, and lightness
-/// only grows, so that it holds in grey and for the colour-blind. Not a number: the lower end.
+/// only grows, so that it holds in grey and for the colour-blind. NaN: the lower end.
 Color map_color(double share);
 
 }  // namespace doppel

@@ -16,7 +16,7 @@ Rect united(const Rect& a, const Rect& b) {
     return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right), std::max(a.bottom, b.bottom)};
 }
 
-Rect common(const Rect& a, const Rect& b) {
+Rect intersection(const Rect& a, const Rect& b) {
     return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
@@ -81,7 +81,7 @@ void add_row(const Picture& picture, int row, double share, std::vector<double>&
 
 }  // namespace
 
-Picture reduced(const Picture& picture, Size size) {
+Picture downscaled(const Picture& picture, Size size) {
     const auto [width, height] = picture.size;
     if (size.width < 1 || size.height < 1 || size.width > width || size.height > height)
         throw bad_input("a picture of {}x{} px cannot be reduced to {}x{}; 1x1 … {}x{} would do", width, height,
@@ -112,9 +112,8 @@ Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px
     const int count = static_cast<int>(pictures.size()), across = std::min(columns, count);
     const int rows = (count + columns - 1) / columns;
     Picture sheet({gap_px + across * (width + gap_px), gap_px + rows * (height + gap_px)});
-    const std::array ground = {byte_of(background.r), byte_of(background.g), byte_of(background.b),
-                               byte_of(background.a)};
-    for (std::size_t i = 0; i < sheet.rgba.size(); ++i) sheet.rgba[i] = ground[i % 4];
+    const auto fill = bytes_of(background);
+    for (std::size_t i = 0; i < sheet.rgba.size(); ++i) sheet.rgba[i] = fill[i % 4];
     for (int k = 0; k < count; ++k) {
         const Picture& picture = pictures[static_cast<std::size_t>(k)];
         if (picture.size != pictures.front().size)

@@ -28,7 +28,7 @@ constexpr Rect all_of(Size size) {
 /// The smallest rectangle that holds both.
 Rect united(const Rect& a, const Rect& b);
 /// What both cover; empty() where they do not meet.
-Rect common(const Rect& a, const Rect& b);
+Rect intersection(const Rect& a, const Rect& b);
 
 /// An 8-bit RGBA image: rows from the top down, no padding, sRGB.
 struct Picture {
@@ -50,7 +50,7 @@ void matte(const Picture& black, const Picture& white, const Rect& within, Pictu
 
 /// The picture made smaller: each new pixel is the mean, in linear light, of what it covers of the old ones, parts of
 /// pixels included, each weighted by its opacity. Throws Error (exit 2) where a side would grow, or be none.
-Picture reduced(const Picture& picture, Size size);
+Picture downscaled(const Picture& picture, Size size);
 
 /// Pictures of one size in rows of `columns`, `gap_px` of background between them and around all; in the last row
 /// some may be missing. Throws Error (exit 2) where there is none, their sizes differ, or columns < 1 or gap_px < 0.

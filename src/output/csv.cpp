@@ -40,12 +40,12 @@ void Csv::add(std::string_view text) {
     buffer_ += '"';
 }
 
-void Csv::add_empty() {
-    separate();
+void Csv::add(std::optional<double> value) {
+    value ? add(*value) : separate();
 }
 
 void Csv::add_or_empty(double value) {
-    std::isnan(value) ? add_empty() : add(value);
+    std::isnan(value) ? separate() : add(value);
 }
 
 void Csv::end_row() {

@@ -113,7 +113,7 @@ void Folder::remove(const std::string& name) const {
 }
 
 void Folder::sync(bool contents) const {
-    // some file systems have nothing to sync, and say so
+    // errors of file systems without sync
     const auto failed = [](int result) { return result != 0 && errno != EINVAL && errno != ENOSYS && errno != EROFS; };
     if ((contents && failed(syncfs(descriptor()))) || failed(fsync(descriptor()))) throw cannot(path_, "written");
 }
@@ -166,7 +166,7 @@ Descriptor create_unnamed_file(const FilePlace& place) {
     Descriptor file(openat(place.descriptor(), place.folder ? "." : parent.c_str(), unnamed, 0600));
     if (file) return file;
     if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) throw cannot(place.path, "written");
-    // a file system that knows none: it has a name for a moment
+    // file systems without O_TMPFILE: it has a name for a moment
     const auto name = place.path.filename().string() + ".spool";
     const Folder folder = place.folder ? place.folder->folder(".") : Folder::at(parent);
     file = create_file({folder, name});
@@ -175,7 +175,7 @@ Descriptor create_unnamed_file(const FilePlace& place) {
 }
 
 Descriptor open_file(const FilePlace& place) {
-    // a pipe that nobody writes to would let the opening wait
+    // opening a pipe without a writer would block
     const int careful = place.folder ? O_NOFOLLOW | O_NONBLOCK : 0;
     Descriptor file(openat(place.descriptor(), place.name.c_str(), O_RDONLY | O_CLOEXEC | careful));
     if (!file) throw cannot(place.path, "read");
@@ -204,7 +204,7 @@ void OutputFile::flush() {
 }
 
 void OutputFile::close() {
-    // the last bytes leave the buffer only here
+    // flushes the last bytes
     if (std::fclose(file_.release()) != 0) throw cannot(path_, "written");
 }
 

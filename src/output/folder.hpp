@@ -14,7 +14,7 @@ namespace doppel {
 
 class Error;
 
-/// An open file or folder of the system's, closed with its owner.
+/// A file descriptor, closed with its owner.
 class Descriptor {
 public:
     explicit Descriptor(int number = -1) : number_(number) {}
@@ -31,7 +31,7 @@ private:
     int number_;
 };
 
-/// What has a name in a folder.
+/// An entry of a folder.
 struct Entry {
     enum class Kind { none, file, folder, link, other } kind = Kind::none;  // other: a pipe, socket or device
     ino_t inode = 0;
@@ -39,13 +39,13 @@ struct Entry {
     std::uintmax_t bytes = 0;
 };
 
-/// A folder, opened once: what is done in it stays in it, whatever takes its path meanwhile, and no symbolic link in it
-/// is followed. All but the queries throw Error (exit 4) with the path and the system's reason.
+/// A folder, held open: all calls refer to it, even if its path is replaced, and follow no symbolic link in it. All but
+/// the queries throw Error (exit 4) with the path and the system's reason.
 class Folder {
 public:
-    /// `path` as the person gave it: links on the way are followed.
+    /// Links in `path` are followed.
     static Folder at(const std::filesystem::path& path);
-    /// The folder `name` in this one, which is no link; messages have it as `shown`, where that is given.
+    /// The folder `name` in this one, not through a link; `shown` is its path in messages, where given.
     Folder folder(const std::string& name, const std::filesystem::path& shown = {}) const;
 
     const std::filesystem::path& path() const { return path_; }  // for messages
@@ -56,14 +56,14 @@ public:
     std::vector<std::string> names() const;
 
     void make_folder(const std::string& name) const;
-    /// As rename(2) has it: an older file `to` is replaced.
+    /// rename(2): an older file `to` is replaced.
     void rename(const std::string& from, const std::string& to) const;
-    /// Both stand, each in the place of the other. False where the file system knows no such thing.
+    /// Swaps two names atomically. False where the file system cannot.
     bool exchange(const std::string& one, const std::string& other) const;
-    /// A file, or a folder and the files in it; nothing where it is not there. Folders in it are not touched, and then
-    /// it stays and this throws, as where `name` is of another kind.
+    /// A file, or a folder and the files in it, if it exists. Throws where the folder holds folders, or `name` is of
+    /// another kind.
     void remove(const std::string& name) const;
-    /// Which names there are has reached the disk; so has all in files in this file system where `contents`.
+    /// Flushes the folder's entries to the disk; all files of this file system too where `contents`.
     void sync(bool contents = false) const;
 
 private:
@@ -73,18 +73,18 @@ private:
     Descriptor descriptor_;
 };
 
-/// Makes what is missing of the way to `folder`, and returns what it made, outermost first: other runs may make the
-/// same folders meanwhile. Throws Error (exit 4), after which none of them is left.
+/// Makes `folder` and its missing parents; returns those that it made, outermost first. Safe beside other runs. Throws
+/// Error (exit 4), and then removes them again.
 std::vector<std::filesystem::path> make_folders(const std::filesystem::path& folder);
 /// Removes those that are empty.
 void remove_folders(const std::vector<std::filesystem::path>& folders);
 
-/// Where a file is: in an open folder, or at a path as the person gave it.
+/// Where a file is: in an open folder, or at a path.
 struct FilePlace {
     FilePlace(std::filesystem::path where) : name(where.string()), path(std::move(where)) {}  // NOLINT: a path is one
     FilePlace(const Folder& in, const std::string& as) : folder(&in), name(as), path(in.path() / as) {}
 
-    /// What `name` is looked for in, for the system's calls.
+    /// The folder's, or AT_FDCWD.
     int descriptor() const;
 
     const Folder* folder = nullptr;  // which outlives the place
@@ -92,20 +92,19 @@ struct FilePlace {
     std::filesystem::path path;      // for messages, where there is a folder
 };
 
-/// Gives the file another name, where an older one is replaced. Throws Error (exit 4).
+/// rename(2): an older file `to` is replaced. Throws Error (exit 4).
 void rename_file(const FilePlace& from, const FilePlace& to);
 /// "NAME.part" beside it.
 FilePlace part_of(const FilePlace& place);
 
-/// A new file to write to and to read, empty. In a folder nothing may have its name. Throws Error (exit 4).
+/// A new empty file, to write and read; in a folder its name must be free. Throws Error (exit 4).
 Descriptor create_file(const FilePlace& place);
-/// A file without a name, to write to and to read, on the file system where `place` is: it is gone when it is closed.
-/// Throws Error (exit 4).
+/// A file without a name on the file system of `place`, to write and read; closing it frees it. Throws Error (exit 4).
 Descriptor create_unnamed_file(const FilePlace& place);
 /// A file to read; in a folder only a regular one, and no link. Throws Error (exit 4).
 Descriptor open_file(const FilePlace& place);
 
-/// What a library in C gave, and how it is given back.
+/// A pointer from a library in C and the function that frees it.
 template <auto destroy>
 struct Destroy {
     void operator()(auto* thing) const { destroy(thing); }
@@ -125,9 +124,8 @@ public:
     explicit OutputFile(const FilePlace& place);
 
     void write(std::string_view bytes);
-    /// What was written so far can be read by others.
     void flush();
-    /// Only what was closed is known to be written.
+    /// Reports errors that show only now; what is destroyed unclosed may be incomplete.
     void close();
 
     const std::filesystem::path& path() const { return path_; }

@@ -24,25 +24,81 @@ namespace {
 
 using LiqImage = Owned<liq_image, liq_image_destroy>;
 
-/// No copy: it looks at `rgba` while it lives.
-LiqImage image_of(const liq_attr& attributes, const std::uint8_t* rgba, Size size) {
-    LiqImage image(liq_image_create_rgba(&attributes, rgba, size.width, size.height, 0));
-    if (!image) throw std::bad_alloc();
-    return image;
-}
-
 void check(liq_error error) {
     if (error == LIQ_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != LIQ_OK) throw std::logic_error("libimagequant refuses its task");
 }
 
-// A frame is a head, its areas, and their bytes compressed as one. Only this process reads it: as memory has it.
-struct Head {
+/// What libimagequant allocates is null only where memory is out.
+template <class T>
+T* checked(T* thing) {
+    if (!thing) throw std::bad_alloc();
+    return thing;
+}
+
+/// The 255 colours that stand best for all that was counted, by libimagequant (median cut, refined by k-means, in a
+/// perceptual colour space). Each pixel becomes the nearest colour, without dithering, which would flicker from frame
+/// to frame and compress badly. Pixels are rectangles of opaque RGBA, rows from the top down, no padding.
+class Palette {
+public:
+    Palette() {
+        check(liq_set_max_colors(attributes_.get(), 255));
+        histogram_.reset(checked(liq_histogram_create(attributes_.get())));
+    }
+
+    void count(const std::uint8_t* rgba, Size size) {
+        check(liq_histogram_add_image(histogram_.get(), attributes_.get(), view(rgba, size).get()));
+    }
+
+    /// Chooses the colours; nothing can be counted after.
+    void choose() {
+        liq_result* result = nullptr;
+        check(liq_histogram_quantize(histogram_.get(), attributes_.get(), &result));
+        result_.reset(result);
+        histogram_.reset();
+        check(liq_set_dithering_level(result, 0));
+    }
+
+    /// Entry 255 is transparent black and stands for no pixel; unused entries are opaque black.
+    std::array<std::uint32_t, 256> argb() const {
+        std::array<std::uint32_t, 256> entries;
+        entries.fill(0xff000000u);
+        entries[255] = 0;
+        const liq_palette& palette = *liq_get_palette(result_.get());
+        for (unsigned i = 0; i < palette.count; ++i) {
+            const auto [r, g, b, a] = palette.entries[i];
+            entries[i] |= std::uint32_t{r} << 16 | std::uint32_t{g} << 8 | b;
+        }
+        return entries;
+    }
+
+    /// `index` ← the entry of each pixel.
+    void map(const std::uint8_t* rgba, Size size, std::uint8_t* index) {
+        check(liq_write_remapped_image(result_.get(), view(rgba, size).get(), index,
+                                       std::size_t(size.width) * size.height));
+    }
+
+private:
+    /// No copy: `rgba` must outlive it.
+    LiqImage view(const std::uint8_t* rgba, Size size) const {
+        return LiqImage(checked(liq_image_create_rgba(attributes_.get(), rgba, size.width, size.height, 0)));
+    }
+
+    Owned<liq_attr, liq_attr_destroy> attributes_{checked(liq_attr_create())};
+    Owned<liq_histogram, liq_histogram_destroy> histogram_;
+    Owned<liq_result, liq_result_destroy> result_;
+};
+
+/// A frame in the spool begins with this; its areas and their compressed bytes follow.
+struct FrameHeader {
     std::size_t areas, packed;
 };
 
-/// A comment as GIF has it (GIF89a, 24): a line for each text, in blocks of at most 255 bytes; then the byte that ends
-/// the file.
+Size size_of(const Rect& area) {
+    return {area.right - area.left, area.bottom - area.top};
+}
+
+/// A comment extension (GIF89a, 24) with a line for each text, in blocks of at most 255 bytes; then the trailer.
 std::string comment_and_end(const Metadata& metadata) {
     std::vector<std::string> lines;
     for (const auto& [key, text] : metadata) lines.push_back(key + ": " + text);
@@ -61,13 +117,13 @@ public:
     GifSink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop)
         : options_(options),
           encoder_(place, encoding_of(options), stop),
-          spool_(place, Samples::rgba),
-          counting_(1, in_hand(byte_count(Samples::rgba, all_of(options.size)), 8),
+          spool_(place),
+          counting_(1, in_hand(byte_count(AV_PIX_FMT_RGBA, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { count(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
         SampledAreas changes = spare_.take();
-        convert(picture, changed, Samples::rgba, changes);
+        convert(picture, changed, AV_PIX_FMT_RGBA, changes);
         counting_.give(std::move(changes));
     }
 
@@ -78,13 +134,13 @@ public:
     }
 
 private:
-    /// First pass: what colours there are.
+    /// First pass: counts colours.
     void count(SampledAreas& changes) {
         std::uint8_t* rgba = changes.bytes.data();
         for (const Rect& area : changes.areas) {
-            const std::size_t bytes = byte_count(Samples::rgba, area);
+            const std::size_t bytes = byte_count(AV_PIX_FMT_RGBA, area);
             for (std::size_t i = 3; i < bytes; i += 4) rgba[i] = 255;
-            palette_.count(rgba, {area.right - area.left, area.bottom - area.top});
+            palette_.count(rgba, size_of(area));
             rgba += bytes;
         }
         spool_.write(changes);
@@ -102,23 +158,23 @@ private:
             AVFrame& frame = encoder_.frame();
             std::ranges::copy(colours, reinterpret_cast<std::uint32_t*>(frame.data[1]));
             paste(changes, frame);
-            const std::int64_t start = time_of(k), lasting = time_of(k + 1) - start;
-            // what the last frame lasts, libav has to be told
-            encoder_.set_option("final_delay", fmt::to_string(lasting));
-            encoder_.send_frame(start, lasting);
+            const std::int64_t start = time_of(k), duration = time_of(k + 1) - start;
+            // the muxer cannot know how long the last frame lasts
+            encoder_.set_option("final_delay", fmt::to_string(duration));
+            encoder_.send_frame(start, duration);
         }
     }
 
     void paste(const SampledAreas& changes, AVFrame& frame) {
         const std::uint8_t* rgba = changes.bytes.data();
         for (const Rect& area : changes.areas) {
-            const Size size{area.right - area.left, area.bottom - area.top};
+            const Size size = size_of(area);
             std::uint8_t* index = indices_.make_room(std::size_t(size.width) * size.height);
-            palette_.look_up(rgba, size, index);
+            palette_.map(rgba, size, index);
             const int stride = frame.linesize[0];
             av_image_copy_plane(frame.data[0] + std::ptrdiff_t{area.top} * stride + area.left, stride, index,
                                 size.width, size.width, size.height);
-            rgba += byte_count(Samples::rgba, area);
+            rgba += byte_count(AV_PIX_FMT_RGBA, area);
         }
     }
 
@@ -138,63 +194,22 @@ private:
 
 }  // namespace
 
-Palette::Palette() : attributes_(liq_attr_create()) {
-    if (!attributes_) throw std::bad_alloc();
-    check(liq_set_max_colors(attributes_.get(), 255));
-    histogram_.reset(liq_histogram_create(attributes_.get()));
-    if (!histogram_) throw std::bad_alloc();
-}
-
-void Palette::count(const std::uint8_t* rgba, Size size) {
-    const auto image = image_of(*attributes_, rgba, size);
-    check(liq_histogram_add_image(histogram_.get(), attributes_.get(), image.get()));
-}
-
-void Palette::choose() {
-    liq_result* result = nullptr;
-    check(liq_histogram_quantize(histogram_.get(), attributes_.get(), &result));
-    result_.reset(result);
-    histogram_.reset();
-    check(liq_set_dithering_level(result, 0));
-}
-
-std::array<std::uint32_t, 256> Palette::argb() const {
-    std::array<std::uint32_t, 256> entries{};
-    const liq_palette& palette = *liq_get_palette(result_.get());
-    for (unsigned i = 0; i < palette.count; ++i) {
-        const auto [r, g, b, a] = palette.entries[i];
-        entries[i] = 0xff000000u | std::uint32_t{r} << 16 | std::uint32_t{g} << 8 | b;
-    }
-    // opaque black: what is not needed must not be taken for the transparent one
-    for (unsigned i = palette.count; i < 255; ++i) entries[i] = 0xff000000u;
-    return entries;
-}
-
-void Palette::look_up(const std::uint8_t* rgba, Size size, std::uint8_t* index) {
-    const auto image = image_of(*attributes_, rgba, size);
-    check(liq_write_remapped_image(result_.get(), image.get(), index, std::size_t(size.width) * size.height));
-}
-
-Spool::Spool(const FilePlace& film, Samples samples)
+Spool::Spool(const FilePlace& film)
     : path_(film.path),
-      samples_(samples),
-      compressor_(libdeflate_alloc_compressor(1)),
-      decompressor_(libdeflate_alloc_decompressor()) {
-    if (!compressor_ || !decompressor_) throw std::bad_alloc();
+      compressor_(checked(libdeflate_alloc_compressor(1))),
+      decompressor_(checked(libdeflate_alloc_decompressor())) {
     file_ = stream_of(create_unnamed_file(film), "w+b", path_, "opened");
 }
 
 void Spool::write(const SampledAreas& frame) {
-    const std::size_t size = bytes_of(frame), bound = libdeflate_deflate_compress_bound(compressor_.get(), size);
+    const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas),
+                      bound = libdeflate_deflate_compress_bound(compressor_.get(), size);
     std::uint8_t* packed = packed_.make_room(bound);
-    const Head head{frame.areas.size(),
-                    libdeflate_deflate_compress(compressor_.get(), frame.bytes.data(), size, packed, bound)};
-    const auto put = [&](const void* bytes, std::size_t count) {
-        if (count > 0 && std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
-    };
-    put(&head, sizeof head);
+    const FrameHeader header{frame.areas.size(),
+                             libdeflate_deflate_compress(compressor_.get(), frame.bytes.data(), size, packed, bound)};
+    put(&header, sizeof header);
     put(frame.areas.data(), frame.areas.size() * sizeof(Rect));
-    put(packed, head.packed);
+    put(packed, header.packed);
     ++frames_;
 }
 
@@ -204,25 +219,24 @@ void Spool::rewind() {
 }
 
 void Spool::read(SampledAreas& frame) {
-    const auto get = [&](void* bytes, std::size_t count) {
-        if (count > 0 && std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
-    };
-    Head head{};
-    get(&head, sizeof head);
-    frame.areas.resize(head.areas);
-    get(frame.areas.data(), head.areas * sizeof(Rect));
-    std::uint8_t* packed = packed_.make_room(head.packed);
-    get(packed, head.packed);
-    const std::size_t size = bytes_of(frame);
-    if (libdeflate_deflate_decompress(decompressor_.get(), packed, head.packed, frame.bytes.make_room(size), size,
+    FrameHeader header{};
+    get(&header, sizeof header);
+    frame.areas.resize(header.areas);
+    get(frame.areas.data(), header.areas * sizeof(Rect));
+    std::uint8_t* packed = packed_.make_room(header.packed);
+    get(packed, header.packed);
+    const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas);
+    if (libdeflate_deflate_decompress(decompressor_.get(), packed, header.packed, frame.bytes.make_room(size), size,
                                       nullptr) != LIBDEFLATE_SUCCESS)
         fail("is damaged");
 }
 
-std::size_t Spool::bytes_of(const SampledAreas& frame) const {
-    std::size_t count = 0;
-    for (const Rect& area : frame.areas) count += byte_count(samples_, area);
-    return count;
+void Spool::put(const void* bytes, std::size_t count) {
+    if (count > 0 && std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
+}
+
+void Spool::get(void* bytes, std::size_t count) {
+    if (count > 0 && std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
 }
 
 void Spool::fail(const char* what) const {
@@ -231,7 +245,7 @@ void Spool::fail(const char* what) const {
 
 std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options,
                                     const std::atomic<bool>& stop) {
-    // libimagequant's OpenMP starts one a core for each thread that calls it, and ends the program where it cannot
+    // libimagequant's OpenMP starts one thread a core for each caller, and ends the program where it cannot
     need_threads(2 * std::size_t{std::thread::hardware_concurrency()});
     return std::make_unique<GifSink>(place, options, stop);
 }

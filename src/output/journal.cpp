@@ -31,7 +31,7 @@ std::string first_line() {
     return fmt::format("{}{} on {}", head, getpid(), host());
 }
 
-/// Whether the process that a lock file's first line names is surely gone: it was of this machine.
+/// Whether the process that a lock file's first line names has certainly ended (only known for this machine).
 bool is_gone(std::string_view line) {
     pid_t process = 0;
     const char* const end = line.data() + line.size();
@@ -40,7 +40,7 @@ bool is_gone(std::string_view line) {
            kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// The names in a lock file are only believed where they are plain: no path out of the folder.
+/// A name without a path: others in a lock file are ignored.
 bool is_plain(std::string_view name) {
     return !name.empty() && name != "." && name != ".." && name.find('/') == std::string_view::npos;
 }
@@ -103,8 +103,7 @@ Journal::Journal(const Folder& folder, const std::string& run) : folder_(folder)
     if (!left_.empty()) left_.erase(left_.begin());  // its process
 }
 
-/// Opens, locks and reads the file, and makes sure that it is still the one of its name: its run removes it while
-/// another waits to open it.
+/// Opens, locks and reads the file; starts again where its owner has meanwhile removed it.
 void Journal::take() {
     const auto path = folder_.path() / name_;
     for (;;) {
@@ -112,7 +111,7 @@ void Journal::take() {
         file_ = Descriptor(openat(folder_.descriptor(), name_.c_str(), flags | O_CREAT | O_EXCL, 0666));
         const bool is_new = bool(file_);
         if (!is_new && errno == EEXIST) file_ = Descriptor(openat(folder_.descriptor(), name_.c_str(), flags));
-        if (!file_ && errno == ENOENT && folder_.entry(".").names > 0) continue;  // it went meanwhile
+        if (!file_ && errno == ENOENT && folder_.entry(".").names > 0) continue;  // removed meanwhile
         if (!file_ && errno == ELOOP)
             throw io_failed("{} is a symbolic link; Doppel follows none there", path.string());
         if (!file_) throw cannot(folder_.path(), "written to");
@@ -149,13 +148,13 @@ void Journal::read_notes() {
         text.append(block, static_cast<std::size_t>(n));
     if (!text.empty() && !std::string_view(text).starts_with(std::string_view(head).substr(0, text.size())))
         throw io_failed("{} is no lock file of Doppel's; remove it", (folder_.path() / name_).string());
-    // a last line without an end was being written
+    // a last line without an end was cut off
     for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
         left_.push_back(text.substr(at, end - at));
 }
 
 Journal::~Journal() {
-    // before the lock goes: it can be nobody else's
+    // before the lock is released, so that no other run owns it yet
     if (!leaves_) unlinkat(folder_.descriptor(), name_.c_str(), 0);
 }
 

@@ -27,7 +27,7 @@ Libav<T> owned(T* thing) {
 }
 
 Libav<AVFormatContext> open_format(const char* container) {
-    keep_libav_log();
+    capture_libav_log();
     AVFormatContext* format = nullptr;
     avformat_alloc_output_context2(&format, nullptr, container, "film");
     return owned(format);
@@ -87,7 +87,7 @@ void Encoder::open_frame() {
 
 void Encoder::open_codec() {
     const std::string_view name = encoding_.encoder->name;
-    // where one of theirs cannot be started SVT-AV1, which starts some 110, waits for ever, and libaom ends the program
+    // without threads to be had SVT-AV1, which starts some 110, hangs, and libaom ends the program
     if (has_chroma(encoding_.pixels)) need_threads(name == "libsvtav1" ? 200 : 3 * encoding_.threads);
     codec_ = owned(avcodec_alloc_context3(encoding_.encoder));
     codec_->width = encoding_.size.width;
@@ -112,11 +112,11 @@ void Encoder::write_header() {
     // MP4 multiplies 1/time_base by a power of two: every frame starts at a whole tick
     stream_->time_base = codec_->time_base;
     stream_->avg_frame_rate = stream_->r_frame_rate = codec_->framerate;
-    // meanwhile Matroska numbers its tracks instead of naming them by chance
+    // Matroska then numbers its tracks instead of giving them random ids
     format_->flags |= AVFMT_FLAG_BITEXACT;
     check(avformat_init_output(format_.get(), nullptr), "the header cannot be made");
     format_->flags &= ~AVFMT_FLAG_BITEXACT;
-    // here, as libav has just cleared, or named itself as, the encoder
+    // only now: avformat_init_output() sets or clears the encoder's name
     for (const auto& [key, text] : encoding_.metadata)
         check(av_dict_set(&format_->metadata, key.c_str(), text.c_str(), 0), "no memory for metadata");
     check(avformat_write_header(format_.get(), nullptr), "the header cannot be written");
@@ -128,21 +128,21 @@ void Encoder::set_option(const char* name, const std::string& value) {
 }
 
 AVFrame& Encoder::frame() {
-    // copies it where the encoder still holds it; x264, libvpx and the AV1 encoders keep copies of their own
+    // copies only where the encoder still holds the frame, which x264, libvpx and the AV1 encoders do not
     check(av_frame_make_writable(frame_.get()), "no memory for a frame");
     return *frame_;
 }
 
-void Encoder::send_frame(std::int64_t time, std::int64_t lasting) {
+void Encoder::send_frame(std::int64_t time, std::int64_t duration) {
     frame_->pts = time;
-    lasting_ = lasting;
+    duration_ = duration;
     if (!codec_) open_codec();
     check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
     if (!stream_) write_header();
     write_packets();
 }
 
-/// What comes out of the encoder.
+/// Muxes what the encoder has ready.
 void Encoder::write_packets() {
     for (;;) {
         if (stop_) throw Error(ExitCode::interrupted, "interrupted");
@@ -150,7 +150,7 @@ void Encoder::write_packets() {
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "cannot be encoded");
         if (!encoding_.png_chunks.empty()) insert_png_chunks();
-        packet_->duration = lasting_;
+        packet_->duration = duration_;
         av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
         check(av_write_frame(format_.get(), packet_.get()), "cannot be written");
         av_packet_unref(packet_.get());
@@ -183,13 +183,13 @@ void Encoder::finish(std::string_view ending, int replaced) {
 
 void Encoder::check(int result, std::string_view what) const {
     if (result >= 0) {
-        take_libav_word();  // what did no harm
+        take_libav_error();  // a warning
         return;
     }
     std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
     av_strerror(result, reason.data(), reason.size());
-    const auto word = take_libav_word();
-    throw io_failed("{}: {}: {}{}{}", path_, what, word, word.empty() ? "" : ": ", reason.data());
+    const auto error = take_libav_error();
+    throw io_failed("{}: {}: {}{}{}", path_, what, error, error.empty() ? "" : ": ", reason.data());
 }
 
 std::string libav_description() {

@@ -2,7 +2,6 @@
 
 #include "image/picture.hpp"
 #include "output/folder.hpp"
-#include "output/samples.hpp"
 #include "output/video.hpp"
 
 extern "C" {
@@ -18,14 +17,13 @@ extern "C" {
 
 namespace doppel {
 
-/// libav, and the encoders behind it, print nothing from now on; what went wrong last is kept, for each thread.
-void keep_libav_log();
+/// From now on libav and its encoders print nothing; the last error message of each thread is kept.
+void capture_libav_log();
 
-/// What libav said last in this thread of what went wrong: one line without its end; empty where it said nothing since
-/// it was asked last.
-std::string take_libav_word();
+/// Takes the last error message of this thread, one line; empty where there is none.
+std::string take_libav_error();
 
-/// The file that a muxer of libav fills, opened as create_file() does: libav itself, given a name, would follow links.
+/// The output file of a muxer, opened by create_file(): libav itself would follow links.
 class LibavFile {
 public:
     /// Throws Error (exit 4).
@@ -34,11 +32,11 @@ public:
     LibavFile(const LibavFile&) = delete;
     LibavFile& operator=(const LibavFile&) = delete;
 
-    /// The muxer, which this outlives, writes here; where it opens its file anew to read it (to move the index of an
-    /// MP4 to the front) it gets this one.
+    /// The muxer, which this outlives, writes here, and reads here where it reopens its file (to move an MP4's index to
+    /// the front).
     void attach(AVFormatContext& format);
 
-    /// All that was written has left the process. libav's code of what failed, 0 where nothing did.
+    /// Flushes and closes. Returns libav's error code, 0 for success.
     int close();
 
 private:
@@ -56,17 +54,17 @@ struct LibavFree {
 template <class T>
 using Libav = std::unique_ptr<T, LibavFree>;
 
-/// The first of these encoders that libav has. Throws Error (exit 4) that lists what it has for the codec instead.
+/// The first of these encoders that libav has. Throws Error (exit 4) that lists its encoders for the codec.
 const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec);
 
-/// How a film becomes a file.
+/// Parameters of container and encoder.
 struct Encoding {
     const char* container;   // libav's name of it
     const AVCodec* encoder;  // of find_encoder()
-    AVPixelFormat pixels;    // those in Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
+    AVPixelFormat pixels;    // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
     Size size;
     AVRational frame_rate;
-    AVRational tick;  // s; the times of frames are counted in it
+    AVRational tick;  // s, the time base
     std::size_t threads = 1;
     Metadata encoder_options = {}, container_options = {};  // by libav's names
     Metadata metadata = {};
@@ -76,27 +74,25 @@ struct Encoding {
 /// Throws as check_video() for everything but a missing encoder.
 void check_options(const VideoOptions& options);
 
-/// What libav has to do, of checked options, and what it takes the pictures as (gif: rgb, before they get a palette).
-/// Throws Error (exit 4) where it lacks the encoder.
+/// For options that check_options() passes. Throws Error (exit 4) where libav lacks the encoder.
 Encoding encoding_of(const VideoOptions& options);
-Samples samples_of(const VideoOptions& options);
 
 /// An encoder and the file it fills. All throw Error: exit 4 with the path and libav's reason, exit 130 soon after
 /// `stop` is set.
 class Encoder {
 public:
-    /// Opens the file. The encoder itself is opened with the first frame: SVT-AV1 waits for ever where it is closed
-    /// before it had one.
+    /// Opens the file. The encoder is opened with the first frame: SVT-AV1 hangs if closed without one.
     Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bool>& stop);
 
-    /// The picture as it is now: its planes can be written to.
+    AVPixelFormat pixels() const { return encoding_.pixels; }
+    /// The frame last sent, writable.
     AVFrame& frame();
-    /// The picture is the next frame; it starts at this time and lasts so long, in ticks.
-    void send_frame(std::int64_t time, std::int64_t lasting);
-    /// Of the container; it counts from the next write on.
+    /// Encodes frame() with this start and duration, in ticks.
+    void send_frame(std::int64_t time, std::int64_t duration);
+    /// Of the container; takes effect with the next write.
     void set_option(const char* name, const std::string& value);
-    /// No frame follows (there must have been one); the file is complete, but for its last bytes, as many as told,
-    /// which `ending` takes the place of.
+    /// After the last frame (there must have been one): completes the file, then overwrites its last `replaced` bytes
+    /// with `ending`.
     void finish(std::string_view ending = {}, int replaced = 0);
 
 private:
@@ -116,7 +112,7 @@ private:
     Libav<AVFrame> frame_;
     Libav<AVPacket> packet_;
     AVStream* stream_ = nullptr;
-    std::int64_t lasting_ = 1;
+    std::int64_t duration_ = 1;
 };
 
 }  // namespace doppel

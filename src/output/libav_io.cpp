@@ -21,13 +21,13 @@ extern "C" {
 namespace doppel {
 namespace {
 
-/// One place in the file, to write or to read at.
+/// A position in the file.
 struct StreamPosition {
     int file;
     std::int64_t at = 0;  // bytes from the start
 };
 
-/// Byte is uint8_t, const from libavformat 61 on. All of it is written, or libav's code of what failed is returned.
+/// Byte is uint8_t, const from libavformat 61 on. Writes all, or returns libav's error code.
 template <class Byte>
 int write_stream(void* opaque, Byte* bytes, int count) {
     auto& [file, at] = *static_cast<StreamPosition*>(opaque);
@@ -91,7 +91,7 @@ void LibavFile::attach(AVFormatContext& format) {
     format.flags |= AVFMT_FLAG_CUSTOM_IO;
     format.opaque = writer_->opaque;
     format.io_open = [](AVFormatContext* muxer, AVIOContext** context, const char*, int flags, AVDictionary**) {
-        if (flags & AVIO_FLAG_WRITE) return AVERROR(EPERM);  // it has the one it writes to
+        if (flags & AVIO_FLAG_WRITE) return AVERROR(EPERM);  // only reopened for reading
         try {
             *context = open_stream(static_cast<StreamPosition*>(muxer->opaque)->file, false);
         } catch (const std::bad_alloc&) {
@@ -113,14 +113,14 @@ int LibavFile::close() {
 
 namespace {
 
-// libav calls back with nothing that could tell one encoder of ours from another: it is the thread that does
+// the log callback cannot tell one encoder from another, but each has its thread
 thread_local std::string line, last_line;
 
 bool is_blank(char c) {
     return static_cast<unsigned char>(c) <= ' ' || c == 127;
 }
 
-/// Without line breaks, other control characters, and what ends a sentence.
+/// Without control characters and final full stops.
 std::string cleaned(std::string text) {
     std::replace_if(text.begin(), text.end(), is_blank, ' ');
     const auto last = text.find_last_not_of(" .");
@@ -138,19 +138,19 @@ void keep(void* /*source*/, int level, const char* format, va_list arguments) {
         if (!line.ends_with('\n')) return;
         if (auto whole = cleaned(std::move(line)); !whole.empty()) last_line = std::move(whole);
         line.clear();
-    } catch (...) {  // no memory for words; none can pass through C
+    } catch (...) {  // out of memory; no exception may pass through C
     }
 }
 
 }  // namespace
 
-void keep_libav_log() {
+void capture_libav_log() {
     av_log_set_callback(keep);
-    // SVT-AV1 has a log of its own, and asks the environment alone
+    // SVT-AV1 has its own log, set by the environment alone
     setenv("SVT_LOG", "0", 0);
 }
 
-std::string take_libav_word() {
+std::string take_libav_error() {
     if (auto rest = cleaned(std::move(line)); !rest.empty()) last_line = std::move(rest);
     line.clear();
     return std::exchange(last_line, {});

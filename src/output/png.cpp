@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "output/folder.hpp"
 #include "output/samples.hpp"
 #include "output/workers.hpp"
@@ -21,26 +22,20 @@
 namespace doppel {
 namespace {
 
-/// Memory of a thread for stb_image_write, which asks for the same few blocks of megabytes for each picture: given back
-/// to the system and asked for again, they would cost a third of the work in page faults.
+/// A thread's memory for stb_image_write, which allocates the same few blocks of megabytes for each picture: malloc
+/// would return them to the system each time, and page faults would cost a third of the work.
 class Arena {
 public:
-    /// Null where memory is out.
+    /// The first free block, enlarged where it is too small. Null where memory is out.
     void* take(std::size_t size) {
-        // the smallest that fits; else the largest makes room
-        Block* best = nullptr;
-        for (Block& block : blocks_)
-            if (!block.taken && (!best || (best->size < size ? block.size > best->size
-                                                             : block.size >= size && block.size < best->size)))
-                best = &block;
-        if (!best) return nullptr;
-        if (best->size < size) {
-            best->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
-            best->size = best->bytes ? size : 0;
-            if (!best->bytes) return nullptr;
+        const auto block = std::ranges::find(blocks_, false, &Block::taken);
+        if (block == blocks_.end()) return nullptr;
+        if (block->size < size) {
+            block->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
+            block->size = block->bytes ? size : 0;
         }
-        best->taken = true;
-        return best->bytes.get();
+        block->taken = block->bytes != nullptr;
+        return block->bytes.get();
     }
 
     void give_back(const void* bytes) {
@@ -49,15 +44,12 @@ public:
     }
 
 private:
-    struct Free {
-        void operator()(std::byte* bytes) const { std::free(bytes); }
-    };
     struct Block {
-        std::unique_ptr<std::byte, Free> bytes;
+        Owned<std::byte, std::free> bytes;
         std::size_t size = 0;
         bool taken = false;
     };
-    std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed, the file: all that it holds at once
+    std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed rows, the file
 };
 
 thread_local Arena arena;
@@ -118,34 +110,28 @@ std::string keyword(const std::string& key) {
     return word;
 }
 
-/// UTF-8 as Latin-1; nothing where a character is none of it.
+/// UTF-8 as Latin-1; nothing where a character is not in it.
 std::optional<std::string> latin1(std::string_view text) {
     std::string result;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto lead = static_cast<unsigned char>(text[i]);
-        if (lead < 0x80) {
-            result += text[i];
-        } else if ((lead == 0xc2 || lead == 0xc3) && i + 1 < text.size()) {
-            // U+0080 … U+00FF are two bytes
-            result += static_cast<char>((lead & 3) << 6 | (text[++i] & 0x3f));
-        } else {
-            return std::nullopt;
-        }
+    while (!text.empty()) {
+        const char32_t character = next_character(text);
+        if (character > 0xff) return std::nullopt;
+        result += static_cast<char>(character);
     }
     return result;
 }
 
-// flat colours compress best as they are; any filter takes 1.7 times as long for a larger file
+// flat colours compress best unfiltered; any filter takes 1.7 times as long for a larger file
 [[maybe_unused]] const int no_filter = stbi_write_force_png_filter = 0;
 
-Samples samples_of(const PngOptions& options) {
-    return options.with_alpha ? Samples::rgba : Samples::rgb;
+AVPixelFormat pixels_of(const PngOptions& options) {
+    return options.with_alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
 }
 
 /// A file's text chunks follow its signature and header.
 constexpr std::size_t header_bytes = 8 + 25;
 
-/// `bytes` are the picture's as samples_of() has them.
+/// `bytes` are the picture's in the format pixels_of().
 void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
                    const std::string& text_chunks, const std::atomic<bool>& stop) {
     if (stop) throw Error(ExitCode::interrupted, "interrupted");
@@ -186,8 +172,8 @@ public:
     void take(const Picture& picture, const std::vector<Rect>& /*changed*/) override {
         Job job{place_of_(taken_++), picture.size, spare_.take()};
         const Rect all = all_of(picture.size);
-        const Samples samples = samples_of(options_);
-        convert(picture, all, samples, job.bytes.make_room(byte_count(samples, all)));
+        const AVPixelFormat format = pixels_of(options_);
+        convert(picture, all, format, job.bytes.make_room(byte_count(format, all)));
         writers_.give(std::move(job));
     }
 
@@ -232,7 +218,8 @@ void write_png(const FilePlace& place, const Picture& picture, const PngOptions&
                const std::atomic<bool>& stop) {
     const Rect all = all_of(picture.size);
     Buffer bytes;
-    convert(picture, all, samples_of(options), bytes.make_room(byte_count(samples_of(options), all)));
+    const AVPixelFormat format = pixels_of(options);
+    convert(picture, all, format, bytes.make_room(byte_count(format, all)));
     write_samples(place, picture.size, bytes.data(), options, png_text_chunks(options.metadata), stop);
 }
 
@@ -243,8 +230,8 @@ std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int
 }
 
 int png_threads(int jobs, Size size) {
-    // what waits, what is at work, its rows with their filters, compressed, and the file
-    const std::size_t bytes = 5 * byte_count(Samples::rgba, all_of(size));
+    // a thread's queued picture, its current one, filtered rows, compressed rows, and the file
+    const std::size_t bytes = 5 * byte_count(AV_PIX_FMT_RGBA, all_of(size));
     return static_cast<int>(in_hand(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }
 

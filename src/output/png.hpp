@@ -11,12 +11,11 @@ namespace doppel {
 
 struct PngOptions {
     bool with_alpha = false;  // RGBA, not premultiplied; else RGB, and alpha is left out
-    /// As text chunks "Title", "Comment", …; the encoder as "Software", by which Doppel knows what it made.
+    /// Text chunks "Title", "Comment", …; the encoder as "Software", by which Doppel recognises its files.
     Metadata metadata = {{"encoder", "Doppel"}};
 };
 
-/// One picture, compressed by libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the
-/// picture was compressed.
+/// Compressed by libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the picture was compressed.
 void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options = {},
                const std::atomic<bool>& stop = false);
 
@@ -24,9 +23,8 @@ void write_png(const FilePlace& place, const Picture& picture, const PngOptions&
 /// decoded.
 Picture read_png(const std::filesystem::path& path);
 
-/// A numbered sequence: picture k of the run, k = 0, 1, …, is written to place_of(k), which the thread that gives the
-/// pictures is asked. `threads` compress, fed through a bounded queue. Errors as write_png's, and exit 130 soon after
-/// `stop` is set, thrown by take() or finish().
+/// A numbered sequence: picture k = 0, 1, … is written to place_of(k), called by take(). `threads` compress, fed
+/// through a bounded queue. take() and finish() throw as write_png(), and exit 130 soon after `stop` is set.
 std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options = {},
                                     const std::atomic<bool>& stop = never_stopped);
 
@@ -34,8 +32,7 @@ std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int
 /// registered ones: "Title", "Comment", …, "Software" for the encoder.
 std::string png_text_chunks(const Metadata& metadata);
 
-/// The threads for pictures of this size where `jobs` were asked for: that many, or one a core where it is 0; fewer
-/// where their pictures would take too much of the memory.
+/// `jobs` threads, or one a core where it is 0; fewer where pictures of this size would take too much memory.
 int png_threads(int jobs, Size size);
 
 }  // namespace doppel

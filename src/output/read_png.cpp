@@ -26,13 +26,13 @@ std::uint64_t big_endian(const unsigned char* bytes) {
     return std::uint64_t{bytes[0]} << 24 | bytes[1] << 16 | bytes[2] << 8 | bytes[3];
 }
 
-/// What a file claims that it cannot hold; "" where its lengths are possible. stb_image makes room for the length of a
-/// chunk and for the size in the header before it reads on, so a file of a hundred bytes could take gigabytes.
+/// Why the sizes in the file are impossible; "" where they are not. stb_image allocates by the length of a chunk and by
+/// the size in the header before it reads on, so a file of a hundred bytes could take gigabytes.
 /// Source  Portable Network Graphics (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE makes at most 1032 bytes of one.
 std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
     constexpr std::uint64_t signature = 8, around = 12;  // length, type and checksum of a chunk
     constexpr std::uint64_t most_inflated = 1032;
-    unsigned char head[26];  // of a file: signature, length and type, width, height, bits, kind of colour
+    unsigned char head[26];  // signature, length, type, width, height, bits, kind of colour
     if (std::fread(head, 1, sizeof head, file) == sizeof head) {
         const auto width = big_endian(head + 16), height = big_endian(head + 20);
         const std::uint64_t bits = head[24] * (head[25] == 2 ? 3U : head[25] == 4 ? 2U : head[25] == 6 ? 4U : 1U);

@@ -1,11 +1,16 @@
 #include "output/samples.hpp"
 
+extern "C" {
+#include <libavutil/imgutils.h>
+#include <libavutil/pixdesc.h>
+}
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 
-// The loops are compiled twice, and the processor chooses when the program starts. Sanitizers cannot work that early.
+// The loops are compiled twice, chosen at program start by the processor (too early for sanitizers).
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(DOPPEL_SANITIZE)
 #define DOPPEL_WIDEST_SIMD __attribute__((target_clones("avx2", "default")))
 #else
@@ -16,37 +21,8 @@
 namespace doppel {
 namespace {
 
-/// What there is of a plane for a pixel: `bytes` in a row, one row; or, where `halved`, for 2×2 pixels.
-struct Shape {
-    int bytes;
-    bool halved = false;
-};
-
-struct Layout {
-    int planes;
-    std::array<Shape, 4> shapes;
-};
-
-constexpr Layout layout(Samples samples) {
-    switch (samples) {
-        case Samples::yuv420:
-            return {3, {{{1}, {1, true}, {1, true}}}};
-        case Samples::yuv444:
-            return {3, {{{1}, {1}, {1}}}};
-        case Samples::yuv420_10:
-            return {3, {{{2}, {2, true}, {2, true}}}};
-        case Samples::yuva420:
-            return {4, {{{1}, {1, true}, {1, true}, {1}}}};
-        case Samples::rgb:
-            return {1, {{{3}}}};
-        case Samples::rgba:
-            return {1, {{{4}}}};
-    }
-    return {};
-}
-
-constexpr bool has_halved_chroma(Samples samples) {
-    return layout(samples).shapes[1].halved;
+bool has_halved_chroma(AVPixelFormat format) {
+    return av_pix_fmt_desc_get(format)->log2_chroma_w > 0;
 }
 
 /// Planes to be filled row by row, in bytes.
@@ -59,10 +35,10 @@ struct Target {
     }
 };
 
-Target target(const Rect& area, Samples samples, std::uint8_t* to) {
+Target target(const Rect& area, AVPixelFormat format, std::uint8_t* to) {
     Target result;
-    for (int k = 0; k < plane_count(samples); ++k) {
-        const PlaneArea p = plane_area(samples, k, area);
+    for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {
+        const PlaneArea p = plane_area(format, k, area);
         result.plane[std::size_t(k)] = to;
         result.stride[std::size_t(k)] = std::size_t(p.row_bytes);
         to += std::size_t(p.row_bytes) * p.rows;
@@ -86,11 +62,11 @@ constexpr int fixed(double x) {
     return static_cast<int>(x * (1 << fraction_bits) + (x < 0.0 ? -0.5 : 0.5));
 }
 
-/// What a sample takes of each colour, in units of 2^-16.
+/// The weight of each colour in a sample, in units of 2^-16.
 struct Weights {
     int r, g, b;
 };
-// green takes the rest, so that a grey has exactly its luma, and no chroma
+// green completes the sum, so that greys have exact luma and no chroma
 constexpr Weights with_green(int r, int b, int sum) {
     return {r, sum - r - b, b};
 }
@@ -161,7 +137,7 @@ DOPPEL_INLINE void alpha(const std::uint8_t* __restrict rgba, int width, std::ui
 }
 
 DOPPEL_INLINE void colors(const std::uint8_t* __restrict rgba, int width, std::uint8_t* __restrict rgb) {
-    // each pixel as four bytes, of which the next takes one away: quicker than three
+    // four bytes a pixel, the last overwritten by the next pixel: faster than three
     for (int i = 0; i < width - 1; ++i) std::memcpy(rgb + 3 * i, rgba + 4 * i, 4);
     std::memcpy(rgb + 3 * (width - 1), rgba + 4 * (width - 1), 3);
 }
@@ -181,61 +157,58 @@ DOPPEL_INLINE void convert_420(const Picture& picture, const Rect& area, const T
 
 }  // namespace
 
-int plane_count(Samples samples) {
-    return layout(samples).planes;
+PlaneArea plane_area(AVPixelFormat format, int plane, const Rect& area) {
+    const int shift = plane == 1 || plane == 2 ? av_pix_fmt_desc_get(format)->log2_chroma_h : 0;
+    const auto bytes = [&](int width) { return av_image_get_linesize(format, width, plane); };
+    return {bytes(area.left), bytes(area.right - area.left), area.top >> shift, (area.bottom - area.top) >> shift};
 }
 
-PlaneArea plane_area(Samples samples, int plane, const Rect& area) {
-    const auto [bytes, halved] = layout(samples).shapes[std::size_t(plane)];
-    const int by = halved ? 2 : 1;
-    return {bytes * area.left / by, bytes * (area.right - area.left) / by, area.top / by,
-            (area.bottom - area.top) / by};
-}
-
-std::size_t byte_count(Samples samples, const Rect& area) {
+std::size_t byte_count(AVPixelFormat format, const Rect& area) {
     std::size_t count = 0;
-    for (int k = 0; k < plane_count(samples); ++k) {
-        const PlaneArea p = plane_area(samples, k, area);
+    for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {
+        const PlaneArea p = plane_area(format, k, area);
         count += std::size_t(p.row_bytes) * p.rows;
     }
     return count;
 }
 
-Rect aligned(Samples samples, const Rect& area, Size picture) {
-    const Rect inside = common(area, {0, 0, picture.width, picture.height});
-    if (!has_halved_chroma(samples) || inside.empty()) return inside;
+std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas) {
+    std::size_t count = 0;
+    for (const Rect& area : areas) count += byte_count(format, area);
+    return count;
+}
+
+Rect aligned(AVPixelFormat format, const Rect& area, Size picture) {
+    const Rect inside = intersection(area, {0, 0, picture.width, picture.height});
+    if (!has_halved_chroma(format) || inside.empty()) return inside;
     return {inside.left & ~1, inside.top & ~1, (inside.right + 1) & ~1, (inside.bottom + 1) & ~1};
 }
 
 DOPPEL_WIDEST_SIMD
-void convert(const Picture& picture, const Rect& area, Samples samples, std::uint8_t* to) {
-    const Target out = target(area, samples, to);
+void convert(const Picture& picture, const Rect& area, AVPixelFormat format, std::uint8_t* to) {
+    const Target out = target(area, format, to);
     const int width = area.right - area.left;
-    if (samples == Samples::yuv420_10) convert_420<std::uint16_t>(picture, area, out);
-    if (samples == Samples::yuv420 || samples == Samples::yuva420) convert_420<std::uint8_t>(picture, area, out);
+    if (format == AV_PIX_FMT_YUV420P10LE) convert_420<std::uint16_t>(picture, area, out);
+    if (format == AV_PIX_FMT_YUV420P || format == AV_PIX_FMT_YUVA420P) convert_420<std::uint8_t>(picture, area, out);
     for (int i = 0; i < area.bottom - area.top; ++i) {
         const std::uint8_t* rgba = picture.at(area.left, area.top + i);
-        if (samples == Samples::yuva420) alpha(rgba, width, out.row(3, i));
-        if (samples == Samples::rgb) colors(rgba, width, out.row(0, i));
-        if (samples == Samples::rgba) std::memcpy(out.row(0, i), rgba, std::size_t{4} * width);
-        if (samples != Samples::yuv444) continue;
+        if (format == AV_PIX_FMT_YUVA420P) alpha(rgba, width, out.row(3, i));
+        if (format == AV_PIX_FMT_RGB24) colors(rgba, width, out.row(0, i));
+        if (format == AV_PIX_FMT_RGBA) std::memcpy(out.row(0, i), rgba, std::size_t{4} * width);
+        if (format != AV_PIX_FMT_YUV444P) continue;
         luma(rgba, width, out.row(0, i));
         chroma_of_one(rgba, width, out.row(1, i), out.row(2, i));
     }
 }
 
-void convert(const Picture& picture, const std::vector<Rect>& changed, Samples samples, SampledAreas& to) {
+void convert(const Picture& picture, const std::vector<Rect>& changed, AVPixelFormat format, SampledAreas& to) {
     to.areas.clear();
-    std::size_t bytes = 0;
     for (const Rect& area : changed)
-        if (const Rect grown = aligned(samples, area, picture.size); !grown.empty()) {
-            to.areas.push_back(grown);
-            bytes += byte_count(samples, grown);
-        }
-    std::uint8_t* next = to.bytes.make_room(bytes);
+        if (const Rect grown = aligned(format, area, picture.size); !grown.empty()) to.areas.push_back(grown);
+    std::uint8_t* next = to.bytes.make_room(byte_count(format, to.areas));
     for (const Rect& area : to.areas) {
-        convert(picture, area, samples, next);
-        next += byte_count(samples, area);
+        convert(picture, area, format, next);
+        next += byte_count(format, area);
     }
 }
 

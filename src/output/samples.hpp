@@ -2,6 +2,10 @@
 
 #include "image/picture.hpp"
 
+extern "C" {
+#include <libavutil/pixfmt.h>
+}
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,39 +13,34 @@
 
 namespace doppel {
 
-/// Pictures as encoders take them.
-///     yuv…   BT.709, limited range: of 8 bits Y is 16…235, Cb and Cr are 16…240; of 10 bits four times that, two bytes
-///            a sample (little endian)
-///     …420   chroma has one sample for 2×2 pixels, their mean, sited in the centre of the four
-///     …444   and here one for each
-///     yuva…  a plane of alpha beside, as it is
-///     rgb    8 bits, one plane, as they are; rgba with alpha
-enum class Samples { yuv420, yuv444, yuv420_10, yuva420, rgb, rgba };
-
-int plane_count(Samples samples);
+// Pictures as encoders take them, in libav's pixel formats RGB24, RGBA, YUV420P, YUV444P, YUV420P10LE and YUVA420P. Y,
+// Cb and Cr are BT.709, limited range: of 8 bits Y is 16…235, Cb and Cr 16…240; of 10 bits four times that. In 4:2:0 a
+// chroma sample is the mean of 2×2 pixels, sited in their centre. Alpha is kept as it is.
 
 /// Where a rectangle of a picture lies in one of its planes.
 struct PlaneArea {
     int offset, row_bytes;  // of a row, bytes
     int top, rows;
 };
-PlaneArea plane_area(Samples samples, int plane, const Rect& area);
+PlaneArea plane_area(AVPixelFormat format, int plane, const Rect& area);
 
-/// Of a rectangle, all planes.
-std::size_t byte_count(Samples samples, const Rect& area);
+/// Of a rectangle, or of several, in all planes.
+std::size_t byte_count(AVPixelFormat format, const Rect& area);
+std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas);
 
-/// The smallest rectangle that holds `area` and has samples of its own: even edges in 4:2:0. What lies outside the
-/// picture (whose sides are even then) is cut off.
-Rect aligned(Samples samples, const Rect& area, Size picture);
+/// The smallest rectangle around `area` that shares no sample with pixels outside: even edges in 4:2:0. What lies
+/// outside the picture (whose sides are even then) is cut off.
+Rect aligned(AVPixelFormat format, const Rect& area, Size picture);
 
-/// Converts an aligned rectangle: plane after plane, rows from the top down, no padding. A sample depends on the pixels
-/// below it alone: all of a picture, or any cover of it by areas, gives the same bytes; so does every width of SIMD.
-void convert(const Picture& picture, const Rect& area, Samples samples, std::uint8_t* to);
+/// Converts an aligned rectangle: plane after plane, rows from the top down, no padding. A sample depends on its own
+/// pixels alone: the whole picture at once or area by area gives the same bytes, with every width of SIMD. (swscale
+/// filters chroma over more pixels, and converts no areas.)
+void convert(const Picture& picture, const Rect& area, AVPixelFormat format, std::uint8_t* to);
 
-/// Bytes to be filled; they keep their memory from one use to the next.
+/// Uninitialised bytes; the memory is kept from one use to the next.
 class Buffer {
 public:
-    /// Room for `count` bytes; what was in it is forgotten.
+    /// Room for `count` bytes; their contents are undefined.
     std::uint8_t* make_room(std::size_t count) {
         if (count > capacity_) {
             bytes_ = std::make_unique_for_overwrite<std::uint8_t[]>(count);
@@ -57,13 +56,13 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// What changed in a picture, converted: each area's bytes follow those of the area before.
+/// The changed areas of a picture, converted: the bytes of each area in turn.
 struct SampledAreas {
     std::vector<Rect> areas;  // aligned
     Buffer bytes;
 };
 
-/// Converts what changed into `to`, which keeps its memory.
-void convert(const Picture& picture, const std::vector<Rect>& changed, Samples samples, SampledAreas& to);
+/// Converts the changed areas.
+void convert(const Picture& picture, const std::vector<Rect>& changed, AVPixelFormat format, SampledAreas& to);
 
 }  // namespace doppel

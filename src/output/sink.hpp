@@ -9,25 +9,23 @@
 
 namespace doppel {
 
-/// What a file says about itself: keys and texts in UTF-8. Every format has a place for "title", "comment",
-/// "description", "artist", "copyright" and "date"; all but mp4, where libav always names itself, for "encoder" too:
-/// the program that made the file.
+/// A file's metadata: keys and texts, UTF-8. Every format stores "title", "comment", "description", "artist",
+/// "copyright" and "date"; all but mp4 (where libav names itself) also "encoder", the program that made the file.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/// Of sinks that nobody asks to stop.
+/// For sinks that are never asked to stop.
 inline const std::atomic<bool> never_stopped = false;
 
-/// Where pictures go: a video or a folder of images. Fed in order, closed by finish(); both may block and both throw
-/// Error (exit 4) with the path and the reason. Destroyed unfinished it stops at once; whoever owns the file removes
-/// it.
+/// Writes pictures in order, to a video or a folder of images. take() and finish() may block, and throw Error (exit 4)
+/// with the path and the reason. Destroyed unfinished it stops at once; the file's owner removes it.
 class Sink {
 public:
     virtual ~Sink() = default;
 
-    /// The next frame. `changed` = where it differs from the frame before (the whole of it for the first).
+    /// The next frame. `changed`: where it differs from the one before (everywhere, for the first).
     virtual void take(const Picture& picture, const std::vector<Rect>& changed) = 0;
 
-    /// All that was taken is written, completely.
+    /// Writes all that was taken, and completes the file.
     virtual void finish() = 0;
 };
 

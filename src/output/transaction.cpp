@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 using Kind = Entry::Kind;
 
-/// The folder that the runs of one preset share: links lead to the folder it is in, none to itself.
+/// Opens the folder; its parents may be links, it may not.
 Folder open_last(const fs::path& folder, const std::vector<fs::path>& made) {
     try {
         if (!folder.has_filename() || folder.filename() == "." || folder.filename() == "..") return Folder::at(folder);
@@ -47,7 +47,7 @@ void remove_quietly(const Folder& folder, const std::string& name) {
     try {
         folder.remove(name);
     } catch (const Error&) {
-        // somebody put something there; it stays
+        // something foreign there stays
     }
 }
 
@@ -73,15 +73,15 @@ Transaction::~Transaction() {
     remove_folders(made_);
 }
 
-/// Ends what a killed run had begun, and removes what it left.
+/// Completes or reverts what a killed run had begun, and removes what it left.
 void Transaction::recover() {
     const auto left = journal_->left();
-    journal_->leave();  // for another try, where this fails
+    journal_->leave();  // for the next run, where this fails
     if (left.state == Publication::State::publish) {
         written_ = written_files(folder_);
         for (const auto& step : left.steps)
             if (is_waiting(folder_, step))
-                refuse_strangers(step.name, folder_.entry(part_name(step.name)).kind == Kind::folder);
+                refuse_foreign_files(step.name, folder_.entry(part_name(step.name)).kind == Kind::folder);
         put_in_place(folder_, left);
     }
     if (left.state == Publication::State::withdraw) take_back(folder_, left);
@@ -94,7 +94,7 @@ void Transaction::recover() {
     journal_->leave(false);
 }
 
-void Transaction::refuse_strangers(const std::string& name, bool is_folder) const {
+void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
     const auto path = folder_.path() / name;
     switch (folder_.entry(name).kind) {
         case Kind::none:
@@ -106,7 +106,7 @@ void Transaction::refuse_strangers(const std::string& name, bool is_folder) cons
         case Kind::file:
             if (is_folder) throw io_failed("{} is a file; Doppel would make a folder there", path.string());
             if (!is_written(folder_, name, written_)) throw not_ours(path);
-            // what nobody may rename (chattr +i) is told before work starts; a file that is only read-only can be
+            // an immutable file (chattr +i) cannot be renamed, a read-only one can: say so before work starts
             if (faccessat(folder_.descriptor(), name.c_str(), W_OK, 0) != 0 && errno == EPERM)
                 throw cannot(path, "replaced");
             return;
@@ -124,7 +124,7 @@ void Transaction::refuse_strangers(const std::string& name, bool is_folder) cons
 }
 
 Transaction::Part& Transaction::add_part(const std::string& name, bool is_folder) {
-    refuse_strangers(name, is_folder);
+    refuse_foreign_files(name, is_folder);
     const auto part = part_name(name);
     for (const auto& taken : {part, aside_name(name)})
         if (folder_.entry(taken).kind != Kind::none) throw not_ours(folder_.path() / taken);
@@ -167,7 +167,7 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
     }
 }
 
-/// What is finished stays; the words that say so.
+/// Keeps what is finished; returns the sentence that says so.
 std::string Transaction::keep() {
     std::string names;
     for (const Part& part : parts_)
@@ -179,7 +179,7 @@ std::string Transaction::keep() {
 }
 
 FilePlace Transaction::keep_only(const std::string& name, const std::string& new_name) {
-    refuse_strangers(new_name, false);
+    refuse_foreign_files(new_name, false);
     note_part(new_name);
     std::erase_if(parts_, [&](const Part& part) {
         if (part.name == name) return false;
@@ -219,12 +219,12 @@ WrittenFiles Transaction::earlier_files() const {
     return earlier;
 }
 
-/// What is to be published, on the disk.
+/// What is to be published; all flushed to the disk.
 Publication Transaction::publication() {
     Publication publication{.state = Publication::State::publish};
     for (const Part& part : parts_) {
         const FilePlace place{folder_, part_name(part.name)};
-        refuse_strangers(part.name, part.contents != nullptr);
+        refuse_foreign_files(part.name, part.contents != nullptr);
         const Entry entry = folder_.entry(place.name);
         if (entry.kind == Kind::none) throw cannot(place.path, "published", ENOENT);
         if (part.contents)
@@ -248,7 +248,7 @@ std::vector<fs::path> Transaction::publish() {
         journal_->note("publish", true);
         put_in_place(folder_, published);
     } catch (...) {
-        // where this fails too, all stays as it stands for the next run to sort
+        // where this fails too, the next run reverts
         auto parts = std::exchange(parts_, {});
         journal_->leave();
         journal_->note("withdraw", true);
@@ -263,7 +263,7 @@ std::vector<fs::path> Transaction::publish() {
     try {
         clear_away(folder_, published);
     } catch (const Error&) {
-        journal_->leave();  // somebody put something there: the next run says so
+        journal_->leave();  // something foreign is there: the next run reports it
     }
     return files;
 }

@@ -16,44 +16,39 @@ namespace doppel {
 class Error;
 
 /// The files of one run in one folder, which appear complete and together or not at all. Each is written as NAME.part;
-/// publish() gives all of them their names once every one is whole: whenever the process is killed, the new ones stand
-/// there or the old ones, after the next run at the latest. Destroyed unpublished, it removes what was written, and the
-/// folders it made if they are empty. What a run leaves that was killed, the next one of its name in the folder
-/// removes.
+/// publish() renames all. If the process is killed, the folder has all new files or all old ones, after the next run of
+/// that name there at the latest, which also removes leftovers. Destroyed unpublished, it removes what was written, and
+/// the folders it made if they are empty.
 ///
-/// Only what Doppel made is replaced or removed (see is_written()), and no symbolic link in the folder, nor the folder
-/// if it is one, is followed.
+/// Replaces and removes only what Doppel made (see is_written()), and follows no symbolic link in the folder, nor to
+/// it.
 class Transaction {
 public:
-    /// Makes `folder` (and what leads to it) and takes it for this `run`; runs of other names may write other files
-    /// there at the same time. Throws Error (exit 4) where that fails, something else is in its place, or another
-    /// process has such a run there.
+    /// Makes `folder` and its parents, and locks it for runs named `run`; runs of other names may write other files
+    /// there at the same time. Throws Error (exit 4) where that fails or another process has the lock.
     explicit Transaction(const std::filesystem::path& folder, const std::string& run = "run");
     ~Transaction();
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
 
-    /// Where to write the file NAME for now: NAME.part. Throws Error (exit 4) where NAME is taken by something that is
-    /// not Doppel's, or cannot be replaced.
+    /// Where to write the file NAME until publish(): NAME.part. Throws Error (exit 4) where NAME is not Doppel's, or
+    /// cannot be replaced.
     FilePlace file(const std::string& name);
-    /// The same for a folder of files, made empty as NAME.part/. Publishing replaces an older folder NAME as a whole:
-    /// at any time it holds the files of one run.
+    /// The same for a folder of files, made empty as NAME.part/. Publishing replaces an older folder NAME as a whole.
     const Folder& directory(const std::string& name);
-    /// The caller writes NAME.part and renames it on its own: what a killed run leaves of it goes with the next.
+    /// The caller writes NAME.part and renames it itself; if the run is killed, the next one removes NAME.part.
     void note_part(const std::string& name);
-    /// The file NAME, where it is Doppel's, goes when this run is published.
+    /// Publishing removes the file NAME, where it is Doppel's.
     void remove(const std::string& name);
 
-    /// The file or folder is whole.
+    /// The file or folder is complete.
     void finished(const std::string& name);
-    /// What `last` returns: the last steps of a run, its publishing included. Where it throws, what is finished by then
-    /// stays as NAME.part until the next run, and the error (exit 4 where it was none of ours) says so; but an
-    /// interrupted run leaves nothing.
+    /// Returns last(), the final steps of a run including publish(). Where it throws, finished files stay as NAME.part
+    /// until the next run, and the error (exit 4 where it is not an Error) says so; an interrupted run leaves nothing.
     std::vector<std::filesystem::path> keeping_finished(
         const std::function<std::vector<std::filesystem::path>()>& last);
 
-    /// Of the parts so far only the file `name` is kept, and will be published as `new_name`; the others are removed.
-    /// Where it is now.
+    /// Removes all parts but the file `name`, which will be published as `new_name`. Returns where it is now.
     FilePlace keep_only(const std::string& name, const std::string& new_name);
 
     /// The files that are finished, those in folders too: "frames/000000.png", and where each is now.
@@ -61,8 +56,8 @@ public:
     /// Files of earlier runs that manifests name and that stay where they are when this run is published.
     WrittenFiles earlier_files() const;
 
-    /// Gives all parts their names, on the disk, and returns where they are now, in the order in which they were asked
-    /// for. Throws Error (exit 4); then all older files stand where they stood.
+    /// Gives all parts their names, durably; returns their paths in the order of their creation. Throws Error (exit 4),
+    /// and then all older files are unchanged.
     std::vector<std::filesystem::path> publish();
 
     const Folder& folder() const { return folder_; }
@@ -76,7 +71,7 @@ private:
     void recover();
     std::string keep();
     Part& add_part(const std::string& name, bool is_folder);
-    void refuse_strangers(const std::string& name, bool is_folder) const;
+    void refuse_foreign_files(const std::string& name, bool is_folder) const;
     Publication publication();
 
     std::vector<std::filesystem::path> made_;  // folders, outermost first

@@ -12,19 +12,18 @@ extern "C" {
 namespace doppel {
 namespace {
 
-/// Frames wait as what changed in them; the encoder's thread puts that into the one frame it keeps. (Queueing all of a
-/// 1080p frame would add a copy of 0.2 ms: as much as it takes to convert a tenth of one.)
+/// The queue holds what changed from frame to frame; the encoder's thread copies that into the one frame it keeps.
+/// (Queueing all of a 1080p frame would add a copy of 0.2 ms.)
 class VideoSink final : public Sink {
 public:
     VideoSink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop)
-        : samples_(samples_of(options)),
-          encoder_(place, encoding_of(options), stop),
-          encoding_(1, in_hand(byte_count(samples_, all_of(options.size)), 8),
+        : encoder_(place, encoding_of(options), stop),
+          encoding_(1, in_hand(byte_count(pixels_, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { encode(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
         SampledAreas changes = spare_.take();
-        convert(picture, changed, samples_, changes);
+        convert(picture, changed, pixels_, changes);
         encoding_.give(std::move(changes));
     }
 
@@ -38,8 +37,8 @@ private:
         AVFrame& frame = encoder_.frame();
         const std::uint8_t* from = changes.bytes.data();
         for (const Rect& area : changes.areas)
-            for (int k = 0; k < plane_count(samples_); ++k) {
-                const auto [offset, row_bytes, top, rows] = plane_area(samples_, k, area);
+            for (int k = 0; k < av_pix_fmt_count_planes(pixels_); ++k) {
+                const auto [offset, row_bytes, top, rows] = plane_area(pixels_, k, area);
                 const int stride = frame.linesize[k];
                 av_image_copy_plane(frame.data[k] + std::ptrdiff_t{top} * stride + offset, stride, from, row_bytes,
                                     row_bytes, rows);
@@ -49,8 +48,8 @@ private:
         encoder_.send_frame(sent_++, 1);
     }
 
-    const Samples samples_;
     Encoder encoder_;
+    const AVPixelFormat pixels_ = encoder_.pixels();
     std::int64_t sent_ = 0;
     Pool<SampledAreas> spare_;
     Workers<SampledAreas> encoding_;
@@ -68,20 +67,6 @@ std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions
 void check_video(const VideoOptions& options) {
     check_options(options);
     encoding_of(options);
-}
-
-std::string extension(VideoFormat format) {
-    switch (format) {
-        case VideoFormat::mp4:
-            return ".mp4";
-        case VideoFormat::webm:
-            return ".webm";
-        case VideoFormat::gif:
-            return ".gif";
-        case VideoFormat::apng:
-            return ".apng";
-    }
-    return {};
 }
 
 }  // namespace doppel

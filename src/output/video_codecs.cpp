@@ -17,21 +17,24 @@ namespace {
 /// What a codec can have.
 struct Codec {
     VideoFormat format;
+    const char* container;   // libav's name, and that of the file's ending
     std::string_view name;   // VideoOptions::codec's
     std::string_view title;  // as errors have it
     int largest_side;        // px
-    int largest_crf;         // 0 where it has none
-    bool alpha;
+    int largest_crf = 0;     // 0: it has none
+    bool alpha = false;
 };
 
 // the first of a format is its usual one
 constexpr std::array codecs{
-    Codec{VideoFormat::mp4, "h264", "H.264", 16384, 51, false}, Codec{VideoFormat::webm, "vp9", "VP9", 16384, 63, true},
-    Codec{VideoFormat::webm, "av1", "AV1", 16384, 63, false},   Codec{VideoFormat::gif, "", "GIF", 65535, 0, false},
-    Codec{VideoFormat::apng, "", "APNG", 65535, 0, true},
+    Codec{VideoFormat::mp4, "mp4", "h264", "H.264", 16384, 51},
+    Codec{VideoFormat::webm, "webm", "vp9", "VP9", 16384, 63, true},
+    Codec{VideoFormat::webm, "webm", "av1", "AV1", 16384, 63},
+    Codec{VideoFormat::gif, "gif", "", "GIF", 65535},
+    Codec{VideoFormat::apng, "apng", "", "APNG", 65535, 0, true},
 };
 
-/// One rung of x264's ladder, and the one as high of the others' (their speed: the more, the faster).
+/// A preset of x264, and the speed of the other encoders that compares with it (the higher, the faster).
 struct Preset {
     std::string_view name;
     int vpx, svt, aom;
@@ -46,11 +49,11 @@ const Preset* find_preset(std::string_view name) {
     return found == presets.end() ? nullptr : found;
 }
 
-template <class Things, class Word>
-std::string listed(const Things& things, Word Things::value_type::*word) {
-    std::vector<Word> words;
-    for (const auto& thing : things) words.push_back(thing.*word);
-    return fmt::format("{}", fmt::join(words, ", "));
+template <class Things, class Value>
+std::string listed(const Things& things, Value Things::value_type::*member) {
+    std::vector<Value> values;
+    for (const auto& thing : things) values.push_back(thing.*member);
+    return fmt::format("{}", fmt::join(values, ", "));
 }
 
 const Codec& codec_of(const VideoOptions& options) {
@@ -60,8 +63,8 @@ const Codec& codec_of(const VideoOptions& options) {
         if (options.codec.empty() || codec.name == options.codec) return codec;
         of_format.push_back(codec);
     }
-    const auto container = extension(options.format).substr(1);
-    if (of_format.front().name.empty())
+    const auto& [format, container, name, title, side, crf, alpha] = of_format.front();
+    if (name.empty())
         throw bad_input("{} has only one codec, and no name for it; \"{}\" is none", container, options.codec);
     throw bad_input("{} holds {}, not \"{}\"", container, listed(of_format, &Codec::name), options.codec);
 }
@@ -70,9 +73,9 @@ bool is_yuv(const VideoOptions& options) {
     return options.format == VideoFormat::mp4 || options.format == VideoFormat::webm;
 }
 
-/// libav counts a picture's bytes, with room to spare, in 31 bits.
+/// libav's limit: a picture's bytes, with padding, in 31 bits.
 bool libav_takes(Size size) {
-    keep_libav_log();
+    capture_libav_log();
     return av_image_check_size(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height), 0, nullptr) >= 0;
 }
 
@@ -121,7 +124,7 @@ void check_rate(const VideoOptions& options) {
         case VideoFormat::webm:
             limit(1000, "WebM counts milliseconds");
             break;
-        // a frame of 1/100 s is shown for 1/10 s by most that show it
+        // most viewers show a frame of 1/100 s for 1/10 s
         case VideoFormat::gif:
             limit(50, "GIF counts 1/100 s and needs two of them a frame");
             break;
@@ -141,7 +144,7 @@ Metadata vpx_options(const VideoOptions& options) {
     Metadata result{{"deadline", "good"}, {"cpu-used", fmt::to_string(find_preset(options.preset)->vpx)},
                     {"row-mt", "1"},      {"tile-columns", "2"},
                     {"b", "0"},           {"crf", fmt::to_string(options.crf)}};
-    // hidden frames of the colours would have no partner among those of alpha
+    // hidden frames of the colour stream would have no counterpart in that of alpha
     if (options.transparent) result.emplace_back("auto-alt-ref", "0");
     return result;
 }
@@ -162,34 +165,14 @@ std::vector<const char*> av1_encoders(const VideoOptions& options) {
     return svt ? std::vector{"libsvtav1", "libaom-av1"} : std::vector{"libaom-av1"};
 }
 
-AVPixelFormat pixels_of(Samples samples) {
-    switch (samples) {
-        case Samples::yuv420:
-            return AV_PIX_FMT_YUV420P;
-        case Samples::yuv444:
-            return AV_PIX_FMT_YUV444P;
-        case Samples::yuv420_10:
-            return AV_PIX_FMT_YUV420P10LE;
-        case Samples::yuva420:
-            return AV_PIX_FMT_YUVA420P;
-        case Samples::rgb:
-            return AV_PIX_FMT_RGB24;
-        case Samples::rgba:
-            return AV_PIX_FMT_RGBA;
-    }
-    return AV_PIX_FMT_NONE;
-}
-
 void choose_encoder(const VideoOptions& options, Encoding& encoding) {
     switch (options.format) {
         case VideoFormat::mp4:
-            encoding.container = "mp4";
             encoding.encoder = &find_encoder({"libx264"}, AV_CODEC_ID_H264);
             encoding.encoder_options = x264_options(options);
             encoding.container_options = {{"movflags", "+faststart"}};
             break;
         case VideoFormat::webm:
-            encoding.container = "webm";
             if (codec_of(options).name == "av1") {
                 encoding.encoder = &find_encoder(av1_encoders(options), AV_CODEC_ID_AV1);
                 encoding.encoder_options = av1_options(options, encoding.encoder->name);
@@ -199,18 +182,23 @@ void choose_encoder(const VideoOptions& options, Encoding& encoding) {
             }
             break;
         case VideoFormat::gif:
-            encoding.container = "gif";
             encoding.encoder = &find_encoder({"gif"}, AV_CODEC_ID_GIF);
-            encoding.pixels = AV_PIX_FMT_PAL8;
             encoding.tick = {1, 100};
             break;
         case VideoFormat::apng:
-            encoding.container = "apng";
             encoding.encoder = &find_encoder({"apng"}, AV_CODEC_ID_APNG);
             encoding.container_options = {{"plays", "0"}};
             encoding.png_chunks = png_text_chunks(options.metadata);
             break;
     }
+}
+
+AVPixelFormat pixels_of(const VideoOptions& options) {
+    if (options.format == VideoFormat::gif) return AV_PIX_FMT_PAL8;
+    if (options.format == VideoFormat::apng) return options.transparent ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
+    if (options.pixel_format == PixelFormat::yuv444) return AV_PIX_FMT_YUV444P;
+    if (options.pixel_format == PixelFormat::yuv420_10) return AV_PIX_FMT_YUV420P10LE;
+    return options.transparent ? AV_PIX_FMT_YUVA420P : AV_PIX_FMT_YUV420P;
 }
 
 }  // namespace
@@ -230,25 +218,11 @@ void check_options(const VideoOptions& options) {
         throw bad_input("crf of {} must be 0 … {}; it is {}", codec.title, codec.largest_crf, options.crf);
 }
 
-Samples samples_of(const VideoOptions& options) {
-    if (options.format == VideoFormat::gif) return Samples::rgb;
-    if (options.format == VideoFormat::apng) return options.transparent ? Samples::rgba : Samples::rgb;
-    switch (options.pixel_format) {
-        case PixelFormat::yuv420:
-            break;
-        case PixelFormat::yuv444:
-            return Samples::yuv444;
-        case PixelFormat::yuv420_10:
-            return Samples::yuv420_10;
-    }
-    return options.transparent ? Samples::yuva420 : Samples::yuv420;
-}
-
 Encoding encoding_of(const VideoOptions& options) {
     const AVRational rate{options.fps_numerator, options.fps_denominator};
-    Encoding encoding{.container = nullptr,
+    Encoding encoding{.container = codec_of(options).container,
                       .encoder = nullptr,
-                      .pixels = pixels_of(samples_of(options)),
+                      .pixels = pixels_of(options),
                       .size = options.size,
                       .frame_rate = rate,
                       .tick = av_inv_q(rate),
@@ -256,6 +230,10 @@ Encoding encoding_of(const VideoOptions& options) {
                       .metadata = options.metadata};
     choose_encoder(options, encoding);
     return encoding;
+}
+
+std::string extension(VideoFormat format) {
+    return std::string(".") + std::ranges::find(codecs, format, &Codec::format)->container;
 }
 
 }  // namespace doppel

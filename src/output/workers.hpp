@@ -15,13 +15,13 @@
 
 namespace doppel {
 
-/// Hands things from one thread to another, a bounded number at a time: the faster side waits for the slower.
+/// A bounded queue between threads (monitor: mutex and condition variables).
 template <class T>
 class Queue {
 public:
     explicit Queue(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Waits for room. False where the queue was closed: the thing was not taken.
+    /// Waits for room. False where the queue is closed; nothing is pushed then.
     bool push(T thing) {
         std::unique_lock lock(mutex_);
         room_.wait(lock, [&] { return closed_ || things_.size() < capacity_; });
@@ -31,7 +31,7 @@ public:
         return true;
     }
 
-    /// Waits for the next thing. Nothing where the queue is closed and empty.
+    /// Waits for an element. Nothing where the queue is closed and empty.
     std::optional<T> pop() {
         std::unique_lock lock(mutex_);
         filled_.wait(lock, [&] { return closed_ || !things_.empty(); });
@@ -42,7 +42,7 @@ public:
         return thing;
     }
 
-    /// No more will come; what is in it can still be taken.
+    /// No push follows; what is queued can still be popped.
     void close() {
         std::lock_guard lock(mutex_);
         closed_ = true;
@@ -50,7 +50,7 @@ public:
         filled_.notify_all();
     }
 
-    /// Closes, and forgets what is in it.
+    /// Closes, and discards what is queued.
     void abandon() {
         close();
         std::lock_guard lock(mutex_);
@@ -65,11 +65,11 @@ private:
     bool closed_ = false;
 };
 
-/// Things that are used again, with the memory they have: one thread takes, others give back.
+/// Objects that are used again, with the memory they hold; thread-safe.
 template <class T>
 class Pool {
 public:
-    /// One that was given back, or a new one.
+    /// An object that was given back, or a new one.
     T take() {
         const std::lock_guard hold(mutex_);
         if (free_.empty()) return {};
@@ -88,14 +88,13 @@ private:
     std::vector<T> free_;
 };
 
-/// Threads that do a piece of work each time they are given something, first come first served. The first error of any
-/// of them stops them all and is thrown to whoever gives or finishes. Destroyed unfinished, they drop what waits for
-/// them.
+/// A thread pool that calls work() for each object given, in order of arrival. The first exception stops all threads
+/// and is rethrown by give() or finish(). Destroyed unfinished, it discards what is queued.
 template <class T>
 class Workers {
 public:
-    /// `threads` of them, or as many as there are to be had; throws Error (exit 4) where there is none. At most
-    /// `waiting` things wait; then give() does.
+    /// `threads`, or as many as the system allows; throws Error (exit 4) where it allows none. give() blocks while
+    /// `waiting` objects are queued.
     Workers(std::size_t threads, std::size_t waiting, std::function<void(T&)> work)
         : queue_(waiting), work_(std::move(work)), threads_(start_threads(threads, [this] { run(); })) {
         if (threads_.empty()) throw no_thread();
@@ -108,7 +107,7 @@ public:
         if (!queue_.push(std::move(thing))) std::rethrow_exception(error_);
     }
 
-    /// Waits until all that was given is done.
+    /// Waits until all work is done.
     void finish() {
         queue_.close();
         threads_.clear();

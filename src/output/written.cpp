@@ -2,11 +2,17 @@
 
 #include "base/error.hpp"
 
+extern "C" {
+#include <libavutil/mem.h>
+#include <libavutil/sha.h>
+}
+
 #include <nlohmann/json.hpp>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <new>
 #include <string_view>
 
 namespace doppel {
@@ -14,18 +20,36 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The first bytes of a file, `most` of them; none where it cannot be read.
+/// SHA-256, by libavutil.
+class Hash {
+public:
+    Hash() : sha_(av_sha_alloc()) {
+        if (!sha_) throw std::bad_alloc();
+        av_sha_init(sha_.get(), 256);
+    }
+
+    void add(const void* bytes, std::size_t count) {
+        av_sha_update(sha_.get(), static_cast<const std::uint8_t*>(bytes), count);
+    }
+
+    std::string digits() {
+        std::array<std::uint8_t, 32> digest;
+        av_sha_final(sha_.get(), digest.data());
+        return fmt::format("{:02x}", fmt::join(digest, ""));
+    }
+
+private:
+    Owned<AVSHA, av_free> sha_;
+};
+
+/// The first bytes of a file, at most `most`; none where it cannot be read.
 std::string head_of(const Folder& folder, const std::string& name, std::size_t most) {
     try {
-        const Descriptor file = open_file({folder, name});
+        const FilePlace place{folder, name};
+        const Stream file = stream_of(open_file(place), "rb", place.path, "read");
         std::string bytes(std::min<std::size_t>(most, folder.entry(name).bytes), '\0');
-        std::size_t got = 0;
-        while (got < bytes.size()) {
-            const auto more = read(file.number(), bytes.data() + got, bytes.size() - got);
-            if (more <= 0) break;
-            got += static_cast<std::size_t>(more);
-        }
-        return bytes.substr(0, got);
+        bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+        return bytes;
     } catch (const Error&) {
         return {};
     }
@@ -59,7 +83,7 @@ WrittenFiles written_files(const Folder& folder) {
             if (const auto earlier = manifest.find("earlier_files"); earlier != manifest.end())
                 add_files(written, *earlier);
         } catch (const Json::exception&) {
-            // somebody changed it: what it says further is not believed
+            // not as Doppel wrote it: the rest is ignored
         }
     }
     return written;
@@ -83,6 +107,21 @@ bool is_written(const Folder& folder, const std::string& name, const WrittenFile
     if (maker_of_picture(folder, name).starts_with("Doppel")) return true;
     const auto head = head_of(folder, name, 64);
     return head.starts_with("sample,time_s,") || head.starts_with(R"({"file":"doppel trials")");
+}
+
+std::string sha256_of_file(const FilePlace& place) {
+    const Stream file = stream_of(open_file(place), "rb", place.path, "read");
+    Hash hash;
+    std::array<std::uint8_t, std::size_t{1} << 16> block;
+    while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) hash.add(block.data(), n);
+    if (std::ferror(file.get())) throw cannot(place.path, "read");
+    return hash.digits();
+}
+
+std::string sha256_of_text(std::string_view text) {
+    Hash hash;
+    hash.add(text.data(), text.size());
+    return hash.digits();
 }
 
 }  // namespace doppel

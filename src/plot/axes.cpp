@@ -59,9 +59,9 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
         list.push_back(
             vertical_line(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.line, style.theme.frame));
         if (!named) continue;
-        const Label words = label(tick.text, {at, baseline}, em, style.theme.quiet_text, Align::center);
-        const Area box = text_area(words);
-        if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(words);
+        const Label text = label(tick.text, {at, baseline}, em, style.theme.quiet_text, Align::center);
+        const Area box = text_area(text);
+        if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(text);
     }
     const Weight weight = Weight::regular;
     const float size = fitting_size(plot.x.label, style.axis, weight, held.width());

@@ -6,12 +6,11 @@
 
 namespace doppel {
 
-/// Ticks for words beside a vertical axis, and below a horizontal one.
+/// Ticks with labels beside a vertical axis, and below a horizontal one.
 std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
 std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
 
-/// The grid, the axes, their ticks and words, and the label below. `held` is what the words must not leave; `right` may
-/// be null.
+/// The grid, the axes, their ticks with labels, and the x axis's label. No text leaves `held`; `right` may be null.
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
                const PlotStyle& style, DisplayList& list);
 

@@ -69,7 +69,7 @@ int decade_below(long double value) {
 }
 
 /// The same for k steps of an axis that reaches to `most`.
-std::string tick_words(const Step& step, long long k, double most) {
+std::string tick_text(const Step& step, long long k, double most) {
     const long long number = k * step.multiple;
     if (number == 0) return step.exponent < 0 && most < 1e6 && most >= 1e-4 ? decimal(0, step.exponent) : "0";
     if (most >= 1e-4 && most < 1e6) return decimal(number, step.exponent);
@@ -77,15 +77,15 @@ std::string tick_words(const Step& step, long long k, double most) {
     return fmt::format("{} × {}", decimal(number, step.exponent - power), power_of_ten(power));
 }
 
-/// Whether the words stand apart and the ticks too.
-bool fits(const std::vector<Tick>& ticks, const Axis& axis, const TickWords& words) {
+/// Whether labels and ticks are far enough apart.
+bool fits(const std::vector<Tick>& ticks, const Axis& axis, const TickLabels& labels) {
     const Tick* before = nullptr;
     for (const Tick& tick : ticks) {
         if (tick.text.empty()) continue;
         if (before) {
             const float distance = std::abs(axis.at(tick.value) - axis.at(before->value));
-            const float need = (words.length(before->text) + words.length(tick.text)) / 2 + words.gap;
-            if (tick.text == before->text || distance < std::max(need, words.spacing)) return false;
+            const float need = (labels.length(before->text) + labels.length(tick.text)) / 2 + labels.gap;
+            if (tick.text == before->text || distance < std::max(need, labels.spacing)) return false;
         }
         before = &tick;
     }
@@ -105,24 +105,24 @@ std::vector<Tick> multiples(const Step& step, double low, double high) {
     while (first <= last && step.times(last) > high) --last;
     const double reach = std::max(std::abs(low), std::abs(high));
     std::vector<Tick> ticks;
-    for (long long k = first; k <= last; ++k) ticks.push_back({step.times(k), tick_words(step, k, reach)});
+    for (long long k = first; k <= last; ++k) ticks.push_back({step.times(k), tick_text(step, k, reach)});
     return ticks;
 }
 
-std::vector<Tick> linear_ticks(const Axis& axis, const TickWords& words) {
+std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
     const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
     const long double span = static_cast<long double>(high) - low;
     const float room = std::abs(axis.to - axis.from);
     if (!(span > 0 && room > 0)) return {};
     // from the smallest step that could fit to the first that does
-    const long double least = span * std::max(1.0f, words.spacing) / room;
+    const long double least = span * std::max(1.0f, labels.spacing) / room;
     std::vector<Tick> best;
     for (int exponent = decade_below(least); exponent <= decade_below(span) + 1; ++exponent) {
         for (const long long nice : {1, 2, 5}) {
             const Step step{nice, exponent};
             if (step.value() < 0.999999L * least) continue;
             auto ticks = multiples(step, low, high);
-            if (!fits(ticks, axis, words)) continue;
+            if (!fits(ticks, axis, labels)) continue;
             if (ticks.size() >= 2) return ticks;
             if (ticks.size() > best.size()) best = std::move(ticks);
         }
@@ -131,19 +131,19 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickWords& words) {
 }
 
 /// Multiples of what was asked for, to ten digits; none where no two of them fit.
-std::vector<Tick> asked_ticks(const Axis& axis, const TickWords& words, double every) {
+std::vector<Tick> asked_ticks(const Axis& axis, const TickLabels& labels, double every) {
     int exponent = decade_below(every) - 9;
     auto number = static_cast<long long>(std::llround(every / std::pow(10.0L, exponent)));
     for (; number % 10 == 0; number /= 10) ++exponent;
     for (long long times = 1; times <= 64; times *= 2) {
         auto ticks =
             multiples({number * times, exponent}, std::min(axis.low, axis.high), std::max(axis.low, axis.high));
-        if (ticks.size() >= 2 && fits(ticks, axis, words)) return ticks;
+        if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
     }
     return {};
 }
 
-/// 1, 2 and 5 times each decade, in words.
+/// 1, 2 and 5 times each decade, with labels.
 std::vector<Tick> subdivided(double low, double high) {
     std::vector<Tick> ticks;
     const bool plain = low >= 1e-4 && high < 1e6;
@@ -159,7 +159,7 @@ std::vector<Tick> subdivided(double low, double high) {
     return ticks;
 }
 
-/// Every n-th decade in words, those between without; with ticks inside the decades where these are wide.
+/// Every n-th decade with a label, the others without; with ticks inside the decades where these are wide.
 std::vector<Tick> decades(const Axis& axis, double low, double high, int every) {
     std::vector<Tick> ticks;
     const int first = decade_below(low), last = decade_below(high);
@@ -180,38 +180,38 @@ std::size_t named(const std::vector<Tick>& ticks) {
         std::count_if(ticks.begin(), ticks.end(), [](const Tick& tick) { return !tick.text.empty(); }));
 }
 
-std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickWords& words, std::optional<double> every) {
+std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every) {
     const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
     if (!(low > 0 && low < high)) return {};
     if (every) return decades(axis, low, high, static_cast<int>(*every));
     const double span = std::log10(high) - std::log10(low);
     if (span < 2) {
         auto ticks = subdivided(low, high);
-        if (ticks.size() >= 2 && fits(ticks, axis, words)) return ticks;
+        if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
     }
     if (span >= 1) {
         for (const int n : {1, 2, 3, 5, 10, 20, 30, 50, 100, 200}) {
             auto ticks = decades(axis, low, high, n);
-            if (named(ticks) >= 2 && fits(ticks, axis, words)) return ticks;
+            if (named(ticks) >= 2 && fits(ticks, axis, labels)) return ticks;
         }
     }
-    return linear_ticks(axis, words);
+    return linear_ticks(axis, labels);
 }
 
 }  // namespace
 
-float TickWords::length(const std::string& text) const {
+float TickLabels::length(const std::string& text) const {
     return across ? text_width(text, size) : size;
 }
 
-std::vector<Tick> chart_ticks(const Axis& axis, const TickWords& words, std::optional<double> every) {
+std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every) {
     if (!std::isfinite(axis.low) || !std::isfinite(axis.high)) return {};
-    if (axis.logarithmic) return logarithmic_ticks(axis, words, every);
+    if (axis.logarithmic) return logarithmic_ticks(axis, labels, every);
     if (every) {
-        auto ticks = asked_ticks(axis, words, *every);
+        auto ticks = asked_ticks(axis, labels, *every);
         if (!ticks.empty()) return ticks;
     }
-    return linear_ticks(axis, words);
+    return linear_ticks(axis, labels);
 }
 
 }  // namespace doppel

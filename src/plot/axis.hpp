@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-/// A mark on an axis and its words; `text` is empty where a line is enough.
+/// A tick of an axis; `text` is its label, empty where it has none.
 struct Tick {
     double value;
     std::string text;
@@ -19,7 +19,7 @@ struct Axis {
     float from = 0, to = 1;  // px
     bool logarithmic = false;
 
-    /// How far along the axis, 0 at low and 1 at high; beyond, outside. Not a number where a logarithm is none.
+    /// How far along the axis, 0 at low and 1 at high; beyond, outside. NaN where it has no logarithm.
     double share(double value) const;
 
     /// px; values outside are moved to the nearest end, so that a trace stays in its frame.
@@ -29,22 +29,22 @@ struct Axis {
 /// "10⁻⁴"; 1 and 10 are written as people write them.
 std::string power_of_ten(int exponent);
 
-/// What the words at the ticks of an axis need.
-struct TickWords {
+/// Size and spacing of the labels at ticks.
+struct TickLabels {
     float size = 19;     // px an em
-    float gap = 12;      // px between words
+    float gap = 12;      // px between labels
     float spacing = 40;  // px between ticks, at least
-    bool across = true;  // the axis is horizontal: words need their width, else their height
+    bool across = true;  // the axis is horizontal: labels need their width, else their height
 
     /// px that `text` takes along the axis.
     float length(const std::string& text) const;
 };
 
-/// Ticks of a chart, ascending, with distinct words that do not come closer than `gap`: multiples of `every` (or of
-/// twice, four times … as much) where it is given and two of them fit, else 1, 2 or 5 times a power of ten. On a
-/// logarithmic axis whole decades (and nameless ticks within), over less than two decades also their double and
-/// fivefold; where `every` is given, each so many decades are named. Never more digits than the step has; "1.5 × 10⁻⁷" below 0.0001 and from a million on; a true minus sign.
-/// None where a double cannot tell neighbours apart.
-std::vector<Tick> chart_ticks(const Axis& axis, const TickWords& words, std::optional<double> every = {});
+/// Ticks of a chart, ascending, with distinct labels at least `gap` apart: multiples of `every` (or of twice, four
+/// times … as much) where it is given and two of them fit, else 1, 2 or 5 times a power of ten. On a logarithmic axis
+/// whole decades (and ticks without labels within), over less than two decades also their double and fivefold; where
+/// `every` is given, every so many decades have a label. Never more digits than the step has; "1.5 × 10⁻⁷" below 0.0001
+/// and from a million on; a true minus sign. None where a double cannot tell neighbours apart.
+std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every = {});
 
 }  // namespace doppel

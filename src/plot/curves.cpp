@@ -1,6 +1,5 @@
 #include "plot/curves.hpp"
 
-#include "plot/raster.hpp"
 #include "render/stroke.hpp"
 
 #include <algorithm>
@@ -32,7 +31,7 @@ public:
 
 private:
     void clip(Place from, Place to) {
-        const auto within = shares_within(area_, from.x, from.y, to.x, to.y);
+        const auto within = clip_segment(area_, from.x, from.y, to.x, to.y);
         if (!within) {
             joined_ = false;
             return;
@@ -127,7 +126,7 @@ void draw_dashes(const std::vector<Point>& line, float dash, float gap, Pen& pen
     pen.down(line.front());
     for (std::size_t i = 1; i < line.size(); ++i) {
         const Point from = line[i - 1], to = line[i];
-        const float length = std::hypot(to.x - from.x, to.y - from.y);
+        const float length = distance(from, to);
         float gone = 0;
         while (length - gone > left) {
             gone += left;
@@ -144,15 +143,15 @@ void draw_dashes(const std::vector<Point>& line, float dash, float gap, Pen& pen
 }
 
 /// A line for the others to lie on.
-void draw_ground(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
-                 DisplayList& list) {
+void draw_background(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
+                     DisplayList& list) {
     std::vector<std::vector<Point>> lines;
     Clipper clipper(area, lines);
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
         std::isfinite(at.x) && std::isfinite(at.y) ? clipper.move(at) : clipper.lift();
     }
-    if (curve.ground == Ground::band)
+    if (curve.background == Background::band)
         draw_line(lines, 6 * style.curve, false, mixed(style.theme.background, style.theme.open, 0.22f), style, list);
     else
         draw_line(lines, style.thin, curve.dashed,
@@ -165,7 +164,7 @@ constexpr std::size_t many = 400;  // marks in a panel: from here on they are dr
 
 DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area) {
     DrawnCurve made;
-    if (curve.ground != Ground::none) return made;
+    if (curve.background != Background::none) return made;
     Clipper clipper(area, made.lines);
     Thinner thinner(clipper);
     const bool dense = static_cast<float>(curve.x.size()) > 2 * area.width();
@@ -197,7 +196,7 @@ Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
 
 void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
                DisplayList& list) {
-    if (curve.ground != Ground::none) draw_ground(curve, x, y, area, style, list);
+    if (curve.background != Background::none) draw_background(curve, x, y, area, style, list);
     if (curve.uncertainty.empty()) return;
     Band band;
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -242,8 +241,8 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, c
     if (drawn.marks_in_panel > many) {
         const float share = static_cast<float>(many) / static_cast<float>(drawn.marks_in_panel);
         radius = std::max(radius * std::sqrt(share), 0.75f * style.unit);
-        if (over_map) list.push_back(cloud_image(drawn.points, radius + casing, edge, area, style.scale));
-        list.push_back(cloud_image(drawn.points, radius, color, area, style.scale));
+        if (over_map) list.push_back(scatter_image(drawn.points, radius + casing, edge, area, style.scale));
+        list.push_back(scatter_image(drawn.points, radius, color, area, style.scale));
         return;
     }
     for (const Point& at : drawn.points) {

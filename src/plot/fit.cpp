@@ -22,8 +22,8 @@ public:
         high_ = std::max(high_, value);
     }
 
-    /// What `axis` does not set, with `air` on either side, of the range.
-    Axis range(const PlotAxis& axis, double air) const {
+    /// What `axis` does not set, with `margin` on either side, of the range.
+    Axis range(const PlotAxis& axis, double margin) const {
         double low = low_, high = high_;
         if (!(low <= high)) low = logarithmic_ ? 1 : 0, high = logarithmic_ ? 10 : 1;
         // one end given on the wrong side of the values: the other one beyond it
@@ -31,11 +31,11 @@ public:
         if (axis.high && !axis.low) low = below(*axis.high, low), high = std::max(*axis.high, high);
         if (low == high) low = below(low, low), high = above(high, high);
         if (logarithmic_) {
-            const double part = std::pow(10.0, air * (std::log10(high) - std::log10(low)));
+            const double part = std::pow(10.0, margin * (std::log10(high) - std::log10(low)));
             low = std::max(low / part, std::numeric_limits<double>::min());
             high = std::min(high * part, greatest);
         } else {
-            const double part = 2 * air * (high / 2 - low / 2);
+            const double part = 2 * margin * (high / 2 - low / 2);
             low = low >= 0 && low < part ? 0 : std::max(low - part, -greatest);
             high = std::min(high + part, greatest);
         }

@@ -11,7 +11,7 @@ struct PlotRanges {
     std::optional<Axis> right;
 };
 
-/// What was asked for; the rest holds all that is drawn, with a little air (none around a map, none below a zero).
+/// What was asked for; the rest holds all that is drawn, with a little margin (none around a map, none below a zero).
 PlotRanges fitted_ranges(const Plot& plot);
 
 /// The range of a map's colours.

@@ -11,9 +11,9 @@
 namespace doppel {
 namespace {
 
+/// Opaque.
 void set_pixel(Picture& picture, int x, int y, Color color) {
-    std::uint8_t* rgba = picture.at(x, y);
-    rgba[0] = byte_of(color.r), rgba[1] = byte_of(color.g), rgba[2] = byte_of(color.b), rgba[3] = 255;
+    std::ranges::copy(bytes_of(color.with_alpha(1)), picture.at(x, y));
 }
 
 constexpr float heading_width = 7.5f;  // em
@@ -23,14 +23,14 @@ struct Bar {
     Axis axis;  // from its bottom up, px below the top of the panel
     std::vector<Tick> ticks;
     std::vector<std::string> none;  // lines
-    float thickness, words_left, width, none_top;
+    float thickness, text_left, width, none_top;
 };
 
 Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
     Bar bar;
     const float em = style.tick;
     bar.thickness = std::round(0.95f * em);
-    bar.words_left = bar.thickness + 0.5f * em;
+    bar.text_left = bar.thickness + 0.5f * em;
     bar.axis = fitted_scale(map);
     float none_height = 0;
     if (!map.none_label.empty()) {
@@ -41,10 +41,7 @@ Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
     bar.axis.from = std::round(bar.none.empty() ? height : std::max(bar.none_top - 0.8f * em, 0.3f * height));
     bar.axis.to = 0;
     bar.ticks = chart_ticks(bar.axis, {.size = em, .gap = 0.6f * em, .spacing = 2.4f * em, .across = false});
-    float widest = 0;
-    for (const Tick& tick : bar.ticks) widest = std::max(widest, text_width(tick.text, em));
-    for (const std::string& line : bar.none) widest = std::max(widest, text_width(line, em));
-    bar.width = bar.words_left + widest;
+    bar.width = bar.text_left + std::max(widest(bar.ticks, em), widest(bar.none, em));
     return bar;
 }
 
@@ -146,10 +143,8 @@ Color none_color(const HeatMap& map, const Theme& theme) {
 }
 
 float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
-    float widest = 0;
-    for (const std::string& line : bar_heading(map, style).lines)
-        widest = std::max(widest, text_width(line, style.tick));
-    return 1.2f * style.tick + std::max(widest, make_bar(map, below_heading(map, height, style), style).width);
+    return 1.2f * style.tick + std::max(widest(bar_heading(map, style).lines, style.tick),
+                                        make_bar(map, below_heading(map, height, style), style).width);
 }
 
 void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
@@ -167,8 +162,8 @@ void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle&
     const Bar bar = make_bar(map, area.height(), style);
     const float em = style.tick, start = std::round(left + 1.2f * em), ticks_left = start + bar.thickness;
     list.push_back(colors(bar, start, area.top, style.scale));
-    const auto words = [&](const std::string& text, float middle) {
-        const Point at{start + bar.words_left, area.top + middle + 0.36f * em};
+    const auto write = [&](const std::string& text, float middle) {
+        const Point at{start + bar.text_left, area.top + middle + 0.36f * em};
         list.push_back(label(text, at, em, style.theme.quiet_text));
     };
     for (const Tick& tick : bar.ticks) {
@@ -176,15 +171,15 @@ void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle&
         const float y = bar.axis.at(tick.value);
         list.push_back(
             horizontal_line(area.top + y, ticks_left, ticks_left + 0.25f * em, style.line, style.theme.frame));
-        words(tick.text, y);
+        write(tick.text, y);
     }
-    // centred on the tick as all words are, so none is above the panel by more than half a line
+    // centred on the tick as all labels are, so none is above the panel by more than half a line
     if (bar.none.empty()) return;
     const float top = std::round(area.top + bar.none_top + 0.1f * em);
     list.push_back(
         Box{start, top, start + bar.thickness, top + std::round(0.95f * em), 0, none_color(map, style.theme)});
     for (std::size_t i = 0; i < bar.none.size(); ++i)
-        words(bar.none[i], bar.none_top + (0.6f + 1.2f * static_cast<float>(i)) * em);
+        write(bar.none[i], bar.none_top + (0.6f + 1.2f * static_cast<float>(i)) * em);
 }
 
 }  // namespace doppel

@@ -10,7 +10,7 @@ namespace doppel {
 Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
                 Color none, float scale);
 
-/// px that the bar of a map and its words take on the right of a panel `height` px high.
+/// px that the colour bar of a map and its labels take on the right of a panel `height` px high.
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
 
 /// The bar beside `area`, from `left` on: colours with ticks, and below them what stands for no value.

@@ -10,8 +10,61 @@
 namespace doppel {
 namespace {
 
-/// Words of a curve, or of a rule, before they have a place.
-struct Words {
+constexpr float square = 3;  // px
+
+std::uint64_t bit(std::size_t owner) {
+    return std::uint64_t{1} << (owner % LabelPlacer::no_owner);
+}
+
+}  // namespace
+
+LabelPlacer::LabelPlacer(const Area& area)
+    : area_(area),
+      columns_(std::max(1, static_cast<int>(std::ceil(area.width() / square)))),
+      rows_(std::max(1, static_cast<int>(std::ceil(area.height() / square)))),
+      drawn_(static_cast<std::size_t>(columns_) * rows_) {}
+
+void LabelPlacer::add_line(Point from, Point to, std::size_t owner) {
+    const float length = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
+    const int steps = 1 + static_cast<int>(length / square * 1.5f);
+    for (int i = 0; i <= steps; ++i) {
+        const float part = static_cast<float>(i) / static_cast<float>(steps);
+        const int column = static_cast<int>((std::lerp(from.x, to.x, part) - area_.left) / square);
+        const int row = static_cast<int>((std::lerp(from.y, to.y, part) - area_.top) / square);
+        if (column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
+        drawn_[static_cast<std::size_t>(row) * columns_ + column] |= bit(owner);
+    }
+}
+
+LabelPlacer::Squares LabelPlacer::squares(const Area& box) const {
+    const auto within = [](float v, int most) {
+        return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(most)));
+    };
+    return {within(std::floor((box.left - area_.left) / square), columns_),
+            within(std::floor((box.top - area_.top) / square), rows_),
+            within(std::ceil((box.right - area_.left) / square), columns_),
+            within(std::ceil((box.bottom - area_.top) / square), rows_)};
+}
+
+int LabelPlacer::ink(const Area& box, std::size_t except) const {
+    const std::uint64_t others = except == no_owner ? ~std::uint64_t{0} : ~bit(except);
+    const Squares part = squares(box);
+    int count = 0;
+    for (int row = part.top; row < part.bottom; ++row)
+        for (int column = part.left; column < part.right; ++column)
+            count += (drawn_[static_cast<std::size_t>(row) * columns_ + column] & others) != 0;
+    return count;
+}
+
+bool LabelPlacer::is_free(const Area& box) const {
+    return area_.holds(box) &&
+           std::none_of(texts_.begin(), texts_.end(), [&](const Area& text) { return text.overlaps(box); });
+}
+
+namespace {
+
+/// The label of a curve or rule before it has a place.
+struct LabelText {
     std::string text;
     float size;
     Weight weight;
@@ -30,7 +83,7 @@ struct Found {
     float cost;
 };
 
-/// Words on a map need a ground of their own.
+/// A label; on a map with a dark box behind it.
 void write(const Label& label, bool over_map, DisplayList& list) {
     if (over_map) {
         const Area box = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
@@ -47,7 +100,7 @@ std::vector<Point> places(const DrawnCurve& curve) {
         for (std::size_t i = 0; i < line.size(); ++i) {
             if (i > 0) {
                 // long straight pieces have places within
-                const float length = std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
+                const float length = distance(line[i], line[i - 1]);
                 const int parts = static_cast<int>(std::min(length / 24, 40.0f));
                 for (int k = 1; k < parts; ++k) {
                     const float part = static_cast<float>(k) / static_cast<float>(parts);
@@ -71,15 +124,15 @@ std::vector<Point> places(const DrawnCurve& curve) {
 }
 
 /// The best place beside the curve that touches nothing.
-std::optional<Found> beside(const DrawnCurve& curve, std::size_t who, const Words& words, float clear,
-                            const LabelPlacer& room) {
+std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const LabelText& text, float clear,
+                            const LabelPlacer& placer) {
     std::optional<Found> best;
-    const float w = words.width(), h = words.height(), gap = clear + 0.3f * words.size;
+    const float w = text.width(), h = text.height(), gap = clear + 0.3f * text.size;
     const std::vector<Point> at = places(curve);
     for (std::size_t i = 0; i < at.size(); ++i) {
         const Point p = at[i];
         const bool end = i == 0 || i + 1 == at.size();
-        const float far_left = (at.front().x - p.x) / std::max(room.area().width(), 1.0f);
+        const float far_left = (at.front().x - p.x) / std::max(placer.area().width(), 1.0f);
         for (const float across : {1.0f, 0.5f, 0.0f}) {
             for (const float down : {0.5f, 0.0f, 1.0f}) {
                 if (across == 0.5f && down == 0.5f) continue;
@@ -87,51 +140,54 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t who, const Word
                 const float left = across == 1 ? p.x + gap : across == 0 ? p.x - gap - w : p.x - w / 2;
                 const float top = down == 1 ? p.y + gap : down == 0 ? p.y - gap - h : p.y - h / 2;
                 const Area box{left, top, left + w, top + h};
-                const float air = 0.28f * words.size;
+                const float margin = 0.28f * text.size;
                 float cost = 1.2f * far_left + (down == 0.5f     ? (end && across == 1 ? -0.3f : 0.4f)
                                                 : across == 0.5f ? 0.15f
                                                                  : 0);
                 if (best && cost >= best->cost) continue;
-                if (!room.is_free(box.grown(air, 0.5f * air)) || room.ink(box.grown(air, 0.5f * air)) > 0) continue;
-                // whose words they are must be plain
-                if (room.ink(box.grown(1.0f * words.size, 0.8f * words.size), who) > 0) cost += 0.7f;
-                if (!best || cost < best->cost) best = Found{words.at(left, top), cost};
+                if (!placer.is_free(box.grown(margin, 0.5f * margin)) ||
+                    placer.ink(box.grown(margin, 0.5f * margin)) > 0)
+                    continue;
+                // near other curves it is unclear whose label it is
+                if (placer.ink(box.grown(1.0f * text.size, 0.8f * text.size), owner) > 0) cost += 0.7f;
+                if (!best || cost < best->cost) best = Found{text.at(left, top), cost};
             }
         }
     }
     return best;
 }
 
-/// A place upon the curve, where the words hide least of the others.
-std::optional<Found> upon(const DrawnCurve& curve, std::size_t who, const Words& words, const LabelPlacer& room) {
+/// A place on the curve, where the label hides least of the others.
+std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const LabelText& text,
+                          const LabelPlacer& placer) {
     std::optional<Found> best;
-    const float w = words.width(), h = words.height(), air = 0.15f * words.size;
+    const float w = text.width(), h = text.height(), margin = 0.15f * text.size;
     for (const Point& p : places(curve)) {
         const Area box{p.x - w / 2, p.y - h / 2, p.x + w / 2, p.y + h / 2};
-        if (!room.is_free(box.grown(2 * air, air))) continue;
-        const auto cost = static_cast<float>(room.ink(box.grown(air, air), who));
-        if (!best || cost < best->cost) best = Found{words.at(box.left, box.top), cost};
+        if (!placer.is_free(box.grown(2 * margin, margin))) continue;
+        const auto cost = static_cast<float>(placer.ink(box.grown(margin, margin), owner));
+        if (!best || cost < best->cost) best = Found{text.at(box.left, box.top), cost};
     }
     return best;
 }
 
-/// A place above or below a single mark, off all lines, with a line that leads to it.
-std::optional<Found> led_to(Point mark, const Words& words, const LabelPlacer& room, Capsule& leader) {
+/// A place above or below a single mark, off all lines, and the leader line to it.
+std::optional<Found> with_leader(Point mark, const LabelText& text, const LabelPlacer& placer, Capsule& leader) {
     constexpr int farthest = 12;  // half lines
-    const float w = words.width(), h = words.height(), air = 0.15f * words.size;
+    const float w = text.width(), h = text.height(), margin = 0.15f * text.size;
     for (int away = 2; away <= farthest; ++away)
         for (const float across : {0.5f, 0.8f, 0.2f, 1.0f, 0.0f})
             for (const float way : {-1.0f, 1.0f}) {
                 const float middle = mark.y + 0.5f * way * static_cast<float>(away) * h;
                 const Area box{mark.x - across * w, middle - h / 2, mark.x + (1 - across) * w, middle + h / 2};
-                if (!room.is_free(box.grown(2 * air, 0)) || room.ink(box.grown(air, 0)) > 0) continue;
-                leader = {mark, {mark.x, way < 0 ? box.bottom : box.top}, 0, words.color};
-                return Found{words.at(box.left, box.top), 0};
+                if (!placer.is_free(box.grown(2 * margin, 0)) || placer.ink(box.grown(margin, 0)) > 0) continue;
+                leader = {mark, {mark.x, way < 0 ? box.bottom : box.top}, 0, text.color};
+                return Found{text.at(box.left, box.top), 0};
             }
     return {};
 }
 
-Words words_for(const Curve& curve, float size, const PlotStyle& style, bool over_map) {
+LabelText text_for(const Curve& curve, float size, const PlotStyle& style, bool over_map) {
     const bool plain = curve.quiet && !over_map;
     return {curve.label, plain ? 0.9f * size : size, plain ? Weight::regular : Weight::bold,
             plain ? style.theme.quiet_text : curve_color(curve, style, over_map)};
@@ -140,17 +196,17 @@ Words words_for(const Curve& curve, float size, const PlotStyle& style, bool ove
 }  // namespace
 
 void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
-                 LabelPlacer& room, DisplayList& list) {
-    const Area& area = room.area();
+                 LabelPlacer& placer, DisplayList& list) {
+    const Area& area = placer.area();
     for (const Rule& rule : rules) {
         if (rule.label.empty()) continue;
         const bool level = rule.orientation == Rule::Orientation::horizontal;
         const double share = (level ? y : x).share(rule.at);
         if (!(share >= 0 && share <= 1)) continue;
-        const float size = 0.9f * style.words, at = (level ? y : x).at(rule.at), gap = 0.35f * size;
-        Words words{rule.label, size, Weight::regular, over_map ? rgb(0xffffff) : style.theme.quiet_text};
-        words.size = fitting_size(words.text, size, words.weight, 0.94f * area.width());
-        const float w = words.width(), h = words.height();
+        const float size = 0.9f * style.text, at = (level ? y : x).at(rule.at), gap = 0.35f * size;
+        LabelText text{rule.label, size, Weight::regular, over_map ? rgb(0xffffff) : style.theme.quiet_text};
+        text.size = fitting_size(text.text, size, text.weight, 0.94f * area.width());
+        const float w = text.width(), h = text.height();
         std::optional<Found> best;
         for (int place = 0; place <= 10; ++place) {
             for (const int side : {0, 1}) {
@@ -162,65 +218,66 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
                 const float top = level ? (side == 0 ? at - gap - h : at + gap)
                                         : area.top + gap + along * (area.height() - h - 2 * gap);
                 const Area box{left, top, left + w, top + h};
-                if (!room.is_free(box.grown(0.2f * size, 0))) continue;
+                if (!placer.is_free(box.grown(0.2f * size, 0))) continue;
                 const float cost =
-                    0.5f * along + 0.2f * static_cast<float>(side) + 0.3f * static_cast<float>(room.ink(box));
-                if (!best || cost < best->cost) best = Found{words.at(left, top), cost};
+                    0.5f * along + 0.2f * static_cast<float>(side) + 0.3f * static_cast<float>(placer.ink(box));
+                if (!best || cost < best->cost) best = Found{text.at(left, top), cost};
             }
         }
         if (!best) continue;
-        room.add_words(text_area(best->label).grown(0.3f * size, 0.1f * size));
+        placer.add_text(text_area(best->label).grown(0.3f * size, 0.1f * size));
         write(best->label, over_map, list);
     }
 }
 
 void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  bool over_map, LabelPlacer& room, DisplayList& list) {
-    constexpr std::size_t cloud = 60;  // marks that no word can stand beside
-    constexpr int many = 10;           // curves that leave little room beside each
+                  bool over_map, LabelPlacer& placer, DisplayList& list) {
+    constexpr std::size_t most_marks = 60;  // beyond this no label has room beside marks
+    constexpr int many = 10;                // curves that leave little room beside each
     const bool dense =
         std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
-    const float size = dense ? 0.8f * style.words : style.words;
+    const float size = dense ? 0.8f * style.text : style.text;
     std::vector<std::size_t> others;
     while (true) {
         // the legend first, for it is the larger; who finds no place beside it joins it
-        const auto legend = others.empty() ? std::nullopt : fitted_legend(curves, others, style, room);
-        LabelPlacer left = room;
-        if (legend) left.add_words(legend->box);
+        const auto legend = others.empty() ? std::nullopt : fitted_legend(curves, others, style, placer);
+        LabelPlacer left = placer;
+        if (legend) left.add_text(legend->box);
         std::vector<Label> labels;
-        std::vector<Area> grounds;
+        std::vector<Area> backgrounds;
         std::vector<Capsule> leaders;
         const std::size_t before = others.size();
         for (std::size_t i = 0; i < curves.size(); ++i) {
             const Curve& curve = curves[i];
             const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
             if (curve.label.empty() || empty || std::find(others.begin(), others.end(), i) != others.end()) continue;
-            const Words words = words_for(curve, size, style, over_map);
+            const LabelText text = text_for(curve, size, style, over_map);
             const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
             std::optional<Found> found;
-            if (curve.mark != Mark::points || drawn[i].points.size() <= cloud)
-                found = beside(drawn[i], i, words, clear, left);
+            if (curve.mark != Mark::points || drawn[i].points.size() <= most_marks)
+                found = beside(drawn[i], i, text, clear, left);
             if (!found && dense && drawn[i].lines.empty() && drawn[i].points.size() == 1) {
                 Capsule leader{};
-                found = led_to(drawn[i].points.front(), words, left, leader);
+                found = with_leader(drawn[i].points.front(), text, left, leader);
                 leader.radius = style.hairline / 2;
                 if (found) leaders.push_back(leader);
             }
             if (!found && dense && !drawn[i].lines.empty()) {
-                found = upon(drawn[i], i, words, left);
-                if (found) grounds.push_back(text_area(found->label).grown(0.15f * words.size, 0.05f * words.size));
+                found = upon(drawn[i], i, text, left);
+                if (found) backgrounds.push_back(text_area(found->label).grown(0.15f * text.size, 0.05f * text.size));
             }
             if (!found) {
                 others.push_back(i);
                 continue;
             }
-            left.add_words(text_area(found->label).grown(0.3f * words.size, 0.1f * words.size));
+            left.add_text(text_area(found->label).grown(0.3f * text.size, 0.1f * text.size));
             labels.push_back(found->label);
         }
         if (others.size() > before) continue;
         if (legend) draw_legend(*legend, curves, style, over_map, list);
-        const Color ground = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
-        for (const Area& g : grounds) list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, ground});
+        const Color background = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
+        for (const Area& g : backgrounds)
+            list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, background});
         for (const Capsule& leader : leaders) list.push_back(leader);
         for (const Label& label : labels) write(label, over_map, list);
         return;

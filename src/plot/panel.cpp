@@ -12,12 +12,6 @@
 namespace doppel {
 namespace {
 
-float widest(const std::vector<Tick>& ticks, float size) {
-    float width = 0;
-    for (const Tick& tick : ticks) width = std::max(width, text_width(tick.text, size));
-    return width;
-}
-
 Axis placed(Axis axis, float from, float to) {
     axis.from = from;
     axis.to = to;
@@ -39,7 +33,7 @@ Panel make_panel(const Plot& plot, const PlotRanges& ranges, const Area& area) {
 }
 
 /// Rules, dashed.
-void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& room, DisplayList& list) {
+void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, DisplayList& list) {
     for (const Rule& rule : panel.plot.rules) {
         const bool level = rule.orientation == Rule::Orientation::horizontal;
         const double share = (level ? panel.y : panel.x).share(rule.at);
@@ -49,23 +43,23 @@ void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& room, D
         const Point to = level ? Point{panel.area.right, at} : Point{at, panel.area.top};
         const Color color = panel.plot.map ? rgb(0xffffff) : style.theme.quiet_text;
         draw_line({{from, to}}, std::max(std::round(1.3f * style.unit), 1.0f), true, color, style, list);
-        room.add_line(from, to, LabelPlacer::nobody - 1);
+        placer.add_line(from, to, LabelPlacer::no_owner - 1);
     }
 }
 
-void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& room, DisplayList& list) {
+void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, DisplayList& list) {
     const auto& curves = panel.plot.curves;
     const bool over_map = panel.plot.map.has_value();
     std::vector<DrawnCurve> all;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         all.push_back(drawn(curves[i], panel.x, panel.y_of(curves[i]), panel.area));
-        const std::size_t who = i % (LabelPlacer::nobody - 1);
+        const std::size_t owner = i % (LabelPlacer::no_owner - 1);
         for (const auto& line : all.back().lines)
-            for (std::size_t k = 1; k < line.size(); ++k) room.add_line(line[k - 1], line[k], who);
+            for (std::size_t k = 1; k < line.size(); ++k) placer.add_line(line[k - 1], line[k], owner);
         const float r = style.marker;
         for (const Point& at : all.back().points)
             for (const float up : {-0.7f * r, 0.7f * r})
-                room.add_line({at.x - r, at.y + up}, {at.x + r, at.y + up}, who);
+                placer.add_line({at.x - r, at.y + up}, {at.x + r, at.y + up}, owner);
         draw_band(curves[i], panel.x, panel.y_of(curves[i]), panel.area, style, list);
     }
     std::size_t marks_in_panel = 0;
@@ -75,8 +69,8 @@ void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& room, 
     for (const bool quiet : {true, false})
         for (std::size_t i = 0; i < curves.size(); ++i)
             if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel.area, style, over_map, list);
-    label_rules(panel.plot.rules, panel.x, panel.y, style, over_map, room, list);
-    label_curves(curves, all, style, over_map, room, list);
+    label_rules(panel.plot.rules, panel.x, panel.y, style, over_map, placer, list);
+    label_curves(curves, all, style, over_map, placer, list);
 }
 
 }  // namespace
@@ -96,7 +90,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     made.left = 0.55f * em + widest(y_ticks(placed(ranges.y, tall, 0), plot.y, style), em);
     if (ranges.right) made.right = 0.55f * em + widest(y_ticks(placed(*ranges.right, tall, 0), *plot.right, style), em);
     if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
-    // the first and the last words below the axis reach out by half
+    // the first and the last label below the axis reach out by half
     const float wide = std::max(width - made.left - made.right, 1.0f);
     const auto below = x_ticks(placed(ranges.x, 0, wide), plot.x, style);
     const float half = widest(below, em) / 2;
@@ -111,7 +105,7 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
               std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
     Area held = cell;
     if (plot.square) {
-        // in the middle of its cell, words and all
+        // in the middle of its cell, labels included
         const float side = std::min(area.width(), area.height());
         const float right = std::floor((area.width() - side) / 2), down = std::floor((area.height() - side) / 2);
         held = held.grown(-right, -down);
@@ -128,9 +122,9 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
     }
     draw_axes(plot, panel.x, panel.y, plot.right ? &panel.right : nullptr, area, held, style, list);
     draw_headings(plot, held, around.title, around.labels, style, list);
-    LabelPlacer room(area);
-    draw_rules(panel, style, room, list);
-    draw_curves(panel, style, room, list);
+    LabelPlacer placer(area);
+    draw_rules(panel, style, placer, list);
+    draw_curves(panel, style, placer, list);
 }
 
 }  // namespace doppel

@@ -5,7 +5,7 @@
 
 namespace doppel {
 
-/// px around a panel's area that its words take.
+/// px around a panel's area for its labels.
 struct Gutters {
     float left = 0, right = 0, title = 0, labels = 0, bottom = 0;
 
@@ -18,7 +18,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
 /// The larger of each.
 Gutters united(const Gutters& a, const Gutters& b);
 
-/// The panel in its cell. Nothing where the words leave it no room.
+/// The panel in its cell. Nothing where the labels leave it no room.
 void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
                 const PlotStyle& style, DisplayList& list);
 

@@ -11,19 +11,24 @@
 namespace doppel {
 namespace {
 
-/// How many columns give the panels the most room.
-int best_columns(const Figure& figure, const Area& body) {
+/// Of panels.
+struct Grid {
+    int columns, rows;
+};
+
+/// The figure's columns, or those that give the panels the most room.
+Grid grid_of(const Figure& figure, const Area& body) {
     const int panels = static_cast<int>(figure.panels.size());
-    if (figure.columns > 0) return std::min(figure.columns, panels);
+    const auto grid = [&](int columns) { return Grid{columns, (panels + columns - 1) / columns}; };
+    if (figure.columns > 0) return grid(std::min(figure.columns, panels));
     const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // width to height that suits
-    int best = 1;
+    Grid best = grid(1);
     float most = 0;
     for (int columns = 1; columns <= panels; ++columns) {
-        const int rows = (panels + columns - 1) / columns;
-        const float width = body.width() / static_cast<float>(columns),
-                    height = body.height() / static_cast<float>(rows);
-        const float room = std::min(width, shape * height);
-        if (room > 1.001f * most) most = room, best = columns;
+        const Grid tried = grid(columns);
+        const float room = std::min(body.width() / static_cast<float>(columns),
+                                    shape * (body.height() / static_cast<float>(tried.rows)));
+        if (room > 1.001f * most) most = room, best = tried;
     }
     return best;
 }
@@ -36,8 +41,7 @@ const HeatMap* sharing_map(const Figure& figure) {
 }
 
 void draw_panels(const Figure& figure, Area body, const PlotStyle& style, DisplayList& list) {
-    const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
-    const int rows = (panels + columns - 1) / columns;
+    const auto [columns, rows] = grid_of(figure, body);
     if (const HeatMap* map = sharing_map(figure)) {
         const float gutter = shared_bar_gutter(*map, body.height(), style);
         draw_shared_bar(*map, body, body.right - gutter, style, list);
@@ -54,11 +58,11 @@ void draw_panels(const Figure& figure, Area body, const PlotStyle& style, Displa
         ranges.push_back(fitted_ranges(plot));
         around = united(around, gutters(plot, ranges.back(), width, height, style));
     }
-    for (int i = 0; i < panels; ++i) {
-        const float left = body.left + static_cast<float>(i % columns) * (width + across);
-        const float top = body.top + static_cast<float>(i / columns) * (height + down);
-        const auto index = static_cast<std::size_t>(i);
-        draw_panel(figure.panels[index], ranges[index], {left, top, left + width, top + height}, around, style, list);
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+        const int k = static_cast<int>(i);
+        const float left = body.left + static_cast<float>(k % columns) * (width + across);
+        const float top = body.top + static_cast<float>(k / columns) * (height + down);
+        draw_panel(figure.panels[i], ranges[i], {left, top, left + width, top + height}, around, style, list);
     }
 }
 
@@ -94,23 +98,21 @@ Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style, b
 
 /// Whether what stands in the body can be read there.
 bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
-    if (figure.table) return fitting_table_size(*figure.table, body, style) >= 0.8f * style.words;
+    if (figure.table) return fitting_table_size(*figure.table, body, style) >= 0.8f * style.text;
     if (figure.panels.empty()) return body.height() >= 0;
-    const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
-    const int rows = (panels + columns - 1) / columns;
-    return body.height() >= std::max(0.5f * sheet.height(), 12.5f * style.tick * static_cast<float>(rows));
+    const auto rows = static_cast<float>(grid_of(figure, body).rows);
+    return body.height() >= std::max(0.5f * sheet.height(), 12.5f * style.tick * rows);
 }
 
-/// Whether panels are more than their words and ticks.
+/// Whether the panels have room besides their labels and ticks.
 bool has_room(const Figure& figure, const Area& body, const PlotStyle& style) {
     if (figure.panels.empty()) return true;
-    const int columns = best_columns(figure, body), panels = static_cast<int>(figure.panels.size());
-    const int rows = (panels + columns - 1) / columns;
+    const auto [columns, rows] = grid_of(figure, body);
     return body.height() >= 13 * style.tick * static_cast<float>(rows) &&
            body.width() >= 9 * style.tick * static_cast<float>(columns);
 }
 
-/// All of the words where they leave the panels enough room, else without captions, else without subtitle.
+/// With all text where it leaves the panels enough room, else without captions, else without subtitle.
 Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style) {
     for (const auto& [subtitle, captions] : {std::pair{true, true}, {true, false}}) {
         Page page = laid_out(figure, sheet, style, subtitle, captions);
@@ -156,7 +158,7 @@ DisplayList compose(const Figure& figure, Size size, const Theme& theme, float s
     const float across = std::round(34 * style.unit), down = std::round(28 * style.unit);
     const Area sheet{across, down, width - across, height - down};
     const Page page = laid_out(figure, sheet, style);
-    // many panels in a small picture: smaller words before empty panels
+    // many panels in a small picture: smaller text rather than no room for panels
     constexpr float least_scale = 0.1f;
     if (!has_room(figure, page.body, style) && scale > least_scale) return compose(figure, size, theme, 0.8f * scale);
 

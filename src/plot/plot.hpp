@@ -21,8 +21,8 @@ struct PlotAxis {
 /// What a line of data looks like.
 enum class Mark { line, points, both };
 
-/// A line that others lie on: pale and thin, or a wide pale band along it.
-enum class Ground { none, line, band };
+/// A curve behind the others: pale and thin, or a wide pale band along it.
+enum class Background { none, line, band };
 
 /// One series. Points that are not finite, or not positive on a logarithmic axis, interrupt the line.
 struct Curve {
@@ -30,13 +30,13 @@ struct Curve {
     std::vector<double> x, y;
     std::vector<double> uncertainty;  // of y, drawn as a band; empty: none
     Mark mark = Mark::line;
-    int hue = 0;                         // of the theme's palette; curves that belong together share one
-    bool right = false;                  // on the second y axis
-    bool dashed = false, quiet = false;  // quiet: grey and thin, to compare with
-    Ground ground = Ground::none;        // then it has no words, and words may stand on it
+    int hue = 0;                               // of the theme's palette; curves that belong together share one
+    bool right = false;                        // on the second y axis
+    bool dashed = false, quiet = false;        // quiet: grey and thin, to compare with
+    Background background = Background::none;  // then it has no label, and labels may cover it
 };
 
-/// A line across the chart with words at it: a limit, a moment.
+/// A straight line across the chart with a label: a limit, a time.
 struct Rule {
     enum class Orientation { horizontal, vertical } orientation = Orientation::horizontal;
     double at = 0;

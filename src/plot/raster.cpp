@@ -1,4 +1,4 @@
-#include "plot/raster.hpp"
+#include "plot/curves.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,11 +23,9 @@ public:
 
     Image image(Color color, float scale) const {
         auto pixels = std::make_shared<Picture>(size);
-        const std::uint8_t ink[] = {byte_of(color.r), byte_of(color.g), byte_of(color.b)};
         for (std::size_t i = 0; i < values.size(); ++i) {
             if (values[i] == 0) continue;
-            std::copy_n(ink, 3, &pixels->rgba[4 * i]);
-            pixels->rgba[4 * i + 3] = byte_of(color.a * values[i]);
+            std::ranges::copy(bytes_of(color.with_alpha(color.a * values[i])), &pixels->rgba[4 * i]);
         }
         const auto px = [&](int v) { return static_cast<float>(v) / scale; };
         return {px(left), px(top), px(left + size.width), px(top + size.height), std::move(pixels)};
@@ -42,7 +40,7 @@ private:
 
 }  // namespace
 
-Image cloud_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale) {
+Image scatter_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale) {
     CoverageRaster coverage(area, scale);
     const float reach = std::max(radius * scale, 0.5f);
     for (const Point& point : points) {

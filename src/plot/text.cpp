@@ -1,5 +1,6 @@
 #include "plot/text.hpp"
 
+#include "base/text.hpp"
 #include "render/font.hpp"
 
 #include <algorithm>
@@ -8,12 +9,12 @@
 namespace doppel {
 namespace {
 
-/// The first bytes of `text` that make whole characters of at most `width` px, at least one character.
+/// How many bytes of `text` make whole characters of at most `width` px in all, at least one character.
 std::size_t bytes_within(std::string_view text, float size, Weight weight, float width) {
     std::size_t taken = 0;
-    while (taken < text.size()) {
-        std::size_t next = taken + 1;
-        while (next < text.size() && (static_cast<unsigned char>(text[next]) & 0xc0u) == 0x80) ++next;
+    for (std::string_view rest = text; !rest.empty();) {
+        next_character(rest);
+        const std::size_t next = text.size() - rest.size();
         if (taken > 0 && text_width(text.substr(0, next), size, weight) > width) break;
         taken = next;
     }
@@ -63,6 +64,18 @@ std::vector<std::string> wrapped(std::string_view text, float size, Weight weigh
         if (end == text.size()) return lines;
         text.remove_prefix(end + 1);
     }
+}
+
+float widest(const std::vector<std::string>& lines, float size) {
+    float width = 0;
+    for (const std::string& line : lines) width = std::max(width, text_width(line, size));
+    return width;
+}
+
+float widest(const std::vector<Tick>& ticks, float size) {
+    float width = 0;
+    for (const Tick& tick : ticks) width = std::max(width, text_width(tick.text, size));
+    return width;
 }
 
 void TextBlock::draw(Point at, DisplayList& list) const {
@@ -146,7 +159,7 @@ float total(const std::vector<Row>& rows, float pad) {
 }  // namespace
 
 float fitting_table_size(const PlotTable& table, const Area& area, const PlotStyle& style) {
-    const float largest = 1.1f * style.words;
+    const float largest = 1.1f * style.text;
     float size = largest;
     while (total(laid_out(table, area, size, style.theme), 0.42f * size) > area.height() && size > 0.1f * largest)
         size *= 0.96f;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "plot/axis.hpp"
 #include "plot/plot.hpp"
 #include "plot/style.hpp"
 
@@ -13,6 +14,10 @@ Area text_area(const Label& label);
 /// `text` in lines no wider than `width` px, broken at spaces and at '\n'; a word that is wider itself is broken
 /// anywhere.
 std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width);
+
+/// The width of the widest, px.
+float widest(const std::vector<std::string>& lines, float size);
+float widest(const std::vector<Tick>& ticks, float size);
 
 /// Lines of one kind below one another.
 struct TextBlock {
@@ -33,7 +38,7 @@ TextBlock fitted_block(std::string_view text, float size, Weight weight, Color c
 /// The size of text at which the table fits into `area`, px an em.
 float fitting_table_size(const PlotTable& table, const Area& area, const PlotStyle& style);
 
-/// The table in `area`, words shrunk until all of it fits.
+/// The table in `area`, its text shrunk until all fits.
 void draw_table(const PlotTable& table, const Area& area, const PlotStyle& style, DisplayList& list);
 
 }  // namespace doppel

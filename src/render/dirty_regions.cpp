@@ -1,5 +1,3 @@
-#include "render/dirty_regions.hpp"
-
 #include "render/render_list.hpp"
 
 #include <algorithm>
@@ -11,21 +9,21 @@
 namespace doppel {
 namespace {
 
-constexpr long price_of_a_rect = 3000;  // as many pixels could be restored and read in the time one more costs
+constexpr long rect_overhead = 3000;  // pixels that are restored and read in the time that one more rectangle costs
 
 long area(const Rect& r) {
     return long{r.right - r.left} * (r.bottom - r.top);
 }
 
 bool cheaper_as_one(const Rect& a, const Rect& b) {
-    return area(united(a, b)) <= area(a) + area(b) + price_of_a_rect;
+    return area(united(a, b)) <= area(a) + area(b) + rect_overhead;
 }
 
 /// Adds what of `rect` lies outside all of disjoint[from…].
 void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint) {
     if (rect.empty()) return;
     for (std::size_t i = from; i < disjoint.size(); ++i) {
-        const Rect hole = common(rect, disjoint[i]);
+        const Rect hole = intersection(rect, disjoint[i]);
         if (hole.empty()) continue;
         add_outside({rect.left, rect.top, rect.right, hole.top}, i + 1, disjoint);
         add_outside({rect.left, hole.bottom, rect.right, rect.bottom}, i + 1, disjoint);
@@ -36,8 +34,8 @@ void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint
     disjoint.push_back(rect);
 }
 
-/// Gathers rectangles that come one after another along a path.
-class Gatherer {
+/// Rectangles along a path: joins neighbours that are cheaper as one.
+class RectChain {
 public:
     void add(const Rect& rect) {
         if (!rects_.empty() && cheaper_as_one(rects_.back(), rect)) {
@@ -61,9 +59,9 @@ std::size_t hash_of(const Primitive& q) {
 }
 
 /// The primitives of a part, to be looked up.
-class Known {
+class PrimitiveSet {
 public:
-    Known(const RenderList& items, const RenderList::Part& part) : items_(items) {
+    PrimitiveSet(const RenderList& items, const RenderList::Part& part) : items_(items) {
         for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(items.primitives[i]), i);
         std::sort(places_.begin(), places_.end());
     }
@@ -80,8 +78,7 @@ private:
     std::vector<std::pair<std::size_t, std::size_t>> places_;
 };
 
-/// Calls visit(part) for rectangles, none overlapping, that together hold what the primitive touches of its bounds:
-/// one, or bands if it is long and slants.
+/// Calls visit(rect) for disjoint rectangles that cover the primitive: its bounds, or bands if it is long and slanted.
 template <class Visit>
 void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& visit) {
     const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
@@ -89,7 +86,7 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
     const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
     if (shorter < 3 * thick || !(primitive.half.x > 2 * primitive.half.y) || std::min(across, down) < 0.05f)
         return visit(bounds);
-    // cut along the axis that it follows more; a hair of room for rounding
+    // cut along the axis that it follows most closely; 0.05 px for rounding
     const bool steep = down > across;
     const float slope = steep ? primitive.axis.x / primitive.axis.y : primitive.axis.y / primitive.axis.x;
     const float margin = primitive.half.y / std::max(across, down) + 0.05f;
@@ -102,12 +99,12 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
         const float at_b = middle + slope * (static_cast<float>(b) - start);
         const int low = static_cast<int>(std::floor(std::min(at_a, at_b) - margin));
         const int high = static_cast<int>(std::ceil(std::max(at_a, at_b) + margin));
-        const Rect band = common(bounds, steep ? Rect{low, a, high, b} : Rect{a, low, b, high});
+        const Rect band = intersection(bounds, steep ? Rect{low, a, high, b} : Rect{a, low, b, high});
         if (!band.empty()) visit(band);
     }
 }
 
-/// Strokes: their primitives may come in any order, and more than once, without a change to the picture.
+/// Strokes: order and repetition of their primitives do not change the picture.
 template <class Add>
 void compare_masks(const RenderList& before, RenderList::Part old, const RenderList& after, RenderList::Part now,
                    const Add& add) {
@@ -117,7 +114,7 @@ void compare_masks(const RenderList& before, RenderList::Part old, const RenderL
     };
     while (old.begin < old.end && now.begin < now.end && same(old.begin, now.begin)) ++old.begin, ++now.begin;
     while (old.begin < old.end && now.begin < now.end && same(old.end - 1, now.end - 1)) --old.end, --now.end;
-    const Known olds(before, old), news(after, now);
+    const PrimitiveSet olds(before, old), news(after, now);
     for (std::size_t i = old.begin; i < old.end; ++i)
         if (!news.has(before.primitives[i], before.bounds[i]))
             for_each_band(before.primitives[i], before.bounds[i], add);
@@ -128,7 +125,7 @@ void compare_masks(const RenderList& before, RenderList::Part old, const RenderL
 }  // namespace
 
 std::vector<Rect> merged(std::vector<Rect> rects) {
-    // take each rectangle in turn; what it swallows makes it larger, so it looks at all others again
+    // a rectangle that grows is compared with all others again
     for (std::size_t i = 0; i < rects.size(); ++i) {
         for (std::size_t j = 0; j < rects.size(); ++j) {
             if (i == j || !cheaper_as_one(rects[i], rects[j])) continue;
@@ -145,7 +142,7 @@ std::vector<Rect> merged(std::vector<Rect> rects) {
 }
 
 std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& after) {
-    Gatherer touched;
+    RectChain touched;
     for (std::size_t p = 0; p < std::max(before.parts.size(), after.parts.size()); ++p) {
         const RenderList::Part none{.kind = Kind::shape};
         const RenderList::Part& old = p < before.parts.size() ? before.parts[p] : none;

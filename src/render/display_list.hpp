@@ -18,6 +18,11 @@ struct Point {
     float x = 0, y = 0;
 };
 
+/// px
+inline float distance(Point a, Point b) {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
+
 /// A filled rectangle with round corners. Its edges are at exactly left, top, right, bottom.
 struct Box {
     float left = 0, top = 0, right = 0, bottom = 0;  // px
@@ -48,7 +53,7 @@ struct Capsule {
     float glow = 0;  // px that a soft glow reaches beyond the edge; 0 = none
 };
 
-/// A circle drawn with a pen: `width` px wide, half of it on either side of `radius`.
+/// The outline of a circle, `width` px wide, half of it on either side of `radius`.
 struct Ring {
     Point center;
     float radius = 1, width = 1;  // px
@@ -60,15 +65,14 @@ struct Ring {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
-/// A path whose opacity and width vary along it. It never adds to itself: where it crosses or joins itself the more
-/// opaque part shows.
+/// A path whose opacity and width vary along it. Where it crosses itself the more opaque part shows.
 struct Stroke {
     struct Vertex {
         Point at;
         float alpha = 1;  // times color.a
         float width = 1;  // times Stroke::width
         float glow = 1;   // times Stroke::glow
-        float bend = 0;   // px that the way to the next vertex swerves to the right, along a parabola; up to 1/16 of it
+        float bend = 0;   // px right of the chord to the next vertex, of a parabola's middle; up to 1/16 of its length
         bool joint = false;  // drawn as a vertex, even where the path could go on as well without it
     };
     std::vector<Vertex> vertices;
@@ -83,7 +87,7 @@ struct Stroke {
 enum class Align { left, center, right };
 enum class Weight { regular, bold };
 
-/// One line of words (UTF-8), its baseline at anchor.y, aligned to anchor.x.
+/// One line of text (UTF-8), its baseline at anchor.y, aligned to anchor.x.
 struct Label {
     std::string text;
     Point anchor;
@@ -98,8 +102,8 @@ inline Label label(std::string text, Point anchor, float size, Color color, Alig
     return {std::move(text), anchor, size, align, weight, color};
 }
 
-/// A picture stretched over a rectangle, whose edges are rounded to whole pixels. Each pixel takes the colour below its
-/// centre, so that what is enlarged stays crisp. Lists share the pixels, which must not change.
+/// A picture stretched over a rectangle, whose edges are rounded to whole pixels; nearest neighbour. Lists share the
+/// pixels, which must not change.
 struct Image {
     float left = 0, top = 0, right = 0, bottom = 0;  // px
     std::shared_ptr<const Picture> pixels;           // with opacity

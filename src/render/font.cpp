@@ -23,7 +23,7 @@ struct Coverage {
     std::vector<std::uint8_t> values;
 };
 
-// how far bold moves the outline to either side, em: stems grow more than bars, as type designers have it
+// how far bold moves the outline to either side, em: vertical stems grow more than horizontal bars
 constexpr float bold_across = 0.0215f;
 constexpr float bold_along = 0.0130f;
 constexpr float bold_spacing = 0.0300f;
@@ -99,7 +99,7 @@ float overlap(int i, float from, float to) {
     return std::max(0.0f, std::min(pixel + 1, to) - std::max(pixel, from));
 }
 
-/// The hollow box in place of what the font lacks; its own sign for that is empty.
+/// The hollow box for a missing glyph; the font's own is empty.
 Coverage missing_box(float size, Weight weight, float shift) {
     const float pen = size * (weight == Weight::bold ? 0.09f : 0.06f);
     const float left = shift + 0.1f * size, right = shift + 0.5f * size, height = 0.7f * size;
@@ -195,7 +195,7 @@ float text_width(std::string_view text, float size, Weight weight) {
     return lay_out(text, size, weight).width;
 }
 
-std::string_view lacking_character(std::string_view text) {
+std::string_view missing_character(std::string_view text) {
     while (!text.empty()) {
         const auto from = text;
         const auto character = next_character(text);
@@ -204,11 +204,11 @@ std::string_view lacking_character(std::string_view text) {
     return {};
 }
 
-const GlyphAtlas::Slot& GlyphAtlas::slot(int glyph, float size, Weight weight, int stop) {
-    const Key key{glyph, size, weight, stop};
+const GlyphAtlas::Slot& GlyphAtlas::slot(int glyph, float size, Weight weight, int subpixel) {
+    const Key key{glyph, size, weight, subpixel};
     if (const auto found = slots_.find(key); found != slots_.end()) return found->second;
 
-    const Coverage drawn = rasterised(glyph, size, weight, static_cast<float>(stop) / stops);
+    const Coverage drawn = rasterised(glyph, size, weight, static_cast<float>(subpixel) / subpixels);
     if (pen_ + drawn.size.width > width) {
         pen_ = 0;
         shelf_ += shelf_height_;

@@ -11,13 +11,13 @@
 
 namespace doppel {
 
-/// How far the pen moves along `text`, px; the same arithmetic that places the glyphs when it is drawn.
+/// The advance width of `text`, px, exactly as it is drawn.
 float text_width(std::string_view text, float size, Weight weight = Weight::regular);
 
 /// `size`, or as much less as makes `text` no wider than `width` px.
 float fitting_size(std::string_view text, float size, Weight weight, float width);
 
-/// A line of text as the pen writes it.
+/// A line of positioned glyphs.
 struct TextLine {
     struct Glyph {
         int number = 0;  // in the font
@@ -30,16 +30,14 @@ struct TextLine {
 /// Text is UTF-8; each byte that is not becomes U+FFFD.
 TextLine lay_out(std::string_view text, float size, Weight weight);
 
-/// The first character of `text` that would be drawn as a hollow box, or not at all: one that the font lacks, or a
-/// control character. Empty where there is none.
-std::string_view lacking_character(std::string_view text);
+/// The first character of `text` that the font lacks, or that is a control character. Empty where there is none.
+std::string_view missing_character(std::string_view text);
 
-/// Glyphs drawn so far, side by side in one image of coverage. It fills shelf by shelf and grows downward, so what has
-/// a place keeps it.
+/// Coverage of the glyphs drawn so far, in one image. It fills shelf by shelf and grows downward: slots never move.
 class GlyphAtlas {
 public:
-    /// The pen stands on one of `stops` places within a pixel.
-    static constexpr int stops = 4;
+    /// Subpixel positions of the pen.
+    static constexpr int subpixels = 4;
     static constexpr int width = 1024;  // px
 
     struct Slot {
@@ -48,11 +46,11 @@ public:
         int x = 0, y = 0;       // in the atlas
     };
 
-    /// `max_height`, px, is what the machine can take as a texture.
+    /// `max_height`, px: OpenGL's limit for textures.
     explicit GlyphAtlas(int max_height) : max_height_(max_height) {}
 
-    /// Draws the glyph if it is new. Throws Error where it finds no room.
-    const Slot& slot(int glyph, float size, Weight weight, int stop);
+    /// Rasterises the glyph if it is new. Throws Error where the atlas is full.
+    const Slot& slot(int glyph, float size, Weight weight, int subpixel);
 
     const std::vector<std::uint8_t>& values() const { return values_; }
     int height() const { return static_cast<int>(values_.size()) / width; }

@@ -1,62 +1,23 @@
 #pragma once
 
+#define GL_GLEXT_PROTOTYPES  // their types; no library is linked
 #include <GL/glcorearb.h>
 
 #include <functional>
 
-/// The functions of OpenGL that Doppel calls: X(type, name) each.
-#define DOPPEL_GL_FUNCTIONS(X)                                   \
-    X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                     \
-    X(PFNGLATTACHSHADERPROC, AttachShader)                       \
-    X(PFNGLBINDATTRIBLOCATIONPROC, BindAttribLocation)           \
-    X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
-    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
-    X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
-    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
-    X(PFNGLBLENDEQUATIONPROC, BlendEquation)                     \
-    X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
-    X(PFNGLBUFFERDATAPROC, BufferData)                           \
-    X(PFNGLBUFFERSUBDATAPROC, BufferSubData)                     \
-    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
-    X(PFNGLCLEARCOLORPROC, ClearColor)                           \
-    X(PFNGLCLEARPROC, Clear)                                     \
-    X(PFNGLCOLORMASKPROC, ColorMask)                             \
-    X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
-    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
-    X(PFNGLCREATESHADERPROC, CreateShader)                       \
-    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                     \
-    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)           \
-    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
-    X(PFNGLDELETESHADERPROC, DeleteShader)                       \
-    X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
-    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
-    X(PFNGLDRAWELEMENTSBASEVERTEXPROC, DrawElementsBaseVertex)   \
-    X(PFNGLENABLEPROC, Enable)                                   \
-    X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
-    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
-    X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
-    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
-    X(PFNGLGENTEXTURESPROC, GenTextures)                         \
-    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
-    X(PFNGLGETERRORPROC, GetError)                               \
-    X(PFNGLGETINTEGERVPROC, GetIntegerv)                         \
-    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)             \
-    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
-    X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)               \
-    X(PFNGLGETSHADERIVPROC, GetShaderiv)                         \
-    X(PFNGLGETSTRINGPROC, GetString)                             \
-    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
-    X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
-    X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
-    X(PFNGLREADPIXELSPROC, ReadPixels)                           \
-    X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
-    X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
-    X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
-    X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D)                     \
-    X(PFNGLUNIFORM2FPROC, Uniform2f)                             \
-    X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
-    X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
-    X(PFNGLVIEWPORTPROC, Viewport)
+/// The functions of OpenGL that Doppel calls, without their prefix "gl": X(name) each.
+// clang-format off
+#define DOPPEL_GL_FUNCTIONS(X) \
+    X(ActiveTexture) X(AttachShader) X(BindAttribLocation) X(BindBuffer) X(BindFramebuffer) X(BindTexture) \
+    X(BindVertexArray) X(BlendEquation) X(BlendFuncSeparate) X(BufferData) X(BufferSubData) \
+    X(CheckFramebufferStatus) X(ClearColor) X(Clear) X(ColorMask) X(CompileShader) X(CreateProgram) X(CreateShader) \
+    X(DeleteBuffers) X(DeleteFramebuffers) X(DeleteProgram) X(DeleteShader) X(DeleteTextures) X(DeleteVertexArrays) \
+    X(DrawElementsBaseVertex) X(Enable) X(EnableVertexAttribArray) X(FramebufferTexture2D) X(GenBuffers) \
+    X(GenFramebuffers) X(GenTextures) X(GenVertexArrays) X(GetError) X(GetIntegerv) X(GetProgramInfoLog) \
+    X(GetProgramiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetUniformLocation) X(LinkProgram) \
+    X(PixelStorei) X(ReadPixels) X(ShaderSource) X(TexImage2D) X(TexParameteri) X(TexSubImage2D) X(Uniform2f) \
+    X(UseProgram) X(VertexAttribPointer) X(Viewport)
+// clang-format on
 
 namespace doppel::gl {
 
@@ -64,7 +25,7 @@ using Function = void (*)();
 
 /// The functions above as one library has them.
 struct Functions {
-#define X(type, name) type name = nullptr;
+#define X(name) decltype(&::gl##name) name = nullptr;
     DOPPEL_GL_FUNCTIONS(X)
 #undef X
 };
@@ -79,7 +40,7 @@ template <class Result, class... Arguments, Result (*Functions::*function)(Argum
 struct Call<Result (*)(Arguments...), function> {
     Result operator()(Arguments... arguments) const { return (current->*function)(arguments...); }
 };
-#define X(type, name) inline constexpr Call<type, &Functions::name> name;
+#define X(name) inline constexpr Call<decltype(&::gl##name), &Functions::name> name;
 DOPPEL_GL_FUNCTIONS(X)
 #undef X
 

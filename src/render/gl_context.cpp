@@ -2,6 +2,10 @@
 
 #include "base/error.hpp"
 
+#include <GL/osmesa.h>
+#define EGL_NO_X11
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
 #include <dlfcn.h>
 #include <fmt/ranges.h>
 
@@ -21,7 +25,7 @@ Functions load(const std::function<Function(const char* name)>& find) {
         return function;
     };
     Functions functions;
-#define X(type, name) functions.name = reinterpret_cast<type>(found("gl" #name));
+#define X(name) functions.name = reinterpret_cast<decltype(functions.name)>(found("gl" #name));
     DOPPEL_GL_FUNCTIONS(X)
 #undef X
     return functions;
@@ -35,34 +39,152 @@ namespace {
 constexpr std::array<std::pair<const char*, Gl>, 3> names{
     {{"auto", Gl::automatic}, {"osmesa", Gl::osmesa}, {"egl", Gl::egl}}};
 
-// OpenGL's own notion of what is current, which belongs to the thread
-constinit thread_local Context* current = nullptr;
+constinit thread_local Context* current = nullptr;  // in this thread, as OpenGL has it
 
 /// Settings that Mesa reads from the environment, where the user has set none.
-bool tell_mesa() {
-    // the threads of the machine have better work than sharing one small picture
-    setenv("LP_NUM_THREADS", "0", 0);
-    // what EGL says of the drivers that it tries in vain is not for those who want a picture
-    setenv("EGL_LOG_LEVEL", "fatal", 0);
+bool set_mesa_defaults() {
+    setenv("LP_NUM_THREADS", "0", 0);     // llvmpipe draws in the calling thread: other work fills the cores
+    setenv("EGL_LOG_LEVEL", "fatal", 0);  // no messages about drivers tried in vain
     return true;
 }
 
-/// A library that makes contexts, and what to tell where it fails.
-struct ContextLibrary {
-    const char* name;
-    const char* packages;  // of Debian and Ubuntu
-    std::unique_ptr<Context> (*make)(const std::vector<std::string>& names);
-    const std::vector<std::string>& names;
+/// A shared library found at run time. It stays for the rest of the process: Mesa cannot be unloaded safely.
+class Library {
+public:
+    /// The first of `names` that there is. Throws Error (exit 4), which says why none could be loaded.
+    explicit Library(const std::vector<std::string>& names) {
+        std::string faults;
+        for (const auto& name : names) {
+            handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+            name_ = name;
+            if (handle_) return;
+            // a library that is there and cannot be used says more than one that is not there
+            const std::string fault = dlerror();
+            if (!fault.starts_with(name + ": cannot open shared object file: No such file"))
+                faults += (faults.empty() ? "" : "; ") + fault;
+        }
+        throw io_failed("{}", faults.empty() ? fmt::format("there is no {}", fmt::join(names, " or ")) : faults);
+    }
+
+    /// An address that converts to any type of function.
+    struct Symbol {
+        void* address;
+        template <class Function>
+        operator Function*() const {
+            return reinterpret_cast<Function*>(address);
+        }
+    };
+    /// Throws Error (exit 4) where there is no such function.
+    Symbol operator[](const char* name) const {
+        void* const found = dlsym(handle_, name);
+        if (!found) throw io_failed("{} has no {}", name_, name);
+        return {found};
+    }
+
+private:
+    std::string name_;
+    void* handle_ = nullptr;
 };
 
-std::unique_ptr<Context> try_library(const ContextLibrary& library, std::string& faults) {
+class OsmesaContext final : public Context {
+public:
+    explicit OsmesaContext(const std::vector<std::string>& libraries) : library_(libraries) {
+        const int attributes[] = {OSMESA_FORMAT,
+                                  OSMESA_RGBA,
+                                  OSMESA_PROFILE,
+                                  OSMESA_CORE_PROFILE,
+                                  OSMESA_CONTEXT_MAJOR_VERSION,
+                                  3,
+                                  OSMESA_CONTEXT_MINOR_VERSION,
+                                  3,
+                                  0};
+        context_ = create_(attributes, nullptr);
+        if (!context_) throw io_failed("it gives no OpenGL 3.3 core context");
+    }
+    ~OsmesaContext() override {
+        retire();
+        destroy_(context_);
+    }
+    std::string library() const override { return "OSMesa"; }
+
+private:
+    void bind() override {
+        if (!make_current_(context_, window_.data(), GL_UNSIGNED_BYTE, 1, 1))
+            throw io_failed("it made an OpenGL context but cannot use it");
+    }
+    void release() override { make_current_(nullptr, nullptr, 0, 0, 0); }
+    gl::Function function(const char* name) const override { return address_(name); }
+
+    const Library library_;
+    decltype(&OSMesaCreateContextAttribs) create_ = library_["OSMesaCreateContextAttribs"];
+    decltype(&OSMesaMakeCurrent) make_current_ = library_["OSMesaMakeCurrent"];
+    decltype(&OSMesaDestroyContext) destroy_ = library_["OSMesaDestroyContext"];
+    decltype(&OSMesaGetProcAddress) address_ = library_["OSMesaGetProcAddress"];
+    OSMesaContext context_ = nullptr;
+    std::array<unsigned char, 4> window_{};  // one pixel, which OSMesa demands; drawing goes to framebuffer objects
+};
+
+class EglContext final : public Context {
+public:
+    explicit EglContext(const std::vector<std::string>& libraries) : library_(libraries) {
+        // one display serves all contexts of the process, so none of them may terminate it
+        display_ = platform_display_(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+        check(display_ != EGL_NO_DISPLAY, "has no Mesa, which draws without a display");
+        check(initialize_(display_, nullptr, nullptr), "finds no driver that draws without a display");
+        check(bind_api_(EGL_OPENGL_API), "has no OpenGL");
+        const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_NONE};
+        EGLConfig config = nullptr;
+        EGLint configs = 0;
+        check(choose_config_(display_, wanted, &config, 1, &configs) && configs > 0, "has no OpenGL");
+        const EGLint attributes[] = {
+            EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+        context_ = create_(display_, config, EGL_NO_CONTEXT, attributes);
+        check(context_ != EGL_NO_CONTEXT, "gives no OpenGL 3.3 core context");
+    }
+    ~EglContext() override {
+        retire();
+        destroy_(display_, context_);
+    }
+    std::string library() const override { return "EGL"; }
+
+private:
+    void bind() override {
+        check(make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_),
+              "made an OpenGL context but cannot use it without a surface");
+    }
+    void release() override { make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+    gl::Function function(const char* name) const override { return address_(name); }
+
+    void check(bool done, const char* otherwise) const {
+        if (!done) throw io_failed("it {} (EGL error {:#x})", otherwise, error_());
+    }
+
+    const Library library_;
+    decltype(&eglGetPlatformDisplay) platform_display_ = library_["eglGetPlatformDisplay"];
+    decltype(&eglInitialize) initialize_ = library_["eglInitialize"];
+    decltype(&eglBindAPI) bind_api_ = library_["eglBindAPI"];
+    decltype(&eglChooseConfig) choose_config_ = library_["eglChooseConfig"];
+    decltype(&eglCreateContext) create_ = library_["eglCreateContext"];
+    decltype(&eglMakeCurrent) make_current_ = library_["eglMakeCurrent"];
+    decltype(&eglDestroyContext) destroy_ = library_["eglDestroyContext"];
+    decltype(&eglGetProcAddress) address_ = library_["eglGetProcAddress"];
+    decltype(&eglGetError) error_ = library_["eglGetError"];
+    EGLDisplay display_ = EGL_NO_DISPLAY;
+    EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+/// A context of the library, current; null where it cannot be, and why is added to `faults`. `packages` are Debian's.
+template <class LibraryContext>
+std::unique_ptr<Context> try_library(const char* library, const char* packages, const std::vector<std::string>& names,
+                                     std::string& faults) {
     try {
-        auto context = library.make(library.names);
+        std::unique_ptr<Context> context = std::make_unique<LibraryContext>(names);
         context->make_current();
         return context;
     } catch (const Error& fault) {
-        faults += fmt::format("{}{} cannot draw here: {} (in Debian: {})", faults.empty() ? "" : "; ", library.name,
-                              fault.what(), library.packages);
+        faults += fmt::format("{}{} cannot draw here: {} (in Debian: {})", faults.empty() ? "" : "; ", library,
+                              fault.what(), packages);
         return nullptr;
     }
 }
@@ -80,28 +202,6 @@ Gl gl_named(const std::string& name) {
     if (found == names.end())
         throw bad_input("nothing that draws is called \"{}\"; there are {}", name, fmt::join(gl_names(), ", "));
     return found->second;
-}
-
-Library::Library(const std::vector<std::string>& names) {
-    std::string faults;
-    for (const auto& name : names) {
-        handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (handle_) {
-            name_ = name;
-            return;
-        }
-        // a library that is there and cannot be used says more than one that is not there
-        const std::string fault = dlerror();
-        if (!fault.starts_with(name + ": cannot open shared object file: No such file"))
-            faults += (faults.empty() ? "" : "; ") + fault;
-    }
-    throw Error(ExitCode::io_failed, faults.empty() ? fmt::format("there is no {}", fmt::join(names, " or ")) : faults);
-}
-
-void* Library::address(const char* name) const {
-    void* const found = dlsym(handle_, name);
-    if (!found) throw io_failed("{} has no {}", name_, name);
-    return found;
 }
 
 void Context::make_current() {
@@ -123,13 +223,12 @@ void Context::retire() {
 }
 
 std::unique_ptr<Context> make_context(Gl gl, const GlLibraries& libraries) {
-    [[maybe_unused]] static const bool told = tell_mesa();  // once, for environments are nothing that threads may share
-    const ContextLibrary osmesa{"OSMesa", "libosmesa6", make_osmesa_context, libraries.osmesa},
-        egl{"EGL", "libegl1, libegl-mesa0, libgl1-mesa-dri", make_egl_context, libraries.egl};
+    [[maybe_unused]] static const bool done = set_mesa_defaults();  // once: setenv() is not safe beside other threads
     std::string faults;
     std::unique_ptr<Context> context;
-    if (gl != Gl::egl) context = try_library(osmesa, faults);
-    if (!context && gl != Gl::osmesa) context = try_library(egl, faults);
+    if (gl != Gl::egl) context = try_library<OsmesaContext>("OSMesa", "libosmesa6", libraries.osmesa, faults);
+    if (!context && gl != Gl::osmesa)
+        context = try_library<EglContext>("EGL", "libegl1, libegl-mesa0, libgl1-mesa-dri", libraries.egl, faults);
     if (!context) throw Error(ExitCode::io_failed, faults);
     return context;
 }

@@ -7,11 +7,11 @@
 
 namespace doppel::gl {
 
-/// Throws Error (exit 4) where OpenGL has reported an error since it was asked last. `what` it was told to do: "a
-/// canvas of 64 × 64 px".
+/// Throws Error (exit 4) where OpenGL has reported an error since the last call. `what`: the task, "a canvas of 64 × 64
+/// px".
 void check_errors(const std::string& what);
 
-/// A thing of OpenGL's, known by its number, that lives as long as this. Its context must be current at both ends.
+/// Owns an OpenGL object. Its context must be current at construction and destruction.
 template <auto& generate, auto& destroy>
 class Object {
 public:
@@ -35,8 +35,7 @@ public:
     explicit Canvas(Size size);
     operator GLuint() const { return framebuffer_; }
 
-    /// Puts back what the picture shows within `r`, from memory; binds the canvas's texture. The unpack row length must
-    /// be the picture's.
+    /// Copies the picture's pixels within `r`; binds the canvas's texture. The unpack row length must be the picture's.
     void put(const Picture& picture, const Rect& r);
 
 private:

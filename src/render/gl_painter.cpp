@@ -9,7 +9,8 @@ namespace doppel::gl {
 namespace {
 
 constexpr std::size_t most_quads = 16384;  // of one call: what 16-bit indices reach
-constexpr const char* inputs[6] = {"at", "place_of", "shape_of", "more_of", "bow_of", "tint_of"};
+constexpr const char* inputs[6] = {"vertex_position", "vertex_frame",    "vertex_shape",
+                                   "vertex_params",   "vertex_parabola", "vertex_tint"};
 
 /// The texture that is bound shows its texels as they are.
 void set_crisp() {
@@ -61,8 +62,8 @@ Painter::Painter(Size size)
     input(0, 2, GL_FLOAT, offsetof(Vertex, at));
     input(1, 4, GL_FLOAT, offsetof(Vertex, origin));
     input(2, 4, GL_FLOAT, offsetof(Vertex, shape));
-    input(3, 4, GL_FLOAT, offsetof(Vertex, more));
-    input(4, 2, GL_FLOAT, offsetof(Vertex, bow));
+    input(3, 4, GL_FLOAT, offsetof(Vertex, params));
+    input(4, 2, GL_FLOAT, offsetof(Vertex, parabola));
     input(5, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
 
     BindTexture(GL_TEXTURE_2D, atlas_);
@@ -71,15 +72,15 @@ Painter::Painter(Size size)
     check_errors("the shaders and the buffers of their input");
 }
 
-void Painter::paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas) {
-    make_batches(items, places);
+void Painter::paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas) {
+    make_batches(items, regions);
     vertices_.clear();
     for (std::size_t r = 0; r < used_batches_; ++r) {
         Batch& batch = batches_[r];
         batch.begin = vertices_.size() / 4;
         for (const std::size_t p : batch.parts) {
             for (std::size_t i = items.parts[p].begin; i < items.parts[p].end; ++i) {
-                add(items.primitives[i], items.bounds[i], places);
+                add(items.primitives[i], items.bounds[i], regions);
             }
         }
         batch.end = vertices_.size() / 4;
@@ -91,12 +92,12 @@ void Painter::paint(const RenderList& items, const std::vector<Rect>& places, co
 }
 
 /// Shares out the parts among few batches. A part may be drawn earlier than its turn if it meets nothing on the way.
-void Painter::make_batches(const RenderList& items, const std::vector<Rect>& places) {
+void Painter::make_batches(const RenderList& items, const std::vector<Rect>& regions) {
     used_batches_ = 0;
-    const auto meet = [](const Rect& a, const Rect& b) { return !common(a, b).empty(); };
+    const auto meet = [](const Rect& a, const Rect& b) { return !intersection(a, b).empty(); };
     for (std::size_t p = 0; p < items.parts.size(); ++p) {
         const RenderList::Part& part = items.parts[p];
-        if (std::none_of(places.begin(), places.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
+        if (std::none_of(regions.begin(), regions.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
         const Picture* image = items.primitives[part.begin].image;
         std::size_t home = used_batches_;
         for (std::size_t r = used_batches_; r-- > 0;) {
@@ -118,10 +119,10 @@ void Painter::make_batches(const RenderList& items, const std::vector<Rect>& pla
     }
 }
 
-/// What of the primitive lies within the places. A pixel that it touches is drawn once, whichever way.
-void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places) {
-    for (const Rect& place : places) {
-        const Rect seen = common(bounds, place);
+/// What of the primitive lies within the regions. A pixel that it touches is drawn once, whichever way.
+void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& regions) {
+    for (const Rect& region : regions) {
+        const Rect seen = intersection(bounds, region);
         if (seen.empty()) continue;
         const auto left = static_cast<float>(seen.left), right = static_cast<float>(seen.right);
         const auto top = static_cast<float>(seen.top), bottom = static_cast<float>(seen.bottom);
@@ -136,7 +137,7 @@ void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vec
         for (std::size_t i = 2; i < outline_.size(); i += 2)
             for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
                 vertices_.push_back({outline_[corner], primitive.origin, primitive.axis, primitive.shape,
-                                     primitive.more, primitive.bow, primitive.tint});
+                                     primitive.params, primitive.parabola, primitive.tint});
     }
 }
 

@@ -7,25 +7,25 @@
 
 namespace doppel::gl {
 
-/// Draws render lists onto the canvas that is bound.
+/// Draws render lists onto the bound canvas.
 ///
-/// A canvas's alpha is 1 at rest. While a stroke is drawn it holds how transparent the stroke is there: segments keep
-/// the smallest value, so that they do not add up where they meet; then the cover blends the colour and restores the 1,
-/// so that covering a pixel again changes nothing.
+/// A stroke takes two passes. The first writes 1 - opacity of each segment into the canvas's alpha, which is 1
+/// otherwise, and keeps the minimum, so that segments do not add up where they meet. The second blends the colour by it
+/// and restores alpha 1, so that covering a pixel twice changes nothing.
 class Painter {
 public:
     explicit Painter(Size size);
 
-    /// Draws what of the render list lies within the `places`, which must not overlap. Throws Error where an image is
-    /// larger than OpenGL takes.
-    void paint(const RenderList& items, const std::vector<Rect>& places, const GlyphAtlas& atlas);
+    /// Draws the render list within the `regions`, which must not overlap. Throws Error where an image is larger than
+    /// OpenGL takes.
+    void paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas);
 
 private:
     struct Vertex {
         Point at, origin, axis;
         std::array<float, 4> shape;
-        std::array<float, 4> more;
-        std::array<float, 2> bow;
+        std::array<float, 4> params;
+        std::array<float, 2> parabola;
         std::array<std::uint8_t, 4> tint;
     };
     /// Parts drawn together.
@@ -42,8 +42,8 @@ private:
         std::unique_ptr<Texture> texture;
     };
 
-    void make_batches(const RenderList& items, const std::vector<Rect>& places);
-    void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& places);
+    void make_batches(const RenderList& items, const std::vector<Rect>& regions);
+    void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& regions);
     void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);

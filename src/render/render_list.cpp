@@ -12,7 +12,7 @@ namespace {
 constexpr float edge = 1;  // px, the width of a soft edge: half of it lies beyond the shape
 
 std::array<std::uint8_t, 4> tint(const Color& color, float opacity = 1) {
-    return {byte_of(color.r), byte_of(color.g), byte_of(color.b), byte_of(color.a * opacity)};
+    return bytes_of(color.with_alpha(color.a * opacity));
 }
 
 /// Turns items into primitives. What is thinner than a pixel is drawn a pixel thin and fainter.
@@ -78,9 +78,9 @@ public:
             add({.origin = {middle.x - s.axis.y * bend / 2, middle.y + s.axis.x * bend / 2},
                  .axis = s.axis,
                  .shape = {s.length / 2, (from.width + to.width) / 4, alpha, (to.alpha - from.alpha) * per_px},
-                 .more = {(to.width - from.width) / 2 * per_px, (from.glow + to.glow) / 2,
-                          (to.glow - from.glow) * per_px, half_length},
-                 .bow = {bend / 2, 4 * bend * per_px * per_px},
+                 .params = {(to.width - from.width) / 2 * per_px, (from.glow + to.glow) / 2,
+                            (to.glow - from.glow) * per_px, half_length},
+                 .parabola = {bend / 2, 4 * bend * per_px * per_px},
                  .tint = color},
                 {half_length, reach + std::abs(bend) / 2});
         }
@@ -95,11 +95,11 @@ public:
         // the whole pixels aside, so that moving by whole pixels changes nothing
         const float whole = std::floor(start);
         for (const TextLine::Glyph& glyph : line.glyphs) {
-            const int stop = static_cast<int>(std::lround((start - whole + glyph.pen) * GlyphAtlas::stops));
+            const int subpixel = static_cast<int>(std::lround((start - whole + glyph.pen) * GlyphAtlas::subpixels));
             const GlyphAtlas::Slot& slot =
-                atlas_.slot(glyph.number, label.size, label.weight, stop % GlyphAtlas::stops);
+                atlas_.slot(glyph.number, label.size, label.weight, subpixel % GlyphAtlas::subpixels);
             if (slot.size.width == 0) continue;
-            const Point corner{whole + static_cast<float>(stop / GlyphAtlas::stops + slot.left),
+            const Point corner{whole + static_cast<float>(subpixel / GlyphAtlas::subpixels + slot.left),
                                baseline + static_cast<float>(slot.top)};
             add({.origin = corner,
                  .shape = {static_cast<float>(slot.x), static_cast<float>(slot.y)},
@@ -153,7 +153,7 @@ private:
 
     /// Adds the primitive, which touches no pixels but those that [from, to] reaches into.
     void add(const Primitive& primitive, Point from, Point to) {
-        // fmin and fmax, for they lose what is not a number
+        // fmin and fmax, which ignore NaN
         const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
         const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
                           static_cast<int>(std::ceil(within(to.x, size_.width))),
@@ -183,7 +183,7 @@ private:
         add({.origin = center,
              .axis = axis,
              .shape = {half.x - corner, half.y - corner, corner, 0},
-             .more = {glow > 0 ? 1 / glow : 0, glow > 0 ? 1.0f / 3 : 0},
+             .params = {glow > 0 ? 1 / glow : 0, glow > 0 ? 1.0f / 3 : 0},
              .tint = tint(color, opacity)},
             {half.x + beyond, half.y + beyond});
     }
@@ -200,8 +200,8 @@ private:
 
 bool operator==(const Primitive& a, const Primitive& b) {
     return a.origin.x == b.origin.x && a.origin.y == b.origin.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
-           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.more == b.more && a.bow == b.bow &&
-           a.tint == b.tint && a.image == b.image;
+           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.params == b.params &&
+           a.parabola == b.parabola && a.tint == b.tint && a.image == b.image;
 }
 
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made) {

@@ -8,24 +8,23 @@
 
 namespace doppel {
 
-/// What the fragment shader of a kind must know to draw one thing.
+/// The input of a fragment shader for one shape.
 struct Primitive {
-    Point origin;                        // of the thing's own axes, px
+    Point origin;                        // of its own axes, px
     Point axis{1, 0};                    // unit vector along the first of them
     Point half;                          // how far it reaches along them to either side, px; 0 where it does not turn
     std::array<float, 4> shape{};        // see the shader
-    std::array<float, 4> more{};         // likewise
-    std::array<float, 2> bow{};          // likewise
+    std::array<float, 4> params{};       // likewise
+    std::array<float, 2> parabola{};     // likewise
     std::array<std::uint8_t, 4> tint{};  // sRGB and opacity
     const Picture* image = nullptr;      // one of RenderList::images
     friend bool operator==(const Primitive&, const Primitive&);
 };
 
-/// The fragment shaders. What is of kind `mask` is drawn twice: first it gathers how opaque the stroke is, then the
-/// shader `cover` lays the stroke's colour through the mask.
+/// The fragment shaders. `mask` takes a second pass: the shader `cover` blends the stroke's colour through the mask.
 enum class Kind { shape, glyph, mask, image };
 
-/// A display list made ready to draw: rectangles of whole pixels, part by part from back to front.
+/// A display list as primitives with bounds in whole pixels, part by part from back to front.
 struct RenderList {
     struct Part {
         Kind kind;
@@ -38,8 +37,14 @@ struct RenderList {
     std::vector<std::shared_ptr<const Picture>> images;  // kept, so that none can take the place of another in memory
 };
 
-/// Makes `made` the render list of `list`; what it held goes, but for its memory. An item without ink adds a part
-/// without primitives, or none.
+/// `made` ← the render list of `list`, in the memory it has. An invisible item adds an empty part, or none.
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made);
+
+/// Few disjoint rectangles that cover all of `rects`; those are joined that are cheaper to draw as one.
+std::vector<Rect> merged(std::vector<Rect> rects);
+
+/// Where the pictures of two render lists may differ, as few disjoint rectangles. Elsewhere both have the same
+/// primitives in the same order.
+std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& after);
 
 }  // namespace doppel

@@ -1,9 +1,9 @@
 #include "render/renderer.hpp"
 
 #include "base/error.hpp"
-#include "render/dirty_regions.hpp"
 #include "render/gl_context.hpp"
 #include "render/gl_painter.hpp"
+#include "render/render_list.hpp"
 
 #include <algorithm>
 #include <new>
@@ -12,7 +12,6 @@
 
 namespace doppel {
 
-/// What the renderer is made of: a context, a canvas, the backdrop, and the render list of the last picture.
 class Renderer::State {
 public:
     State(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop)
@@ -29,9 +28,9 @@ public:
         gl::ClearColor(0, 0, 0, 1);
         gl::Clear(GL_COLOR_BUFFER_BIT);
         make_render_list(backdrop, size, *atlas_, now_);
-        for (const auto& places : turns({all_of(size)})) {
+        for (const auto& regions : bands({all_of(size)})) {
             if (stop) throw interrupted();
-            paint(places, backdrop_);
+            paint(regions, backdrop_);
         }
     }
 
@@ -45,13 +44,13 @@ public:
         changed_ = first_ ? std::vector{all_of(size_)} : dirty_regions(last_, now_);
         first_ = true;  // until this one is whole
 
-        // each switch between putting back, drawing and reading makes OpenGL finish what it has in hand: one of each a
-        // turn. Putting back from memory is a mere copy; a blit would draw, and finish, for every rectangle.
-        for (const auto& places : turns(changed_)) {
+        // each switch between upload, drawing and reading makes OpenGL finish: one of each a band. Restoring the
+        // backdrop from memory is a copy; a blit would draw, and finish, for every rectangle.
+        for (const auto& regions : bands(changed_)) {
             if (stop) throw interrupted();
             gl::PixelStorei(GL_UNPACK_ROW_LENGTH, size_.width);
-            for (const Rect& r : places) canvas_->put(backdrop_, r);
-            paint(places, picture_);
+            for (const Rect& r : regions) canvas_->put(backdrop_, r);
+            paint(regions, picture_);
         }
         std::swap(last_, now_);
         first_ = false;
@@ -69,26 +68,25 @@ public:
 private:
     static Error interrupted() { return {ExitCode::interrupted, "interrupted"}; }
 
-    /// What to draw at once: all of it, or of a large picture band after band, so that whoever wants to stop need not
-    /// wait long.
-    static std::vector<std::vector<Rect>> turns(const std::vector<Rect>& places) {
+    /// What to draw at once: all, or a large picture band by band, so that a stop takes effect soon.
+    static std::vector<std::vector<Rect>> bands(const std::vector<Rect>& regions) {
         constexpr long most = 16'000'000;  // px
         long pixels = 0;
-        for (const Rect& r : places) pixels += long{r.right - r.left} * (r.bottom - r.top);
-        if (pixels <= most) return {places};
-        std::vector<std::vector<Rect>> bands;
-        for (const Rect& r : places) {
+        for (const Rect& r : regions) pixels += long{r.right - r.left} * (r.bottom - r.top);
+        if (pixels <= most) return {regions};
+        std::vector<std::vector<Rect>> result;
+        for (const Rect& r : regions) {
             const int rows = std::max(1, static_cast<int>(most / std::max(1, r.right - r.left)));
             for (int top = r.top; top < r.bottom; top += rows)
-                bands.push_back({{r.left, top, r.right, std::min(top + rows, r.bottom)}});
+                result.push_back({{r.left, top, r.right, std::min(top + rows, r.bottom)}});
         }
-        return bands;
+        return result;
     }
 
-    /// Draws the render list in hand within `places`, and reads them.
-    void paint(const std::vector<Rect>& places, Picture& into) {
-        painter_->paint(now_, places, *atlas_);
-        for (const Rect& r : places)
+    /// Draws the render list in hand within `regions`, and reads them.
+    void paint(const std::vector<Rect>& regions, Picture& into) {
+        painter_->paint(now_, regions, *atlas_);
+        for (const Rect& r : regions)
             gl::ReadPixels(r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
                            into.at(r.left, r.top));
         gl::check_errors(fmt::format("drawing a picture of {} × {} px", size_.width, size_.height));

@@ -25,8 +25,8 @@ Gl gl_named(const std::string& name);
 
 /// Draws display lists into pictures of one size, without a display (OSMesa or EGL).
 ///
-/// A picture is a backdrop, which stays, with a list on top, which is new every time. Only the rectangles that the last
-/// list or this one touches are drawn and read back; the pixels are the same as if everything had been drawn anew.
+/// A picture is a fixed backdrop with a new list on top. Only the rectangles where the list differs from the last one
+/// are drawn and read back; the pixels are the same as if everything had been drawn.
 class Renderer {
 public:
     /// Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size is to be had, 130 as
@@ -37,9 +37,8 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// The backdrop with `list` on top. The picture belongs to the renderer and lasts until the next draw(). Throws
-    /// Error: exit 4 where OpenGL fails, exit 130 soon after `stop` is set, which it looks at between parts of a large
-    /// picture.
+    /// The backdrop with `list` on top, valid until the next draw(). Throws Error: exit 4 where OpenGL fails, exit 130
+    /// soon after `stop` is set.
     const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop = false);
 
     /// Where the last picture differs from the one before it; the whole picture after the first draw().

@@ -9,10 +9,9 @@ namespace doppel {
 namespace {
 
 constexpr float hair = 1.0f / 10;  // px
-// of a parabola, at its ends: what lies beside a flat one is nearest to what it lies beside
-constexpr float steepest = 0.25f;
+constexpr float steepest = 0.25f;  // slope of a parabola at its ends: the shader's distance assumes flat ones
 
-/// A place in the axes of a chord: how far along from its start and how far to its right, px.
+/// In the axes of a chord: along it from its start, and to its right, px.
 Point local(const Chord& chord, Point at) {
     const Point out{at.x - chord.from.x, at.y - chord.from.y};
     return {chord.axis.x * out.x + chord.axis.y * out.y, chord.axis.x * out.y - chord.axis.y * out.x};
@@ -61,7 +60,7 @@ std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_
 
 }  // namespace
 
-std::optional<Shares> shares_within(const Area& area, double x0, double y0, double x1, double y1) {
+std::optional<Shares> clip_segment(const Area& area, double x0, double y0, double x1, double y1) {
     Shares within;
     const double dx = x1 - x0, dy = y1 - y0;
     // on the inner side of an edge where share · step ≤ room
@@ -91,7 +90,7 @@ namespace {
 constexpr float tolerance = 0.2f;  // px
 constexpr float any_slope = std::numeric_limits<float>::max();
 
-/// One that stays: what follows changes nothing before it.
+/// A joint, so that later points change nothing before it.
 Stroke::Vertex vertex(Point at) {
     return {.at = at, .joint = true};
 }

@@ -22,30 +22,30 @@ struct Chord {
     Point middle() const { return {(from.x + to.x) / 2, (from.y + to.y) / 2}; }
 };
 
-/// What of the straight way from (x0, y0) to (x1, y1) lies within the area, as shares of it, 0…1; nothing where it
-/// passes beside (Liang & Barsky 1984).
+/// The part of the segment from (x0, y0) to (x1, y1) within the area, as shares of its length, 0…1; nothing where it
+/// lies outside (Liang & Barsky 1984).
 struct Shares {
     double from = 0, to = 1;
 };
-std::optional<Shares> shares_within(const Area& area, double x0, double y0, double x1, double y1);
+std::optional<Shares> clip_segment(const Area& area, double x0, double y0, double x1, double y1);
 
-/// A part of a stroke that is drawn at once: from vertex `first` to vertex `last` along a parabola that swerves `bend`
-/// px to the right of the straight line between them. Opacity, width and glow vary linearly along that line.
+/// A part of a stroke drawn as one primitive: from vertex `first` to `last` along a parabola whose middle lies `bend`
+/// px to the right of the chord. Opacity, width and glow vary linearly along the chord.
 struct StrokePiece {
     std::size_t first, last;
     float bend = 0;
 };
 
-/// Whether pieces may bend, as those of a smooth path may, or are straight.
+/// Whether pieces may be parabolas, or only straight.
 enum class Bends { no, yes };
 
-/// The piece from vertex `first` that reaches far, at most `most` vertices on or to a joint, and passes all between
-/// within a hair (1/10 px of place and of either edge, 1/5 px of place half way between two vertices, 1/2 px of glow,
-/// 1/255 of opacity); widths and glow in px. Simulated paths have many more vertices than bends.
+/// The longest piece from vertex `first`, at most `most` vertices on and no further than a joint, that keeps to all
+/// vertices between within tolerances: 1/10 px of position and of either edge (1/5 px of position half way between
+/// vertices), 1/2 px of glow, 1/255 of opacity. Widths and glow in px.
 StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t most = 24);
 
-/// The path of a quantity over time, growing to the right, with the points left out that lie within a fifth of a pixel
-/// of the straight line through those that stay. What stays depends only on what came before.
+/// A curve over time, growing to the right, simplified: points within 1/5 px of the line through the kept ones are left
+/// out. What is kept depends only on earlier points.
 class Trace {
 public:
     /// x must grow from point to point.

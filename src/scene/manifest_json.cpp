@@ -1,7 +1,7 @@
 #include "scene/manifest_json.hpp"
 
 #include "output/folder.hpp"
-#include "output/sha256.hpp"
+#include "output/written.hpp"
 #include "scene/version.hpp"
 
 #include <toml++/toml.h>

@@ -85,7 +85,7 @@ struct Scene {
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 
 /// Both sides and how they differ at one sample.
-struct Moment {
+struct PairState {
     long sample = 0;
     Observation a, b;
     std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
@@ -129,7 +129,7 @@ private:
 
 /// Throws Error where the sides are so far apart that their distance is out of the range of a double; it names the
 /// number that makes it so. Exit 2 at the start, exit 3 later.
-void check_distance(const Scene& scene, const Moment& moment);
+void check_distance(const Scene& scene, const PairState& state);
 
 /// Steps the pair from sample to sample.
 class PairRun {
@@ -137,7 +137,7 @@ public:
     explicit PairRun(const Scene& scene) : a_(scene, scene.a, 'a'), b_(scene, scene.b, 'b') {}
 
     /// Sample 0, then 1, 2, … Throws as SideRun does.
-    Moment next(const std::atomic<bool>& stop);
+    PairState next(const std::atomic<bool>& stop);
 
     Effort effort_a() const { return a_.effort(); }
     Effort effort_b() const { return b_.effort(); }

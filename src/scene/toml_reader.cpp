@@ -14,7 +14,7 @@ constexpr std::string_view command_line = "--";
 
 /// What keeps a text from being drawn; nothing where the font has all of its letters.
 std::optional<std::string> not_drawable(std::string_view text) {
-    const auto lacking = lacking_character(text);
+    const auto lacking = missing_character(text);
     if (lacking.empty()) return std::nullopt;
     auto rest = lacking;
     const auto character = next_character(rest);

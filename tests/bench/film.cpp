@@ -68,7 +68,7 @@ void draw(benchmark::State& state, Size size, bool converts) {
         const auto& picture = renderer.draw(lists[k++ % lists.size()]);
         for (const auto& area : renderer.changed())
             pixels += static_cast<double>(area.right - area.left) * (area.bottom - area.top);
-        if (converts) convert(picture, renderer.changed(), Samples::yuv420, converted);
+        if (converts) convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, converted);
     }
     state.counters["px changed"] = pixels / static_cast<double>(state.iterations());
 }
@@ -90,7 +90,7 @@ void convert_whole_frame(benchmark::State& state) {
     const auto picture = one_frame(butterfly());
     const std::vector whole{Rect{0, 0, picture.size.width, picture.size.height}};
     SampledAreas converted;
-    for (auto _ : state) convert(picture, whole, Samples::yuv420, converted);
+    for (auto _ : state) convert(picture, whole, AV_PIX_FMT_YUV420P, converted);
 }
 BENCHMARK(convert_whole_frame)->Unit(benchmark::kMillisecond);
 
@@ -130,7 +130,7 @@ Reel reel_of(const Scene& scene) {
     for (long n = 0; n <= scene.samples; ++n) {
         composer.add({pair.next(never), {}});
         const auto& picture = renderer.draw(composer.frame());
-        convert(picture, renderer.changed(), Samples::yuv420, reel.emplace_back());
+        convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, reel.emplace_back());
     }
     return reel;
 }
@@ -139,8 +139,8 @@ Reel reel_of(const Scene& scene) {
 void put(const SampledAreas& changed, AVFrame& frame) {
     const std::uint8_t* from = changed.bytes.data();
     for (const Rect& area : changed.areas)
-        for (int plane = 0; plane < plane_count(Samples::yuv420); ++plane) {
-            const auto place = plane_area(Samples::yuv420, plane, area);
+        for (int plane = 0; plane < av_pix_fmt_count_planes(AV_PIX_FMT_YUV420P); ++plane) {
+            const auto place = plane_area(AV_PIX_FMT_YUV420P, plane, area);
             for (int row = 0; row < place.rows; ++row, from += place.row_bytes)
                 std::memcpy(frame.data[plane] + std::ptrdiff_t{place.top + row} * frame.linesize[plane] + place.offset,
                             from, static_cast<std::size_t>(place.row_bytes));

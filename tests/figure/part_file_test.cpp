@@ -1,7 +1,7 @@
 #include "figure/part_file.hpp"
 
 #include "figure/support.hpp"
-#include "output/sha256.hpp"
+#include "output/written.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -2,7 +2,7 @@
 
 #include "figure/support.hpp"
 #include "output/png.hpp"
-#include "output/sha256.hpp"
+#include "output/written.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

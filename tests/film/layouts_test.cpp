@@ -4,6 +4,7 @@
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
 #include "render/font.hpp"
+#include "render/pixels.hpp"
 #include "scene/resolved.hpp"
 
 #include <gtest/gtest.h>
@@ -12,11 +13,6 @@
 
 namespace doppel {
 namespace layouts_test {
-
-bool is_color(const std::uint8_t* pixel, Color color, int slack = 3) {
-    const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
-    return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
-}
 
 const std::uint8_t* pixel_at(const Picture& picture, Point at) {
     return picture.at(static_cast<int>(at.x), static_cast<int>(at.y));
@@ -53,10 +49,10 @@ Area box_of(const Label& label) {
     return {left, label.anchor.y - 0.73f * label.size, left + width, label.anchor.y + 0.24f * label.size};
 }
 
-/// The words of the picture after the shots 0 … last.
+/// The words of the picture after the snapshots 0 … last.
 std::vector<Label> labels_of(const Scene& scene, long last) {
     Composer composer(scene);
-    for_each_shot(scene, last, [&](const Shot& shot) { composer.add(shot); });
+    for_each_snapshot(scene, last, [&](const Snapshot& snapshot) { composer.add(snapshot); });
     std::vector<Label> labels;
     for (const auto& list : {composer.backdrop(), composer.frame()})
         for (const auto& item : list)
@@ -163,9 +159,9 @@ TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
     for (std::size_t k = 0; k < 5; ++k)
         EXPECT_NEAR(degrees(scene.members[k]), 120 + 0.025 * static_cast<double>(k), 1e-13);  // measured 1.4e-14
     // its ends are the pair, to the last bit
-    for_each_shot(scene, 60, [](const Shot& shot) {
-        EXPECT_EQ(shot.members.front().back().x, shot.moment.a.bobs.back().x) << shot.moment.sample;
-        EXPECT_EQ(shot.members.back().back().y, shot.moment.b.bobs.back().y) << shot.moment.sample;
+    for_each_snapshot(scene, 60, [](const Snapshot& snapshot) {
+        EXPECT_EQ(snapshot.members.front().back().x, snapshot.pair.a.bobs.back().x) << snapshot.pair.sample;
+        EXPECT_EQ(snapshot.members.back().back().y, snapshot.pair.b.bobs.back().y) << snapshot.pair.sample;
     });
     // one for each at sample 0 on the line from member to member, the first in front
     const auto layout = make_layout(scene);
@@ -177,13 +173,13 @@ TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
 
 TEST(Layouts, ExponentSoFarIsTheSlopeOfTheLogarithm) {
     const auto scene = scene_of("butterfly");
-    Moment moment;
-    moment.distance = 1e-4 * std::exp(0.7 * 10);
-    moment.sample = 1200;
-    EXPECT_NEAR(*exponent_so_far(scene, moment, 1e-4), 0.7, 1e-15);  // measured 0
-    EXPECT_FALSE(exponent_so_far(scene, moment, 0));
-    moment.sample = 179;  // before a twentieth of 30 s
-    EXPECT_FALSE(exponent_so_far(scene, moment, 1e-4));
+    PairState state;
+    state.distance = 1e-4 * std::exp(0.7 * 10);
+    state.sample = 1200;
+    EXPECT_NEAR(*exponent_so_far(scene, state, 1e-4), 0.7, 1e-15);  // measured 0
+    EXPECT_FALSE(exponent_so_far(scene, state, 0));
+    state.sample = 179;  // before a twentieth of 30 s
+    EXPECT_FALSE(exponent_so_far(scene, state, 1e-4));
 }
 
 TEST(Layouts, ForcesOfTheRodsAreDrawnWherePhysicsSays) {
@@ -244,9 +240,9 @@ TEST(Layouts, TheDistanceAxisHoldsAllThatThePairDoes) {
         const auto scene = scene_of(preset, keys);
         const Axis axis = make_layout(scene).strips.front().value;
         double start = 0, most = 0;
-        for_each_shot(scene, scene.samples, [&](const Shot& shot) {
-            if (shot.moment.sample == 0) start = shot.moment.distance;
-            most = std::max(most, shot.moment.distance);
+        for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
+            if (snapshot.pair.sample == 0) start = snapshot.pair.distance;
+            most = std::max(most, snapshot.pair.distance);
         });
         EXPECT_LE(most, axis.high) << what;
         EXPECT_GE(start, axis.low) << what;
@@ -268,7 +264,7 @@ TEST(Layouts, OnlyWhoStartsTogetherParts) {
         keys.emplace_back("system.integrator=\"taylor\"");
         const auto scene = scene_of("butterfly", keys);
         Composer composer(scene);
-        for_each_shot(scene, scene.samples, [&](const Shot& shot) { composer.add(shot); });
+        for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) { composer.add(snapshot); });
         const auto end = composer.end_card(1);
         EXPECT_EQ(says(composer.frame(), "parted at"), says(end, "parted after"));
         return says(end, "parted after") ? "parted"

@@ -96,9 +96,9 @@ to = [0, -3]
     const auto start = pair.next(never);
     EXPECT_NEAR(start.b.bobs[0].theta, radians(200), 1e-15);  // measured 0
     EXPECT_LT(start.distance, 1e-15);                         // measured 1.7e-16
-    Moment moment;
-    for (int n = 0; n < 120; ++n) moment = pair.next(never);
-    EXPECT_GT(moment.distance, 0.1);
+    PairState state;
+    for (int n = 0; n < 120; ++n) state = pair.next(never);
+    EXPECT_GT(state.distance, 0.1);
 }
 
 TEST(MechanismPreset, SidesHaveTheSameParticles) {

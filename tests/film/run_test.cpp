@@ -4,7 +4,7 @@
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
-#include "output/sha256.hpp"
+#include "output/written.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -36,19 +36,19 @@ TEST(Schedule, CountsCardsAndHoldsBesideTheMotion) {
 }
 
 TEST(Schedule, CardsFadeOverHalfASecondAndNeverJump) {
-    for (const bool comes_up : {false, true}) {
+    for (const bool fades_in : {false, true}) {
         for (const long count : {1L, 7L, 240L}) {
-            double last = comes_up ? 0 : 1;
+            double last = fades_in ? 0 : 1;
             for (long k = 0; k < count; ++k) {
-                const double now = card_opacity(k, count, 120, comes_up);
-                EXPECT_TRUE(comes_up ? now >= last : now <= last) << k;
+                const double now = card_opacity(k, count, 120, fades_in);
+                EXPECT_TRUE(fades_in ? now >= last : now <= last) << k;
                 // a fade of 60 frames is steepest in its middle: 1.5/61 a frame
                 if (count == 240) {
                     EXPECT_LE(std::abs(now - last), 1.5 / 61 + 1e-12) << k;
                 }
                 last = now;
             }
-            EXPECT_GT(card_opacity(comes_up ? count - 1 : 0, count, 120, comes_up), 0.3);
+            EXPECT_GT(card_opacity(fades_in ? count - 1 : 0, count, 120, fades_in), 0.3);
         }
     }
     EXPECT_EQ(card_opacity(0, 240, 120, false), 1);

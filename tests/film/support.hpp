@@ -7,25 +7,25 @@
 
 namespace doppel {
 
-/// Calls visit(shot) for the samples 0 … last.
+/// Calls visit(snapshot) for the samples 0 … last.
 template <class Visit>
-void for_each_shot(const Scene& scene, long last, Visit&& visit) {
+void for_each_snapshot(const Scene& scene, long last, Visit&& visit) {
     PairRun pair(scene);
     std::optional<MotionBatch> members;
     if (!scene.members.empty()) members.emplace(scene.members, 1);
     const std::atomic<bool> never = false;
     for (long n = 0; n <= last; ++n) {
-        Shot shot{pair.next(never), {}};
+        Snapshot snapshot{pair.next(never), {}};
         if (members && n > 0) members->advance(never);
-        for (std::size_t k = 0; members && k < members->size(); ++k) shot.members.push_back(members->bobs(k));
-        visit(shot);
+        for (std::size_t k = 0; members && k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
+        visit(snapshot);
     }
 }
 
 /// The picture of one sample.
 inline Picture frame_of(const Scene& scene, long sample) {
     Composer composer(scene);
-    for_each_shot(scene, sample, [&](const Shot& shot) { composer.add(shot); });
+    for_each_snapshot(scene, sample, [&](const Snapshot& snapshot) { composer.add(snapshot); });
     Renderer renderer(scene.preset.video.size, composer.backdrop());
     return renderer.draw(composer.frame());
 }

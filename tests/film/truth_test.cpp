@@ -1,6 +1,7 @@
 #include "film/support.hpp"
 #include "image/theme.hpp"
 #include "render/font.hpp"
+#include "render/pixels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,11 +13,6 @@ namespace truth_test {
 
 // Where the truth is known, the picture is measured against it, not against an older picture.
 
-bool is_color(const std::uint8_t* pixel, Color color, int slack = 2) {
-    const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
-    return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
-}
-
 struct Blob {
     double x = 0, y = 0;  // centroid, px
     long area = 0;        // px
@@ -27,7 +23,7 @@ Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
     Blob blob;
     for (int y = static_cast<int>(place.y - radius); y <= static_cast<int>(place.y + radius); ++y)
         for (int x = static_cast<int>(place.x - radius); x <= static_cast<int>(place.x + radius); ++x) {
-            if (!is_color(picture.at(x, y), color)) continue;
+            if (!is_color(picture.at(x, y), color, 2)) continue;
             blob.x += x + 0.5;
             blob.y += y + 0.5;
             ++blob.area;
@@ -80,7 +76,7 @@ TEST(Truth, BobsHaveAnAreaLikeTheirMass) {
 std::vector<int> rows_of(const Picture& picture, int x, const Area& area, Color color) {
     std::vector<int> rows;
     for (int y = static_cast<int>(area.top); y < static_cast<int>(area.bottom); ++y)
-        if (is_color(picture.at(x, y), color)) rows.push_back(y);
+        if (is_color(picture.at(x, y), color, 2)) rows.push_back(y);
     return rows;
 }
 
@@ -124,8 +120,8 @@ TEST(Truth, WhatLiesBeyondTheHorizonIsShaded) {
         return picture.at(static_cast<int>(strip.time.at(seconds) + dx), static_cast<int>(strip.area.top) + 5);
     };
     const auto& theme = themes[0];
-    EXPECT_TRUE(is_color(pixel(-6, *scene.horizon()), theme.background));
-    EXPECT_TRUE(is_color(pixel(6, *scene.horizon()), theme.panel));
+    EXPECT_TRUE(is_color(pixel(-6, *scene.horizon()), theme.background, 2));
+    EXPECT_TRUE(is_color(pixel(6, *scene.horizon()), theme.panel, 2));
     // one that can be predicted to its end has none
     EXPECT_FALSE(scene_of("horizon", {"scene.duration_s=20"}).horizon());
     EXPECT_FALSE(scene_of("butterfly").horizon());
@@ -141,8 +137,8 @@ TEST(Truth, ABlowUpStaysInItsPanel) {
     const std::atomic<bool> never = false;
     long sample = 0;
     for (; sample < 2400 && !outside; ++sample) {
-        const auto moment = pair.next(never);
-        const auto& bob = moment.a.bobs[1];
+        const auto state = pair.next(never);
+        const auto& bob = state.a.bobs[1];
         outside = !layout.panels.front().area.holds(layout.panels.front().at(bob.x, bob.y));
     }
     ASSERT_TRUE(outside);
@@ -152,7 +148,7 @@ TEST(Truth, ABlowUpStaysInItsPanel) {
     // the gap between the panels, and what is above them but for the clock
     for (int y = static_cast<int>(left.top); y < static_cast<int>(left.bottom); ++y)
         for (int x = static_cast<int>(left.right) + 3; x < static_cast<int>(right.left) - 3; ++x)
-            ASSERT_TRUE(is_color(picture.at(x, y), themes[0].background)) << x << " " << y;
+            ASSERT_TRUE(is_color(picture.at(x, y), themes[0].background, 2)) << x << " " << y;
     for (int y = 0; y < static_cast<int>(left.top) - 8; ++y)
         for (int x = 0; x < 300; ++x)
             ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, calm.at(x, y))) << x << " " << y;

@@ -2,7 +2,7 @@
 #include "figure/run.hpp"
 #include "fuzz/reading.hpp"
 #include "output/png.hpp"
-#include "output/sha256.hpp"
+#include "output/written.hpp"
 
 #include <unistd.h>
 

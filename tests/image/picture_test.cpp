@@ -12,9 +12,9 @@ TEST(Rect, UnitedHoldsBoth) {
 }
 
 TEST(Rect, CommonIsWhatBothCover) {
-    EXPECT_EQ(common({0, 0, 10, 10}, {5, 6, 20, 8}), (Rect{5, 6, 10, 8}));
-    EXPECT_TRUE(common({0, 0, 5, 5}, {5, 0, 9, 5}).empty());
-    EXPECT_TRUE(common({0, 0, 1, 1}, {3, 3, 4, 4}).empty());
+    EXPECT_EQ(intersection({0, 0, 10, 10}, {5, 6, 20, 8}), (Rect{5, 6, 10, 8}));
+    EXPECT_TRUE(intersection({0, 0, 5, 5}, {5, 0, 9, 5}).empty());
+    EXPECT_TRUE(intersection({0, 0, 1, 1}, {3, 3, 4, 4}).empty());
 }
 
 TEST(Picture, KeepsItsRowsFromTheTopDown) {

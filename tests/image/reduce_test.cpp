@@ -38,14 +38,14 @@ TEST(Reduce, MeansAreThoseOfLinearLight) {
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x) put(checks, x, y, (x + y) % 2 ? white : black);
     EXPECT_EQ(grey(0.5), 188);  // as any text on gamma has it; 128 would be the mean of the bytes
-    const Picture half = reduced(checks, {2, 2});
+    const Picture half = downscaled(checks, {2, 2});
     for (int k = 0; k < 4; ++k) EXPECT_EQ(pixel(half, k % 2, k / 2), (Pixel{188, 188, 188, 255}));
 
     // one white pixel of 10×6, anywhere, is 1/60 of the whole
     for (int k = 0; k < 60; ++k) {
         Picture dot = filled({10, 6}, black);
         put(dot, k % 10, k / 10, white);
-        EXPECT_EQ(pixel(reduced(dot, {1, 1}), 0, 0)[1], grey(1 / 60.0));
+        EXPECT_EQ(pixel(downscaled(dot, {1, 1}), 0, 0)[1], grey(1 / 60.0));
     }
 }
 
@@ -53,39 +53,39 @@ TEST(Reduce, PartsOfPixelsCountByWhatIsCovered) {
     // 5 columns to 2: the middle one is shared
     Picture stripe = filled({5, 3}, black);
     for (int y = 0; y < 3; ++y) put(stripe, 2, y, white);
-    const Picture two = reduced(stripe, {2, 3});
+    const Picture two = downscaled(stripe, {2, 3});
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 2; ++x) EXPECT_EQ(pixel(two, x, y)[0], grey(0.5 / 2.5));
     // 3 rows to 2, an edge within a pixel
     Picture edge = filled({1, 3}, white);
     put(edge, 0, 0, black);
-    EXPECT_EQ(pixel(reduced(edge, {1, 2}), 0, 0)[2], grey(0.5 / 1.5));
-    EXPECT_EQ(pixel(reduced(edge, {1, 2}), 0, 1)[2], 255);
+    EXPECT_EQ(pixel(downscaled(edge, {1, 2}), 0, 0)[2], grey(0.5 / 1.5));
+    EXPECT_EQ(pixel(downscaled(edge, {1, 2}), 0, 1)[2], 255);
 }
 
 TEST(Reduce, FlatStaysFlatAndTheSameSizeIsTheSame) {
     for (int v = 0; v < 256; ++v) {
         const Pixel colour{v, 255 - v, v / 2, 255};
-        EXPECT_EQ(reduced(filled({7, 5}, colour), {3, 2}).rgba, filled({3, 2}, colour).rgba);
+        EXPECT_EQ(downscaled(filled({7, 5}, colour), {3, 2}).rgba, filled({3, 2}, colour).rgba);
     }
     Picture all({16, 16});
     for (int i = 0; i < 256; ++i) put(all, i % 16, i / 16, {i, 255 - i, i ^ 85, 255});
-    EXPECT_EQ(reduced(all, {16, 16}).rgba, all.rgba);
+    EXPECT_EQ(downscaled(all, {16, 16}).rgba, all.rgba);
 }
 
 TEST(Reduce, WhatIsTransparentHasNoColour) {
     Picture edge({2, 1});
     put(edge, 0, 0, {200, 100, 50, 255});
     put(edge, 1, 0, {0, 255, 0, 0});
-    EXPECT_EQ(pixel(reduced(edge, {1, 1}), 0, 0), (Pixel{200, 100, 50, 128}));
+    EXPECT_EQ(pixel(downscaled(edge, {1, 1}), 0, 0), (Pixel{200, 100, 50, 128}));
     put(edge, 0, 0, {9, 9, 9, 0});
-    EXPECT_EQ(pixel(reduced(edge, {1, 1}), 0, 0), (Pixel{0, 0, 0, 0}));
+    EXPECT_EQ(pixel(downscaled(edge, {1, 1}), 0, 0), (Pixel{0, 0, 0, 0}));
 }
 
 TEST(Reduce, NeverEnlarges) {
     for (const Size size : {Size{3, 2}, Size{2, 3}, Size{0, 1}, Size{1, -1}}) {
         try {
-            reduced(filled({2, 2}, white), size);
+            downscaled(filled({2, 2}, white), size);
             ADD_FAILURE() << size.width << "x" << size.height;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::bad_input);

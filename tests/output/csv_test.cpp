@@ -18,7 +18,7 @@ TEST(Csv, BytesAreThoseOfRfc4180) {
     Csv csv(path, {"sample", "time_s", "log_ratio"});
     csv.add(0L);
     csv.add(0.1);
-    csv.add_empty();
+    csv.add(std::nullopt);
     csv.end_row();
     csv.add(-3L);
     csv.add(1e22);

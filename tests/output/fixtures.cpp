@@ -87,6 +87,14 @@ Picture moving_scene(Size size, long k) {
     return picture;
 }
 
+std::filesystem::path film(const std::filesystem::path& path, const VideoOptions& options, long frames,
+                           Picture (*scene)(Size, long)) {
+    const auto sink = make_video_sink(path, options);
+    for (long k = 0; k < frames; ++k) sink->take(scene(options.size, k), whole(options.size));
+    sink->finish();
+    return path;
+}
+
 Picture noise(Size size, unsigned seed) {
     Picture picture(size);
     std::mt19937 random(seed);

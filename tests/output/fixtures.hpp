@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "image/picture.hpp"
+#include "output/video.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,6 +21,10 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes);
 
 /// Frame k of something like ours: a dark ground, two pendulums with antialiased discs and fading trails, thin lines.
 Picture moving_scene(Size size, long k);
+
+/// Writes `frames` of scene(size, k) as a video; returns its path.
+std::filesystem::path film(const std::filesystem::path& path, const VideoOptions& options, long frames,
+                           Picture (*scene)(Size, long) = moving_scene);
 
 /// Every byte drawn anew: nothing can compress it.
 Picture noise(Size size, unsigned seed);

@@ -27,10 +27,7 @@ Picture clear_scene(Size size, long k) {
 }
 
 fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
-    const auto sink = make_video_sink(path, options);
-    for (long k = 0; k < frames; ++k) sink->take(clear_scene(options.size, k), whole(options.size));
-    sink->finish();
-    return path;
+    return test::film(path, options, frames, clear_scene);
 }
 
 struct Kind {

@@ -16,13 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr Size small{160, 90};
 
-fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
-    const auto sink = make_video_sink(path, options);
-    for (long k = 0; k < frames; ++k) sink->take(moving_scene(options.size, k), whole(options.size));
-    sink->finish();
-    return path;
-}
-
 unsigned big_endian(const std::string& bytes, std::size_t at, int count) {
     unsigned number = 0;
     for (int i = 0; i < count; ++i) number = number << 8 | static_cast<unsigned char>(bytes[at + std::size_t(i)]);
@@ -217,21 +210,21 @@ TEST(Spool, GivesBackWhatWasWrittenAndHasNoName) {
     const auto folder = fresh_folder();
     write_bytes(folder / "x.gif.spool", "somebody's");
     {
-        Spool spool(folder / "x.gif", Samples::rgba);
+        Spool spool(folder / "x.gif");
         SampledAreas frame;
         for (unsigned k = 0; k < 6; ++k) {
-            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, Samples::rgba, frame);
+            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, AV_PIX_FMT_RGBA, frame);
             spool.write(frame);
         }
         EXPECT_EQ(spool.frames(), 6);
         spool.rewind();
         SampledAreas expected;
         for (unsigned k = 0; k < 6; ++k) {
-            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, Samples::rgba, expected);
+            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, AV_PIX_FMT_RGBA, expected);
             spool.read(frame);
             ASSERT_EQ(frame.areas, expected.areas);
             std::size_t bytes = 0;
-            for (const Rect& area : frame.areas) bytes += byte_count(Samples::rgba, area);
+            for (const Rect& area : frame.areas) bytes += byte_count(AV_PIX_FMT_RGBA, area);
             EXPECT_TRUE(std::equal(frame.bytes.data(), frame.bytes.data() + bytes, expected.bytes.data()));
         }
         expect_error(ExitCode::io_failed, {"x.gif", "cannot be read"}, [&] { spool.read(frame); });
@@ -239,7 +232,7 @@ TEST(Spool, GivesBackWhatWasWrittenAndHasNoName) {
     }
     EXPECT_EQ(bytes_of(folder / "x.gif.spool"), "somebody's");
     const fs::path none = "/none/x.gif";
-    expect_error(ExitCode::io_failed, {"/none/x.gif", "No such file"}, [&] { Spool(none, Samples::rgb); });
+    expect_error(ExitCode::io_failed, {"/none/x.gif", "No such file"}, [&] { Spool{none}; });
 }
 
 }  // namespace gif_apng_test

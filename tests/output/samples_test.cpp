@@ -3,6 +3,7 @@
 #include "output/fixtures.hpp"
 
 extern "C" {
+#include <libavutil/pixdesc.h>
 #include <libswscale/swscale.h>
 }
 
@@ -18,27 +19,27 @@ namespace samples_test {
 
 using namespace test;
 
-constexpr std::array all_samples{Samples::yuv420,  Samples::yuv444, Samples::yuv420_10,
-                                 Samples::yuva420, Samples::rgb,    Samples::rgba};
+constexpr std::array all_samples{AV_PIX_FMT_YUV420P,  AV_PIX_FMT_YUV444P, AV_PIX_FMT_YUV420P10LE,
+                                 AV_PIX_FMT_YUVA420P, AV_PIX_FMT_RGB24,   AV_PIX_FMT_RGBA};
 
-std::vector<std::uint8_t> bytes_of_area(const Picture& picture, const Rect& area, Samples samples) {
-    std::vector<std::uint8_t> bytes(byte_count(samples, area));
-    convert(picture, area, samples, bytes.data());
+std::vector<std::uint8_t> bytes_of_area(const Picture& picture, const Rect& area, AVPixelFormat format) {
+    std::vector<std::uint8_t> bytes(byte_count(format, area));
+    convert(picture, area, format, bytes.data());
     return bytes;
 }
 
 /// The samples of a picture, plane by plane.
-std::vector<std::vector<int>> planes_of(const Picture& picture, Samples samples) {
+std::vector<std::vector<int>> planes_of(const Picture& picture, AVPixelFormat format) {
     const Rect all{0, 0, picture.size.width, picture.size.height};
-    const auto bytes = bytes_of_area(picture, all, samples);
+    const auto bytes = bytes_of_area(picture, all, format);
     std::vector<std::vector<int>> planes;
     const std::uint8_t* next = bytes.data();
-    for (int k = 0; k < plane_count(samples); ++k) {
-        const auto place = plane_area(samples, k, all);
+    for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {
+        const auto place = plane_area(format, k, all);
         std::vector<int> plane;
         for (const auto* end = next + place.row_bytes * place.rows; next < end; ++next) {
             plane.push_back(*next);
-            if (samples == Samples::yuv420_10) plane.back() |= *++next << 8;
+            if (format == AV_PIX_FMT_YUV420P10LE) plane.back() |= *++next << 8;
         }
         planes.push_back(plane);
     }
@@ -65,12 +66,13 @@ Exact exact_mean(const Picture& picture, int x, int y, int by, double scale) {
 }
 
 TEST(Samples, AreTheExactFormulaRounded) {
-    for (const Samples samples : {Samples::yuv420, Samples::yuv444, Samples::yuv420_10, Samples::yuva420}) {
+    for (const AVPixelFormat format :
+         {AV_PIX_FMT_YUV420P, AV_PIX_FMT_YUV444P, AV_PIX_FMT_YUV420P10LE, AV_PIX_FMT_YUVA420P}) {
         const Size size{514, 256};
         const Picture picture = noise(size, 1);
-        const auto planes = planes_of(picture, samples);
-        const double scale = samples == Samples::yuv420_10 ? 4 : 1;
-        const int by = samples == Samples::yuv444 ? 1 : 2;
+        const auto planes = planes_of(picture, format);
+        const double scale = format == AV_PIX_FMT_YUV420P10LE ? 4 : 1;
+        const int by = format == AV_PIX_FMT_YUV444P ? 1 : 2;
         double worst_luma = 0.0, worst_chroma = 0.0;
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)
@@ -83,32 +85,32 @@ TEST(Samples, AreTheExactFormulaRounded) {
                 worst_chroma = std::max({worst_chroma, std::abs(e.cb - planes[1][i]), std::abs(e.cr - planes[2][i])});
             }
         // rounding alone costs 0.5; the coefficients' 16 bits add the rest
-        EXPECT_LT(worst_luma, 0.504) << int(samples);    // measured 0.5012, of 10 bits 0.5014
-        EXPECT_LT(worst_chroma, 0.504) << int(samples);  // measured 0.5012
+        EXPECT_LT(worst_luma, 0.504) << int(format);    // measured 0.5012, of 10 bits 0.5014
+        EXPECT_LT(worst_chroma, 0.504) << int(format);  // measured 0.5012
     }
 }
 
 TEST(Samples, GreysAndPrimariesAreTheStandards) {
-    const auto of = [](Samples samples, int r, int g, int b) {
+    const auto of = [](AVPixelFormat format, int r, int g, int b) {
         Picture picture({2, 2});
         for (std::size_t i = 0; i < 16; ++i) picture.rgba[i] = static_cast<std::uint8_t>(std::array{r, g, b, 0}[i % 4]);
-        const auto planes = planes_of(picture, samples);
+        const auto planes = planes_of(picture, format);
         return std::vector<int>{planes[0][0], planes[1][0], planes[2][0]};
     };
     for (int v = 0; v < 256; ++v) {
         const std::vector<int> grey{static_cast<int>(std::lround(16 + v * 219 / 255.0)), 128, 128};
-        EXPECT_EQ(of(Samples::yuv420, v, v, v), grey);
-        EXPECT_EQ(of(Samples::yuv444, v, v, v), grey);
-        EXPECT_EQ(of(Samples::yuv420_10, v, v, v),
+        EXPECT_EQ(of(AV_PIX_FMT_YUV420P, v, v, v), grey);
+        EXPECT_EQ(of(AV_PIX_FMT_YUV444P, v, v, v), grey);
+        EXPECT_EQ(of(AV_PIX_FMT_YUV420P10LE, v, v, v),
                   (std::vector<int>{static_cast<int>(std::lround(64 + v * 876 / 255.0)), 512, 512}));
     }
     // Poynton, Digital Video and HD, 75 % and 100 % colour bars
-    for (const Samples samples : {Samples::yuv420, Samples::yuv444}) {
-        EXPECT_EQ(of(samples, 255, 0, 0), (std::vector<int>{63, 102, 240}));
-        EXPECT_EQ(of(samples, 0, 255, 0), (std::vector<int>{173, 42, 26}));
-        EXPECT_EQ(of(samples, 0, 0, 255), (std::vector<int>{32, 240, 118}));
+    for (const AVPixelFormat format : {AV_PIX_FMT_YUV420P, AV_PIX_FMT_YUV444P}) {
+        EXPECT_EQ(of(format, 255, 0, 0), (std::vector<int>{63, 102, 240}));
+        EXPECT_EQ(of(format, 0, 255, 0), (std::vector<int>{173, 42, 26}));
+        EXPECT_EQ(of(format, 0, 0, 255), (std::vector<int>{32, 240, 118}));
     }
-    EXPECT_EQ(of(Samples::yuv420_10, 255, 0, 0), (std::vector<int>{250, 409, 960}));
+    EXPECT_EQ(of(AV_PIX_FMT_YUV420P10LE, 255, 0, 0), (std::vector<int>{250, 409, 960}));
 }
 
 TEST(Samples, AgreeWithSwscale) {
@@ -138,7 +140,7 @@ TEST(Samples, AgreeWithSwscale) {
     const int to_stride[] = {size.width, size.width / 2, size.width / 2};
     ASSERT_EQ(sws_scale(sws.get(), from, from_stride, 0, size.height, to, to_stride), size.height);
 
-    const auto ours = bytes_of_area(picture, {0, 0, size.width, size.height}, Samples::yuv420);
+    const auto ours = bytes_of_area(picture, {0, 0, size.width, size.height}, AV_PIX_FMT_YUV420P);
     int worst = 0;
     for (std::size_t i = 0; i < ours.size(); ++i) worst = std::max(worst, std::abs(ours[i] - theirs[i]));
     EXPECT_LE(worst, 1);  // measured 1
@@ -148,7 +150,8 @@ TEST(Samples, ColoursAndAlphaStayWhereTheyAreKept) {
     Picture picture = noise({37, 5}, 9);
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = static_cast<std::uint8_t>(7 * i);
     const Rect area{3, 1, 36, 4};
-    const auto rgb = bytes_of_area(picture, area, Samples::rgb), rgba = bytes_of_area(picture, area, Samples::rgba);
+    const auto rgb = bytes_of_area(picture, area, AV_PIX_FMT_RGB24),
+               rgba = bytes_of_area(picture, area, AV_PIX_FMT_RGBA);
     for (int i = 0; i < 33 * 3; ++i) {
         const auto* pixel = picture.at(3 + i % 33, 1 + i / 33);
         EXPECT_TRUE(std::equal(pixel, pixel + 3, rgb.data() + 3 * i)) << i;
@@ -156,9 +159,9 @@ TEST(Samples, ColoursAndAlphaStayWhereTheyAreKept) {
     }
     Picture even = noise({36, 6}, 9);
     for (std::size_t i = 3; i < even.rgba.size(); i += 4) even.rgba[i] = static_cast<std::uint8_t>(7 * i);
-    const auto planes = planes_of(even, Samples::yuva420);
+    const auto planes = planes_of(even, AV_PIX_FMT_YUVA420P);
     for (std::size_t i = 0; i < planes[3].size(); ++i) EXPECT_EQ(planes[3][i], even.rgba[4 * i + 3]);
-    EXPECT_EQ(planes_of(even, Samples::yuv420)[1], planes[1]);  // colour is no darker where alpha is low
+    EXPECT_EQ(planes_of(even, AV_PIX_FMT_YUV420P)[1], planes[1]);  // colour is no darker where alpha is low
 }
 
 TEST(Samples, AnyCoverByAreasGivesTheBytesOfTheWhole) {
@@ -166,19 +169,19 @@ TEST(Samples, AnyCoverByAreasGivesTheBytesOfTheWhole) {
     const Picture picture = noise(size, 3);
     std::mt19937 random(4);
     const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-    for (const Samples samples : all_samples) {
+    for (const AVPixelFormat format : all_samples) {
         const Rect all{0, 0, size.width, size.height};
-        const auto whole_bytes = bytes_of_area(picture, all, samples);
+        const auto whole_bytes = bytes_of_area(picture, all, format);
         for (int trial = 0; trial < 100; ++trial) {
             const int left = upto(size.width), top = upto(size.height);
             const Rect asked{left, top, left + 1 + upto(size.width - left), top + 1 + upto(size.height - top)};
-            const Rect area = aligned(samples, asked, size);
+            const Rect area = aligned(format, asked, size);
             ASSERT_EQ(united(area, asked), area);
             ASSERT_TRUE(asked.left - area.left < 2 && area.right - asked.right < 2 && asked.top - area.top < 2);
-            const auto bytes = bytes_of_area(picture, area, samples);
+            const auto bytes = bytes_of_area(picture, area, format);
             const std::uint8_t *mine = bytes.data(), *plane = whole_bytes.data();
-            for (int k = 0; k < plane_count(samples); ++k) {
-                const auto part = plane_area(samples, k, area), full = plane_area(samples, k, all);
+            for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {
+                const auto part = plane_area(format, k, area), full = plane_area(format, k, all);
                 for (int row = 0; row < part.rows; ++row, mine += part.row_bytes)
                     ASSERT_TRUE(std::equal(mine, mine + part.row_bytes,
                                            plane + (part.top + row) * full.row_bytes + part.offset));
@@ -190,18 +193,11 @@ TEST(Samples, AnyCoverByAreasGivesTheBytesOfTheWhole) {
 }
 
 TEST(Samples, AreasAreCutToThePictureAndEvenWhereTheyMust) {
-    EXPECT_EQ(aligned(Samples::yuv420, {-3, -1, 1, 1}, {8, 6}), (Rect{0, 0, 2, 2}));
-    EXPECT_EQ(aligned(Samples::yuva420, {5, 3, 99, 99}, {8, 6}), (Rect{4, 2, 8, 6}));
-    EXPECT_EQ(aligned(Samples::yuv444, {5, 3, 99, 99}, {7, 5}), (Rect{5, 3, 7, 5}));
-    EXPECT_EQ(aligned(Samples::rgb, {-5, 3, 2, 4}, {7, 5}), (Rect{0, 3, 2, 4}));
-    EXPECT_TRUE(aligned(Samples::yuv420, {8, 0, 9, 2}, {8, 6}).empty());
-}
-
-TEST(Samples, HaveTheirPlanes) {
-    using enum Samples;
-    for (const Samples samples : {yuv420, yuv444, yuv420_10}) EXPECT_EQ(plane_count(samples), 3);
-    EXPECT_EQ(plane_count(yuva420), 4);
-    for (const Samples samples : {rgb, rgba}) EXPECT_EQ(plane_count(samples), 1);
+    EXPECT_EQ(aligned(AV_PIX_FMT_YUV420P, {-3, -1, 1, 1}, {8, 6}), (Rect{0, 0, 2, 2}));
+    EXPECT_EQ(aligned(AV_PIX_FMT_YUVA420P, {5, 3, 99, 99}, {8, 6}), (Rect{4, 2, 8, 6}));
+    EXPECT_EQ(aligned(AV_PIX_FMT_YUV444P, {5, 3, 99, 99}, {7, 5}), (Rect{5, 3, 7, 5}));
+    EXPECT_EQ(aligned(AV_PIX_FMT_RGB24, {-5, 3, 2, 4}, {7, 5}), (Rect{0, 3, 2, 4}));
+    EXPECT_TRUE(aligned(AV_PIX_FMT_YUV420P, {8, 0, 9, 2}, {8, 6}).empty());
 }
 
 TEST(Buffer, HasRoomForOneByte) {
@@ -213,13 +209,13 @@ TEST(Samples, WhatChangedKeepsItsMemory) {
     const Size size{64, 48};
     const Picture picture = noise(size, 5);
     SampledAreas frame;
-    convert(picture, whole(size), Samples::yuv420, frame);
+    convert(picture, whole(size), AV_PIX_FMT_YUV420P, frame);
     const auto* memory = frame.bytes.data();
-    convert(picture, {{3, 3, 9, 9}, {}, {70, 0, 90, 8}, {20, 10, 30, 12}}, Samples::yuv420, frame);
+    convert(picture, {{3, 3, 9, 9}, {}, {70, 0, 90, 8}, {20, 10, 30, 12}}, AV_PIX_FMT_YUV420P, frame);
     EXPECT_EQ(frame.bytes.data(), memory);
     EXPECT_EQ(frame.areas, (std::vector<Rect>{{2, 2, 10, 10}, {20, 10, 30, 12}}));
-    const auto first = bytes_of_area(picture, {2, 2, 10, 10}, Samples::yuv420);
-    const auto second = bytes_of_area(picture, {20, 10, 30, 12}, Samples::yuv420);
+    const auto first = bytes_of_area(picture, {2, 2, 10, 10}, AV_PIX_FMT_YUV420P);
+    const auto second = bytes_of_area(picture, {20, 10, 30, 12}, AV_PIX_FMT_YUV420P);
     EXPECT_TRUE(std::equal(first.begin(), first.end(), memory));
     EXPECT_TRUE(std::equal(second.begin(), second.end(), memory + first.size()));
 }

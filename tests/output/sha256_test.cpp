@@ -1,6 +1,5 @@
-#include "output/sha256.hpp"
-
 #include "output/fixtures.hpp"
+#include "output/written.hpp"
 
 namespace doppel {
 namespace sha256_test {

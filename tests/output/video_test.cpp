@@ -15,13 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr Size small{480, 270};
 
-fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
-    const auto sink = make_video_sink(path, options);
-    for (long k = 0; k < frames; ++k) sink->take(moving_scene(options.size, k), whole(options.size));
-    sink->finish();
-    return path;
-}
-
 TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
     const auto folder = fresh_folder();
     for (const Ratio rate :

@@ -1,8 +1,8 @@
 #include "plot/heat_map.hpp"
 
 #include "image/color.hpp"
+#include "plot/curves.hpp"
 #include "plot/plot.hpp"
-#include "plot/raster.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "render/pixels.hpp"
 #include "render/font.hpp"
+#include "render/pixels.hpp"
 #include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ constexpr Size size{400, 80};
 class LabelTest : public testing::Test {
 protected:
     const Picture& drawn(const Label& label) { return renderer.draw({label}); }
-    Renderer renderer{size, {background(size, black)}};
+    Renderer renderer{size, {filled(size, black)}};
 };
 
 Label label(const char* text, Point at, float em, Weight weight = Weight::regular, Align align = Align::left) {

@@ -25,7 +25,7 @@ double read(std::string text) {
     return (cross == std::string::npos ? 1.0 : std::stod(text.substr(0, cross))) * std::pow(10.0, std::stoi(power));
 }
 
-void expect_sound(const Axis& axis, const TickWords& words, const std::vector<Tick>& ticks) {
+void expect_sound(const Axis& axis, const TickLabels& words, const std::vector<Tick>& ticks) {
     const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
     std::set<std::string> texts;
     const Tick* before = nullptr;
@@ -56,7 +56,7 @@ TEST(ChartTicks, AreSoundOverAnyLinearRange) {
         Axis axis{middle - size * between(0, 1), middle + size * between(0.01, 1), 0,
                   static_cast<float>(between(60, 1500))};
         if (random() % 3 == 0) std::swap(axis.low, axis.high);
-        const TickWords words{.size = 12, .gap = 8, .spacing = 30, .across = random() % 2 == 0};
+        const TickLabels words{.size = 12, .gap = 8, .spacing = 30, .across = random() % 2 == 0};
         const auto ticks = chart_ticks(axis, words);
         ASSERT_NO_FATAL_FAILURE(expect_sound(axis, words, ticks)) << axis.low << " … " << axis.high;
         const auto span = std::abs(axis.high - axis.low);
@@ -77,7 +77,7 @@ TEST(ChartTicks, AreSoundOverAnyLogarithmicRange) {
         const double high = std::pow(10, std::min(std::log10(low) + decades, 305.0));
         Axis axis{low, high, 0, static_cast<float>(between(60, 1500)), true};
         if (random() % 3 == 0) std::swap(axis.low, axis.high);
-        const TickWords words{.size = 12, .gap = 8, .spacing = 30, .across = random() % 2 == 0};
+        const TickLabels words{.size = 12, .gap = 8, .spacing = 30, .across = random() % 2 == 0};
         const auto ticks = chart_ticks(axis, words);
         ASSERT_NO_FATAL_FAILURE(expect_sound(axis, words, ticks)) << low << " … " << high;
         if (!words.across && axis.to > 6 * 30 && decades > 2.1) {
@@ -88,7 +88,7 @@ TEST(ChartTicks, AreSoundOverAnyLogarithmicRange) {
 }
 
 std::vector<std::string> texts(const Axis& axis, std::optional<double> every = {},
-                               TickWords words = {.across = false}) {
+                               TickLabels words = {.across = false}) {
     std::vector<std::string> all;
     for (const Tick& tick : chart_ticks(axis, words, every))
         if (!tick.text.empty()) all.push_back(tick.text);
@@ -129,7 +129,7 @@ TEST(Axis, MapsItsEndsAndKeepsToThem) {
 }
 
 TEST(ChartTicks, TakeTheSmallestStepThatLeavesTheSpacing) {
-    const TickWords words{.gap = 0, .spacing = 90};
+    const TickLabels words{.gap = 0, .spacing = 90};
     const auto ticks = chart_ticks({0, 30, 0, 1600}, words);
     ASSERT_EQ(ticks.size(), 16u);
     EXPECT_EQ(ticks[1].text, "2");

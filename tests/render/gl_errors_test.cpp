@@ -1,7 +1,7 @@
 #include "base/error.hpp"
-#include "render/pixels.hpp"
 #include "render/gl_context.hpp"
 #include "render/gl_painter.hpp"
+#include "render/pixels.hpp"
 #include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ constexpr Size size{480, 270};
 
 /// Crossing strokes: they blend in more than one way.
 DisplayList strokes(int variant) {
-    DisplayList list{background(size, black)};
+    DisplayList list{filled(size, black)};
     for (int k = 0; k < 3; ++k) {
         Stroke stroke{.vertices = {}, .width = 6, .color = rgb(0xffa640)};
         for (int i = 0; i < 40; ++i) {

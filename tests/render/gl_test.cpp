@@ -20,7 +20,7 @@ constexpr Size size{480, 270};
 DisplayList rich_list(int variant) {
     auto pixels = std::make_shared<Picture>(Size{7, 5});
     for (std::size_t i = 0; i < pixels->rgba.size(); ++i) pixels->rgba[i] = static_cast<std::uint8_t>(i * 37 % 256);
-    DisplayList list{background(size, rgb(0x11151d)), Image{300, 20, 420, 110, pixels}};
+    DisplayList list{filled(size, rgb(0x11151d)), Image{300, 20, 420, 110, pixels}};
     const auto shift = static_cast<float>(variant) * 3.7f;
     for (int i = 0; i < 12; ++i) {
         const float x = 30.3f + 37.1f * static_cast<float>(i) + shift, y = 60 + 15.7f * static_cast<float>(i % 5);

@@ -21,7 +21,7 @@ std::shared_ptr<Picture> noise(Size texels, unsigned seed, bool opaque = true) {
 
 class ImageTest : public testing::Test {
 protected:
-    Renderer renderer{size, {background(size, black)}};
+    Renderer renderer{size, {filled(size, black)}};
 };
 
 TEST_F(ImageTest, IsDrawnTexelForTexel) {
@@ -67,7 +67,7 @@ TEST_F(ImageTest, ShowsNewPixelsInItsPlaceAndTwoAtOnce) {
         const DisplayList list{Image{10, 10, 60, 60, noise({25, 25}, seed)},
                                Image{50, 40, 120, 110, noise({7, 9}, seed + 100, false)},
                                Image{-20, 90, 30, 140, noise({5, 5}, 7)}};
-        Renderer anew(size, {background(size, black)});
+        Renderer anew(size, {filled(size, black)});
         ASSERT_EQ(renderer.draw(list).rgba, anew.draw(list).rgba) << seed;
     }
 }

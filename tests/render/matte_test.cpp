@@ -51,7 +51,7 @@ TEST(Matte, OfADrawnPictureGivesItBackOnBlack) {
     const Box left{
         .left = 8, .top = 8, .right = 30, .bottom = 30, .corner = 6, .color = rgb(0xffa640).with_alpha(0.5f)};
     const Capsule dot{.from = {44, 44}, .to = {50, 50}, .radius = 7.3f, .color = rgb(0x4fb0ff)};
-    Renderer on_black(size, {background(size, black)}), on_white(size, {background(size, white)});
+    Renderer on_black(size, {filled(size, black)}), on_white(size, {filled(size, white)});
     const auto &dark = on_black.draw({left, dot}), &light = on_white.draw({left, dot});
     Picture found(size);
     matte(dark, light, {0, 0, size.width, size.height}, found);

@@ -9,9 +9,10 @@ namespace doppel {
 
 constexpr Color black = rgb(0x000000), white = rgb(0xffffff);
 
-/// A background that covers all of the picture.
-inline Box background(Size size, Color color) {
-    return {.right = static_cast<float>(size.width), .bottom = static_cast<float>(size.height), .color = color};
+/// Whether no channel is more than `slack` levels off.
+inline bool is_color(const std::uint8_t* pixel, Color color, int slack = 3) {
+    const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
+    return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
 }
 
 /// White ink on black: how much there is, px², and where its middle lies, px.

@@ -93,7 +93,7 @@ private:
 };
 
 TEST(Renderer, DrawsTheSamePixelsAsIfItDrewAllAnew) {
-    DisplayList backdrop{background(size, rgb(0x11151d)), Ring{{160, 120}, 80, 5, rgb(0x98a2b3)},
+    DisplayList backdrop{filled(size, rgb(0x11151d)), Ring{{160, 120}, 80, 5, rgb(0x98a2b3)},
                          Stroke{{{{20, 20}, 1}, {{300, 200}, 0.3f}}, 7, rgb(0xffa640)}};
     Renderer old(size, backdrop);
     RandomLists lists;
@@ -112,7 +112,7 @@ TEST(Renderer, DrawsTheSamePixelsAsIfItDrewAllAnew) {
                 for (int x = 0; x < size.width; ++x) {
                     const Rect pixel{x, y, x + 1, y + 1};
                     if (std::any_of(changed.begin(), changed.end(),
-                                    [&](const Rect& r) { return !common(r, pixel).empty(); })) {
+                                    [&](const Rect& r) { return !intersection(r, pixel).empty(); })) {
                         continue;
                     }
                     ++left_alone;
@@ -126,7 +126,7 @@ TEST(Renderer, DrawsTheSamePixelsAsIfItDrewAllAnew) {
 }
 
 TEST(Renderer, TouchesOnlyWhatChanges) {
-    Renderer renderer(size, {background(size, black)});
+    Renderer renderer(size, {filled(size, black)});
     DisplayList list{Capsule{{50, 50}, {50, 50}, 10, white}, Capsule{{250, 200}, {250, 200}, 10, white}};
     renderer.draw(list);
     EXPECT_EQ(renderer.changed(), (std::vector<Rect>{{0, 0, size.width, size.height}}));
@@ -149,7 +149,7 @@ TEST(Renderer, HandsOutOpaquePictures) {
 
 TEST(Renderer, SharesItsThreadWithOthers) {
     const Size other_size{64, 48};
-    Renderer a(size, {background(size, rgb(0xff0000))}), b(other_size, {background(other_size, rgb(0x0000ff))});
+    Renderer a(size, {filled(size, rgb(0xff0000))}), b(other_size, {filled(other_size, rgb(0x0000ff))});
     const DisplayList dot{Capsule{{20, 20}, {20, 20}, 5, white}};
     for (int round = 0; round < 2; ++round) {
         EXPECT_EQ(a.draw(dot).at(40, 40)[0], 255);
@@ -182,7 +182,7 @@ TEST(Renderer, DrawsLargePicturesInPartsAsInOne) {
         stroke.vertices.push_back({{1000 + 30 * t, 3809 + 60 * std::sin(t)}, t / 20});
     }
     list.push_back(stroke);
-    Renderer in_parts(large, {background(large, black)}), in_one(large, {background(large, black)});
+    Renderer in_parts(large, {filled(large, black)}), in_one(large, {filled(large, black)});
     in_one.draw({});
     EXPECT_EQ(in_one.draw(list).rgba, in_parts.draw(list).rgba);  // what changed since is less than 16 million px
 }

@@ -11,12 +11,12 @@ namespace shapes_test {
 constexpr Size size{96, 80};
 
 Picture drawn(const DisplayList& list) {
-    Renderer renderer(size, {background(size, black)});
+    Renderer renderer(size, {filled(size, black)});
     return renderer.draw(list);
 }
 
 TEST(Disc, LiesWhereItShouldAndIsAsLarge) {
-    Renderer renderer(size, {background(size, black)});
+    Renderer renderer(size, {filled(size, black)});
     for (const float radius : {7.3f, 11.0f, 21.5f}) {
         for (const Point at : {Point{40, 38}, Point{40.5f, 38.5f}, Point{41.3f, 37.8f}}) {
             const Ink seen = ink(renderer.draw({Capsule{at, at, radius, white}}));
@@ -49,7 +49,7 @@ TEST(Box, OnWholePixelsHasNoFringe) {
         const Picture picture = drawn({box});
         for (int y = 0; y < size.height; ++y) {
             for (int x = 0; x < size.width; ++x) {
-                const bool inside = !common(r, {x, y, x + 1, y + 1}).empty();
+                const bool inside = !intersection(r, {x, y, x + 1, y + 1}).empty();
                 ASSERT_EQ(picture.at(x, y)[1], inside ? 255 : 0) << x << ' ' << y;
             }
         }
@@ -94,7 +94,7 @@ TEST(Ring, IsHollowAndItsPenIsAsWide) {
 }
 
 TEST(Shapes, BlendInTheOrderOfTheList) {
-    const Picture picture = drawn({background(size, rgb(0xff0000)), background(size, rgb(0x0000ff).with_alpha(0.25f))});
+    const Picture picture = drawn({filled(size, rgb(0xff0000)), filled(size, rgb(0x0000ff).with_alpha(0.25f))});
     EXPECT_NEAR(picture.at(5, 5)[0], 191, 1);
     EXPECT_NEAR(picture.at(5, 5)[2], 64, 1);
 }

@@ -13,7 +13,7 @@ namespace strokes_test {
 constexpr Size size{160, 120};
 
 Picture drawn(const DisplayList& list) {
-    Renderer renderer(size, {background(size, black)});
+    Renderer renderer(size, {filled(size, black)});
     return renderer.draw(list);
 }
 
@@ -112,12 +112,12 @@ TEST(Stroke, BendsToTheRightAsFarAsItSays) {
     const Picture picture = drawn({arc});
     for (int x = 24; x < 136; ++x) {
         const double share = (x + 0.5 - 20) / 120, middle = 60 + 4 * 7 * share * (1 - share);
-        double sum = 0, moment = 0;
+        double sum = 0, state = 0;
         for (int y = 0; y < size.height; ++y) {
             sum += picture.at(x, y)[0];
-            moment += picture.at(x, y)[0] * (y + 0.5);
+            state += picture.at(x, y)[0] * (y + 0.5);
         }
-        EXPECT_NEAR(moment / sum, middle, 0.02) << x;  // measured 0.014
+        EXPECT_NEAR(state / sum, middle, 0.02) << x;  // measured 0.014
     }
 }
 
@@ -168,7 +168,7 @@ TEST(Stroke, GlowsBeyondItsEdge) {
 TEST(Stroke, LeavesOthersAndTheBackdropAlone) {
     const Color color = rgb(0x4fb0ff);
     const Picture picture =
-        drawn({background(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
+        drawn({filled(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
     for (const int y : {10, 30, 50}) {
         EXPECT_EQ(picture.at(40, y)[0], 0x4f);
         EXPECT_EQ(picture.at(40, y)[2], 0xff);

@@ -156,7 +156,7 @@ TEST(Sides, MayDifferInModelMethodAndStep) {
     EXPECT_EQ(scene.b.motion.steps_per_sample, 10);
     PairRun pair(scene);
     const std::atomic<bool> never = false;
-    Moment last;
+    PairState last;
     for (int n = 0; n <= 120; ++n) last = pair.next(never);
     EXPECT_LT(std::abs(last.b.bobs[0].x - last.a.bobs[0].x), 0.001);  // measured 0.0002
 }
@@ -371,7 +371,7 @@ damping_N_s_per_m = 2
     EXPECT_FALSE(scene.b.conserves_energy);
     PairRun pair(scene);
     const std::atomic<bool> never = false;
-    Moment last;
+    PairState last;
     for (long n = 0; n <= scene.samples; ++n) {
         last = pair.next(never);
         ASSERT_TRUE(last.energy_error_a);

@@ -8,7 +8,7 @@
 #include <set>
 
 namespace doppel {
-namespace plot_ground_test {
+namespace plot_background_test {
 
 // Lines for others to lie on, and words where curves are many.
 
@@ -34,21 +34,21 @@ double share_of(const Picture& picture, Color color) {
     return static_cast<double>(count) / (size.width * size.height);
 }
 
-Figure level_line(Ground ground) {
+Figure level_line(Background background) {
     Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}};
-    plot.curves = {{.label = "ground", .x = {0, 10}, .y = {0.5, 0.5}, .ground = ground}};
+    plot.curves = {{.label = "background", .x = {0, 10}, .y = {0.5, 0.5}, .background = background}};
     return {.panels = {plot}};
 }
 
 TEST(Plot, AGroundIsPaleAndHasNoWords) {
     const auto pale = [](Color color, float share) { return mixed(light.background, color, share); };
     Renderer renderer(size);
-    const auto band = compose(level_line(Ground::band), size, light);
-    EXPECT_EQ(words_in(band).count("ground"), 0u);
+    const auto band = compose(level_line(Background::band), size, light);
+    EXPECT_EQ(words_in(band).count("background"), 0u);
     // 6 lines wide over some 90 % of the width: 6 × 3.2 × 5/9 px of 500
     EXPECT_NEAR(share_of(renderer.draw(band), pale(light.open, 0.22f)), 0.9 * 6 * 3.2 * 5 / 9 / 500, 0.005);
-    const auto line = compose(level_line(Ground::line), size, light);
-    EXPECT_EQ(words_in(line).count("ground"), 0u);
+    const auto line = compose(level_line(Background::line), size, light);
+    EXPECT_EQ(words_in(line).count("background"), 0u);
     const double thin = share_of(renderer.draw(line), pale(light.palette[0], 0.3f));
     EXPECT_GT(thin, 0.0005);
     EXPECT_LT(thin, 0.003);
@@ -93,5 +93,5 @@ TEST(Plot, AMarkAmongManyCurvesIsLedTo) {
     EXPECT_EQ(thin, 1);
 }
 
-}  // namespace plot_ground_test
+}  // namespace plot_background_test
 }  // namespace doppel
