@@ -21,7 +21,27 @@ double unimodular_growth(double half_trace) {
     return a <= 1 ? 1 : a + std::sqrt((a - 1) * (a + 1));
 }
 
-using Eigenproblem = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>;  // K v = λ M v
+using Eigenproblem = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+
+/// The small oscillations of a chain about an equilibrium, where rod i has the cosine c_i = ±1: in the displacements of
+/// the masses across the rods, times √m_k, they are those of masses on a string, with
+///     κ_i = g c_i Σ_{j≥i} m_j / l_i ,   diagonal (κ_i + κ_{i+1}) / m_i ,   off it −κ_{i+1} / √(m_i m_{i+1}) .
+Eigenproblem oscillations(const Pendulum<double>& p, const Eigen::VectorXd& cosine, int what) {
+    const auto n = static_cast<Eigen::Index>(p.links());
+    Eigen::VectorXd diagonal(n), below(n - 1);
+    double hanging = 0, kappa_below = 0;  // kg, N/m
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+        const auto k = static_cast<std::size_t>(i);
+        hanging += p.mass[k];
+        const double kappa = p.gravity * cosine[i] * hanging / p.length[k];
+        diagonal[i] = (kappa + kappa_below) / p.mass[k];
+        if (i > 0) below[i - 1] = -kappa / std::sqrt(p.mass[k - 1] * p.mass[k]);
+        kappa_below = kappa;
+    }
+    Eigenproblem problem(n);
+    problem.computeFromTridiagonal(diagonal, below, what);
+    return problem;
+}
 
 constexpr std::size_t adams_order = AdamsWeights::bashforth.size();
 using Companion = Eigen::Matrix<std::complex<double>, adams_order, adams_order>;
@@ -50,7 +70,7 @@ double adams_growth(double z) {
         const double norm = power.norm();
         logarithm += share * std::log(norm);
         power /= norm;
-        power = (power * power).eval();
+        power = power.lazyProduct(power).eval();
     }
     return std::exp(logarithm);
 }
@@ -63,8 +83,8 @@ double adams_amplitude(double z, long steps) {
         past[static_cast<Eigen::Index>(j)] = std::polar(1.0, -z * static_cast<double>(j));
     Companion power = adams_step(z);
     for (steps -= static_cast<long>(adams_order) - 1; steps > 0; steps /= 2) {
-        if (steps % 2) past = power * past;
-        power = power * power;
+        if (steps % 2) past = power.lazyProduct(past).eval();
+        power = power.lazyProduct(power).eval();
     }
     return std::abs(past[0]);
 }
@@ -73,7 +93,7 @@ double adams_amplitude(double z, long steps) {
 ///     ( 1 − z²/2           z     )
 ///     ( −z (1 − z²/4)   1 − z²/2 )
 double composed_growth(double z) {
-    const auto& half = Rattle6::composition;
+    const auto& half = Rattle6::fractions;
     std::array<double, 2 * half.size() + 1> part{};
     part[half.size()] = 1;
     for (std::size_t i = 0; i < half.size(); ++i) {
@@ -134,24 +154,19 @@ double growth(std::string_view method, double z) {
 
 std::vector<Mode> small_oscillations(const Pendulum<double>& pendulum) {
     const auto n = static_cast<Eigen::Index>(pendulum.links());
-    const auto at = [](const std::vector<double>& values, Eigen::Index i) {
-        return values[static_cast<std::size_t>(i)];
-    };
-    Eigen::MatrixXd inertia(n, n), stiffness = Eigen::MatrixXd::Zero(n, n);
-    double hanging = 0;  // below joint i, kg
-    for (Eigen::Index i = n - 1; i >= 0; --i) {
-        hanging += at(pendulum.mass, i);
-        stiffness(i, i) = pendulum.gravity * at(pendulum.length, i) * hanging;
-        for (Eigen::Index j = 0; j <= i; ++j)
-            inertia(i, j) = inertia(j, i) = at(pendulum.length, i) * at(pendulum.length, j) * hanging;
-    }
-    // v of unit inertia: each mode is an oscillator by itself
-    const Eigenproblem solved(stiffness, inertia);
+    const auto solved = oscillations(pendulum, Eigen::VectorXd::Ones(n), Eigen::ComputeEigenvectors);
+    // each mode is an oscillator by itself
     const auto amounts = [&](const std::vector<double>& values) -> Eigen::VectorXd {
-        return solved.eigenvectors().transpose() * inertia * Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+        Eigen::VectorXd moved(n);
+        double across = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            across += pendulum.length[i] * values[i];
+            moved[static_cast<Eigen::Index>(i)] = std::sqrt(pendulum.mass[i]) * across;
+        }
+        return solved.eigenvectors().transpose().lazyProduct(moved);
     };
     const Eigen::VectorXd angle = amounts(pendulum.angle), rate = amounts(pendulum.rate);
-    const Eigen::VectorXd energy = (solved.eigenvalues().cwiseProduct(angle.cwiseAbs2()) + rate.cwiseAbs2()).eval();
+    const Eigen::VectorXd energy = solved.eigenvalues().cwiseProduct(angle.cwiseAbs2()) + rate.cwiseAbs2();
     const double total = energy.sum();
     std::vector<Mode> modes;
     for (Eigen::Index i = 0; i < n; ++i)
@@ -190,27 +205,17 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
     return fails;
 }
 
-/// M θ″ = −K θ near an equilibrium, with M_ij = μ_max(i,j) l_i l_j cosθ_i cosθ_j and K_ii = μ_i g l_i cosθ_i, μ as in
-/// physics/angle_chain.hpp. The exponent is √−κ for the least κ with K x = κ M x, or 0.
+/// √−κ for the least eigenvalue κ, or 0.
 std::optional<double> equilibrium_exponent(const Pendulum<double>& p) {
-    const auto n = static_cast<Eigen::Index>(p.links());
-    Eigen::MatrixXd mass(n, n), stiffness = Eigen::MatrixXd::Zero(n, n);
-    double hanging = 0;  // μ_i, kg
-    for (Eigen::Index i = n - 1; i >= 0; --i) {
-        const auto k = static_cast<std::size_t>(i);
-        const SinCos<double> turn(p.angle[k]);
+    Eigen::VectorXd cosine(static_cast<Eigen::Index>(p.links()));
+    for (std::size_t i = 0; i < p.links(); ++i) {
+        const SinCos<double> turn(p.angle[i]);
         constexpr double rounding = 1e-14;
-        if (p.rate[k] != 0 || (p.gravity != 0 && std::abs(turn.sin) > rounding)) return std::nullopt;
-        hanging += p.mass[k];
-        stiffness(i, i) = hanging * p.gravity * p.length[k] * turn.cos;
-        for (Eigen::Index j = 0; j <= i; ++j) {
-            const auto other = static_cast<std::size_t>(j);
-            mass(i, j) = mass(j, i) = hanging * p.length[k] * p.length[other] * std::cos(p.angle[k] - p.angle[other]);
-        }
+        if (p.rate[i] != 0 || (p.gravity != 0 && std::abs(turn.sin) > rounding)) return std::nullopt;
+        cosine[static_cast<Eigen::Index>(i)] = turn.cos;
     }
     if (p.gravity == 0) return 0.0;
-    const Eigenproblem solver(stiffness, mass, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, -solver.eigenvalues()[0]));
+    return std::sqrt(std::max(0.0, -oscillations(p, cosine, Eigen::EigenvaluesOnly).eigenvalues()[0]));
 }
 
 }  // namespace doppel

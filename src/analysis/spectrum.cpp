@@ -4,13 +4,33 @@
 #include "base/error.hpp"
 #include "physics/canonical.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Householder>
 
 #include <algorithm>
 #include <cmath>
 
 namespace doppel {
 namespace {
+
+/// frame = QR becomes Q, by Householder's reflections; returns |R_ii|. (Eigen's own QR by blocks, for large matrices, takes
+/// seconds to compile.)
+/// Source  Golub & Van Loan, Matrix Computations, §5.2.
+Eigen::VectorXd orthonormalise(Eigen::MatrixXd& frame) {
+    const auto n = frame.rows();
+    Eigen::VectorXd factor(n), stretched(n), scratch(n);
+    const auto reflect = [&](Eigen::MatrixXd& matrix, Eigen::Index k, Eigen::Index columns) {
+        matrix.bottomRightCorner(n - k, columns)
+            .applyHouseholderOnTheLeft(frame.col(k).tail(n - k - 1), factor[k], scratch.data());
+    };
+    for (Eigen::Index k = 0; k < n; ++k) {
+        frame.col(k).tail(n - k).makeHouseholderInPlace(factor[k], stretched[k]);
+        reflect(frame, k, n - k - 1);
+    }
+    Eigen::MatrixXd q = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index k = n; k-- > 0;) reflect(q, k, n - k);
+    frame = q;
+    return stretched.cwiseAbs();
+}
 
 /// All tangents to a motion, kept upright: now and then their frame is turned into an orthonormal one, and what it has
 /// stretched by is told in logarithms. Frames are canonical, (δθ, δp), where the flow keeps the volume: the logarithms
@@ -40,9 +60,9 @@ public:
         canonical_.momenta(y_, z_);
         Matrix frame(size, size);
         for (int i = 0; i < size; ++i) frame.row(i) = z_[i].tangent.transpose() / unit_[i];
-        const Eigen::HouseholderQR<Matrix> qr(frame);
-        set_down(qr.householderQ() * Matrix::Identity(size, size));
-        return qr.matrixQR().diagonal().cwiseAbs().array().log();
+        const Column stretched = orthonormalise(frame);
+        set_down(frame);
+        return stretched.unaryExpr([](double factor) { return std::log(factor); });
     }
 
 private:

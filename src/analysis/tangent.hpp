@@ -95,7 +95,7 @@ private:
     Flow flow_;
     double tolerance_;
     Eigen::Index links_;
-    std::unique_ptr<Stepper<State>> stepper_;
+    std::unique_ptr<Stepper<double>> stepper_;
 };
 
 }  // namespace doppel

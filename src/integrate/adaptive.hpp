@@ -160,21 +160,16 @@ private:
             return;
         }
         if (!interpolates_) {
-            k_.template evaluate<end + 1, Slopes<Model, pair>::all>(model_, y0_, span_);
+            k_.evaluate_dense(model_, y0_, span_);
             evaluations_ += static_cast<long>(Slopes<Model, pair>::all - end - 1);
             interpolates_ = true;
         }
         const Scalar s = offset_ / span_, rest = Scalar(1) - s;
         out_.setZero();
-        const auto nest = [&]<std::size_t row>() {
-            static constexpr auto weights = pair.dense[row];
-            k_.template sum<weights>(scratch_);
+        for (std::size_t row = pair.dense.size(); row-- > 0;) {
+            k_.sum_with(pair.dense[row], scratch_);
             out_ = (row % 2 == 0 ? rest : s) * (span_ * scratch_ + out_);
-        };
-        [&]<std::size_t... i>(std::index_sequence<i...>) {
-            (nest.template operator()<sizeof...(i) - 1 - i>(), ...);
         }
-        (std::make_index_sequence<pair.dense.size()>());
         scratch_ = y1_ - y0_;
         out_ += Scalar(2) * scratch_ - span_ * (k_[0] + k_[end]);
         out_ = y0_ + s * (scratch_ + rest * (span_ * k_[0] - scratch_ + s * out_));

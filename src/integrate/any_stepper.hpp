@@ -5,9 +5,14 @@
 namespace doppel {
 
 template <class State>
-std::unique_ptr<Stepper<State>> make_any_stepper(std::string_view method, AnySystem<State> system, const State& start,
-                                                 const typename State::Scalar& step_or_tolerance) {
-    std::unique_ptr<Stepper<State>> stepper;
+using MakeAnyStepper = std::unique_ptr<Stepper<typename State::Scalar>>(std::string_view, AnySystem<State>,
+                                                                        const State&, const typename State::Scalar&);
+
+template <class State>
+std::unique_ptr<Stepper<typename State::Scalar>> make_any_stepper(std::string_view method, AnySystem<State> system,
+                                                                  const State& start,
+                                                                  const typename State::Scalar& step_or_tolerance) {
+    std::unique_ptr<Stepper<typename State::Scalar>> stepper;
     for_each_method([&]<class Which>() {
         if constexpr (serves<Which, AnySystem<State>>)
             if (Which::method.name == method)
@@ -16,9 +21,5 @@ std::unique_ptr<Stepper<State>> make_any_stepper(std::string_view method, AnySys
     });
     return stepper;
 }
-
-template <class State>
-using MakeAnyStepper = std::unique_ptr<Stepper<State>>(std::string_view, AnySystem<State>, const State&,
-                                                       const typename State::Scalar&);
 
 }  // namespace doppel

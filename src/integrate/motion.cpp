@@ -1,23 +1,172 @@
 #include "integrate/motion.hpp"
 
+#include "base/error.hpp"
 #include "integrate/methods.hpp"
-#include "integrate/simulation.hpp"
+#include "integrate/stepper.hpp"
+#include "integrate/turns.hpp"
+#include "physics/mechanism.hpp"
+#include "physics/rod_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <type_traits>
 
 namespace doppel {
+
+// Defined in integrate/motion_steppers.hpp.
+template <class Scalar>
+std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec);
+template <class Scalar>
+std::unique_ptr<Stepper<Scalar>> make_constraints_stepper(const MotionSpec& spec);
+template <class Scalar>
+std::unique_ptr<Stepper<Scalar>> make_mechanism_stepper(const MotionSpec& spec);
+
 namespace {
 
+/// A fast rotation is checked for interruption every so many rad; some 0.1 s of work.
+constexpr double most_unwatched = 1e4;
+
+/// A model and the method that steps it, from sample to sample.
 template <class Scalar>
-std::unique_ptr<Motion> made(const MotionSpec& spec) {
-    switch (spec.model) {
-        case Model::angles:
-            return make_angles_motion<Scalar>(spec);
-        case Model::constraints:
-            return make_constraints_motion<Scalar>(spec);
-        case Model::mechanism:
-            break;
+class Simulation final : public Motion {
+public:
+    explicit Simulation(const MotionSpec& spec)
+        : stepper_(make_stepper(spec)), model_(spec.model), adaptive_(find_method(spec.method)->adaptive) {
+        if (spec.chain) pendulum_ = spec.chain->cast<Scalar>();
+        if (model_ == Model::mechanism) mechanism_.emplace(spec.parts->cast<Scalar>());
+        if (spec.wants_tension && model_ == Model::mechanism) weighed_.emplace(spec.parts->cast<double>());
+        wants_tension_ = spec.wants_tension;
+        stepper_->read(y_);
+        const auto bobs = bobs_of(y_);
+        const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
+        if (adaptive_) {
+            const double interval = spec.sample_interval.value();
+            double fastest = 0;  // rad/s, of any bob
+            for (const auto& bob : bobs) fastest = std::max(fastest, std::abs(static_cast<double>(bob.omega)));
+            const double whole =
+                std::max(follows_turns ? interval / Turns::longest_unwatched : 1, interval * fastest / most_unwatched);
+            portions_ = static_cast<long>(std::ceil(std::min(whole, 1e12)));
+            portion_ = spec.sample_interval.as<Scalar>() / Scalar(portions_);
+        } else {
+            steps_per_sample_ = spec.steps_per_sample;
+            portion_steps_ = steps_in_one_go(y_.size());
+            step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
+        }
+        if (follows_turns) turns_ = Turns(pendulum_->template cast<double>().angle);
+        turns_.update(y_, 0);
+        start_energy_ = energy_of(y_, bobs);
     }
-    return make_mechanism_motion<Scalar>(spec);
-}
+
+    void advance(const std::atomic<bool>& stop) override {
+        const auto check = [&] {
+            if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        };
+        if (adaptive_) {
+            for (long i = 0; i < portions_; ++i) {
+                check();
+                advance_by(portion_);
+            }
+        } else {
+            for (long left = steps_per_sample_, steps; left > 0; left -= steps) {
+                check();
+                steps = std::min(left, portion_steps_);
+                if (turns_.followed()) steps = std::min(steps, steps_within(turns_.patience(), step_));
+                stepper_->advance(steps);
+                follow_turns(static_cast<double>(steps) * step_);
+            }
+            steps_ += steps_per_sample_;
+        }
+    }
+
+    Observation observe() const override {
+        const auto y = stepper_->state();
+        auto bobs = bobs_of(y);
+        turns_.add_to(bobs);
+        const Scalar energy = energy_of(y, bobs);
+        Observation seen{.bobs = {},
+                         .exact = {},
+                         .energy = static_cast<double>(energy),
+                         .energy_change = static_cast<double>(Scalar(energy - start_energy_)),
+                         .length_error = length_error_of(y, bobs)};
+        for (const auto& bob : bobs) {
+            const auto in_double = [](const Scalar& x) { return static_cast<double>(x); };
+            seen.bobs.push_back({in_double(bob.mass), in_double(bob.x), in_double(bob.y), in_double(bob.vx),
+                                 in_double(bob.vy), in_double(bob.theta), in_double(bob.omega)});
+        }
+        if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
+        if (wants_tension_)
+            seen.tension = weighed_ ? weighed_->tensions(particles_of(seen.bobs))
+                                    : tensions(pendulum_->template cast<double>(), seen.bobs);
+        return seen;
+    }
+
+    Effort effort() const override {
+        if (!adaptive_) return {steps_, stepper_->evaluations(), step_};
+        return {stepper_->steps(), stepper_->evaluations(), static_cast<double>(stepper_->smallest_step())};
+    }
+
+private:
+    using State = doppel::State<Scalar, Eigen::Dynamic>;
+
+    static std::unique_ptr<Stepper<Scalar>> make_stepper(const MotionSpec& spec) {
+        switch (spec.model) {
+            case Model::angles:
+                return make_angles_stepper<Scalar>(spec);
+            case Model::constraints:
+                return make_constraints_stepper<Scalar>(spec);
+            case Model::mechanism:
+                break;
+        }
+        doppel::check(spec.parts->cast<double>());
+        return make_mechanism_stepper<Scalar>(spec);
+    }
+
+    /// Their angles, where they hang in a chain, within (−π, π] but in the model of angles.
+    Bobs<Scalar> bobs_of(const State& y) const {
+        if (model_ == Model::angles) return bobs_of_angles(*pendulum_, y);
+        return pendulum_ ? bobs_of_particles(*pendulum_, y) : mechanism_->bobs(y);
+    }
+    Scalar energy_of(const State& y, const Bobs<Scalar>& bobs) const {
+        return mechanism_ ? mechanism_->energy(y) : energy(bobs, pendulum_->gravity);
+    }
+    double length_error_of(const State& y, const Bobs<Scalar>& bobs) const {
+        if (model_ == Model::angles) return 0;
+        return static_cast<double>(mechanism_ ? mechanism_->length_error(y) : length_error(*pendulum_, bobs));
+    }
+
+    /// An adaptive method, in as many pieces as turns want to be looked at.
+    void advance_by(const Scalar& seconds) {
+        constexpr double most = 1e6;
+        const double pieces =
+            turns_.followed() ? std::clamp(std::ceil(static_cast<double>(seconds) / turns_.patience()), 1.0, most) : 1;
+        const Scalar piece = seconds / Scalar(pieces);
+        for (double i = 0; i < pieces; ++i) {
+            stepper_->advance_by(piece);
+            follow_turns(static_cast<double>(piece));
+        }
+    }
+
+    void follow_turns(double seconds) {
+        if (!turns_.followed()) return;
+        stepper_->read(y_);
+        turns_.update(y_, seconds);
+    }
+
+    std::unique_ptr<Stepper<Scalar>> stepper_;
+    Model model_;
+    bool adaptive_, wants_tension_ = false;
+    std::optional<Pendulum<Scalar>> pendulum_;
+    std::optional<Mechanism<Scalar>> mechanism_;
+    mutable std::optional<Mechanism<double>> weighed_;           // for the forces in rods; computes in space of its own
+    long portions_ = 1;                                          // of a sample, of an adaptive method
+    Scalar portion_{0};                                          // s
+    long steps_per_sample_ = 0, portion_steps_ = 1, steps_ = 0;  // of a fixed step
+    double step_ = 0;                                            // s
+    Scalar start_energy_{0};
+    State y_;  // when turns were last looked at
+    Turns turns_;
+};
 
 }  // namespace
 
@@ -28,7 +177,8 @@ std::unique_ptr<Motion> make_motion(const MotionSpec& spec) {
         throw bad_input("in angles the rods keep their length by themselves; there is nothing to stabilise");
     if (spec.stabilise != Stabilise::none && !method->stabilised)
         throw bad_input("the method \"{}\" keeps the constraints itself; there is nothing to stabilise", spec.method);
-    return spec.precision == Precision::in_double ? made<double>(spec) : made<Quad>(spec);
+    if (spec.precision == Precision::in_quad) return std::make_unique<Simulation<Quad>>(spec);
+    return std::make_unique<Simulation<double>>(spec);
 }
 
 }  // namespace doppel

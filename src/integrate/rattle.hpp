@@ -6,15 +6,12 @@
 #include "physics/rod_chain.hpp"
 
 #include <array>
+#include <span>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 namespace doppel {
-
-/// Steps of RATTLE, one after another, make one step of the method: fractions γ of it, symmetric, of sum 1. Written are
-/// those before the middle one, in decimal; the middle one is what they leave.
-template <std::size_t S>
-using HalfComposition = std::array<std::string_view, S>;
 
 /// Whether forces depend on velocity (friction). A model may say so of itself, feels_velocity(); of a rod chain it is
 /// known that they do not.
@@ -28,7 +25,8 @@ bool forces_feel_velocity(const Model& model) {
         };
 }
 
-/// RATTLE, composed: a step of size h from (q, v) on the constraints to (q1, v1) on them,
+/// RATTLE, composed: substeps make one step of the method. Their fractions γ of it are symmetric and sum to 1; given are
+/// those before the middle one, in decimal. A substep of size h from (q, v) on the constraints to (q1, v1) on them is
 ///     u  = v + h/2 a(q, v) + M⁻¹ Jᵀ(q) λ ,     q1 = q + h u ,     λ such that C(q1) = 0 ,
 ///     v1 = u + h/2 a(q1, v1) + M⁻¹ Jᵀ(q1) μ ,                     μ such that J(q1) v1 = 0 ,
 /// where a = M⁻¹ F is the acceleration without constraints. u is corrected by the multipliers, never by (q1 − q) / h,
@@ -38,17 +36,20 @@ bool forces_feel_velocity(const Model& model) {
 /// of second order and time-reversible, although no longer symplectic.
 /// Errors  exit 3 where λ or v1 is not found.
 /// Source  Andersen 1983; Hairer, Lubich & Wanner, Geometric Numerical Integration, §VII.1.4 and §V.3.2.
-template <Unstabilised Model, const auto& composition, const auto& method>
+template <Unstabilised Model>
 class ComposedRattle {
 public:
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
 
-    ComposedRattle(Model& model, const State& start, const Scalar& step)
+    ComposedRattle(Model& model, const State& start, const Scalar& step, const Method& method,
+                   std::span<const std::string_view> fractions = {})
         : model_(model),
+          method_(method),
           friction_(forces_feel_velocity(model)),
           y_(start),
           step_(step),
+          sizes_(2 * fractions.size() + 1, step),
           q_(start.head(start.size() / 2)),
           v_(start.tail(start.size() / 2)),
           q0_(q_),
@@ -59,11 +60,10 @@ public:
           force_(guess_),
           force_before_(guess_),
           newton_(model, q_) {
-        constexpr std::size_t before = composition.size();
-        sizes_[before] = step;
-        for (std::size_t i = 0; i < before; ++i) {
-            sizes_[i] = sizes_[2 * before - i] = fraction(composition[i]) * step;
-            sizes_[before] -= Scalar(2) * sizes_[i];
+        const std::size_t middle = fractions.size();
+        for (std::size_t i = 0; i < middle; ++i) {
+            sizes_[i] = sizes_[2 * middle - i] = number(fractions[i]) * step;
+            sizes_[middle] -= Scalar(2) * sizes_[i];
         }
         model_.free_acceleration(q_, v_, a_);
         start_forces();
@@ -87,7 +87,7 @@ private:
     using Half = typename Model::Half;
     using Multipliers = typename Model::Multipliers;
 
-    static Scalar fraction(std::string_view decimal) {
+    static Scalar number(std::string_view decimal) {
         if constexpr (std::is_constructible_v<Scalar, Quad>)
             return Scalar(parse_quad(decimal));
         else
@@ -133,7 +133,7 @@ private:
     /// The forces λ / s of the constraints, guessed from those before: on a straight line where steps are equal.
     void look_ahead() {
         guess_ = force_;
-        if constexpr (composition.size() == 0) {
+        if (sizes_.size() == 1) {
             guess_ += force_ - force_before_;
             force_before_ = force_;
         }
@@ -149,7 +149,7 @@ private:
             if (unchanged(half, i >= newton_.many)) return;
         }
         throw method_failed("{}: step {}: friction is too strong for steps of {:g} s; choose a smaller step_s",
-                            method.name, done_ + 1, static_cast<double>(step_));
+                            method_.name, done_ + 1, static_cast<double>(step_));
     }
 
     /// Whether the forces at the velocity that they led to are the same again, to rounding. Where large ones cancel
@@ -166,14 +166,15 @@ private:
         throw method_failed(
             "{}: step {}: the constraints are still off by {:.2g} after {} corrections; choose a smaller step_s than "
             "{:g}",
-            method.name, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
+            method_.name, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
     }
 
     Model& model_;
+    const Method& method_;
     bool friction_;
     State y_;
     Scalar step_;
-    std::array<Scalar, 2 * composition.size() + 1> sizes_;
+    std::vector<Scalar> sizes_;  // of the substeps, s
     long done_ = 0;
     Half q_, v_, q0_, u_;
     Half a_, a_before_;                         // M⁻¹ F
@@ -182,12 +183,13 @@ private:
     Newton<Model> newton_;
 };
 
-/// One step of RATTLE a step.
 struct Rattle {
     static constexpr Method method{"rattle", "RATTLE", 2, false, "symplectic, time-reversible, keeps rods"};
-    static constexpr HalfComposition<0> composition{};
     template <Unstabilised Model>
-    using Stepper = ComposedRattle<Model, composition, method>;
+    struct Stepper : ComposedRattle<Model> {
+        Stepper(Model& model, const typename Model::State& start, const typename Model::Scalar& step)
+            : ComposedRattle<Model>(model, start, step, method) {}
+    };
 };
 
 /// Kahan & Li 1997: of the symmetric compositions of nine steps with Σγ = 1, Σγ³ = Σγ⁵ = Σγ³m² = 0 (m: where the middle
@@ -195,11 +197,14 @@ struct Rattle {
 struct Rattle6 {
     static constexpr Method method{"rattle6", "RATTLE composed to order 6", 6, false,
                                    "symplectic, time-reversible, keeps rods"};
-    static constexpr HalfComposition<4> composition{
+    static constexpr std::array<std::string_view, 4> fractions{
         "0.3921614440073141392756553300383809325954", "0.3325991367893594386042721253257905699416",
         "-0.7062461725576393598098453372227639944854", "0.08221359629355080023044270533411341434285"};
     template <Unstabilised Model>
-    using Stepper = ComposedRattle<Model, composition, method>;
+    struct Stepper : ComposedRattle<Model> {
+        Stepper(Model& model, const typename Model::State& start, const typename Model::Scalar& step)
+            : ComposedRattle<Model>(model, start, step, method, fractions) {}
+    };
 };
 
 }  // namespace doppel

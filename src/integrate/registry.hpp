@@ -37,13 +37,12 @@ constexpr void for_each_method(Visit&& visit) {
 
 /// A stepper of one method and the system that it owns.
 template <class Which, class Model>
-class MethodStepper final : public Stepper<typename Model::State> {
+class MethodStepper final : public Stepper<typename Model::Scalar> {
 public:
-    using State = typename Model::State;
     using Scalar = typename Model::Scalar;
 
     /// `step_or_tolerance` is the step, s, or the tolerance.
-    MethodStepper(Model model, const State& start, const Scalar& step_or_tolerance)
+    MethodStepper(Model model, const typename Model::State& start, const Scalar& step_or_tolerance)
         : model_(std::move(model)), method_(model_, start, step_or_tolerance) {}
 
     void advance([[maybe_unused]] long steps) override {
@@ -52,7 +51,7 @@ public:
     void advance_by([[maybe_unused]] const Scalar& seconds) override {
         if constexpr (adaptive) method_.advance(seconds);
     }
-    State state() const override { return method_.state(); }
+    void read(State<Scalar, Eigen::Dynamic>& y) const override { y = method_.state(); }
     long evaluations() const override { return method_.evaluations(); }
     long steps() const override {
         if constexpr (adaptive) return method_.steps();
@@ -84,27 +83,20 @@ consteval bool gains_by_inlining() {
            size != Eigen::Dynamic;
 }
 
-/// Whether a method steps this model through AnySystem: it needs no more of it than its right-hand side.
-template <class Which, class Model>
-inline constexpr bool serves_as_any =
-    serves<Which, AnySystem<typename Model::State>> && !gains_by_inlining<Which, Model>();
-
-/// The method of that name at work on `model`. Throws Error (exit 2) where it cannot step it.
+/// The method of that name at work on `model`: through AnySystem where it needs no more of it than its right-hand side.
+/// Throws Error (exit 2) where it cannot step it.
 template <System Model>
-std::unique_ptr<Stepper<typename Model::State>> make_stepper(std::string_view method, const Model& model,
-                                                             const typename Model::State& start,
-                                                             const typename Model::Scalar& step_or_tolerance) {
-    using State = typename Model::State;
-    std::unique_ptr<Stepper<State>> stepper;
+std::unique_ptr<Stepper<typename Model::Scalar>> make_stepper(std::string_view method, const Model& model,
+                                                              const typename Model::State& start,
+                                                              const typename Model::Scalar& step_or_tolerance) {
+    using Any = AnySystem<typename Model::State>;
+    std::unique_ptr<Stepper<typename Model::Scalar>> stepper;
     for_each_method([&]<class Which>() {
-        if constexpr (serves<Which, Model>)
-            if (Which::method.name == method) {
-                if constexpr (serves_as_any<Which, Model>)
-                    stepper = make_any_stepper<State>(method, AnySystem<State>(model), start, step_or_tolerance);
-                else
-                    stepper = std::make_unique<MethodStepper<Which, Model>>(model, start, step_or_tolerance);
-            }
+        if constexpr (serves<Which, Model> && (!serves<Which, Any> || gains_by_inlining<Which, Model>()))
+            if (Which::method.name == method)
+                stepper = std::make_unique<MethodStepper<Which, Model>>(model, start, step_or_tolerance);
     });
+    if (!stepper) stepper = make_any_stepper(method, Any(model), start, step_or_tolerance);
     if (!stepper) throw bad_input("the method \"{}\" does not serve this model", method);
     return stepper;
 }

@@ -94,6 +94,15 @@ public:
         (std::make_index_sequence<last - first>());
     }
 
+    /// Those for the interpolation alone, from all the others.
+    void evaluate_dense(Model& model, const State& y, const Scalar& h) {
+        for (std::size_t i = stages + 1; i < all; ++i) {
+            sum_with(pair.a[i], at_);
+            at_ = y + h * at_;
+            doppel::slope(model, at_, k_[i]);
+        }
+    }
+
     /// y1 ← y + h Σ b_j k_j, once the stages are evaluated.
     void finish(const State& y, const Scalar& h, State& y1) {
         static constexpr auto b = pair.a[stages];
@@ -115,6 +124,14 @@ public:
             }
         }
         (std::make_index_sequence<weights.size()>());
+    }
+
+    /// The same in a loop at run time, which is less to compile: for what is not done every step.
+    template <class Weights>
+    void sum_with(const Weights& weights, State& out) const {
+        out.fill(Scalar(-0.0));
+        for (std::size_t j = 0; j < weights.size(); ++j)
+            if (!is_zero(weights[j])) out += value<Scalar>(weights[j]) * k_[j];
     }
 
 private:

@@ -11,7 +11,11 @@ namespace doppel {
 struct Rational {
     std::int64_t numerator = 0, denominator = 1;
 
-    double value() const { return static_cast<double>(numerator) / static_cast<double>(denominator); }
+    template <class Scalar>
+    Scalar as() const {
+        return Scalar(numerator) / Scalar(denominator);
+    }
+    double value() const { return as<double>(); }
     bool is_whole() const { return denominator == 1; }
     std::string text() const;  // "1/30000", "12"
     friend bool operator==(const Rational&, const Rational&) = default;

@@ -6,6 +6,12 @@
 
 namespace doppel {
 
+inline Pendulum<double> released(double degrees1, double degrees2) {
+    Pendulum<double> p;
+    p.angle = {radians(degrees1), radians(degrees2)};
+    return p;
+}
+
 /// Unit masses and lengths, at rest.
 inline Pendulum<double> from_rest(const std::vector<double>& degrees) {
     const std::vector<double> ones(degrees.size(), 1.0);

@@ -1,6 +1,7 @@
 #include "integrate/rattle.hpp"
 
 #include "integrate/flow.hpp"
+#include "integrate/pendulums.hpp"
 #include "integrate/runge_kutta.hpp"
 #include "physics/bob.hpp"
 #include "physics/canonical.hpp"
@@ -14,14 +15,6 @@
 
 namespace doppel {
 namespace rattle_test {
-
-/// Unequal links, in motion.
-template <class Scalar>
-Pendulum<Scalar> unequal(int links = 2) {
-    Pendulum<double> p{{1.25, 0.5, 0.75}, {0.75, 1.5, 0.5}, {1.5, -0.5, 0.25}, {0.25, -1, 2}, 9.8};
-    for (auto* values : {&p.mass, &p.length, &p.angle, &p.rate}) values->resize(static_cast<std::size_t>(links));
-    return p.template cast<Scalar>();
-}
 
 /// Drag on every particle, −k v a unit of mass: forces that depend on velocity.
 template <class Scalar, int N>
@@ -37,15 +30,6 @@ struct Dragged : RodChain<Scalar, N> {
         a -= k * v;
     }
 };
-
-/// How many times the error halves when the step does, from three step sizes.
-template <class Which, class Model>
-double measured_order(int links, long steps) {
-    const auto p = unequal<Quad>(links);
-    const auto run = [&](long n) { return after<Which, Model>(p, Model::start(p), Quad(0.5) / Quad(n), n); };
-    const auto coarse = run(steps), middle = run(2 * steps), fine = run(4 * steps);
-    return std::log2(distance(coarse, middle) / distance(middle, fine));
-}
 
 TEST(Rattle, HasItsOrder) {
     EXPECT_NEAR((measured_order<Rattle, RodChain<Quad, 2>>(2, 128)), 2, 0.002);                // measured 0.00021
@@ -72,7 +56,7 @@ TEST(Rattle6, MeetsTheConditionsOfOrderSix) {
     // Σγ = 1 by construction, Σγ³ = Σγ⁵ = Σγ³m² = 0
     std::vector<Quad> gammas;
     Quad middle(1), at(0), third(0), fifth(0), mixed(0);
-    for (const auto text : Rattle6::composition) gammas.push_back(parse_quad(text));
+    for (const auto text : Rattle6::fractions) gammas.push_back(parse_quad(text));
     for (const auto& gamma : gammas) middle -= Quad(2) * gamma;
     gammas.push_back(middle);
     for (std::size_t i = 4; i > 0; --i) gammas.push_back(gammas[i - 1]);
@@ -165,12 +149,6 @@ Errors errors_of(const Pendulum<double>& p, double step, long steps) {
     return errors;
 }
 
-Pendulum<double> released(double degrees1, double degrees2) {
-    Pendulum<double> p;
-    p.angle = {radians(degrees1), radians(degrees2)};
-    return p;
-}
-
 TEST(Rattle, KeepsEnergyAndRodsOverAHundredThousandPeriods) {
     // the slow mode of 30/0 takes 1.9 s: 1.9e5 s in steps of a twentieth of a second
     const auto errors = errors_of<Rattle>(released(30, 0), 0.05, 3'800'000);
@@ -250,6 +228,12 @@ TEST(Rattle, FeelsFriction) {
     EXPECT_GT(lost, 1);  // measured 4.6 J
 }
 
+/// The state after so many steps of 1/rate s.
+Mechanism<double>::State on_mechanism(const Assembly<double>& parts, double rate, long steps) {
+    using Model = Mechanism<double>;
+    return after<Rattle, Model>(parts, Model::start(parts), 1 / rate, steps);
+}
+
 TEST(Rattle, GoesOnWhereFrictionAllButBalancesASpring) {
     // two large forces on a bead in a slot, with a bob on it; the sum is rounded by far more than it amounts to
     for (const auto& [damping, bound] : {std::pair{1e3, 5e-4}, {1e4, 4e-5}}) {
@@ -258,13 +242,8 @@ TEST(Rattle, GoesOnWhereFrictionAllButBalancesASpring) {
             .constraints = {SlotLine<double>{0, P(3, 0), P(1, 0)}, Rod<double>{1, std::size_t(0), std::hypot(0.3, 1)}},
             .forces = {Gravity<double>{}, Spring<double>{0, P(-1.6, 0), 1e4, 1.6, damping}}};
         check(parts);
-        Mechanism<double> model(parts);
-        Rattle::Stepper<Mechanism<double>> stepper(model, model.start(parts), 1.0 / 60000);
-        stepper.advance(60'000);
-        const auto fast = stepper.state();
-        Rattle::Stepper<Mechanism<double>> finer(model, model.start(parts), 1.0 / 240000);
-        finer.advance(240'000);
-        EXPECT_LT(distance(fast, finer.state()), bound) << damping;  // measured 4.9e-5, 3.4e-6
+        const auto fast = on_mechanism(parts, 60'000, 60'000), finer = on_mechanism(parts, 240'000, 240'000);
+        EXPECT_LT(distance(fast, finer), bound) << damping;  // measured 4.9e-5, 3.4e-6
     }
 }
 
@@ -346,19 +325,13 @@ TEST(Rattle, GoesOnFarFromTheOrigin) {
     const auto p = unequal<double>(3);
     for (const double far : {0.0, 20.0, 1e3, 1e6}) {
         const auto parts = hung_at(p, Place<double>(far, -0.75 * far));
-        Mechanism<double> model(parts);
-        Rattle::Stepper<Mechanism<double>> stepper(model, model.start(parts), 1.0 / 6000);
-        stepper.advance(12'000);
-        EXPECT_LT(model.length_error(stepper.state()), 4e-16 * (2.5 + far))
+        EXPECT_LT(Mechanism<double>(parts).length_error(on_mechanism(parts, 6000, 12'000)), 4e-16 * (2.5 + far))
             << far;  // measured 4e-16, 4e-15, 1e-13, 1e-10 m
     }
     // a bead released at the origin, on a rod whose other end is not
     const Assembly<double> bead{
         .particles = {{1, P(0, 0)}}, .constraints = {Rod<double>{0, P(1, 0), 1}}, .forces = {Gravity<double>{}}};
-    Mechanism<double> model(bead);
-    Rattle::Stepper<Mechanism<double>> stepper(model, model.start(bead), 1.0 / 6000);
-    stepper.advance(12'000);
-    EXPECT_LT(model.length_error(stepper.state()), 1e-15);  // measured 1.1e-16 m
+    EXPECT_LT(Mechanism<double>(bead).length_error(on_mechanism(bead, 6000, 12'000)), 1e-15);  // measured 1.1e-16 m
 }
 
 TEST(Rattle, HangsStill) {

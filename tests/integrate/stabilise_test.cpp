@@ -1,6 +1,7 @@
 #include "integrate/stabilise.hpp"
 
 #include "integrate/euler.hpp"
+#include "integrate/pendulums.hpp"
 #include "integrate/runge_kutta.hpp"
 #include "numeric/quad.hpp"
 #include "physics/bob.hpp"
@@ -14,12 +15,6 @@ namespace doppel {
 namespace stabilise_test {
 
 using Chain = RodChain<double, 2>;
-
-Pendulum<double> released(double degrees1, double degrees2) {
-    Pendulum<double> p;
-    p.angle = {radians(degrees1), radians(degrees2)};
-    return p;
-}
 
 /// What a run of P1 (90/90) leaves, largest: errors of rods (m), of energy (J), and J v (m²/s).
 struct Errors {

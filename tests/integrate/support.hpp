@@ -1,16 +1,11 @@
 #pragma once
 
 #include "integrate/motion.hpp"
+#include "integrate/pendulums.hpp"
 
 #include <gtest/gtest.h>
 
 namespace doppel {
-
-inline Pendulum<double> released(double theta1_deg, double theta2_deg) {
-    Pendulum<double> p;
-    p.angle = {radians(theta1_deg), radians(theta2_deg)};
-    return p;
-}
 
 /// A chain that goes by a fixed step of 1/rate s; one step a sample.
 inline MotionSpec stepping(Model model, std::string_view method, const Pendulum<double>& p, long rate) {
