@@ -13,9 +13,9 @@ Place<Quad> place(const QuadPair& xy) {
 }
 
 /// What parts call the particles, and where those are at the start.
-class Cast {
+class ParticleNames {
 public:
-    Cast(std::vector<std::string> names, const Assembly<Quad>& assembly)
+    ParticleNames(std::vector<std::string> names, const Assembly<Quad>& assembly)
         : names_(std::move(names)), assembly_(assembly) {}
 
     /// Of the particle that an entry, `what`, names.
@@ -46,14 +46,14 @@ private:
 };
 
 /// Makes one constraint or force of what a preset says of it.
-struct Maker {
-    const Cast& cast;
+struct PartBuilder {
+    const ParticleNames& by_name;
     std::string_view kind;
     std::string what;  // kind and name, for errors
 
     /// From a particle to whatever is at the other end; a fixed end goes second.
     std::pair<std::size_t, End<Quad>> ends(const auto& part) const {
-        auto from = cast.end(what, *part.from), to = cast.end(what, *part.to);
+        auto from = by_name.end(what, *part.from), to = by_name.end(what, *part.to);
         if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
         if (!std::holds_alternative<std::size_t>(from))
             throw bad_input("a {} joins two fixed places; at least one end must be a particle", kind);
@@ -61,8 +61,8 @@ struct Maker {
     }
     /// The particle, and where it is held.
     std::pair<std::size_t, Place<Quad>> held(const auto& part) const {
-        const auto particle = cast.index(what, part.particle);
-        return {particle, part.position_m ? place(*part.position_m) : cast.start(particle)};
+        const auto particle = by_name.index(what, part.particle);
+        return {particle, part.position_m ? place(*part.position_m) : by_name.start(particle)};
     }
 
     Constraint<Quad> operator()(const AnchorSpec& part) const {
@@ -71,7 +71,7 @@ struct Maker {
     }
     Constraint<Quad> operator()(const RodSpec& part) const {
         const auto [a, b] = ends(part);
-        return Rod<Quad>{a, b, part.length_m ? *part.length_m : cast.apart(a, b)};
+        return Rod<Quad>{a, b, part.length_m ? *part.length_m : by_name.apart(a, b)};
     }
     Constraint<Quad> operator()(const SlotLineSpec& part) const {
         const auto [particle, at] = held(part);
@@ -79,11 +79,11 @@ struct Maker {
     }
     Constraint<Quad> operator()(const SlotCircleSpec& part) const {
         const auto [particle, at] = held(part);
-        return SlotCircle<Quad>{particle, at, part.radius_m ? *part.radius_m : cast.apart(particle, at)};
+        return SlotCircle<Quad>{particle, at, part.radius_m ? *part.radius_m : by_name.apart(particle, at)};
     }
     Force<Quad> operator()(const SpringSpec& part) const {
         const auto [a, b] = ends(part);
-        return Spring<Quad>{a, b, part.stiffness_N_per_m, part.length_m ? *part.length_m : cast.apart(a, b),
+        return Spring<Quad>{a, b, part.stiffness_N_per_m, part.length_m ? *part.length_m : by_name.apart(a, b),
                             part.damping_N_s_per_m};
     }
     Force<Quad> operator()(const AttractionSpec& part) const {
@@ -99,10 +99,11 @@ struct Maker {
     }
 };
 
-auto made(const Cast& cast, const auto& spec) {
+auto made(const ParticleNames& by_name, const auto& spec) {
     const auto kind = kind_name(spec);
     return std::visit(
-        Maker{cast, kind, fmt::format("{}{}", kind, spec.name.empty() ? "" : fmt::format(" \"{}\"", spec.name))},
+        PartBuilder{by_name, kind,
+                    fmt::format("{}{}", kind, spec.name.empty() ? "" : fmt::format(" \"{}\"", spec.name))},
         spec.part);
 }
 
@@ -142,10 +143,10 @@ Assembly<Quad> assembly_of(const SideSpec& spec) {
         assembly.particles.push_back({particle.mass_kg, place(particle.position_m), place(particle.velocity_m_per_s)});
         names.push_back(particle.name);
     }
-    const Cast cast(names, assembly);
-    for (const auto& part : spec.constraints) assembly.constraints.push_back(made(cast, part));
+    const ParticleNames by_name(names, assembly);
+    for (const auto& part : spec.constraints) assembly.constraints.push_back(made(by_name, part));
     if (spec.gravity_m_per_s2 != 0) assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
-    for (const auto& part : spec.forces) assembly.forces.push_back(made(cast, part));
+    for (const auto& part : spec.forces) assembly.forces.push_back(made(by_name, part));
     return assembly;
 }
 
