@@ -28,7 +28,7 @@ public:
         State y(2 * size_);
         TangentFlow<Model>::from_dual(start, y);
         last_ = log_norm(y);
-        motion_.set_down(y);
+        motion_.restart(y);
     }
 
     /// How much ln|δ| grows in so many seconds.
@@ -41,7 +41,7 @@ public:
         if (std::abs(now) > huge || y.head(size_ / 2).cwiseAbs().maxCoeff() > many_turns) {
             y.tail(size_) *= std::exp(-now);
             last_ = log_norm(y);
-            motion_.set_down(y);
+            motion_.restart(y);
         }
         return growth;
     }
@@ -145,7 +145,7 @@ double largest_angle(const Pendulum<double>& p, double seconds, Eigen::Index whi
         const double size = y.tail(2 * links).norm();
         grown *= size;
         y.tail(2 * links) /= size;
-        motion.set_down(y);
+        motion.restart(y);
         motion.advance(seconds / static_cast<double>(parts));
         y = motion.state();
     }

@@ -50,7 +50,7 @@ public:
         unit_.setOnes(size);
         unit_.tail(N).setConstant(mass * units.length * units.length / units.time);
         canonical_.momenta(Model::start(p.cast<Number>()), z_);
-        set_down(Matrix::Identity(size, size));
+        restart(Matrix::Identity(size, size));
     }
 
     /// What ln|δ_i| grow by in so many seconds.
@@ -61,7 +61,7 @@ public:
         Matrix frame(size, size);
         for (int i = 0; i < size; ++i) frame.row(i) = z_[i].tangent.transpose() / unit_[i];
         const Column stretched = orthonormalise(frame);
-        set_down(frame);
+        restart(frame);
         return stretched.unaryExpr([](double factor) { return std::log(factor); });
     }
 
@@ -69,12 +69,12 @@ private:
     using Number = typename Model::Scalar;
 
     /// Goes on from the values of z with the frame's columns for tangents.
-    void set_down(const Matrix& frame) {
+    void restart(const Matrix& frame) {
         for (int i = 0; i < size; ++i) z_[i].tangent = unit_[i] * frame.row(i).transpose();
         canonical_.velocities(z_, y_);
         typename TangentMotion<Model>::State all(y_.size() * (1 + size));
         TangentFlow<Model>::from_dual(y_, all);
-        motion_.set_down(all);
+        motion_.restart(all);
     }
 
     Model model_;

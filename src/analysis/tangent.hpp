@@ -84,7 +84,7 @@ public:
     TangentMotion(const Pendulum<double>& p, double tolerance)
         : flow_(p), tolerance_(tolerance), links_(static_cast<Eigen::Index>(p.links())) {}
 
-    void set_down(State y) {
+    void restart(State y) {
         for (Eigen::Index i = 0; i < links_; ++i) y[i] = std::remainder(y[i], 2 * pi);
         stepper_ = make_any_stepper("dop853", AnySystem<State>(flow_), y, tolerance_);
     }

@@ -1,7 +1,6 @@
 #include "analysis/work_ladder.hpp"
 
 #include "analysis/difference.hpp"
-#include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
@@ -103,21 +102,21 @@ MotionSpec spec_of(const WorkProblem& problem, const Solver& solver, const Setti
 }
 
 /// Worst energy and length errors, as seen some 240 times on the way.
-void watch(const WorkProblem& problem, MotionSpec spec, Rung& rung, const std::atomic<bool>& stop) {
-    constexpr long looks_wanted = 240;
-    long looks = looks_wanted;
+void find_worst_errors(const WorkProblem& problem, MotionSpec spec, Rung& rung, const std::atomic<bool>& stop) {
+    constexpr long samples_wanted = 240;
+    long samples = samples_wanted;
     if (const long steps = spec.steps_per_sample; steps > 0) {
-        // the same steps, some of them between two looks
-        spec.steps_per_sample = (steps + looks_wanted - 1) / looks_wanted;
+        // the same steps, some of them between two samples
+        spec.steps_per_sample = (steps + samples_wanted - 1) / samples_wanted;
         spec.sample_interval = *product(spec.sample_interval, *reduced(spec.steps_per_sample, steps));
-        looks = steps / spec.steps_per_sample;
+        samples = steps / spec.steps_per_sample;
     } else {
-        spec.sample_interval = *quotient(spec.sample_interval, {looks, 1});
+        spec.sample_interval = *quotient(spec.sample_interval, {samples, 1});
     }
     const auto motion = make_motion(spec);
     const double scale = energy_scale(motion->observe().energy, problem.energy_unit);
     double energy = 0, length = 0;
-    for (long i = 0; i < looks; ++i) {
+    for (long i = 0; i < samples; ++i) {
         motion->advance(stop);
         const auto seen = motion->observe();
         energy = std::max(energy, std::abs(seen.energy_change) / scale);
@@ -155,7 +154,7 @@ Rung motion_rung(const WorkProblem& problem, const ReferenceSolution& solution, 
         take_effort();
         rung.error = problem.error(motion->observe(), solution.reference);
         if (!std::isfinite(rung.error)) return rung;
-        if (spec.watched) watch(problem, motion_spec, rung, stop);
+        if (spec.watched) find_worst_errors(problem, motion_spec, rung, stop);
         if (spec.timed) rung.cpu_s = timed(motion_spec, first_s, stop);
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::method_failed) throw;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "integrate/tableau.hpp"
+#include "integrate/runge_kutta.hpp"
 
 #include <cmath>
 #include <limits>

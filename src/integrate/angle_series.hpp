@@ -83,18 +83,18 @@ public:
 private:
     /// Numbers of the links whose products are formed side by side; each lane has sums of its own, so the bits are the
     /// same at any width.
-    using Side = std::conditional_t<std::is_same_v<Scalar, double>, Lanes<4>, Scalar>;
-    static constexpr Eigen::Index width = is_lanes<Side> ? 4 : 1;
+    using Pack = std::conditional_t<std::is_same_v<Scalar, double>, Lanes<4>, Scalar>;
+    static constexpr Eigen::Index width = is_lanes<Pack> ? 4 : 1;
     using Row = std::array<Scalar, static_cast<std::size_t>(width)>;
 
-    static Side load(const Row& row) {
-        if constexpr (is_lanes<Side>)
-            return Side::load(row.data());
+    static Pack load(const Row& row) {
+        if constexpr (is_lanes<Pack>)
+            return Pack::load(row.data());
         else
             return row[0];
     }
-    static void store(const Side& side, Row& row) {
-        if constexpr (is_lanes<Side>)
+    static void store(const Pack& side, Row& row) {
+        if constexpr (is_lanes<Pack>)
             side.store(row.data());
         else
             row[0] = side;
@@ -135,8 +135,8 @@ private:
 
     /// The sums of products for one block of links.
     static void multiply(const Term* term, int k, Sums& sums) {
-        Side x = load(term[k + 1].x) * load(term[0].rate), y = load(term[k + 1].y) * load(term[0].rate);
-        Side moment_x(0), moment_y(0);
+        Pack x = load(term[k + 1].x) * load(term[0].rate), y = load(term[k + 1].y) * load(term[0].rate);
+        Pack moment_x(0), moment_y(0);
         for (int j = 1; j <= k; ++j) {
             const Term &one = term[j], &other = term[k - j], &after = term[k + 1 - j];
             x += load(one.x) * load(after.rate);

@@ -83,19 +83,19 @@ private:
 };
 
 /// The members from `first` side by side.
-template <class Side>
-Pendulum<Side> pendulum_of(const BatchRequest& request, std::size_t first) {
-    Pendulum<Side> pendulum;
-    const auto fill = [&](Side& side, const double* values) {
-        if constexpr (is_lanes<Side>)
-            for (int lane = 0; lane < Side::width; ++lane) {
+template <class Pack>
+Pendulum<Pack> pendulum_of(const BatchRequest& request, std::size_t first) {
+    Pendulum<Pack> pendulum;
+    const auto fill = [&](Pack& side, const double* values) {
+        if constexpr (is_lanes<Pack>)
+            for (int lane = 0; lane < Pack::width; ++lane) {
                 const std::size_t member = first + static_cast<std::size_t>(lane);
                 side.set(lane, values[member < request.members ? member : request.members - 1]);
             }
         else
             side = values[first];
     };
-    const auto fill_all = [&](std::vector<Side>& sides, const double* values) {
+    const auto fill_all = [&](std::vector<Pack>& sides, const double* values) {
         sides.resize(request.links);
         for (std::size_t j = 0; j < request.links; ++j) fill(sides[j], values + j * request.members);
     };

@@ -12,20 +12,20 @@ namespace doppel {
 namespace {
 
 struct ThisBuild;
-using Side = Lanes<batch_block(compiled_width), ThisBuild>;
+using Pack = Lanes<batch_block(compiled_width), ThisBuild>;
 
 template <int links>
-BatchBlock* with_links(const BatchRequest& request, const Pendulum<Side>& pendulum) {
-    if (request.constraints) return with_method<RodChain<Side, links>>(request, pendulum);
-    if constexpr (links == 2) return with_method<DoublePendulum<Side>>(request, pendulum);
-    return with_method<AngleChain<Side, links>>(request, pendulum);
+BatchBlock* with_links(const BatchRequest& request, const Pendulum<Pack>& pendulum) {
+    if (request.constraints) return with_method<RodChain<Pack, links>>(request, pendulum);
+    if constexpr (links == 2) return with_method<DoublePendulum<Pack>>(request, pendulum);
+    return with_method<AngleChain<Pack, links>>(request, pendulum);
 }
 
 }  // namespace
 
 template <>
 BatchBlock* make_batch_block<compiled_width>(const BatchRequest& request, std::size_t first) {
-    const auto pendulum = pendulum_of<Side>(request, first);
+    const auto pendulum = pendulum_of<Pack>(request, first);
     switch (request.links) {
         case 1:
             return with_links<1>(request, pendulum);

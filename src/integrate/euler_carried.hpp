@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/method.hpp"
+#include "integrate/stepper.hpp"
 #include "numeric/lanes.hpp"
 #include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
@@ -13,7 +13,7 @@
 namespace doppel {
 
 /// Explicit Euler for models whose next right-hand side can be had from this one, in place of from nothing: the same
-/// method and the same rules (integrate/method.hpp) as RungeKutta<Model, Euler::table>, rounded differently, some times
+/// method and the same rules (integrate/stepper.hpp) as RungeKutta<Model, Euler::table>, rounded differently, some times
 /// faster. For double and lanes. What all have in common:
 ///
 ///     rates are kept as the change in one step, h y′, so that positions advance by a bare addition;
@@ -117,7 +117,7 @@ public:
 private:
     using Turning = TurningAngle<Scalar>;
     static constexpr long refreshed_every = 256;  // steps; turning errs by some 1e-16 each, and errors add up
-    static constexpr long block = 16;             // steps between two looks at how fast all turns
+    static constexpr long block = 16;             // steps between two checks of how fast all turns
 
     [[gnu::always_inline]] void run(long steps) {
         using std::abs;

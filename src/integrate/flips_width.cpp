@@ -10,14 +10,14 @@ namespace {
 
 /// Finds flips in lanes. As soon as a lane's pendulum has flipped, or its time is over, the next release takes its
 /// place.
-template <class Side>
+template <class Pack>
 class FlipLanes {
 public:
     explicit FlipLanes(const FlipRequest& request) : request_(request) {}
 
     FlipOutcome run() {
         for (auto& group : groups_)
-            for (int lane = 0; lane < Side::width; ++lane) {
+            for (int lane = 0; lane < Pack::width; ++lane) {
                 group.trial[lane] = none;
                 take_next(group, lane);
             }
@@ -29,7 +29,7 @@ public:
     }
 
 private:
-    using Series = FlipSeries<Side>;
+    using Series = FlipSeries<Pack>;
 
     static constexpr int registers = 2;  // while one waits for its results the other works
     static constexpr int steps_between_looks = 64;
@@ -39,8 +39,8 @@ private:
 
     struct Group {
         Series series;
-        Side time;  // s, since the release
-        std::size_t trial[Side::width];
+        Pack time;  // s, since the release
+        std::size_t trial[Pack::width];
     };
 
     [[gnu::always_inline]] void step() {
@@ -50,20 +50,20 @@ private:
         for (auto& group : groups_) finish(group);
     }
 
-    /// To the end of the step, with a closer look at the lanes where something may happen on the way.
+    /// To the end of the step, which is searched in the lanes where a rod may flip on it or the time ends.
     [[gnu::always_inline]] void finish(Group& group) {
         auto& now = group.series.term[0];
-        const Side h = group.series.step(request_.allowed, request_.longest);
+        const Pack h = group.series.step(request_.allowed, request_.longest);
         const auto end = group.series.at(h);
-        const Side after = group.time + h;
-        const Side reach1 = reach(h, now.theta[0], end.theta[0], now.omega[0], end.omega[0]);
-        const Side reach2 = reach(h, now.theta[1], end.theta[1], now.omega[1], end.omega[1]);
+        const Pack after = group.time + h;
+        const Pack reach1 = reach(h, now.theta[0], end.theta[0], now.omega[0], end.omega[0]);
+        const Pack reach2 = reach(h, now.theta[1], end.theta[1], now.omega[1], end.omega[1]);
         const auto dull =
-            (reach1 < Side(pi)) & (reach2 < Side(pi)) & (after < Side(request_.duration)) & (h > Side(least_step));
-        bool done[Side::width] = {};
+            (reach1 < Pack(pi)) & (reach2 < Pack(pi)) & (after < Pack(request_.duration)) & (h > Pack(least_step));
+        bool done[Pack::width] = {};
         const bool all_dull = all_of(dull);
         if (!all_dull)
-            for (int lane = 0; lane < Side::width; ++lane) {
+            for (int lane = 0; lane < Pack::width; ++lane) {
                 const double first = reach1[lane] > pi ? flip_of(group, 0, lane, h[lane], end) : never;
                 const double second = reach2[lane] > pi ? flip_of(group, 1, lane, h[lane], end) : never;
                 done[lane] = is_done(group, lane, h[lane], second < first ? second : first);
@@ -74,15 +74,15 @@ private:
         }
         group.time = after;
         if (!all_dull)
-            for (int lane = 0; lane < Side::width; ++lane)
+            for (int lane = 0; lane < Pack::width; ++lane)
                 if (done[lane]) take_next(group, lane);
     }
 
     /// How large |θ| may become on a step: where the rod turns back on it, it gains no more than the greater rate makes
     /// in half the time.
-    [[gnu::always_inline]] static Side reach(const Side& h, const Side& theta, const Side& theta_end, const Side& omega,
-                                             const Side& omega_end) {
-        return greater(abs(theta), abs(theta_end)) + Side(0.5) * h * greater(abs(omega), abs(omega_end));
+    [[gnu::always_inline]] static Pack reach(const Pack& h, const Pack& theta, const Pack& theta_end, const Pack& omega,
+                                             const Pack& omega_end) {
+        return greater(abs(theta), abs(theta_end)) + Pack(0.5) * h * greater(abs(omega), abs(omega_end));
     }
 
     /// Whether a lane's pendulum flips in this step, `flip` s after its start, or comes to the end of its time; which is

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "integrate/method.hpp"
+#include "integrate/methods.hpp"
+#include "integrate/stepper.hpp"
 #include "physics/canonical.hpp"
 
 #include <algorithm>

@@ -14,25 +14,25 @@ namespace doppel {
 namespace {
 
 struct ThisBuild;
-using Side = Lanes<4, ThisBuild>;
+using Pack = Lanes<4, ThisBuild>;
 
 /// A vector of the plane for each link.
 template <int N>
 struct Plane {
-    Side part[N - 1];
+    Pack part[N - 1];
 
     [[gnu::always_inline]] static Plane load_from(const double (&p)[N - 1][4]) {
-        if constexpr (N == 2) return {{Side::load(p[0])}};
-        if constexpr (N == 3) return {{Side::load(p[0]), Side::load(p[1])}};
+        if constexpr (N == 2) return {{Pack::load(p[0])}};
+        if constexpr (N == 3) return {{Pack::load(p[0]), Pack::load(p[1])}};
     }
     [[gnu::always_inline]] static Plane from(const double (&x)[N], const double (&y)[N]) {
-        if constexpr (N == 2) return {{Side::of(x[0], x[1], y[0], y[1])}};
-        if constexpr (N == 3) return {{Side::of(x[0], x[1], x[2], 0), Side::of(y[0], y[1], y[2], 0)}};
+        if constexpr (N == 2) return {{Pack::of(x[0], x[1], y[0], y[1])}};
+        if constexpr (N == 3) return {{Pack::of(x[0], x[1], x[2], 0), Pack::of(y[0], y[1], y[2], 0)}};
     }
     /// (x, y), the same for all links
     [[gnu::always_inline]] static Plane both(double x, double y) {
-        if constexpr (N == 2) return {{Side::of(x, x, y, y)}};
-        if constexpr (N == 3) return {{Side(x), Side(y)}};
+        if constexpr (N == 2) return {{Pack::of(x, x, y, y)}};
+        if constexpr (N == 3) return {{Pack(x), Pack(y)}};
     }
     [[gnu::always_inline]] void store_to(double (&p)[N - 1][4]) const {
         part[0].store(p[0]);
@@ -46,7 +46,7 @@ struct Plane {
         if constexpr (N == 2) return {{a.part[0] * b.part[0]}};
         if constexpr (N == 3) return {{a.part[0] * b.part[0], a.part[1] * b.part[1]}};
     }
-    [[gnu::always_inline]] friend Plane operator*(const Plane& a, Side number) {
+    [[gnu::always_inline]] friend Plane operator*(const Plane& a, Pack number) {
         if constexpr (N == 2) return {{a.part[0] * number}};
         if constexpr (N == 3) return {{a.part[0] * number, a.part[1] * number}};
     }
@@ -56,7 +56,7 @@ struct Plane {
         if constexpr (N == 3) return {{part[1], part[0]}};
     }
     /// x + y
-    [[gnu::always_inline]] Side sum() const {
+    [[gnu::always_inline]] Pack sum() const {
         if constexpr (N == 2) return part[0] + part[0].template exchanged<2>();
         if constexpr (N == 3) return part[0] + part[1];
     }
@@ -72,7 +72,7 @@ template <int N>
 struct Map {
     Plane<N> by[4];
 
-    [[gnu::always_inline]] Side operator()(const Plane<N>& v) const {
+    [[gnu::always_inline]] Pack operator()(const Plane<N>& v) const {
         const auto sum = (by[0] * v + by[1] * v.template exchanged<1>()) +
                          (by[2] * v.template exchanged<2>() + by[3] * v.template exchanged<3>());
         if constexpr (N == 2) return sum.part[0];
@@ -82,9 +82,9 @@ struct Map {
 
 /// A number for each link, number(i).
 template <int N, class Number>
-[[gnu::always_inline]] inline Side numbers(const Number& number) {
-    if constexpr (N == 2) return Side::of(number(0), number(1), number(0), number(1));
-    if constexpr (N == 3) return Side::of(number(0), number(1), number(2), 0);
+[[gnu::always_inline]] inline Pack numbers(const Number& number) {
+    if constexpr (N == 2) return Pack::of(number(0), number(1), number(0), number(1));
+    if constexpr (N == 3) return Pack::of(number(0), number(1), number(2), 0);
 }
 
 /// n ← −m⁻¹
@@ -124,8 +124,8 @@ struct Recurrence {
     Vectors turning;           // ω_0 times a quarter turn
     Map<N> of_newest;          // −M⁻¹ r_0 · F[…]
     Map<N> of_last;            // −M⁻¹ r_1 · F[…]
-    Side inverse[4];           // −M⁻¹, by distance
-    Side rate;                 // ω_k
+    Pack inverse[4];           // −M⁻¹, by distance
+    Pack rate;                 // ω_k
     Vectors known;             // R_{k−1}
 
     /// Rates up to `order` from angles and rates.
@@ -134,28 +134,28 @@ struct Recurrence {
         rate = of_newest(known) + solve((across0 * weight).sum());
         rate.store(term[1].rate);
         Vectors across{}, force{};  // r_k, F_{k−2}
-        Side last{};                // ω_{k−1}
+        Pack last{};                // ω_{k−1}
         for (int k = 1; k < order; ++k) {
             Vectors p{}, e{};  // Σ_{j=2}^k r_j ω_{k+1−j}, Σ_{j=2}^k r_j · F_{k−j}
             add_old(k, p, e);
             if (k == 1) e = across1 * weight;  // F_0 = F[…] + gravity
             if (k > 2) {
                 const auto across2 = Vectors::load_from(term[2].across);
-                p = (p + across * Side::load(term[1].rate)) + across2 * last;
+                p = (p + across * Pack::load(term[1].rate)) + across2 * last;
                 e = (e + across * Vectors::load_from(term[0].force)) + across2 * force;
             }
             const double step = chain.inverse[k + 1];
             const Vectors change = across0 * rate + known;
             last = rate;
-            force = force_of(change) * Side(k);
+            force = force_of(change) * Pack(k);
             if (k == 1) force = force + weight;
             force.store_to(term[k - 1].force);
-            across = quarter * change.mirrored() * Side(step);
+            across = quarter * change.mirrored() * Pack(step);
             across.store_to(term[k + 1].across);
 
             // r_{k+1} ω_0 = (R_{k−1} + r_0 ω_k) turned, times ω_0/(k + 1); and r_0 turned, times ω_0, is r_1
-            const Vectors next = (p + turning * Side(step) * known.mirrored()) + across1 * Side(1 + step) * rate;
-            rate = (of_newest(next) + Side(step) * solve(e.sum())) + of_last(change * Side(k * step));
+            const Vectors next = (p + turning * Pack(step) * known.mirrored()) + across1 * Pack(1 + step) * rate;
+            rate = (of_newest(next) + Pack(step) * solve(e.sum())) + of_last(change * Pack(k * step));
             known = next;
             rate.store(term[k + 1].rate);
         }
@@ -188,8 +188,8 @@ struct Recurrence {
     [[gnu::always_inline]] Map<N> map_of(const double (&x)[N], const double (&y)[N], const double (&n)[N][N]) const {
         Map<N> map{};
         for (int i = 0; i < N; ++i) {
-            const auto row = Vectors::both(x[i], y[i]) * Side::load(chain.coupling[i]);
-            const Side column = numbers<N>([&](int j) { return n[j][i]; });
+            const auto row = Vectors::both(x[i], y[i]) * Pack::load(chain.coupling[i]);
+            const Pack column = numbers<N>([&](int j) { return n[j][i]; });
             map.by[0] = map.by[0] + row * column;
             map.by[1] = map.by[1] + row.template exchanged<1>() * column;
             map.by[2] = map.by[2] + row.template exchanged<2>() * column;
@@ -200,15 +200,15 @@ struct Recurrence {
 
     /// F[v], in units of μ_i
     [[gnu::always_inline]] Vectors force_of(const Vectors& v) const {
-        const auto sum = v + v.template exchanged<1>() * Side::load(chain.exchange[1]);
+        const auto sum = v + v.template exchanged<1>() * Pack::load(chain.exchange[1]);
         if constexpr (N == 2) return sum;
-        return sum + (v.template exchanged<2>() * Side::load(chain.exchange[2]) +
-                      v.template exchanged<3>() * Side::load(chain.exchange[3]));
+        return sum + (v.template exchanged<2>() * Pack::load(chain.exchange[2]) +
+                      v.template exchanged<3>() * Pack::load(chain.exchange[3]));
     }
 
     /// −M⁻¹ v
-    [[gnu::always_inline]] Side solve(Side v) const {
-        const Side sum = inverse[0] * v + inverse[1] * v.template exchanged<1>();
+    [[gnu::always_inline]] Pack solve(Pack v) const {
+        const Pack sum = inverse[0] * v + inverse[1] * v.template exchanged<1>();
         if constexpr (N == 2) return sum;
         return sum + (inverse[2] * v.template exchanged<2>() + inverse[3] * v.template exchanged<3>());
     }
@@ -218,7 +218,7 @@ struct Recurrence {
         Vectors p2{}, e2{};
         const auto add = [&](int j, Vectors& into_p, Vectors& into_e) __attribute__((always_inline)) {
             const auto r = Vectors::load_from(term[j].across);
-            into_p = into_p + r * Side::load(term[k + 1 - j].rate);
+            into_p = into_p + r * Pack::load(term[k + 1 - j].rate);
             into_e = into_e + r * Vectors::load_from(term[k - j].force);
         };
         if (k % 2 == 0) add(k / 2 + 1, p, e);
@@ -243,9 +243,9 @@ void move(const typename LaneSeries<N>::Chain& chain, const typename LaneSeries<
           double* change) {
     using Both = Plane<N>;  // numbers for each link, of the angles in place of x and of the rates in place of y
     const auto coefficient = [&](int k) __attribute__((always_inline)) {
-        return Both::both(chain.inverse[k + 1], 1) * Side::load(term[k].rate);
+        return Both::both(chain.inverse[k + 1], 1) * Pack::load(term[k].rate);
     };
-    const Side square = Side(h * h);
+    const Pack square = Pack(h * h);
     Both even{}, odd{};
     int k = order;
     if (k % 2 == 1) odd = coefficient(k--);
@@ -254,7 +254,7 @@ void move(const typename LaneSeries<N>::Chain& chain, const typename LaneSeries<
         odd = odd * square + coefficient(k - 1);
     }
     alignas(32) double sum[2][4];
-    const Both total = even * square + odd * Side(h);
+    const Both total = even * square + odd * Pack(h);
     total.part[0].store(sum[0]);
     total.part[N - 2].store(sum[1]);
     for (int i = 0; i < N; ++i) {

@@ -36,15 +36,15 @@ public:
           rates_(static_cast<std::size_t>(order + 1), places_[0]),
           here_(places_[0]),
           gradients_(model_.set_.blank_gradients()),
-          passed_gradients_(gradients_),
+          checked_gradients_(gradients_),
           ahead_(gradients_) {
         for (int k = 0; k < order + 2; ++k) inverse_.push_back(Scalar(1) / Scalar(std::max(k, 1)));
         for (std::size_t i = 0; i < model_.forces_.size(); ++i)
-            std::visit([&](const auto& force) { take_in(force, name_of(model_.forces_, i)); }, model_.forces_[i]);
+            std::visit([&](const auto& force) { add(force, name_of(model_.forces_, i)); }, model_.forces_[i]);
         for (Eigen::Index row = 0; row < model_.set_.rows(); ++row) {
             const auto& constraint = model_.set_[model_.set_.owner(row)];
-            if (const auto* rod = std::get_if<Rod<Scalar>>(&constraint)) take_in(*rod, row);
-            if (const auto* slot = std::get_if<SlotCircle<Scalar>>(&constraint)) take_in(slot->rod(), row);
+            if (const auto* rod = std::get_if<Rod<Scalar>>(&constraint)) add(*rod, row);
+            if (const auto* slot = std::get_if<SlotCircle<Scalar>>(&constraint)) add(slot->rod(), row);
         }
         if (reach_ > 0) longest_ = std::min(longest_, longest_chain_step(reach_, plain_value(gravity_)));
     }
@@ -60,12 +60,12 @@ public:
         if (const auto row = factor(gradients_, gradients_); row < model_.set_.rows()) model_.fail(places_[0], row);
         for (int k = 0; k < order_; ++k) next(k);
         find_amount();
-        passed_ = Scalar(0);
-        passed_gradients_ = gradients_;
+        checked_ = Scalar(0);
+        checked_gradients_ = gradients_;
     }
 
     void move(const Scalar& h, State& change) {
-        watch(h);
+        check_path(h);
         const auto n = here_.size();
         for (Eigen::Index c = 0; c < n; ++c) {
             change[c] = place_change(c, h);
@@ -99,7 +99,7 @@ private:
         std::vector<Scalar> lambda;
     };
 
-    void take_in(const Rod<Scalar>& rod, Eigen::Index row) {
+    void add(const Rod<Scalar>& rod, Eigen::Index row) {
         const auto& w = model_.masses_.w;
         rods_.push_back({{rod.a, rod.b, order_ + 2},
                          w[static_cast<Eigen::Index>(rod.a)],
@@ -109,8 +109,8 @@ private:
         reach_ += plain_value(rod.length);
     }
 
-    void take_in(const Gravity<Scalar>& force, const std::string&) { gravity_ += force.g; }
-    void take_in(const Spring<Scalar>& force, const std::string& name) {
+    void add(const Gravity<Scalar>& force, const std::string&) { gravity_ += force.g; }
+    void add(const Spring<Scalar>& force, const std::string& name) {
         const auto& w = model_.masses_.w;
         const Scalar one = w[static_cast<Eigen::Index>(force.a)], other = share_of(force.b, w);
         const Scalar pull = -(force.stiffness * force.length);
@@ -119,13 +119,13 @@ private:
         const double square = plain_value(Scalar(force.stiffness * (one + other)));  // of its angular frequency
         longest_ = std::min(longest_, pi / std::sqrt(square));
     }
-    void take_in(const Attraction<Scalar>& force, const std::string& name) {
+    void add(const Attraction<Scalar>& force, const std::string& name) {
         const auto& m = model_.masses_.m;
         forces_.emplace_back(name, typename Central::Law{Scalar(0), force.constant, true, Scalar(0)}, force.a,
                              End<Scalar>(force.b), m[static_cast<Eigen::Index>(force.b)],
                              m[static_cast<Eigen::Index>(force.a)], order_);
     }
-    void take_in(const Droplet<Scalar>& force, const std::string& name) {
+    void add(const Droplet<Scalar>& force, const std::string& name) {
         const Scalar pull = force.constant * force.mass;
         for (Eigen::Index i = 0; i < model_.masses_.m.size(); ++i)
             forces_.emplace_back(name, typename Central::Law{Scalar(0), pull, true, Scalar(0)},
@@ -164,31 +164,31 @@ private:
         for (auto& force : forces_) force.take(k, places_[static_cast<std::size_t>(k)]);
     }
 
-    /// Looks whether a singular configuration lies on the way to h: no series notices it where the motion could go on
+    /// Finds out whether a singular configuration lies on the way to h: no series notices it where the motion could go on
     /// smoothly. From one place to another so near that no gradient has turned far, the volume that the gradients span
     /// must not turn over; where it seems to, somewhere between them, until they are all but the same.
-    void watch(const Scalar& h) {
-        if (passed_gradients_.empty()) return;
-        if (h < passed_) {
-            passed_ = Scalar(0);
-            passed_gradients_ = gradients_;
+    void check_path(const Scalar& h) {
+        if (checked_gradients_.empty()) return;
+        if (h < checked_) {
+            checked_ = Scalar(0);
+            checked_gradients_ = gradients_;
         }
-        while (passed_ < h) {
+        while (checked_ < h) {
             Scalar reached = h;
-            for (int halvings = 0; !passes(reached, halvings == most_halvings); ++halvings)
-                reached = passed_ + (reached - passed_) * Scalar(0.5);
-            passed_ = reached;
-            passed_gradients_.swap(ahead_);
+            for (int halvings = 0; !is_clear(reached, halvings == most_halvings); ++halvings)
+                reached = checked_ + (reached - checked_) * Scalar(0.5);
+            checked_ = reached;
+            checked_gradients_.swap(ahead_);
         }
     }
 
     /// Whether nothing can be between the place last passed and that at time h. Throws if something seems to be and
-    /// this is the last look.
-    bool passes(const Scalar& h, bool last) {
+    /// this is the last attempt.
+    bool is_clear(const Scalar& h, bool last) {
         for (Eigen::Index c = 0; c < here_.size(); ++c) here_[c] = places_[0][c] + place_change(c, h);
         model_.set_.update(here_, ahead_);
-        if (!Model::alike(ahead_, passed_gradients_)) return last;
-        const auto row = factor(ahead_, passed_gradients_);
+        if (!Model::alike(ahead_, checked_gradients_)) return last;
+        const auto row = factor(ahead_, checked_gradients_);
         if (last && row < model_.set_.rows()) model_.fail(here_, row);
         return row == model_.set_.rows();
     }
@@ -239,10 +239,10 @@ private:
     Scalar gravity_ = Scalar(0);
     double reach_ = 0;  // m, of all rods in a line
     double longest_ = std::numeric_limits<double>::max();
-    double amount_ = 0;                               // of the velocities, m/s
-    Scalar passed_ = Scalar(0);                       // how far the way has been watched, s
-    Half here_;                                       // q there
-    Gradients gradients_, passed_gradients_, ahead_;  // J at the start, at passed_, further on
+    double amount_ = 0;                                // of the velocities, m/s
+    Scalar checked_ = Scalar(0);                       // how far the way has been checked, s
+    Half here_;                                        // q there
+    Gradients gradients_, checked_gradients_, ahead_;  // J at the start, at checked_, further on
 };
 
 template <class Scalar>

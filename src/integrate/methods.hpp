@@ -1,11 +1,18 @@
 #pragma once
 
-#include "integrate/method.hpp"
-
 #include <span>
 #include <string_view>
 
 namespace doppel {
+
+/// A method as presets name it and people read it; every method's file holds its own.
+struct Method {
+    std::string_view name;        // value of `integrator`
+    std::string_view title;       // in words
+    int order;                    // its error shrinks like step^order; 0 = chosen from the tolerance
+    bool adaptive;                // goes by `tolerance` in place of `step_s`
+    std::string_view properties;  // "explicit", "implicit, symplectic, time-reversible"
+};
 
 /// A method with the models it can step.
 struct MethodEntry : Method {

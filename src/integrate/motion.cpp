@@ -45,7 +45,7 @@ public:
             double fastest = 0;  // rad/s, of any bob
             for (const auto& bob : bobs) fastest = std::max(fastest, std::abs(static_cast<double>(bob.omega)));
             const double whole =
-                std::max(follows_turns ? interval / Turns::longest_unwatched : 1, interval * fastest / most_unwatched);
+                std::max(follows_turns ? interval / Turns::longest : 1, interval * fastest / most_unwatched);
             portions_ = static_cast<long>(std::ceil(std::min(whole, 1e12)));
             portion_ = spec.sample_interval.as<Scalar>() / Scalar(portions_);
         } else {
@@ -71,7 +71,7 @@ public:
             for (long left = steps_per_sample_, steps; left > 0; left -= steps) {
                 check();
                 steps = std::min(left, portion_steps_);
-                if (turns_.followed()) steps = std::min(steps, steps_within(turns_.patience(), step_));
+                if (turns_.followed()) steps = std::min(steps, steps_within(turns_.longest_interval(), step_));
                 stepper_->advance(steps);
                 follow_turns(static_cast<double>(steps) * step_);
             }
@@ -135,11 +135,13 @@ private:
         return static_cast<double>(mechanism_ ? mechanism_->length_error(y) : length_error(*pendulum_, bobs));
     }
 
-    /// An adaptive method, in as many pieces as turns want to be looked at.
+    /// An adaptive method, in as many pieces as following the turns takes.
     void advance_by(const Scalar& seconds) {
         constexpr double most = 1e6;
         const double pieces =
-            turns_.followed() ? std::clamp(std::ceil(static_cast<double>(seconds) / turns_.patience()), 1.0, most) : 1;
+            turns_.followed()
+                ? std::clamp(std::ceil(static_cast<double>(seconds) / turns_.longest_interval()), 1.0, most)
+                : 1;
         const Scalar piece = seconds / Scalar(pieces);
         for (double i = 0; i < pieces; ++i) {
             stepper_->advance_by(piece);
@@ -164,7 +166,7 @@ private:
     long steps_per_sample_ = 0, portion_steps_ = 1, steps_ = 0;  // of a fixed step
     double step_ = 0;                                            // s
     Scalar start_energy_{0};
-    State y_;  // when turns were last looked at
+    State y_;  // of the last update of turns
     Turns turns_;
 };
 

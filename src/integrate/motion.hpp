@@ -29,7 +29,7 @@ struct MotionSpec {
     Quad tolerance = 0;                // of adaptive methods
     Stabilise stabilise = Stabilise::none;
     Quad stabilise_rate = 0;     // Baumgarte's α = β, 1/s
-    bool follows_turns = true;   // false: angles of particles only up to whole turns, and no look between samples
+    bool follows_turns = true;   // false: angles of particles only up to whole turns, and none followed between samples
     bool wants_tension = false;  // the forces in the rods observed as well
 };
 

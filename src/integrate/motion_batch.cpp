@@ -30,7 +30,7 @@ public:
         for (long left = spec_.steps_per_sample, steps; left > 0; left -= steps) {
             if (stop) throw Error(ExitCode::interrupted, "interrupted");
             steps = std::min(left, portion_);
-            for (const auto& turns : turns_) steps = std::min(steps, steps_within(turns.patience(), step_));
+            for (const auto& turns : turns_) steps = std::min(steps, steps_within(turns.longest_interval(), step_));
             batch_.advance(steps);
             follow_turns(static_cast<double>(steps) * step_);
         }

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "integrate/method.hpp"
+#include "integrate/methods.hpp"
 #include "integrate/stabilise.hpp"
+#include "integrate/stepper.hpp"
 #include "numeric/quad.hpp"
 #include "physics/rod_chain.hpp"
 
@@ -75,7 +76,7 @@ public:
             ++done_;
         }
         u_ = v_;
-        if (!friction_) newton_.along_constraints(model_, q_, u_);
+        if (!friction_) newton_.project_velocities(model_, q_, u_);
         y_.head(q_.size()) = q_;
         y_.tail(q_.size()) = u_;
     }
@@ -104,8 +105,8 @@ private:
     }
 
     void move(const Scalar& h) {
-        const Scalar half = h * Scalar(0.5), span = owed_ + half;
-        look_ahead();
+        const Scalar half = h * Scalar(0.5), span = merged_ + half;
+        extrapolate();
 
         // u and q1 with the λ that was guessed, then with the right one
         guess_ *= span;
@@ -114,7 +115,7 @@ private:
         add(u_, half, a_);
         model_.pull(q0_, guess_, u_);
         add(q_, h, u_);
-        if (!newton_.onto_constraints(model_, q0_, q_)) fail_to_meet();
+        if (!newton_.project_positions(model_, q0_, q_)) fail_to_meet();
         newton_.lambda /= h;
         model_.pull(q0_, newton_.lambda, u_);
         force_ = (guess_ + newton_.lambda) / span;
@@ -126,12 +127,12 @@ private:
         } else {
             v_ = u_;
             add(v_, half, a_);
-            owed_ = half;
+            merged_ = half;
         }
     }
 
     /// The forces λ / s of the constraints, guessed from those before: on a straight line where steps are equal.
-    void look_ahead() {
+    void extrapolate() {
         guess_ = force_;
         if (sizes_.size() == 1) {
             guess_ += force_ - force_before_;
@@ -143,7 +144,7 @@ private:
         for (int i = 0; i < newton_.limit; ++i) {
             v_ = u_;
             add(v_, half, a_);
-            newton_.along_constraints(model_, q_, v_);
+            newton_.project_velocities(model_, q_, v_);
             a_.swap(a_before_);
             model_.free_acceleration(q_, v_, a_);
             if (unchanged(half, i >= newton_.many)) return;
@@ -179,7 +180,7 @@ private:
     Half q_, v_, q0_, u_;
     Half a_, a_before_;                         // M⁻¹ F
     Multipliers guess_, force_, force_before_;  // λ, and λ / s
-    Scalar owed_ = Scalar(0);                   // s, of the last step, that the next λ acts for as well
+    Scalar merged_ = Scalar(0);                 // s, of the last step, that the next λ acts for as well
     Newton<Model> newton_;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "integrate/method.hpp"
-#include "integrate/tableau.hpp"
+#include "integrate/methods.hpp"
+#include "integrate/stepper.hpp"
+#include "numeric/decimal.hpp"
 
 #include <array>
 #include <cstddef>
@@ -10,7 +11,137 @@
 
 namespace doppel {
 
-/// An explicit Runge–Kutta method with `table`, at fixed step: any system, any scalar (integrate/method.hpp).
+/// A fraction as it is printed, exact in every scalar.
+struct Fraction {
+    long numerator = 0, denominator = 1;
+};
+
+/// An explicit Runge–Kutta method of S stages (Butcher's tableau; the systems here do not depend on time, so c is left
+/// out).
+///     k_i = f(y + h Σ_{j<i} a_ij k_j),   y ← y + h Σ b_i k_i
+template <std::size_t S>
+struct Tableau {
+    std::array<std::array<Fraction, S>, S> a;
+    std::array<Fraction, S> b;
+};
+
+/// How an adaptive method chooses its next step from the error ε of the last, relative to what the tolerance allows:
+///     h ← h · safety · ε^(−exponent) · (ε of the step before)^memory,   by no less than `shrink`, no more than `grow`
+/// Source  Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, eq. IV.2.43 (PI control).
+struct StepControl {
+    double exponent, memory, safety, shrink, grow;
+};
+
+/// An explicit Runge–Kutta method of S stages that also estimates its error and interpolates (for systems that do not
+/// depend on time):
+///     k_i = f(y + h Σ_{j<i} a_ij k_j)
+///     rows up to S − 1   the stages
+///     row S              the weights of the step: k_S is the slope at its end, and k_0 of the next step
+///     further rows       slopes for the interpolation alone
+/// The error is h Σ error_i k_i. With two estimates e1 (low order) and e2 (lower), it is e1² / √(e1² + 0.01 e2²).
+///
+/// With s = t/h and s̄ = 1 − s the state inside the step is
+///     y0 + s (Δ + s̄ (h k_0 − Δ + s (2 Δ − h k_0 − h k_S + s̄ (d_0 + s (d_1 + s̄ (d_2 + s d_3)))))),
+/// where Δ = y1 − y0 and d_m = h Σ dense_mi k_i; the sum ends with the last row of `dense`.
+template <class Coefficient, std::size_t S, std::size_t slopes, std::size_t estimates, std::size_t rows>
+struct EmbeddedPair {
+    static constexpr std::size_t stages = S;
+
+    std::array<std::array<Coefficient, slopes>, slopes> a;
+    std::array<std::array<Coefficient, S + 1>, estimates> error;
+    std::array<std::array<Coefficient, slopes>, rows> dense;
+    StepControl control;
+};
+
+template <class Scalar>
+Scalar value(const Fraction& f) {
+    return Scalar(f.numerator) / Scalar(f.denominator);
+}
+template <class Scalar>
+Scalar value(const Decimal& d) {
+    return Scalar(d.high) + Scalar(d.low);
+}
+constexpr bool is_zero(const Fraction& f) {
+    return f.numerator == 0;
+}
+constexpr bool is_zero(const Decimal& d) {
+    return d.high == 0;
+}
+
+/// The slopes k_i of one step of `pair`: any system, any scalar; no allocation after the constructor.
+template <System Model, const auto& pair>
+class Slopes {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    static constexpr std::size_t stages = pair.stages, all = pair.a.size();
+
+    explicit Slopes(const State& start) : at_(start) { k_.fill(start); }
+
+    State& operator[](std::size_t i) { return k_[i]; }
+
+    /// k_first … k_{last−1}, from those before them.
+    template <std::size_t first, std::size_t last>
+    void evaluate(Model& model, const State& y, const Scalar& h) {
+        const auto slope = [&]<std::size_t i>() {
+            static constexpr auto row = pair.a[i];
+            sum<row>(at_);
+            at_ = y + h * at_;
+            doppel::slope(model, at_, k_[i]);
+        };
+        [&]<std::size_t... i>(std::index_sequence<i...>) {
+            (slope.template operator()<first + i>(), ...);
+        }
+        (std::make_index_sequence<last - first>());
+    }
+
+    /// Those for the interpolation alone, from all the others.
+    void evaluate_dense(Model& model, const State& y, const Scalar& h) {
+        for (std::size_t i = stages + 1; i < all; ++i) {
+            sum_with(pair.a[i], at_);
+            at_ = y + h * at_;
+            doppel::slope(model, at_, k_[i]);
+        }
+    }
+
+    /// y1 ← y + h Σ b_j k_j, once the stages are evaluated.
+    void finish(const State& y, const Scalar& h, State& y1) {
+        static constexpr auto b = pair.a[stages];
+        sum<b>(at_);
+        y1 = y + h * at_;
+    }
+
+    /// out ← Σ weight_j k_j over the weights that are not zero; which those are is known to the compiler.
+    template <const auto& weights>
+    void sum(State& out) const {
+        [&]<std::size_t... j>(std::index_sequence<j...>) {
+            for (Eigen::Index i = 0; i < out.size(); ++i) {
+                Scalar total(-0.0);  // unlike +0, it changes no sum and costs no addition
+                const auto add = [&]<std::size_t slope>() {
+                    if constexpr (!is_zero(weights[slope])) total += value<Scalar>(weights[slope]) * k_[slope][i];
+                };
+                (add.template operator()<j>(), ...);
+                out[i] = total;
+            }
+        }
+        (std::make_index_sequence<weights.size()>());
+    }
+
+    /// The same in a loop at run time, which is less to compile: for what is not done every step.
+    template <class Weights>
+    void sum_with(const Weights& weights, State& out) const {
+        out.fill(Scalar(-0.0));
+        for (std::size_t j = 0; j < weights.size(); ++j)
+            if (!is_zero(weights[j])) out += value<Scalar>(weights[j]) * k_[j];
+    }
+
+private:
+    std::array<State, all> k_;
+    State at_;
+};
+
+/// An explicit Runge–Kutta method with `table`, at fixed step: any system, any scalar (integrate/stepper.hpp).
 template <System Model, const auto& table>
 class RungeKutta {
 public:

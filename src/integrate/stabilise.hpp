@@ -39,7 +39,7 @@ public:
     }
 
     /// q ← the point on the constraints; true if one is found. q0 may be q itself: then the directions follow it.
-    bool onto_constraints(Model& model, const Half& q0, Half& q) {
+    bool project_positions(Model& model, const Half& q0, Half& q) {
         lambda.setZero();
         for (int i = 0; i < limit; ++i) {
             model.residual(q, c_);
@@ -53,7 +53,7 @@ public:
     }
 
     /// v ← v + M⁻¹Jᵀ(q) λ with J v = 0.
-    void along_constraints(Model& model, const Half& q, Half& v) {
+    void project_velocities(Model& model, const Half& q, Half& v) {
         model.constraint_velocity(q, v, c_);
         model.solve(q, q, c_);
         lambda = -c_;
@@ -118,11 +118,11 @@ public:
         const auto n = q_.size();
         q_ = y.head(n);
         v_ = y.tail(n);
-        if (!newton_.onto_constraints(*this, q_, q_))
+        if (!newton_.project_positions(*this, q_, q_))
             throw method_failed(
                 "projection: the constraints are still off by {:.2g} after {} corrections; choose a smaller step_s",
                 newton_.remained(), newton_.limit);
-        newton_.along_constraints(*this, q_, v_);
+        newton_.project_velocities(*this, q_, v_);
         y.head(n) = q_;
         y.tail(n) = v_;
     }

@@ -1,11 +1,97 @@
 #pragma once
 
-#include "integrate/method.hpp"
+#include "physics/constrained.hpp"
 
+#include <concepts>
 #include <memory>
 #include <string_view>
 
 namespace doppel {
+
+/// What every method's class template over the model offers, besides its constructor:
+///
+///     fixed step   (Model&, const State& start, const Scalar& step)
+///     adaptive     (Model&, const State& start, const Scalar& tolerance)
+///
+/// Errors: Error (exit 3) where a step cannot be made: no convergence, a step size that vanishes, a tolerance that the
+/// scalar cannot give. All memory is allocated by the constructor.
+template <class S>
+concept Steps = requires(S stepper) {
+    stepper.state();                                         // now
+    { stepper.evaluations() } -> std::convertible_to<long>;  // of the right-hand side so far
+};
+template <class S>
+concept FixedStepper = Steps<S> && requires(S stepper) {
+    stepper.advance(1L);
+};  // so many steps
+template <class S>
+concept AdaptiveStepper = Steps<S> && requires(S stepper, const typename S::Scalar& seconds) {
+    stepper.advance(seconds);
+    { stepper.steps() } -> std::convertible_to<long>;                        // accepted
+    { stepper.smallest_step() } -> std::convertible_to<typename S::Scalar>;  // s, of those that error control chose
+};
+
+/// After every step a model may project the state onto its constraints.
+template <class Model, class State>
+void project(Model& model, State& y) {
+    if constexpr (requires { model.project(y); }) model.project(y);
+}
+template <class Model>
+bool projects(const Model& model) {
+    if constexpr (requires { model.projects(); })
+        return model.projects();
+    else
+        return requires(Model & m, typename Model::State & y) {
+            m.project(y);
+        };
+}
+
+/// Any system with states of one type, behind a virtual call: what steps it is compiled once for all of them.
+template <class Y>
+class AnySystem {
+public:
+    using State = Y;
+    using Scalar = typename Y::Scalar;
+
+    template <System Model>
+    requires(!std::same_as<Model, AnySystem> &&
+             std::same_as<typename Model::State, State>) explicit AnySystem(const Model& model)
+        : system_(std::make_unique<Held<Model>>(model)), projects_(doppel::projects(model)) {}
+
+    void rate(const State& y, State& dydt) { system_->rate(y, dydt); }
+    void project(State& y) {
+        if (projects_) system_->project(y);
+    }
+    bool projects() const { return projects_; }
+
+private:
+    struct Interface {
+        virtual ~Interface() = default;
+        virtual void rate(const State& y, State& dydt) = 0;
+        virtual void project(State& y) = 0;
+    };
+    template <class Model>
+    struct Held final : Interface {
+        Model model;
+        explicit Held(const Model& held) : model(held) {}
+        void rate(const State& y, State& dydt) override { model.rate(y, dydt); }
+        void project(State& y) override { doppel::project(model, y); }
+    };
+
+    std::unique_ptr<Interface> system_;
+    bool projects_;
+};
+
+/// The right-hand side, for methods of many stages: called, not copied into every one of them, which costs them two
+/// nanoseconds a stage and saves minutes of compiling.
+template <class Model, class State>
+[[gnu::noinline]] void slope(Model& model, const State& y, State& dydt) {
+    model.rate(y, dydt);
+}
+template <class State>
+void slope(AnySystem<State>& model, const State& y, State& dydt) {
+    model.rate(y, dydt);
+}
 
 /// A method at work on a system, as what samples it drives it.
 template <class S>

@@ -3,8 +3,9 @@
 #include "base/error.hpp"
 #include "integrate/angle_series.hpp"
 #include "integrate/mechanism_series.hpp"
-#include "integrate/method.hpp"
+#include "integrate/methods.hpp"
 #include "integrate/rod_series.hpp"
+#include "integrate/stepper.hpp"
 #include "numeric/roots.hpp"
 
 #include <algorithm>
@@ -49,7 +50,7 @@ public:
 
     const State& state() const { return out_; }
 
-    /// In place of advance(), for what looks into every step: on to the end of the last one, where the next is
+    /// In place of advance(), for what evaluates inside every step: on to the end of the last one, where the next is
     /// expanded. On it, at(t) holds for 0 ≤ t ≤ step(), s from where it starts; at(step()) is at(0) of the one after,
     /// to the bit.
     void take_step() {

@@ -42,7 +42,7 @@ concept HasSeries = requires {
 /// vanish.
 inline constexpr int watched_coefficients = 4;
 
-/// A number in double, without the derivatives it may carry: what step control looks at.
+/// A number in double, without the derivatives it may carry: what step control goes by.
 template <class Scalar>
 double plain_value(const Scalar& x) {
     if constexpr (requires { x.value; })

@@ -10,11 +10,11 @@
 namespace doppel {
 
 /// The whole turns of the rods of a chain whose state is (x1, y1, x2, y2 … vx1, vy1 …): places tell angles only up to
-/// turns, so they are followed from one look to the next, as far as the rates at both say.
+/// turns, so they are followed from one state to the next, by the rates at both.
 class Turns {
 public:
-    static constexpr double longest_unwatched = 1.0 / 500;  // s
-    static constexpr double farthest_unwatched = 0.5;       // rad
+    static constexpr double longest = 1.0 / 500;  // s
+    static constexpr double largest_turn = 0.5;   // rad
 
     Turns() = default;
     /// From the angles of the rods, rad, with all their turns.
@@ -28,7 +28,7 @@ public:
 
     bool followed() const { return !rods_.empty(); }
 
-    /// At a state, so many seconds after the last look; 0 for the state released.
+    /// At a state, so many seconds after the last one; 0 for the state released.
     template <class State>
     void update(const State& y, double seconds) {
         fastest_ = 0;
@@ -49,10 +49,10 @@ public:
         }
     }
 
-    /// When to look again at the latest, s.
-    double patience() const { return std::min(longest_unwatched, farthest_unwatched / fastest_); }
+    /// Until the next update() at the latest, s.
+    double longest_interval() const { return std::min(longest, largest_turn / fastest_); }
 
-    /// Adds them to the angles of bobs, within (−π, π], seen at the last look.
+    /// Adds them to the angles of bobs, within (−π, π], of the last update().
     template <class Scalar>
     void add_to(Bobs<Scalar>& bobs) const {
         for (std::size_t i = 0; i < rods_.size(); ++i)
@@ -69,12 +69,12 @@ private:
     /// What a rod has turned by, rad, within half a turn. Where the rates at both ends say too different things, of a
     /// rod that swings to and fro, it has gone the short way.
     static double turned(double before, double after, double seconds) {
-        const bool agree = std::abs(after - before) * seconds < 2 * farthest_unwatched;
+        const bool agree = std::abs(after - before) * seconds < 2 * largest_turn;
         return agree ? 0.5 * (before + after) * seconds : 0;
     }
 
     std::vector<Rod> rods_;
-    double fastest_ = 0;  // rad/s, of the rates at the last look
+    double fastest_ = 0;  // rad/s, at the last update()
 };
 
 /// The steps of a fixed step that are taken in one go, of a state of so many numbers: few enough that an interruption
@@ -84,9 +84,9 @@ inline long steps_in_one_go(Eigen::Index dimensions) {
     return std::max(1L, most / static_cast<long>(dimensions));
 }
 
-/// The steps of so many seconds that may be taken until turns must be looked at.
-inline long steps_within(double patience, double step) {
-    return std::max(1L, static_cast<long>(patience / step));
+/// The steps of so many seconds that may be taken until turns must be updated.
+inline long steps_within(double longest_interval, double step) {
+    return std::max(1L, static_cast<long>(longest_interval / step));
 }
 
 }  // namespace doppel

@@ -12,7 +12,7 @@ namespace doppel {
 /// Whatever is computed with them carries its exact derivatives along (forward-mode automatic differentiation); a state
 /// whose i-th entry starts with the tangent e_i ends as the Jacobian of the flow.
 ///
-/// Comparisons look at the value alone. A number is a constant: its tangents are 0.
+/// Comparisons are those of the values. A number is a constant: its tangents are 0.
 /// Source  Griewank & Walther, Evaluating Derivatives, §3.1.
 template <class Scalar, int N>
 struct Dual {
@@ -83,29 +83,11 @@ struct Dual {
         using std::cos, std::sin;
         return {cos(a.value), Scalar(-sin(a.value)) * a.tangent};
     }
-    friend Dual tan(const Dual& a) {
-        using std::tan;
-        const Scalar t = tan(a.value);
-        return {t, Scalar(Scalar(1) + t * t) * a.tangent};
-    }
-    friend Dual exp(const Dual& a) {
-        using std::exp;
-        const Scalar e = exp(a.value);
-        return {e, e * a.tangent};
-    }
-    friend Dual log(const Dual& a) {
-        using std::log;
-        return {log(a.value), a.tangent / a.value};
-    }
     friend Dual abs(const Dual& a) { return a.value < Scalar(0) ? -a : a; }
     friend Dual atan2(const Dual& y, const Dual& x) {
         using std::atan2;
         const Scalar square = x.value * x.value + y.value * y.value;
         return {atan2(y.value, x.value), (x.value * y.tangent - y.value * x.tangent) / square};
-    }
-    friend Dual atan(const Dual& a) {
-        using std::atan;
-        return {atan(a.value), a.tangent / Scalar(Scalar(1) + a.value * a.value)};
     }
 
     // These have no finite slope at the ends of their range, where a constant is still a constant.
@@ -114,11 +96,6 @@ struct Dual {
         using std::sqrt;
         const Scalar root = sqrt(a.value);
         return a.varies() ? Dual{root, a.tangent / Scalar(Scalar(2) * root)} : Dual(root);
-    }
-    friend Dual asin(const Dual& a) {
-        using std::asin, std::sqrt;
-        const Scalar angle = asin(a.value);
-        return a.varies() ? Dual{angle, a.tangent / Scalar(sqrt(Scalar(Scalar(1) - a.value * a.value)))} : Dual(angle);
     }
     friend Dual acos(const Dual& a) {
         using std::acos, std::sqrt;

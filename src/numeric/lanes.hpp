@@ -237,17 +237,17 @@ template <class Scalar>
 ///     angle = n π/2 + r + tail,   |r| ≤ π/4,   π/2 in three parts whose products with n are exact
 ///
 /// Source  the polynomials of fdlibm's k_sin.c and k_cos.c (Sun Microsystems 1993)
-template <class Side>
+template <class Pack>
 struct LanesSinCos {
-    Side sin, cos;
+    Pack sin, cos;
 
-    [[gnu::always_inline]] explicit LanesSinCos(const Side& angle) {
-        for (int k = 0; k < Side::parts; ++k) turn(angle.v[k], sin.v[k], cos.v[k]);
+    [[gnu::always_inline]] explicit LanesSinCos(const Pack& angle) {
+        for (int k = 0; k < Pack::parts; ++k) turn(angle.v[k], sin.v[k], cos.v[k]);
     }
 
 private:
-    using Doubles = typename Side::Doubles;
-    using Masks = typename Side::Masks;
+    using Doubles = typename Pack::Doubles;
+    using Masks = typename Pack::Masks;
 
     [[gnu::always_inline]] static void turn(Doubles angle, Doubles& sine, Doubles& cosine) {
         // the last bits of `shifted` are those of n

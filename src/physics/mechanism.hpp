@@ -214,7 +214,7 @@ private:
         set_.update(q, gradients_);
     }
 
-    /// Factors J(q) M⁻¹ J0ᵀ, and near a singular configuration looks whether one lies between this call and the one
+    /// Factors J(q) M⁻¹ J0ᵀ, and near a singular configuration finds out whether one lies between this call and the one
     /// before: stepped over, it would look like any other step, and end in another motion.
     template <class Vector>
     void factor_and_watch(const Vector& q, const Gradients& zero) {

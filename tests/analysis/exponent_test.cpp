@@ -61,7 +61,7 @@ TEST(Exponent, TangentIsTheDifferenceOfNeighbours) {
     Flow::State start(8);
     start << DoublePendulum<double>::start(p), direction;
     TangentMotion<DoublePendulum<Dual<double, 1>>> motion(p, 1e-12);
-    motion.set_down(start);
+    motion.restart(start);
     motion.advance(3);
     const auto neighbour = [&](double apart) {
         DoublePendulum<double> model(p);

@@ -96,7 +96,7 @@ TEST(Turns, AreNotMadeUpOfARodThatSwingsToAndFro) {
     turns.update(places(angle(0), 0, rate(0)), 0);
     double t = 0;
     for (int n = 1; n <= 100'000; ++n) {
-        const double wait = turns.patience();
+        const double wait = turns.longest_interval();
         t += wait;
         const auto y = places(angle(t), 0, rate(t));
         turns.update(y, wait);
@@ -107,9 +107,9 @@ TEST(Turns, AreNotMadeUpOfARodThatSwingsToAndFro) {
 TEST(Turns, AreLookedAtTheMoreOftenTheFasterTheyAre) {
     Turns turns({0, 0});
     turns.update(places(0, 0, 3, -8), 0);
-    EXPECT_DOUBLE_EQ(turns.patience(), Turns::longest_unwatched);
+    EXPECT_DOUBLE_EQ(turns.longest_interval(), Turns::longest);
     turns.update(places(0, 0, 2000, -8), 0);
-    EXPECT_DOUBLE_EQ(turns.patience(), Turns::farthest_unwatched / 2000);
+    EXPECT_DOUBLE_EQ(turns.longest_interval(), Turns::largest_turn / 2000);
 }
 
 }  // namespace turns_test
