@@ -4,6 +4,7 @@
 #include "figure/kinds.hpp"
 #include "numeric/nan.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

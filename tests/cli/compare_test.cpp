@@ -1,6 +1,7 @@
 #include "cli/process.hpp"
 #include "output/png.hpp"
 
+#include <algorithm>
 #include <fstream>
 
 namespace doppel {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sched.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <set>

@@ -75,6 +75,15 @@ void describe(const AVFormatContext& format, const AVStream& stream, Video& vide
     video.duration = seconds(stream.duration, stream.time_base);
 }
 
+/// In ticks of its stream.
+std::int64_t duration_of(const AVFrame& frame) {
+#if LIBAVUTIL_VERSION_INT >= AV_VERSION_INT(57, 30, 100)  // FFmpeg 6
+    return frame.duration;
+#else
+    return frame.pkt_duration;
+#endif
+}
+
 /// One component of a frame on the scale of 8 bits, whatever planes and bits it lies in.
 std::vector<double> component(const AVFrame& frame, int which) {
     const AVPixFmtDescriptor& about = *av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
@@ -147,7 +156,7 @@ Video read_video(const std::filesystem::path& path, const std::function<void(con
             if (video.times.empty()) add_metadata(frame->metadata, video);
             if (each) each(luma_of(*frame, static_cast<long>(video.times.size())));
             video.times.push_back(seconds(frame->pts, stream.time_base));
-            video.lasting.push_back(seconds(frame->pkt_duration, stream.time_base));
+            video.lasting.push_back(seconds(duration_of(*frame), stream.time_base));
         }
     };
     while (av_read_frame(format.get(), packet.get()) >= 0) {
