@@ -36,7 +36,7 @@ Functions load(const std::function<Function(const char* name)>& find) {
 namespace doppel {
 namespace {
 
-constexpr std::array<std::pair<const char*, Gl>, 3> names{
+constexpr std::array<std::pair<const char*, Gl>, 3> by_name{
     {{"auto", Gl::automatic}, {"osmesa", Gl::osmesa}, {"egl", Gl::egl}}};
 
 constinit thread_local Context* current = nullptr;  // in this thread, as OpenGL has it
@@ -193,13 +193,14 @@ std::unique_ptr<Context> try_library(const char* library, const char* packages, 
 
 std::vector<std::string> gl_names() {
     std::vector<std::string> all;
-    for (const auto& [name, gl] : names) all.emplace_back(name);
+    for (const auto& [name, gl] : by_name) all.emplace_back(name);
     return all;
 }
 
 Gl gl_named(const std::string& name) {
-    const auto found = std::find_if(names.begin(), names.end(), [&](const auto& known) { return known.first == name; });
-    if (found == names.end())
+    const auto found =
+        std::find_if(by_name.begin(), by_name.end(), [&](const auto& known) { return known.first == name; });
+    if (found == by_name.end())
         throw bad_input("nothing that draws is called \"{}\"; there are {}", name, fmt::join(gl_names(), ", "));
     return found->second;
 }
