@@ -39,13 +39,13 @@ void add_part_tables(const std::string& name, std::vector<FieldTable>& tables) {
 }  // namespace
 
 std::string FieldTable::markdown() const {
-    auto text = fmt::format("\n## `{}`\n\n{}{}| key | takes | unit | default | |\n|---|---|---|---|---|\n", name,
-                            this->text, this->text.empty() ? "" : "\n");
+    auto page = fmt::format("\n## `{}`\n\n{}{}| key | takes | unit | default | |\n|---|---|---|---|---|\n", name, text,
+                            text.empty() ? "" : "\n");
     for (const auto& field : fields)
-        text += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, takes_text(field), field.unit,
+        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, takes_text(field), field.unit,
                             field.by_default, field.help);
-    for (const auto& table : tables) text += table.markdown();
-    return text;
+    for (const auto& table : tables) page += table.markdown();
+    return page;
 }
 
 std::vector<FieldTable> film_tables() {
