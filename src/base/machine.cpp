@@ -138,7 +138,7 @@ Machine within_control_groups(Machine machine, const fs::path& root) {
     return machine;
 }
 
-std::size_t in_hand(std::size_t bytes, std::size_t most, const Machine& machine) {
+std::size_t affordable(std::size_t bytes, std::size_t most, const Machine& machine) {
     constexpr std::uintmax_t enough = std::uintmax_t{2} << 30;
     const auto fit = std::min(machine.memory / 4, enough) / std::max<std::uintmax_t>(bytes, 1);
     return static_cast<std::size_t>(std::clamp<std::uintmax_t>(fit, 1, std::max<std::size_t>(most, 1)));

@@ -20,9 +20,9 @@ const Machine& this_machine();
 /// proc/self/mountinfo and the folders that these name. A share of a core counts as a whole one.
 Machine within_control_groups(Machine machine, const std::filesystem::path& root);
 
-/// How many things of so many bytes may be in hand at once: `most`, or as many of them as take no more than a quarter
+/// How many things of so many bytes may exist at once: `most`, or as many of them as take no more than a quarter
 /// of the memory, and no more than 2 GiB; at least one.
-std::size_t in_hand(std::size_t bytes, std::size_t most, const Machine& machine = this_machine());
+std::size_t affordable(std::size_t bytes, std::size_t most, const Machine& machine = this_machine());
 
 /// As many threads as this process may use cores at once, at least one.
 inline int cores() {

@@ -118,7 +118,7 @@ public:
         : options_(options),
           encoder_(place, encoding_of(options), stop),
           spool_(place),
-          counting_(1, in_hand(byte_count(AV_PIX_FMT_RGBA, all_of(options.size)), 8),
+          counting_(1, affordable(byte_count(AV_PIX_FMT_RGBA, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { count(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {

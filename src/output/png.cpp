@@ -232,7 +232,7 @@ std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int
 int png_threads(int jobs, Size size) {
     // a thread's queued picture, its current one, filtered rows, compressed rows, and the file
     const std::size_t bytes = 5 * byte_count(AV_PIX_FMT_RGBA, all_of(size));
-    return static_cast<int>(in_hand(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
+    return static_cast<int>(affordable(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }
 
 }  // namespace doppel

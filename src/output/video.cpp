@@ -18,7 +18,7 @@ class VideoSink final : public Sink {
 public:
     VideoSink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop)
         : encoder_(place, encoding_of(options), stop),
-          encoding_(1, in_hand(byte_count(pixels_, all_of(options.size)), 8),
+          encoding_(1, affordable(byte_count(pixels_, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { encode(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {

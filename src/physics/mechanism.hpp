@@ -75,7 +75,7 @@ struct Mechanism {
         accelerate(q, v, a);
 
         turn_to(q);
-        factor_and_watch(q, gradients_);
+        factor_and_check_path(q, gradients_);
         find_multipliers(gradients_, v, a);
         set_.add_pull(gradients_, masses_.w, lambda_, a);
     }
@@ -119,7 +119,7 @@ struct Mechanism {
     void solve(const Half& q1, const Half& q0, Multipliers& x) {
         turn_to(q1);
         set_.update(q0, other_gradients_);
-        factor_and_watch(q1, other_gradients_);
+        factor_and_check_path(q1, other_gradients_);
         matrix_.solve(x);
     }
 
@@ -217,7 +217,7 @@ private:
     /// Factors J(q) M⁻¹ J0ᵀ, and near a singular configuration finds out whether one lies between this call and the one
     /// before: stepped over, it would look like any other step, and end in another motion.
     template <class Vector>
-    void factor_and_watch(const Vector& q, const Gradients& zero) {
+    void factor_and_check_path(const Vector& q, const Gradients& zero) {
         factor(q, gradients_, zero);
         const bool was_near = std::exchange(is_near_, matrix_.nearly_singular());
         if (!(was_near || is_near_) || !alike(gradients_, gradients_before_)) return;

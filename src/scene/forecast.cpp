@@ -1,7 +1,7 @@
 #include "scene/forecast.hpp"
 
 #include "analysis/linear_stability.hpp"
-#include "analysis/reference_course.hpp"
+#include "analysis/reference_trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ struct Ends {
     double least_error = off, greatest_error = 0;
 };
 
-Ends ends_of_fine_runs(const Side& side, const ReferenceCourse& reference, long samples,
+Ends ends_of_fine_runs(const Side& side, const ReferenceTrajectory& reference, long samples,
                        const std::atomic<bool>& stop) {
     Ends ends;
     const auto add = [&](const std::vector<double>& error) {
@@ -30,9 +30,9 @@ Ends ends_of_fine_runs(const Side& side, const ReferenceCourse& reference, long 
     };
     if (reference.is_wider) {
         for (const char* tolerance : {"3e-14", "1e-14", "3e-15", "2e-15", "1e-15"})
-            add(error_course(by_taylor_series(side.motion, parse_quad(tolerance)), reference, off, stop).error);
+            add(error_history(by_taylor_series(side.motion, parse_quad(tolerance)), reference, off, stop).error);
     } else {
-        add(reference.doubt);
+        add(reference.uncertainty);
     }
     return ends;
 }
@@ -72,11 +72,11 @@ std::optional<Forecast::Limit> limit_of(const Ends& ends, const Scene& scene, co
 }  // namespace
 
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
-    const auto reference = reference_course(side.motion, scene.samples, side.reach, off, stop);
-    const auto course = error_course(side.motion, reference, off, stop);
-    if (course.error.empty()) throw method_failed("the method breaks down at once");
-    Forecast seen{.error = course.error.back(),
-                  .error_s = scene.time(static_cast<long>(course.error.size()) - 1),
+    const auto reference = reference_trajectory(side.motion, scene.samples, side.reach, off, stop);
+    const auto history = error_history(side.motion, reference, off, stop);
+    if (history.error.empty()) throw method_failed("the method breaks down at once");
+    Forecast seen{.error = history.error.back(),
+                  .error_s = scene.time(static_cast<long>(history.error.size()) - 1),
                   .exponent = std::nullopt,
                   .limit = std::nullopt};
 

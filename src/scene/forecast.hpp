@@ -28,7 +28,7 @@ struct Forecast {
     std::optional<Limit> limit;        // may lie beyond the end
 };
 
-/// By the run beside the reference (analysis/reference_course.hpp), and runs by Taylor series as fine as the precision
+/// By the run beside the reference (analysis/reference_trajectory.hpp), and runs by Taylor series as fine as the precision
 /// allows, each of which rounds in its own way.
 /// Errors  exit 130 soon after `stop` is set; exit 3 where the method breaks down at once.
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop);

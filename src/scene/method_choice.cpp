@@ -1,6 +1,6 @@
 #include "scene/method_choice.hpp"
 
-#include "analysis/reference_course.hpp"
+#include "analysis/reference_trajectory.hpp"
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
 
@@ -20,20 +20,20 @@ constexpr double nearly = 0.97;  // as far as the finest setting gets, where rou
 /// A setting, tried.
 struct Trial {
     int level;
-    ErrorCourse course;
+    ErrorHistory history;
     long horizon;  // the last sample to which the accuracy holds; −1 = none
 
     /// Evaluations of the right-hand side a sample.
     double work() const {
-        return static_cast<double>(course.effort.evaluations) /
-               static_cast<double>(std::max(course.effort_samples, 1L));
+        return static_cast<double>(history.effort.evaluations) /
+               static_cast<double>(std::max(history.effort_samples, 1L));
     }
 };
 
 /// The loosest setting of one method that does.
 class Search {
 public:
-    Search(const StepSettings& control, double accuracy, const ReferenceCourse& reference,
+    Search(const StepSettings& control, double accuracy, const ReferenceTrajectory& reference,
            const std::atomic<bool>& stop)
         : control_(control), allowed_(margin * accuracy), reference_(reference), stop_(stop) {}
 
@@ -73,14 +73,14 @@ private:
     const Trial& tried(int level) {
         const auto known = trials_.find(level);
         if (known != trials_.end()) return known->second;
-        auto course = error_course(control_.side(level).motion, reference_, enough, stop_);
-        const long horizon = course.last_within(allowed_);
-        return trials_.emplace(level, Trial{level, std::move(course), horizon}).first->second;
+        auto history = error_history(control_.side(level).motion, reference_, enough, stop_);
+        const long horizon = history.last_within(allowed_);
+        return trials_.emplace(level, Trial{level, std::move(history), horizon}).first->second;
     }
 
     const StepSettings& control_;
     double allowed_;
-    const ReferenceCourse& reference_;
+    const ReferenceTrajectory& reference_;
     const std::atomic<bool>& stop_;
     std::map<int, Trial> trials_;
 };
@@ -108,7 +108,7 @@ Error out_of_reach(double accuracy, const Trial& trial, const SideSpec& spec, do
                    long samples) {
     const bool quad = spec.precision == Precision::in_quad;
     const auto within = [&](double seconds) {
-        return trial.course.at(static_cast<std::size_t>(std::lround(seconds * sample_hz.value()))) / margin;
+        return trial.history.at(static_cast<std::size_t>(std::lround(seconds * sample_hz.value()))) / margin;
     };
     const double to_end = within(static_cast<double>(samples) / sample_hz.value());
     const auto up = [](double value) {
@@ -188,7 +188,7 @@ MethodChooser::MethodChooser(const SideSpec& spec, const Rational& duration, con
       samples_(product(duration, sample_hz)->numerator) {
     const StepSettings any(spec, sample_hz, cheapest_methods(spec, finest_in_table).front(), time_unit_);
     const auto side = any.side(any.finest());
-    reference_ = reference_course(side.motion, samples_, side.reach, enough, stop);
+    reference_ = reference_trajectory(side.motion, samples_, side.reach, enough, stop);
 }
 
 Side MethodChooser::choose(double accuracy) const {
@@ -201,19 +201,19 @@ Side MethodChooser::choose(double accuracy) const {
         if (!best || found.beats(*best, samples_)) best.emplace(std::move(found));
     }
     const auto& [control, trial] = *best;
-    const auto& course = trial.course;
+    const auto& history = trial.history;
     if (trial.horizon < swing_samples)
-        throw course.failure.empty()
+        throw history.failure.empty()
             ? out_of_reach(accuracy, trial, spec_, swing, sample_hz_, samples_)
             : method_failed("the motion breaks down within {:.2g} s: {}",
-                            static_cast<double>(course.error.size()) / sample_hz_.value(), course.failure);
+                            static_cast<double>(history.error.size()) / sample_hz_.value(), history.failure);
 
     auto side = control.side(trial.level);
     side.choice = MethodChoice{
         .accuracy = accuracy,
-        .estimated_error = std::max(course.at(static_cast<std::size_t>(trial.horizon)), least_error(spec_.precision)),
+        .estimated_error = std::max(history.at(static_cast<std::size_t>(trial.horizon)), least_error(spec_.precision)),
         .horizon = trial.horizon,
-        .verified_by = reference_.words(),
+        .verified_by = reference_.description(),
         .evaluations = trial.work() * static_cast<double>(samples_)};
     side.why = why_words(spec_, control, accuracy);
     return side;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/reference_course.hpp"
+#include "analysis/reference_trajectory.hpp"
 #include "scene/scene.hpp"
 
 #include <string>
@@ -63,7 +63,7 @@ private:
     const std::atomic<bool>& stop_;
     double time_unit_;  // s
     long samples_;
-    ReferenceCourse reference_;
+    ReferenceTrajectory reference_;
 };
 
 /// By the accuracy that the side itself asks for.

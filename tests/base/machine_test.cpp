@@ -107,11 +107,11 @@ TEST(Machine, HasWhatTheAffinityMaskLeaves) {
 
 TEST(Machine, HoldsNoMoreThanItsMemory) {
     constexpr std::size_t megabyte = 1 << 20;
-    EXPECT_EQ(in_hand(5 * 33 * megabyte, 64, bare), 12u);                    // 4K in five copies: 2 GiB
-    EXPECT_EQ(in_hand(5 * 33 * megabyte, 4, bare), 4u);                      // no more than wanted
-    EXPECT_EQ(in_hand(5 * 33 * megabyte, 64, {64, 2048 * megabyte}), 3u);    // a quarter of 2 GiB
-    EXPECT_EQ(in_hand(5 * 1024 * megabyte, 64, {64, 1024 * megabyte}), 1u);  // at least one
-    EXPECT_EQ(in_hand(0, 8, bare), 8u);
+    EXPECT_EQ(affordable(5 * 33 * megabyte, 64, bare), 12u);                    // 4K in five copies: 2 GiB
+    EXPECT_EQ(affordable(5 * 33 * megabyte, 4, bare), 4u);                      // no more than wanted
+    EXPECT_EQ(affordable(5 * 33 * megabyte, 64, {64, 2048 * megabyte}), 3u);    // a quarter of 2 GiB
+    EXPECT_EQ(affordable(5 * 1024 * megabyte, 64, {64, 1024 * megabyte}), 1u);  // at least one
+    EXPECT_EQ(affordable(0, 8, bare), 8u);
 }
 
 }  // namespace machine_test

@@ -1,6 +1,6 @@
 #include "scene/forecast.hpp"
 
-#include "analysis/reference_course.hpp"
+#include "analysis/reference_trajectory.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(Forecast, TellsForAboutHowLongRunsInDoubleCanBeRight) {
         ASSERT_TRUE(limit) << system;
         EXPECT_LE(limit->from, limit->to);
         // others, by methods and equations that it did not try
-        const auto reference = reference_course(scene.a.motion, scene.samples, scene.a.reach, 0.5, never);
+        const auto reference = reference_trajectory(scene.a.motion, scene.samples, scene.a.reach, 0.5, never);
         for (const auto& [model, method, tolerance] : {std::tuple{Model::angles, "dop853", "1e-14"},
                                                        {Model::constraints, "taylor", "1e-15"},
                                                        {Model::constraints, "taylor", "1e-14"},
@@ -43,7 +43,7 @@ TEST(Forecast, TellsForAboutHowLongRunsInDoubleCanBeRight) {
             other.method = method;
             other.tolerance = parse_quad(tolerance);
             const double lost =
-                scene.time(static_cast<long>(error_course(other, reference, 0.5, never).error.size()) - 1);
+                scene.time(static_cast<long>(error_history(other, reference, 0.5, never).error.size()) - 1);
             EXPECT_GT(lost, 0.9 * limit->from) << system << ": " << method;  // measured 0.98
             EXPECT_LT(lost, 1.15 * limit->to) << system << ": " << method;   // measured 1.07
         }

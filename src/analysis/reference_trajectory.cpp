@@ -1,4 +1,4 @@
-#include "analysis/reference_course.hpp"
+#include "analysis/reference_trajectory.hpp"
 
 #include "analysis/difference.hpp"
 #include "base/error.hpp"
@@ -55,58 +55,63 @@ bool advanced(std::span<const std::unique_ptr<Motion>> motions, std::string& fai
 /// Light masses make nearly as much of the roundings of steps as of those of the start: 0.93 of it was seen.
 constexpr double caution = 3;
 
-/// In the motion's own precision, with its doubt; and what it cost.
-ReferenceCourse own_course(const MotionSpec& spec, long samples, double reach, double enough,
-                           const std::atomic<bool>& stop, Effort& effort) {
-    ReferenceCourse course{.in_angles = spec.chain.has_value(), .reach = reach, .seen = {}, .doubt = {}, .failure = {}};
+/// In the motion's own precision, with its uncertainty; and what it cost.
+ReferenceTrajectory own_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
+                                   const std::atomic<bool>& stop, Effort& effort) {
+    ReferenceTrajectory trajectory{
+        .in_angles = spec.chain.has_value(), .reach = reach, .seen = {}, .uncertainty = {}, .failure = {}};
     const bool quad = spec.precision == Precision::in_quad;
     const std::unique_ptr<Motion> motions[]{
         make_motion(by_taylor_series(spec, parse_quad(quad ? "1e-33" : "1e-15"))),
         make_motion(by_taylor_series(some_roundings_away(spec), parse_quad(quad ? "3e-33" : "3e-15")))};
-    double doubt = 0;
-    for (long sample = 0; sample <= samples && doubt <= enough; ++sample) {
-        if (sample > 0 && !advanced(motions, course.failure, stop)) break;
-        auto seen = coordinates(motions[0]->observe(), course.in_angles);
-        const double off =
-            largest_difference(seen, coordinates(motions[1]->observe(), course.in_angles), course.in_angles, reach);
+    double uncertainty = 0;
+    for (long sample = 0; sample <= samples && uncertainty <= enough; ++sample) {
+        if (sample > 0 && !advanced(motions, trajectory.failure, stop)) break;
+        auto seen = coordinates(motions[0]->observe(), trajectory.in_angles);
+        const double off = largest_difference(seen, coordinates(motions[1]->observe(), trajectory.in_angles),
+                                              trajectory.in_angles, reach);
         if (!std::isfinite(off)) break;
-        doubt = std::max(doubt, caution * off);
-        course.seen.push_back(std::move(seen));
-        course.doubt.push_back(doubt);
+        uncertainty = std::max(uncertainty, caution * off);
+        trajectory.seen.push_back(std::move(seen));
+        trajectory.uncertainty.push_back(uncertainty);
     }
     effort = motions[0]->effort();
-    return course;
+    return trajectory;
 }
 
 /// Of a motion in double, in quad.
-ReferenceCourse wide_course(const MotionSpec& spec, long samples, double reach, double enough,
-                            const std::atomic<bool>& stop) {
+ReferenceTrajectory wide_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
+                                    const std::atomic<bool>& stop) {
     constexpr double further = 1.25;  // than a run in double is of use; quad at that tolerance gets as much further
-    ReferenceCourse course{
-        .in_angles = spec.chain.has_value(), .reach = reach, .seen = {}, .doubt = {}, .is_wider = true, .failure = {}};
+    ReferenceTrajectory trajectory{.in_angles = spec.chain.has_value(),
+                                   .reach = reach,
+                                   .seen = {},
+                                   .uncertainty = {},
+                                   .is_wider = true,
+                                   .failure = {}};
     auto wide = by_taylor_series(spec, parse_quad("1e-20"));
     wide.precision = Precision::in_quad;
     const std::unique_ptr<Motion> motions[]{make_motion(wide),
                                             make_motion(by_taylor_series(spec, parse_quad("1e-15")))};
     long last = samples;
     for (long sample = 0; sample <= last; ++sample) {
-        if (sample > 0 && !advanced(motions, course.failure, stop)) break;
-        course.seen.push_back(coordinates(motions[0]->observe(), course.in_angles));
-        course.doubt.push_back(0);
-        const double off = course.off(static_cast<std::size_t>(sample), motions[1]->observe());
+        if (sample > 0 && !advanced(motions, trajectory.failure, stop)) break;
+        trajectory.seen.push_back(coordinates(motions[0]->observe(), trajectory.in_angles));
+        trajectory.uncertainty.push_back(0);
+        const double off = trajectory.distance(static_cast<std::size_t>(sample), motions[1]->observe());
         if (last == samples && !(off <= enough))
             last = std::min(samples, std::lround(further * static_cast<double>(sample)));
     }
-    return course;
+    return trajectory;
 }
 
 }  // namespace
 
-double ReferenceCourse::off(std::size_t sample, const Observation& observed) const {
+double ReferenceTrajectory::distance(std::size_t sample, const Observation& observed) const {
     return largest_difference(seen[sample], coordinates(observed, in_angles), in_angles, reach);
 }
 
-std::string ReferenceCourse::words() const {
+std::string ReferenceTrajectory::description() const {
     return is_wider ? "Taylor series in quad" : "Taylor series as fine as the precision allows";
 }
 
@@ -143,30 +148,30 @@ MotionSpec some_roundings_away(MotionSpec spec) {
     return spec;
 }
 
-ReferenceCourse reference_course(const MotionSpec& spec, long samples, double reach, double enough,
-                                 const std::atomic<bool>& stop, double most_work) {
+ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
+                                         const std::atomic<bool>& stop, double most_work) {
     Effort effort;
-    auto own = own_course(spec, samples, reach, enough, stop, effort);
+    auto own = own_trajectory(spec, samples, reach, enough, stop, effort);
     const auto bodies = static_cast<double>(spec.parts ? spec.parts->particles.size() : spec.chain->links());
     const bool affordable = static_cast<double>(effort.evaluations) * bodies <= most_work;
     if (spec.precision == Precision::in_quad || !affordable) return own;
-    return wide_course(spec, samples, reach, enough, stop);
+    return wide_trajectory(spec, samples, reach, enough, stop);
 }
 
-double ErrorCourse::at(std::size_t sample) const {
+double ErrorHistory::at(std::size_t sample) const {
     return sample < error.size() ? error[sample] : std::numeric_limits<double>::infinity();
 }
 
-long ErrorCourse::last_within(double allowed) const {
+long ErrorHistory::last_within(double allowed) const {
     return std::upper_bound(error.begin(), error.end(), allowed) - error.begin() - 1;
 }
 
-ErrorCourse error_course(const MotionSpec& spec, const ReferenceCourse& reference, double enough,
-                         const std::atomic<bool>& stop) {
+ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double enough,
+                           const std::atomic<bool>& stop) {
     auto watched = spec;
     watched.follows_turns = watched.wants_tension = false;
     const auto run = make_motion(watched);
-    ErrorCourse course;
+    ErrorHistory history;
     double worst = 0;
     for (std::size_t sample = 0; sample < reference.seen.size(); ++sample) {
         if (stop) throw Error(ExitCode::interrupted, "interrupted");
@@ -174,19 +179,19 @@ ErrorCourse error_course(const MotionSpec& spec, const ReferenceCourse& referenc
             if (sample > 0) run->advance(stop);
         } catch (const Error& fault) {
             if (fault.code() != ExitCode::method_failed) throw;
-            if (worst <= enough) course.failure = fault.what();
-            return course;
+            if (worst <= enough) history.failure = fault.what();
+            return history;
         }
-        course.effort = run->effort();
-        course.effort_samples = static_cast<long>(sample);
+        history.effort = run->effort();
+        history.effort_samples = static_cast<long>(sample);
         if (worst > enough) continue;
-        const double off = reference.off(sample, run->observe()) + reference.doubt[sample];
-        if (!std::isfinite(off)) return course;
+        const double off = reference.distance(sample, run->observe()) + reference.uncertainty[sample];
+        if (!std::isfinite(off)) return history;
         worst = std::max(worst, off);
-        course.error.push_back(worst);
+        history.error.push_back(worst);
     }
-    if (worst <= enough) course.failure = reference.failure;
-    return course;
+    if (worst <= enough) history.failure = reference.failure;
+    return history;
 }
 
 }  // namespace doppel

@@ -1,4 +1,4 @@
-#include "analysis/reference_course.hpp"
+#include "analysis/reference_trajectory.hpp"
 
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
@@ -8,7 +8,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace reference_course_test {
+namespace reference_trajectory_test {
 
 const std::atomic<bool> never = false;
 constexpr double enough = 0.5;
@@ -22,12 +22,12 @@ MotionSpec in_double(const std::vector<double>& angle_deg) {
     return spec;
 }
 
-TEST(ReferenceCourse, OfAMotionInDoubleIsInQuadWhereThatCostsLittle) {
+TEST(ReferenceTrajectory, OfAMotionInDoubleIsInQuadWhereThatCostsLittle) {
     const auto spec = in_double({90, 90});
-    const auto wide = reference_course(spec, 50, 2, enough, never);
+    const auto wide = reference_trajectory(spec, 50, 2, enough, never);
     EXPECT_TRUE(wide.is_wider);
     ASSERT_EQ(wide.seen.size(), 51u);
-    EXPECT_EQ(wide.doubt.back(), 0);
+    EXPECT_EQ(wide.uncertainty.back(), 0);
     // against quad at another tolerance
     auto finer = spec;
     finer.precision = Precision::in_quad;
@@ -35,12 +35,12 @@ TEST(ReferenceCourse, OfAMotionInDoubleIsInQuadWhereThatCostsLittle) {
     const auto motion = make_motion(finer);
     for (std::size_t sample = 1; sample <= 50; ++sample) {
         motion->advance(never);
-        EXPECT_LT(wide.off(sample, motion->observe()), 1e-20);  // measured 3.4e-21
+        EXPECT_LT(wide.distance(sample, motion->observe()), 1e-20);  // measured 3.4e-21
     }
-    EXPECT_FALSE(reference_course(spec, 50, 2, enough, never, 0).is_wider);
+    EXPECT_FALSE(reference_trajectory(spec, 50, 2, enough, never, 0).is_wider);
 }
 
-TEST(ReferenceCourse, KnowsInItsOwnPrecisionHowFarItMayBeOff) {
+TEST(ReferenceTrajectory, KnowsInItsOwnPrecisionHowFarItMayBeOff) {
     struct Released {
         std::vector<double> degrees, mass;
     };
@@ -53,57 +53,57 @@ TEST(ReferenceCourse, KnowsInItsOwnPrecisionHowFarItMayBeOff) {
                                         {{60, 100, -20}, {1, 0.0001, 1}}}) {
         auto spec = in_double(degrees);
         spec.chain->mass.assign(mass.begin(), mass.end());
-        const auto own = reference_course(spec, 150, 3, enough, never, 0),
-                   wide = reference_course(spec, 150, 3, enough, never);
+        const auto own = reference_trajectory(spec, 150, 3, enough, never, 0),
+                   wide = reference_trajectory(spec, 150, 3, enough, never);
         EXPECT_TRUE(wide.is_wider && !own.is_wider);
         for (std::size_t sample = 10; sample < own.seen.size(); ++sample) {
             double off = 0;
             for (std::size_t i = 0; i < own.seen[sample].size(); ++i)
                 off = std::max(off, std::abs(static_cast<double>(Quad(own.seen[sample][i] - wide.seen[sample][i]))));
-            EXPECT_LE(off, own.doubt[sample]) << degrees[0] << ' ' << sample;  // measured 0.31 of it at most
+            EXPECT_LE(off, own.uncertainty[sample]) << degrees[0] << ' ' << sample;  // measured 0.31 of it at most
         }
     }
 }
 
-TEST(ReferenceCourse, OfARunWithStabilisedRodsIsThatOfTheTrueMotion) {
+TEST(ReferenceTrajectory, OfARunWithStabilisedRodsIsThatOfTheTrueMotion) {
     auto rods = in_double({30, 20});
     rods.model = Model::constraints;
     rods.method = "rk4";
-    const auto course = reference_course(rods, 10, 1, enough, never);
+    const auto trajectory = reference_trajectory(rods, 10, 1, enough, never);
     rods.stabilise = Stabilise::projection;
-    const auto same = reference_course(rods, 10, 1, enough, never);
+    const auto same = reference_trajectory(rods, 10, 1, enough, never);
     ASSERT_EQ(same.seen.size(), 11u);
-    EXPECT_EQ(same.seen.back(), course.seen.back());
+    EXPECT_EQ(same.seen.back(), trajectory.seen.back());
 }
 
-TEST(ReferenceCourse, EndsSomewhatBeyondWhatDoubleCanTell) {
-    const auto wide = reference_course(in_double({150, 90}), 1000, 2, enough, never);
+TEST(ReferenceTrajectory, EndsSomewhatBeyondWhatDoubleCanTell) {
+    const auto wide = reference_trajectory(in_double({150, 90}), 1000, 2, enough, never);
     EXPECT_LT(wide.seen.size(), 600u);
-    const auto course = error_course(in_double({150, 90}), wide, enough, never);
-    EXPECT_LT(course.error.size(), wide.seen.size());
-    EXPECT_GT(course.error.back(), enough);
-    EXPECT_EQ(course.last_within(enough), static_cast<long>(course.error.size()) - 2);
-    EXPECT_EQ(course.last_within(-1), -1);
-    EXPECT_TRUE(std::isinf(course.at(course.error.size())));
-    EXPECT_TRUE(course.failure.empty());
+    const auto history = error_history(in_double({150, 90}), wide, enough, never);
+    EXPECT_LT(history.error.size(), wide.seen.size());
+    EXPECT_GT(history.error.back(), enough);
+    EXPECT_EQ(history.last_within(enough), static_cast<long>(history.error.size()) - 2);
+    EXPECT_EQ(history.last_within(-1), -1);
+    EXPECT_TRUE(std::isinf(history.at(history.error.size())));
+    EXPECT_TRUE(history.failure.empty());
 }
 
-TEST(ErrorCourse, SaysWhyAMethodFailed) {
-    const auto reference = reference_course(in_double({150, 90}), 20, 2, enough, never);
+TEST(ErrorHistory, SaysWhyAMethodFailed) {
+    const auto reference = reference_trajectory(in_double({150, 90}), 20, 2, enough, never);
     auto spec = in_double({150, 90});
     spec.method = "gauss4";
     spec.steps_per_sample = 1;
     spec.sample_interval = {1, 10};
     spec.chain->rate = {Quad(60), Quad(-80)};  // too fast for steps of 0.1 s
-    const auto course = error_course(spec, reference, 1e9, never);
-    EXPECT_LT(course.error.size(), 3u);
-    EXPECT_NE(course.failure.find("the stages still change"), std::string::npos) << course.failure;
+    const auto history = error_history(spec, reference, 1e9, never);
+    EXPECT_LT(history.error.size(), 3u);
+    EXPECT_NE(history.failure.find("the stages still change"), std::string::npos) << history.failure;
 }
 
-TEST(ReferenceCourse, StopsWhenAsked) {
+TEST(ReferenceTrajectory, StopsWhenAsked) {
     const std::atomic<bool> stop = true;
-    EXPECT_THROW(reference_course(in_double({90, 90}), 10, 2, enough, stop), Error);
+    EXPECT_THROW(reference_trajectory(in_double({90, 90}), 10, 2, enough, stop), Error);
 }
 
-}  // namespace reference_course_test
+}  // namespace reference_trajectory_test
 }  // namespace doppel
