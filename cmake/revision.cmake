@@ -4,7 +4,7 @@ execute_process(COMMAND git describe --always --dirty --abbrev=10 WORKING_DIRECT
 if(failed)
     set(revision unknown)
 endif()
-set(text "#include \"scene/version.hpp\"
+set(text "#include \"base/embedded.hpp\"
 namespace doppel {
 std::string_view version() { return \"${VERSION}\"; }
 std::string_view revision() { return \"${revision}\"; }

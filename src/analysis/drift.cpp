@@ -4,7 +4,6 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
-#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +56,7 @@ public:
 
     /// False where the method breaks down: a step cannot be made, or energy or rods are out of all proportion.
     bool advance(const std::atomic<bool>& stop) {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         ++sample_;
         try {
             motion_->advance(stop);
@@ -97,7 +96,7 @@ double evaluation_rate(const MotionSpec& spec, double duration_s, const std::ato
         last = motion.evaluations();
         if (samples == 0) first = last;
     }
-    return samples < 2 ? nan_value : (last - first) / motion.time(samples - 1);
+    return samples < 2 ? NAN : (last - first) / motion.time(samples - 1);
 }
 
 /// The finest setting within the cost. One that breaks down at once is too coarse.
@@ -134,8 +133,8 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 
 DriftRun drift(const DriftSpec& spec, const DriftMethod& method, const std::atomic<bool>& stop) {
     const auto setting = motion_of(spec, method, calibrated(spec, method, stop));
-    const std::vector<double> none(spec.times_s.size(), nan_value);
-    DriftRun made{.broken_at_s = nan_value, .energy_error = none, .length_error = none};
+    const std::vector<double> none(spec.times_s.size(), NAN);
+    DriftRun made{.broken_at_s = NAN, .energy_error = none, .length_error = none};
     made.setting = find_method(method.name)->adaptive
                        ? static_cast<double>(setting.tolerance)
                        : quotient(setting.sample_interval, {setting.steps_per_sample, 1})->value();
@@ -174,7 +173,7 @@ Growth growth_of(std::span<const double> times_s, std::span<const double> errors
         return slope({x.begin() + from, x.end()}, {log_errors.begin() + from, log_errors.end()});
     };
     Growth growth{.exponent = times.size() < 2 ? 0 : fitted(log_times, decades * std::log(10)),
-                  .doubling_s = nan_value,
+                  .doubling_s = NAN,
                   .broken_at_s = broken_at_s};
     using Kind = Growth::Kind;
     if (broken_at_s > 0) {

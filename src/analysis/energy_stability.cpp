@@ -1,8 +1,6 @@
-#include "analysis/energy_stability.hpp"
-
+#include "analysis/stability.hpp"
 #include "base/error.hpp"
 #include "integrate/batch.hpp"
-#include "numeric/nan.hpp"
 #include "physics/bob.hpp"
 
 #include <algorithm>
@@ -16,7 +14,7 @@ void take(double error, double& greatest) {
     if (error <= blow_up)
         greatest = std::max(error, greatest);
     else
-        greatest = nan_value;
+        greatest = NAN;
 }
 
 double energy_of(const Pendulum<double>& p, const Batch& ensemble, std::size_t trial, Model model) {
@@ -36,7 +34,7 @@ std::vector<double> side_by_side(const StabilityRun& run, std::span<const Pendul
     }
     const auto is_over = [](double error) { return std::isnan(error); };
     for (long n = 0; n < run.samples && !std::all_of(greatest.begin(), greatest.end(), is_over); ++n) {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         ensemble.advance(run.steps_per_sample);
         for (std::size_t i = 0; i < pendulums.size(); ++i)
             if (!is_over(greatest[i]))
@@ -64,7 +62,7 @@ double alone(const StabilityRun& run, const Pendulum<Quad>& release, const std::
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::method_failed) throw;
-        return nan_value;
+        return NAN;
     }
     return greatest;
 }

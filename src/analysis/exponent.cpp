@@ -1,6 +1,6 @@
 #include "analysis/exponent.hpp"
 
-#include "analysis/linear_stability.hpp"
+#include "analysis/stability.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "physics/angle_chain.hpp"
@@ -100,7 +100,7 @@ Exponent measured(const Pendulum<double>& p, const ExponentSpec& spec, const std
     const auto exponents_of_parts = [&](double seconds, long parts) {
         std::vector<double> local;
         for (long i = 0; i < parts; ++i) {
-            if (stop) throw Error(ExitCode::interrupted, "interrupted");
+            throw_if_set(stop);
             local.push_back(growth.advance(seconds) / seconds);
         }
         return local;
@@ -140,7 +140,7 @@ double largest_angle(const Pendulum<double>& p, double seconds, Eigen::Index whi
     const long parts = parts_of(seconds, NaturalUnits(p));
     double grown = 1;
     for (long i = 0; i < parts; ++i) {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         // the equations are linear in the tangent: its size is kept apart
         const double size = y.tail(2 * links).norm();
         grown *= size;

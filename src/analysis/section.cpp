@@ -86,7 +86,7 @@ std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const Sect
     Crossings motion(p, spec.tolerance);
     std::vector<SectionPoint> points;
     while (motion.time() < spec.longest_s) {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         for (const auto& point : motion.step()) {
             if (point.time_s > spec.longest_s) break;
             points.push_back(point);

@@ -95,7 +95,7 @@ std::vector<SpectrumSample> estimates(const Pendulum<double>& p, const SpectrumS
     std::vector<SpectrumSample> samples;
     for (int k = 1; k <= spec.samples; ++k) {
         for (long i = 0; i < parts; ++i) {
-            if (stop) throw Error(ExitCode::interrupted, "interrupted");
+            throw_if_set(stop);
             sum += frame.advance(interval / static_cast<double>(parts));
         }
         const double time = spec.duration_s * k / spec.samples;

@@ -3,7 +3,6 @@
 #include "analysis/difference.hpp"
 #include "base/error.hpp"
 #include "integrate/widths.hpp"
-#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +79,7 @@ void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::s
     std::vector<long> counted(twins.size());
     for (std::size_t i = 0; i < twins.size(); ++i) start.push_back(distance(i));
     for (long n = 1; n <= run.samples; ++n) {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         for (auto& batch : batches) batch.advance();
         for (std::size_t i = 0; i < twins.size(); ++i)
             if (const auto ratio = log_ratio(distance(i), start[i])) {
@@ -90,7 +89,7 @@ void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::s
     }
     for (std::size_t i = 0; i < twins.size(); ++i) {
         const double mean = sum[i] / static_cast<double>(counted[i]);
-        averages[i] = std::isfinite(mean) ? mean : nan_value;
+        averages[i] = std::isfinite(mean) ? mean : NAN;
     }
 }
 

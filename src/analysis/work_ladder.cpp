@@ -5,16 +5,16 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
-#include "numeric/nan.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
 namespace doppel {
 namespace {
 
-constexpr Rung no_rung{nan_value, nan_value, nan_value, nan_value, nan_value, nan_value, nan_value};
+constexpr Rung no_rung{NAN, NAN, NAN, NAN, NAN, NAN, NAN};
 
 struct Setting {
     double value;  // step, s, or tolerance
@@ -123,8 +123,8 @@ void find_worst_errors(const WorkProblem& problem, MotionSpec spec, Rung& rung, 
         length = std::max(length, seen.length_error);
         if (!std::isfinite(seen.energy_change)) energy = length = std::numeric_limits<double>::infinity();
     }
-    if (!std::isfinite(energy)) energy = length = nan_value;
-    rung.energy_error = problem.conserves_energy ? energy : nan_value;
+    if (!std::isfinite(energy)) energy = length = NAN;
+    rung.energy_error = problem.conserves_energy ? energy : NAN;
     rung.length_error = length;
 }
 
@@ -159,7 +159,7 @@ Rung motion_rung(const WorkProblem& problem, const ReferenceSolution& solution, 
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::method_failed) throw;
         take_effort();
-        rung.error = nan_value;
+        rung.error = NAN;
     }
     return rung;
 }
@@ -177,7 +177,7 @@ Rung external_rung(const WorkProblem& problem, const ReferenceSolution& solution
         Observation seen;
         for (std::size_t i = 0; i < chain.links(); ++i) seen.bobs.push_back({.theta = run->state()[i]});
         rung.error = problem.error(seen, solution.reference);
-        if (!std::isfinite(rung.error)) rung.error = nan_value;
+        if (!std::isfinite(rung.error)) rung.error = NAN;
         if (!spec.timed) return rung;
         const long runs = runs_for(first_s);
         const double all = cpu_of([&] {
@@ -207,7 +207,7 @@ ReferenceSolution reference_solution(const WorkProblem& problem, const std::atom
     // quad at its tolerance comes to some 1e-30 of the sensitivity; that of a mechanism is not known
     constexpr double allowed = 1e-26, allowed_blindly = 1e-15;
     const auto spec = problem.motion_in(problem.plain ? Model::angles : Model::mechanism);
-    if (!problem.plain) return {reference_end(spec, spec.sample_interval, allowed_blindly, stop), nan_value};
+    if (!problem.plain) return {reference_end(spec, spec.sample_interval, allowed_blindly, stop), NAN};
     const double sensitivity = angle_sensitivity(spec.chain->cast<double>(), problem.duration(), stop);
     return {reference_end(spec, spec.sample_interval, allowed * std::max(sensitivity, 1.0), stop), sensitivity};
 }
@@ -219,7 +219,7 @@ bool Solver::adaptive() const {
 std::vector<Rung> run_ladder(const WorkProblem& problem, const ReferenceSolution& solution, const Solver& solver,
                              const LadderSpec& spec, const std::atomic<bool>& stop) {
     const auto rung_at = [&](const Setting& setting) {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         return solver.external ? external_rung(problem, solution, *solver.external, setting, spec)
                                : motion_rung(problem, solution, solver, setting, spec, stop);
     };

@@ -1,6 +1,4 @@
-#include "analysis/work_results.hpp"
-
-#include "numeric/nan.hpp"
+#include "analysis/work_ladder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -116,7 +114,7 @@ std::pair<double, double> time_spread(const std::vector<Ladder>& all) {
     std::vector<double> spreads;
     for (const auto& ladder : all)
         for (const std::size_t i : useful_rungs(ladder, Cost::time, {0, 1})) spreads.push_back(ladder.spread[i]);
-    if (spreads.empty()) return {nan_value, nan_value};
+    if (spreads.empty()) return {NAN, NAN};
     std::sort(spreads.begin(), spreads.end());
     return {spreads[spreads.size() / 2], spreads.back()};
 }

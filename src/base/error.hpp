@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -38,6 +39,14 @@ Error method_failed(fmt::format_string<Args...> format, Args&&... args) {
 template <class... Args>
 Error io_failed(fmt::format_string<Args...> format, Args&&... args) {
     return {ExitCode::io_failed, fmt::format(format, std::forward<Args>(args)...)};
+}
+
+/// Asked to stop before the end (exit 130).
+inline Error interrupted() {
+    return {ExitCode::interrupted, "interrupted"};
+}
+inline void throw_if_set(const std::atomic<bool>& stop) {
+    if (stop) throw interrupted();
 }
 
 }  // namespace doppel

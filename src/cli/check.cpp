@@ -1,6 +1,5 @@
 #include "base/clock.hpp"
 #include "base/machine.hpp"
-#include "base/time_limit.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"

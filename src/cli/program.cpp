@@ -1,9 +1,9 @@
 #include "cli/program.hpp"
 
+#include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/terminal.hpp"
-#include "scene/version.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>

@@ -2,7 +2,6 @@
 
 #include "base/clock.hpp"
 #include "base/threads.hpp"
-#include "base/time_limit.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -78,7 +77,7 @@ void Computation::find_groups() {
 
 bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
     try {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         {
             const std::lock_guard hold(mutex_);
             if (start_s_ == 0) start_s_ = flushed_s_ = now();

@@ -1,6 +1,5 @@
 #include "figure/kinds.hpp"
 #include "integrate/methods.hpp"
-#include "numeric/nan.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -105,7 +104,7 @@ public:
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        double least_in_double = nan_value, least_in_quad = nan_value;
+        double least_in_double = NAN, least_in_quad = NAN;
         for (const auto& [begin, ladder] : ladders_) {
             const bool in_double = ladder.precision == Precision::in_double;
             auto& least = in_double ? least_in_double : least_in_quad;
@@ -130,7 +129,7 @@ private:
     /// The caption.
     std::string words(std::span<const TrialNumbers> numbers) const {
         std::string slopes;
-        double least_double = nan_value, least_quad = nan_value;
+        double least_double = NAN, least_quad = NAN;
         for (const auto& finding : findings(numbers)) {
             const double value = std::get<double>(finding.value);
             if (finding.key == "least_distance_in_double") least_double = value;
@@ -203,7 +202,7 @@ private:
         try {
             for (long n = 0; n <= scene.samples; ++n) most = std::fmax(most, run.next(stop).distance);
         } catch (const BreakDown&) {
-            return numbers_of(RungRow{nan_value, nan_value, 0});
+            return numbers_of(RungRow{NAN, NAN, 0});
         }
         const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
         return numbers_of(RungRow{2 * pair_.duration_s.value() / steps, most, steps});

@@ -1,6 +1,5 @@
 #include "analysis/difference.hpp"
 #include "figure/kinds.hpp"
-#include "numeric/nan.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -161,7 +160,7 @@ private:
         for (long n = 0; n <= samples_; ++n) {
             const double distance = run.next(stop).distance;
             if (n == 0) start = distance;
-            values.push_back(quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(nan_value));
+            values.push_back(quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(NAN));
         }
         return values;
     }

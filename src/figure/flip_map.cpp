@@ -1,8 +1,8 @@
-#include "analysis/share_at_least.hpp"
 #include "figure/kinds.hpp"
 #include "integrate/flips.hpp"
-#include "numeric/nan.hpp"
 #include "scene/captions.hpp"
+
+#include <boost/math/distributions/binomial.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,12 @@
 
 namespace doppel {
 namespace {
+
+/// The share that at least so many of all have, with 95 % confidence, where `hits` of `trials` drawn by lot do
+/// (Clopper & Pearson 1934).
+double share_at_least(int hits, int trials) {
+    return trials == 0 ? 0 : boost::math::binomial_distribution<>::find_lower_bound_on_p(trials, hits, 0.05);
+}
 
 /// A release drawn at random: the time to its flip in the map, and by the reference, s; infinite for none.
 struct CheckRow {
@@ -73,7 +79,7 @@ public:
         for (int r = 0; r < rows_; ++r)
             for (int c = 0; c < columns_; ++c) {
                 const double time = at(numbers, r, c);
-                add_row(table, angle_deg(c, columns_), angle_deg(r, rows_), std::isfinite(time) ? time : nan_value);
+                add_row(table, angle_deg(c, columns_), angle_deg(r, rows_), std::isfinite(time) ? time : NAN);
             }
     }
 
@@ -95,7 +101,7 @@ public:
         for (int r = 0; r < rows_; ++r)
             for (int c = 0; c < columns_; ++c) {
                 const double time = at(numbers, r, c);
-                map.values.push_back(static_cast<float>(std::isfinite(time) ? time : nan_value));
+                map.values.push_back(static_cast<float>(std::isfinite(time) ? time : NAN));
             }
         plot.map = std::move(map);
         plot.curves.push_back(forbidden_outline());
@@ -176,7 +182,7 @@ private:
         for (auto left = checks_of(trial); left > 0;) {
             const auto p = released(drawn(), drawn());
             if (flip_is_forbidden(p)) continue;
-            if (stop) throw Error(ExitCode::interrupted, "interrupted");
+            throw_if_set(stop);
             const std::array releases{Release{p.angle[0], p.angle[1]}};
             std::array<double, 1> time;
             first_flips(pendulum_, releases, spec_, time, stop);

@@ -1,9 +1,9 @@
 #include "figure/part_file.hpp"
 
+#include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "output/written.hpp"
 #include "scene/manifest_json.hpp"
-#include "scene/version.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -258,7 +258,7 @@ KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, con
     KnownTrials all(wanted.trials);
     std::vector<fs::path> parts;  // by their numbers; empty where not seen yet
     for (const auto& path : files) {
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         auto part = read_part_file(path);
         const auto& header = part.header;
         check_header(path, header, wanted);

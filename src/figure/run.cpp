@@ -3,7 +3,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine.hpp"
-#include "base/parallel_for.hpp"
+#include "base/threads.hpp"
 #include "integrate/widths.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
@@ -129,9 +129,7 @@ public:
     }
 
 private:
-    void check_stop() const {
-        if (stop_) throw Error(ExitCode::interrupted, "interrupted");
-    }
+    void check_stop() const { throw_if_set(stop_); }
     Renderer& renderer_for(Size size) {
         if (!renderer_ || size_ != size) renderer_.emplace(size, DisplayList{}, options_.gl, stop_);
         size_ = size;

@@ -1,7 +1,7 @@
 #include "analysis/section.hpp"
 
 #include "figure/kinds.hpp"
-#include "image/theme.hpp"
+#include "image/color.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,6 @@
-#include "analysis/energy_stability.hpp"
-#include "analysis/linear_stability.hpp"
+#include "analysis/stability.hpp"
+
 #include "figure/kinds.hpp"
-#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -81,7 +80,7 @@ public:
             const auto& method = method_of(trial);
             const double pace = pace_of(trial);
             for (int row = 0; row < rows_.count; ++row)
-                add_row(table, method.name, method.adaptive ? nan_value : pace, method.adaptive ? pace : nan_value,
+                add_row(table, method.name, method.adaptive ? NAN : pace, method.adaptive ? pace : NAN,
                         rows_.middle(row), numbers[trial][static_cast<std::size_t>(row)]);
         }
     }
@@ -115,7 +114,7 @@ public:
         std::vector<Finding> all;
         for (std::size_t m = 0; m < methods_.size(); ++m) {
             const auto& method = *methods_[m];
-            double blown = 0, least = nan_value;
+            double blown = 0, least = NAN;
             for (std::size_t trial = m * columns_; trial < (m + 1) * columns_; ++trial) {
                 for (const double error : numbers[trial]) blown += std::isnan(error);
                 if (std::isnan(numbers[trial].front())) least = std::fmin(least, pace_of(trial));
@@ -257,7 +256,7 @@ private:
     /// The step at which linear theory has a row blow up, s; NaN where there is none.
     double limit_at(std::string_view method, std::size_t row) const {
         const auto modes = small_oscillations(releases_[row].cast<double>());
-        return step_limit(method, modes, duration_.value(), blow_up).value_or(nan_value);
+        return step_limit(method, modes, duration_.value(), blow_up).value_or(NAN);
     }
 
     /// A rule where it is the same for all rows, else a curve.

@@ -2,7 +2,6 @@
 #include "analysis/exponent.hpp"
 #include "analysis/twins.hpp"
 #include "figure/kinds.hpp"
-#include "numeric/nan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -136,7 +135,7 @@ public:
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        double least = nan_value, most = nan_value, regular = 0;
+        double least = NAN, most = NAN, regular = 0;
         for (const auto& trial : numbers) {
             const auto row = row_of_trial(trial);
             least = std::fmin(least, row.average);
@@ -153,7 +152,7 @@ public:
 
 private:
     SweepRow row_of_trial(const TrialNumbers& numbers) const {
-        return exponent_ ? row_of<SweepRow>(numbers) : SweepRow{numbers[0], nan_value, nan_value};
+        return exponent_ ? row_of<SweepRow>(numbers) : SweepRow{numbers[0], NAN, NAN};
     }
 
     /// Finds the number of trials.
@@ -237,7 +236,7 @@ private:
                     ++counted;
                 }
         } catch (const BreakDown&) {
-            return nan_value;
+            return NAN;
         }
         return sum / static_cast<double>(counted);
     }
@@ -252,7 +251,7 @@ private:
             if (row.exponent == 0 || row.uncertainty != 0) continue;
             equilibria += fmt::format(" At {:g}{}, an unstable equilibrium, it is {:.2f} 1/s.", exponents.x[i],
                                       parameter_->is_ratio ? "" : "°", row.exponent);
-            exponents.y[i] = nan_value;
+            exponents.y[i] = NAN;
         }
         return fmt::format(
             "{} of {} releases are regular: their exponent cannot be told from 0. Its band is one standard "

@@ -1,7 +1,6 @@
 #include "figure/work_precision.hpp"
 
 #include "integrate/methods.hpp"
-#include "numeric/nan.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>

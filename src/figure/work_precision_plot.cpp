@@ -1,5 +1,4 @@
 #include "figure/work_precision.hpp"
-#include "numeric/nan.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -61,7 +60,7 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
         const auto& rung = ladder.rungs[i];
         const double spread = std::min(ladder.spread[i], 0.9);
         if (spread < shows) continue;
-        add_point(curve, nan_value, nan_value);
+        add_point(curve, NAN, NAN);
         add_point(curve, rung.cpu_s * (1 - spread), rung.error);
         add_point(curve, rung.cpu_s * (1 + spread), rung.error);
     }

@@ -1,8 +1,8 @@
 #include "film/composer.hpp"
 
+#include "base/embedded.hpp"
 #include "render/font.hpp"
 #include "scene/captions.hpp"
-#include "scene/version.hpp"
 
 #include <fmt/format.h>
 

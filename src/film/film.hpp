@@ -3,14 +3,21 @@
 #include "film/composer.hpp"
 #include "film/manifest.hpp"
 #include "film/run.hpp"
+#include "integrate/motion_batch.hpp"
 #include "output/sink.hpp"
 #include "output/transaction.hpp"
 #include "output/video.hpp"
+#include "output/workers.hpp"
 #include "render/renderer.hpp"
+#include "scene/scene.hpp"
 
 #include <atomic>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -78,5 +85,33 @@ std::optional<long> poster_sample(const Scene& scene);
 
 /// How the video file of a scene is written.
 VideoOptions video_options(const Scene& scene);
+
+/// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of snapshots ahead.
+class Simulation {
+public:
+    /// Snapshots 0 … last − 1. The members of an ensemble are stepped where `with_members`. Throws Error (exit 4) where
+    /// there is no thread to be had.
+    Simulation(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
+    ~Simulation() { ahead_.close(); }
+    Simulation(const Simulation&) = delete;
+    Simulation& operator=(const Simulation&) = delete;
+
+    /// The next snapshot; rethrows what stopped the simulation.
+    Snapshot next();
+
+    /// CPU time of the thread, s, and what the sides have cost; complete once the last snapshot was taken.
+    double cpu_s() const { return cpu_s_; }
+    std::pair<Effort, Effort> efforts();
+
+private:
+    void work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
+
+    Queue<Snapshot> ahead_;
+    std::exception_ptr fault_;
+    std::atomic<double> cpu_s_ = 0;
+    std::mutex mutex_;
+    std::pair<Effort, Effort> efforts_;
+    std::jthread thread_;  // last: it uses all the rest
+};
 
 }  // namespace doppel

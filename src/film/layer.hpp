@@ -1,12 +1,17 @@
 #pragma once
 
 #include "film/layout.hpp"
-#include "film/simulation.hpp"
 
 #include <memory>
 #include <optional>
 
 namespace doppel {
+
+/// The state at one sample: the pair, and the bobs of an ensemble's members.
+struct Snapshot {
+    PairState pair;
+    std::vector<Bobs<double>> members;
+};
 
 /// What the layers of a film's picture draw: the scene, where everything goes, and what came of the pair so far.
 struct FilmState {

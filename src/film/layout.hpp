@@ -1,6 +1,6 @@
 #pragma once
 
-#include "image/theme.hpp"
+#include "image/color.hpp"
 #include "plot/axis.hpp"
 #include "render/display_list.hpp"
 #include "scene/scene.hpp"

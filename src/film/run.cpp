@@ -5,7 +5,6 @@
 #include "base/error.hpp"
 #include "film/film.hpp"
 #include "film/manifest.hpp"
-#include "film/simulation.hpp"
 #include "output/csv.hpp"
 #include "output/transaction.hpp"
 #include "scene/scene.hpp"
@@ -135,7 +134,7 @@ std::string failed_name(const std::string& name, const std::string& ending) {
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
     const auto advice = step_that_holds(scene, fault, stop);
-    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    throw_if_set(stop);
     record.failure = fmt::format("{}; {}", fault.what(), advice);
     record.last_sample = fault.sample - 1;
     const auto csv = failed_name(name, ".csv"), manifest = failed_name(name, ".json");
@@ -202,7 +201,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             keep_failed(scene, fault, record, parts, stop);
         }
         const auto& state = snapshot.pair;
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         check_distance(scene, state);
         if (sample == 0) start_distance = state.distance;
         watch(record.a, state.a, state.energy_error_a);
@@ -228,7 +227,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         // a failed run's files from before are no news beside a whole one
         for (const char* ending : {".csv", ".json"}) parts.remove(failed_name(scene.preset.name, ending));
         write_manifest(parts, scene.preset.name + ".json", scene, record);
-        if (stop) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop);
         return parts.publish();
     };
     auto files = parts.keeping_finished(finish);

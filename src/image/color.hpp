@@ -48,4 +48,84 @@ std::optional<Color> parse_color(std::string_view text);
 /// only grows, so that it holds in grey and for the colour-blind. NaN: the lower end.
 Color map_color(double share);
 
+/// The colours of a picture. The hues of the two sides, orange and blue, stay apart for the colour-blind (after Okabe &
+/// Ito 2008).
+struct Theme {
+    std::string_view name;
+    Color background, panel;     // behind everything; behind the pendulums
+    Color text, quiet_text;      // what is read first; what is read when wanted
+    Color grid, frame, cursor;   // lines of a chart: decades and seconds, its border, now
+    Color rod, bob, pivot;       // what all pendulums share
+    std::array<Color, 2> sides;  // a, b
+    Color trace;                 // what belongs to both
+    Color good, bad, open;       // verdicts
+    Color none;                  // where a map has no value
+    float glow;                  // how far the light of trails reaches, px of a 1920×1080 picture; 0 = none
+    std::array<Color, 8>
+        palette;  // of curves, the sides' hues first; apart for the colour-blind, 3:1 on the background
+};
+
+inline constexpr std::array<Theme, 3> themes{{
+    {.name = "dark",
+     .background = rgb(0x0b0e13),
+     .panel = rgb(0x11151d),
+     .text = rgb(0xf1f4f8),
+     .quiet_text = rgb(0x98a2b3),
+     .grid = rgb(0x222936),
+     .frame = rgb(0x2f3846),
+     .cursor = rgb(0x8b95a5),
+     .rod = rgb(0xc9d1dc),
+     .bob = rgb(0xeef1f6),
+     .pivot = rgb(0x6f7a8a),
+     .sides = {rgb(0xffa640), rgb(0x4fb0ff)},
+     .trace = rgb(0xb9f0c0),
+     .good = rgb(0x5fd38a),
+     .bad = rgb(0xff7b6b),
+     .open = rgb(0xe8c34a),
+     .none = rgb(0x3a3f49),
+     .glow = 12,
+     .palette = {rgb(0xffa640), rgb(0x4fb0ff), rgb(0x69f2d8), rgb(0xe882a8), rgb(0x6f6bea), rgb(0xf4f062),
+                 rgb(0x8f9030), rgb(0xa85a92)}},
+    {.name = "light",
+     .background = rgb(0xffffff),
+     .panel = rgb(0xf4f6f9),
+     .text = rgb(0x10151d),
+     .quiet_text = rgb(0x586273),
+     .grid = rgb(0xe2e6ec),
+     .frame = rgb(0xc3cad4),
+     .cursor = rgb(0x8791a1),
+     .rod = rgb(0x4a5464),
+     .bob = rgb(0x27303d),
+     .pivot = rgb(0x9aa4b3),
+     .sides = {rgb(0xb85200), rgb(0x0068b8)},
+     .trace = rgb(0x1b7a3d),
+     .good = rgb(0x14743a),
+     .bad = rgb(0xb3261e),
+     .open = rgb(0x8a6100),
+     .none = rgb(0xdde1e7),
+     .glow = 0,
+     .palette = {rgb(0xb85200), rgb(0x0068b8), rgb(0x2e9398), rgb(0x8e3f7e), rgb(0x1c5406), rgb(0x7f7ff5),
+                 rgb(0x560a14), rgb(0x1a2458)}},
+    {.name = "high-contrast",
+     .background = rgb(0x000000),
+     .panel = rgb(0x000000),
+     .text = rgb(0xffffff),
+     .quiet_text = rgb(0xdcdcdc),
+     .grid = rgb(0x5a5a5a),
+     .frame = rgb(0xa0a0a0),
+     .cursor = rgb(0xffffff),
+     .rod = rgb(0xffffff),
+     .bob = rgb(0xffffff),
+     .pivot = rgb(0xb4b4b4),
+     .sides = {rgb(0xffd000), rgb(0x3fc8ff)},
+     .trace = rgb(0x7dff9a),
+     .good = rgb(0x7dff9a),
+     .bad = rgb(0xff8a8a),
+     .open = rgb(0xffd000),
+     .none = rgb(0x5a5a5a),
+     .glow = 0,
+     .palette = {rgb(0xffd000), rgb(0x3fc8ff), rgb(0xeb1350), rgb(0x9df791), rgb(0x3f6fec), rgb(0xebf4db),
+                 rgb(0xc965a5), rgb(0xe06b14)}},
+}};
+
 }  // namespace doppel

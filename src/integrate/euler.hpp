@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/euler_carried_rods.hpp"
+#include "integrate/incremental_euler_rods.hpp"
 #include "integrate/runge_kutta.hpp"
 
 #include <type_traits>
@@ -12,7 +12,7 @@ struct Euler {
     static constexpr Method method{"euler", "explicit Euler", 1, false, "explicit"};
     static constexpr Tableau<1> table{.a = {}, .b = {{{1, 1}}}};
     template <System Model>
-    using Stepper = std::conditional_t<has_carried_euler<Model>, CarriedEuler<Model>, RungeKutta<Model, table>>;
+    using Stepper = std::conditional_t<has_incremental_euler<Model>, IncrementalEuler<Model>, RungeKutta<Model, table>>;
 };
 
 /// Euler's method with the new velocities (symplectic Euler), at fixed step, for any system whose state is (q, v):

@@ -149,7 +149,7 @@ void first_flips(const Pendulum<double>& pendulum, std::span<const Release> rele
         case FlipOutcome::found:
             return;
         case FlipOutcome::stopped:
-            throw Error(ExitCode::interrupted, "interrupted");
+            throw interrupted();
         case FlipOutcome::broken:
             throw method_failed("flips: no step of 1e-9 s meets tolerance = {:.3g}; the motion has broken down",
                                 spec.tolerance);

@@ -59,9 +59,7 @@ public:
     }
 
     void advance(const std::atomic<bool>& stop) override {
-        const auto check = [&] {
-            if (stop) throw Error(ExitCode::interrupted, "interrupted");
-        };
+        const auto check = [&] { throw_if_set(stop); };
         if (adaptive_) {
             for (long i = 0; i < portions_; ++i) {
                 check();

@@ -1,7 +1,7 @@
 #include "integrate/motion_batch.hpp"
 
 #include "base/error.hpp"
-#include "base/parallel_for.hpp"
+#include "base/threads.hpp"
 #include "integrate/batch.hpp"
 #include "integrate/turns.hpp"
 
@@ -28,7 +28,7 @@ public:
 
     void advance(const std::atomic<bool>& stop) {
         for (long left = spec_.steps_per_sample, steps; left > 0; left -= steps) {
-            if (stop) throw Error(ExitCode::interrupted, "interrupted");
+            throw_if_set(stop);
             steps = std::min(left, portion_);
             for (const auto& turns : turns_) steps = std::min(steps, steps_within(turns.longest_interval(), step_));
             batch_.advance(steps);

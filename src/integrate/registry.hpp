@@ -78,7 +78,7 @@ consteval bool gains_by_inlining() {
     constexpr int size = Model::State::RowsAtCompileTime;
     constexpr bool has_few_stages =
         std::is_same_v<Which, SemiImplicitEuler> || std::is_same_v<Which, Midpoint> || std::is_same_v<Which, Rk4>;
-    if (std::is_same_v<Which, Euler>) return has_carried_euler<Model>;
+    if (std::is_same_v<Which, Euler>) return has_incremental_euler<Model>;
     return has_few_stages && Hamiltonian<Model> && std::is_same_v<typename Model::Scalar, double> &&
            size != Eigen::Dynamic;
 }

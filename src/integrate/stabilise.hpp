@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "physics/constrained.hpp"
+#include "physics/constraint.hpp"
 
 #include <limits>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "physics/constrained.hpp"
+#include "physics/constraint.hpp"
 
 #include <concepts>
 #include <memory>

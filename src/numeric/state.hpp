@@ -11,7 +11,7 @@ using State = Eigen::Matrix<Scalar, N, 1>;
 
 /// N · factor, where N may be Eigen::Dynamic.
 template <int factor, int N>
-inline constexpr int times = N == Eigen::Dynamic ? Eigen::Dynamic : factor * N;
+inline constexpr int times = N == Eigen::Dynamic ? Eigen::Dynamic : factor* N;
 
 /// Sine and cosine of the same angle.
 template <class Scalar>

@@ -145,7 +145,7 @@ void Encoder::send_frame(std::int64_t time, std::int64_t duration) {
 /// Muxes what the encoder has ready.
 void Encoder::write_packets() {
     for (;;) {
-        if (stop_) throw Error(ExitCode::interrupted, "interrupted");
+        throw_if_set(stop_);
         const int result = avcodec_receive_packet(codec_.get(), packet_.get());
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "cannot be encoded");

@@ -134,7 +134,7 @@ constexpr std::size_t header_bytes = 8 + 25;
 /// `bytes` are the picture's in the format pixels_of().
 void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
                    const std::string& text_chunks, const std::atomic<bool>& stop) {
-    if (stop) throw Error(ExitCode::interrupted, "interrupted");
+    throw_if_set(stop);
     OutputFile output(place);
     struct Target {
         OutputFile& output;

@@ -1,6 +1,5 @@
-#include "plot/fit.hpp"
-
 #include "base/error.hpp"
+#include "plot/chart_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

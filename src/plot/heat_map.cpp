@@ -1,7 +1,6 @@
-#include "plot/heat_map.hpp"
-
 #include "image/color.hpp"
 #include "plot/axis.hpp"
+#include "plot/chart_parts.hpp"
 #include "plot/text.hpp"
 #include "render/font.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "plot/chart_parts.hpp"
 #include "plot/curves.hpp"
-#include "plot/style.hpp"
 
 #include <cstdint>
 #include <optional>

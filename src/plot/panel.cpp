@@ -1,7 +1,4 @@
-#include "plot/panel.hpp"
-
-#include "plot/axes.hpp"
-#include "plot/heat_map.hpp"
+#include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
 #include "plot/text.hpp"
 #include "render/font.hpp"

@@ -1,8 +1,7 @@
 #include "plot/plot.hpp"
 
 #include "base/error.hpp"
-#include "plot/heat_map.hpp"
-#include "plot/panel.hpp"
+#include "plot/chart_parts.hpp"
 #include "plot/text.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "image/color.hpp"
 #include "image/picture.hpp"
-#include "image/theme.hpp"
 #include "render/display_list.hpp"
 
 #include <optional>

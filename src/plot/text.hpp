@@ -1,8 +1,8 @@
 #pragma once
 
 #include "plot/axis.hpp"
+#include "plot/chart_parts.hpp"
 #include "plot/plot.hpp"
-#include "plot/style.hpp"
 
 #include <string_view>
 

@@ -21,7 +21,7 @@ public:
         canvas_.emplace(size);
         painter_.emplace(size);
         picture_ = Picture(size);
-        if (stop) throw interrupted();
+        throw_if_set(stop);
         backdrop_ = Picture(size);
         gl::PixelStorei(GL_PACK_ROW_LENGTH, size.width);
 
@@ -29,7 +29,7 @@ public:
         gl::Clear(GL_COLOR_BUFFER_BIT);
         make_render_list(backdrop, size, *atlas_, now_);
         for (const auto& regions : bands({all_of(size)})) {
-            if (stop) throw interrupted();
+            throw_if_set(stop);
             paint(regions, backdrop_);
         }
     }
@@ -47,7 +47,7 @@ public:
         // each switch between upload, drawing and reading makes OpenGL finish: one of each a band. Restoring the
         // backdrop from memory is a copy; a blit would draw, and finish, for every rectangle.
         for (const auto& regions : bands(changed_)) {
-            if (stop) throw interrupted();
+            throw_if_set(stop);
             gl::PixelStorei(GL_UNPACK_ROW_LENGTH, size_.width);
             for (const Rect& r : regions) canvas_->put(backdrop_, r);
             paint(regions, picture_);
@@ -66,8 +66,6 @@ public:
     }
 
 private:
-    static Error interrupted() { return {ExitCode::interrupted, "interrupted"}; }
-
     /// What to draw at once: all, or a large picture band by band, so that a stop takes effect soon.
     static std::vector<std::vector<Rect>> bands(const std::vector<Rect>& regions) {
         constexpr long most = 16'000'000;  // px

@@ -1,7 +1,7 @@
 #include "scene/forecast.hpp"
 
-#include "analysis/linear_stability.hpp"
-#include "analysis/reference_trajectory.hpp"
+#include "analysis/reference.hpp"
+#include "analysis/stability.hpp"
 
 #include <algorithm>
 #include <cmath>

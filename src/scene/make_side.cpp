@@ -1,3 +1,5 @@
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "physics/mechanism.hpp"
 #include "scene/scene.hpp"
 
@@ -5,6 +7,7 @@
 #include <cmath>
 
 namespace doppel {
+
 namespace {
 
 /// The smallest model that serves, and why.
@@ -119,6 +122,150 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
     if (motion.model == Model::mechanism) motion.parts = assembly_of(spec);
     measure(side);
     return side;
+}
+
+namespace {
+
+Place<Quad> place(const QuadPair& xy) {
+    return {xy[0], xy[1]};
+}
+
+/// What parts call the particles, and where those are at the start.
+class ParticleNames {
+public:
+    ParticleNames(std::vector<std::string> names, const Assembly<Quad>& assembly)
+        : names_(std::move(names)), assembly_(assembly) {}
+
+    /// Of the particle that an entry, `what`, names.
+    std::size_t index(const std::string& what, const std::string& name) const {
+        const auto found = std::find(names_.begin(), names_.end(), name);
+        if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
+        const auto meant = nearest(name, std::vector<std::string_view>(names_.begin(), names_.end()));
+        throw bad_input("{} names the particle \"{}\", which is not there{}", what, name,
+                        meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
+    }
+    End<Quad> end(const std::string& what, const EndSpec& spec) const {
+        if (const auto* name = std::get_if<std::string>(&spec)) return index(what, *name);
+        return place(std::get<QuadPair>(spec));
+    }
+    Place<Quad> start(const End<Quad>& end) const {
+        const auto* particle = std::get_if<std::size_t>(&end);
+        return particle ? assembly_.particles[*particle].place : std::get<Place<Quad>>(end);
+    }
+    Quad apart(const End<Quad>& one, const End<Quad>& other) const {
+        using std::sqrt;
+        const Place<Quad> r = start(one) - start(other);
+        return sqrt(Quad(r[0] * r[0] + r[1] * r[1]));
+    }
+
+private:
+    std::vector<std::string> names_;
+    const Assembly<Quad>& assembly_;
+};
+
+/// Makes one constraint or force of what a preset says of it.
+struct PartBuilder {
+    const ParticleNames& by_name;
+    std::string_view kind;
+    std::string what;  // kind and name, for errors
+
+    /// From a particle to whatever is at the other end; a fixed end goes second.
+    std::pair<std::size_t, End<Quad>> ends(const auto& part) const {
+        auto from = by_name.end(what, *part.from), to = by_name.end(what, *part.to);
+        if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
+        if (!std::holds_alternative<std::size_t>(from))
+            throw bad_input("a {} joins two fixed places; at least one end must be a particle", kind);
+        return {std::get<std::size_t>(from), to};
+    }
+    /// The particle, and where it is held.
+    std::pair<std::size_t, Place<Quad>> held(const auto& part) const {
+        const auto particle = by_name.index(what, part.particle);
+        return {particle, part.position_m ? place(*part.position_m) : by_name.start(particle)};
+    }
+
+    Constraint<Quad> operator()(const AnchorSpec& part) const {
+        const auto [particle, at] = held(part);
+        return Anchor<Quad>{particle, at};
+    }
+    Constraint<Quad> operator()(const RodSpec& part) const {
+        const auto [a, b] = ends(part);
+        return Rod<Quad>{a, b, part.length_m ? *part.length_m : by_name.apart(a, b)};
+    }
+    Constraint<Quad> operator()(const SlotLineSpec& part) const {
+        const auto [particle, at] = held(part);
+        return SlotLine<Quad>{particle, at, place(part.direction)};
+    }
+    Constraint<Quad> operator()(const SlotCircleSpec& part) const {
+        const auto [particle, at] = held(part);
+        return SlotCircle<Quad>{particle, at, part.radius_m ? *part.radius_m : by_name.apart(particle, at)};
+    }
+    Force<Quad> operator()(const SpringSpec& part) const {
+        const auto [a, b] = ends(part);
+        return Spring<Quad>{a, b, part.stiffness_N_per_m, part.length_m ? *part.length_m : by_name.apart(a, b),
+                            part.damping_N_s_per_m};
+    }
+    Force<Quad> operator()(const AttractionSpec& part) const {
+        const auto [a, b] = ends(part);
+        const auto* other = std::get_if<std::size_t>(&b);
+        if (!other)
+            throw bad_input("an attraction is between two particles; a body that stays in place is a \"droplet\"");
+        return Attraction<Quad>{a, *other, part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>())};
+    }
+    Force<Quad> operator()(const DropletSpec& part) const {
+        return Droplet<Quad>{place(*part.position_m), part.mass_kg,
+                             part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>())};
+    }
+};
+
+auto made(const ParticleNames& by_name, const auto& spec) {
+    const auto kind = kind_name(spec);
+    return std::visit(
+        PartBuilder{by_name, kind,
+                    fmt::format("{}{}", kind, spec.name.empty() ? "" : fmt::format(" \"{}\"", spec.name))},
+        spec.part);
+}
+
+/// Bobs and rods of the chain.
+Assembly<Quad> parts_of(const Pendulum<Quad>& chain) {
+    const auto start = released_as_particles<Quad, Eigen::Dynamic>(chain);
+    const auto n = static_cast<Eigen::Index>(chain.links());
+    Assembly<Quad> assembly;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        assembly.particles.push_back({chain.mass[k], Place<Quad>(start[2 * i], start[2 * i + 1]),
+                                      Place<Quad>(start[2 * n + 2 * i], start[2 * n + 2 * i + 1])});
+        const End<Quad> above = i == 0 ? End<Quad>(Place<Quad>(Quad(0), Quad(0))) : End<Quad>(k - 1);
+        assembly.constraints.push_back(Rod<Quad>{k, above, chain.length[k]});
+    }
+    return assembly;
+}
+
+}  // namespace
+
+Pendulum<Quad> chain_of(const SideSpec& spec) {
+    Pendulum<Quad> chain{spec.mass_kg, spec.length_m, {}, {}, spec.gravity_m_per_s2};
+    const Quad degree = pi_of<Quad>() / 180;
+    for (const auto& angle : spec.angle_deg) chain.angle.push_back(angle * degree);
+    for (const auto& rate : spec.omega_deg_per_s) chain.rate.push_back(rate * degree);
+    return chain;
+}
+
+Assembly<Quad> assembly_of(const SideSpec& spec) {
+    Assembly<Quad> assembly;
+    std::vector<std::string> names;
+    if (spec.particles.empty()) {
+        assembly = parts_of(chain_of(spec));
+        for (std::size_t i = 1; i <= spec.links(); ++i) names.push_back(fmt::format("bob{}", i));
+    }
+    for (const auto& particle : spec.particles) {
+        assembly.particles.push_back({particle.mass_kg, place(particle.position_m), place(particle.velocity_m_per_s)});
+        names.push_back(particle.name);
+    }
+    const ParticleNames by_name(names, assembly);
+    for (const auto& part : spec.constraints) assembly.constraints.push_back(made(by_name, part));
+    if (spec.gravity_m_per_s2 != 0) assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
+    for (const auto& part : spec.forces) assembly.forces.push_back(made(by_name, part));
+    return assembly;
 }
 
 }  // namespace doppel

@@ -1,8 +1,8 @@
 #include "scene/manifest_json.hpp"
 
+#include "base/embedded.hpp"
 #include "output/folder.hpp"
 #include "output/written.hpp"
-#include "scene/version.hpp"
 
 #include <toml++/toml.h>
 

@@ -1,6 +1,6 @@
 #include "scene/method_choice.hpp"
 
-#include "analysis/reference_trajectory.hpp"
+#include "analysis/reference.hpp"
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
 

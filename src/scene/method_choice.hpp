@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/reference_trajectory.hpp"
+#include "analysis/reference.hpp"
 #include "scene/scene.hpp"
 
 #include <string>

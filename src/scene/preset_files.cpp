@@ -48,7 +48,7 @@ void wait_for_bytes(const Descriptor& pipe, const std::atomic<bool>& stop) {
     pollfd wanted{.fd = pipe.number(), .events = POLLIN, .revents = 0};
     while (!stop)
         if (poll(&wanted, 1, patience_ms) > 0) return;
-    throw Error(ExitCode::interrupted, "interrupted");
+    throw interrupted();
 }
 
 /// All of a file, or of what comes through a pipe.

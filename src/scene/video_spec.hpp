@@ -2,7 +2,6 @@
 
 #include "image/color.hpp"
 #include "image/picture.hpp"
-#include "image/theme.hpp"
 #include "numeric/rational.hpp"
 #include "output/video.hpp"
 #include "scene/field.hpp"

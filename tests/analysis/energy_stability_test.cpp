@@ -1,5 +1,4 @@
-#include "analysis/energy_stability.hpp"
-
+#include "analysis/stability.hpp"
 #include "integrate/widths.hpp"
 #include "physics/bob.hpp"
 

@@ -1,6 +1,6 @@
 #include "analysis/exponent.hpp"
 
-#include "analysis/linear_stability.hpp"
+#include "analysis/stability.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"

@@ -1,5 +1,4 @@
-#include "analysis/linear_stability.hpp"
-
+#include "analysis/stability.hpp"
 #include "base/error.hpp"
 #include "integrate/motion.hpp"
 

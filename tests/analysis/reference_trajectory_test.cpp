@@ -1,5 +1,4 @@
-#include "analysis/reference_trajectory.hpp"
-
+#include "analysis/reference.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
 

@@ -17,9 +17,9 @@
 
 extern "C" {
 #include <libavcodec/avcodec.h>
-#include <libavutil/pixdesc.h>
 #include <libavutil/frame.h>
 #include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
 }
 
 // What a frame of butterfly costs at 1920×1080, stage by stage, and the whole against the encoder alone.

@@ -34,7 +34,7 @@ void thousand_steps(const char* method, const char* model, std::size_t links) {
 
 template <class Model>
 void all_methods(const char* model, std::size_t links) {
-    thousand_steps<RungeKutta<Model, Euler::table>, Model>("euler, nothing carried", model, links);
+    thousand_steps<RungeKutta<Model, Euler::table>, Model>("euler, nothing incremental", model, links);
     thousand_steps<Euler::Stepper<Model>, Model>("euler", model, links);
     thousand_steps<Midpoint::Stepper<Model>, Model>("midpoint", model, links);
     thousand_steps<Rk4::Stepper<Model>, Model>("rk4", model, links);

@@ -1,5 +1,5 @@
-#include "analysis/energy_stability.hpp"
-#include "analysis/linear_stability.hpp"
+#include "analysis/stability.hpp"
+
 #include "figure/support.hpp"
 #include "output/golden.hpp"
 #include "render/renderer.hpp"

@@ -1,5 +1,5 @@
 #include "film/support.hpp"
-#include "image/theme.hpp"
+#include "image/color.hpp"
 #include "render/font.hpp"
 #include "render/pixels.hpp"
 

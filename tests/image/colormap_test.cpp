@@ -1,5 +1,4 @@
 #include "image/color.hpp"
-#include "image/theme.hpp"
 
 #include <gtest/gtest.h>
 

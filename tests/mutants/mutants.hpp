@@ -52,7 +52,10 @@ constexpr auto either(const Is& is, const Other& other) {
     if (std::is_constant_evaluated()) return is();
     if constexpr (same<decltype(is()), decltype(other())>) {
         return chosen(id) ? other() : is();
-    } else if constexpr (requires { is().eval(); other().eval(); }) {  // Eigen's expressions: another type each
+    } else if constexpr (requires {
+                             is().eval();
+                             other().eval();
+                         }) {  // Eigen's expressions: another type each
         if constexpr (same<decltype(is().eval()), decltype(other().eval())>) {
             auto value = is().eval();
             if (chosen(id)) value = other().eval();
@@ -67,19 +70,19 @@ constexpr auto either(const Is& is, const Other& other) {
     }
 }
 
-#define DOPPEL_BINARY(number, op, other)                                                             \
-    template <class A, int id>                                                                       \
-    constexpr Left<A, number, id> operator op(const A& a, M<id>) {                                   \
-        return {a};                                                                                  \
-    }                                                                                                \
-    template <class A, int id, class B>                                                              \
-    constexpr auto operator op(Left<A, number, id> l, const B& b) {                                  \
-        if constexpr (requires { l.a other b; }) {                                                   \
-            return either<id>([&] { return l.a op b; }, [&] { return l.a other b; });                \
-        } else {                                                                                     \
-            if (!std::is_constant_evaluated()) cannot_be(id);                                        \
-            return l.a op b;                                                                         \
-        }                                                                                            \
+#define DOPPEL_BINARY(number, op, other)                                              \
+    template <class A, int id>                                                        \
+    constexpr Left<A, number, id> operator op(const A& a, M<id>) {                    \
+        return {a};                                                                   \
+    }                                                                                 \
+    template <class A, int id, class B>                                               \
+    constexpr auto operator op(Left<A, number, id> l, const B& b) {                   \
+        if constexpr (requires { l.a other b; }) {                                    \
+            return either<id>([&] { return l.a op b; }, [&] { return l.a other b; }); \
+        } else {                                                                      \
+            if (!std::is_constant_evaluated()) cannot_be(id);                         \
+            return l.a op b;                                                          \
+        }                                                                             \
     }
 DOPPEL_BINARY(1, +, -)
 DOPPEL_BINARY(2, -, +)
@@ -89,21 +92,21 @@ DOPPEL_BINARY(5, ==, !=)
 DOPPEL_BINARY(6, !=, ==)
 
 /// Of whole numbers half the mutants move the bound by one; the others, and all of floating-point numbers, turn it round.
-#define DOPPEL_COMPARE(number, op, near, opposite)                                                   \
-    template <class A, int id>                                                                       \
-    constexpr Left<A, number, id> operator op(const A& a, M<id>) {                                   \
-        return {a};                                                                                  \
-    }                                                                                                \
-    template <class A, int id, class B>                                                              \
-    constexpr auto operator op(Left<A, number, id> l, const B& b) {                                  \
-        if constexpr (id % 2 == 0 && std::integral<A> && std::integral<B>) {                         \
-            return either<id>([&] { return l.a op b; }, [&] { return l.a near b; });                 \
-        } else if constexpr (requires { l.a opposite b; }) {                                         \
-            return either<id>([&] { return l.a op b; }, [&] { return l.a opposite b; });             \
-        } else {                                                                                     \
-            if (!std::is_constant_evaluated()) cannot_be(id);                                        \
-            return l.a op b;                                                                         \
-        }                                                                                            \
+#define DOPPEL_COMPARE(number, op, near, opposite)                                       \
+    template <class A, int id>                                                           \
+    constexpr Left<A, number, id> operator op(const A& a, M<id>) {                       \
+        return {a};                                                                      \
+    }                                                                                    \
+    template <class A, int id, class B>                                                  \
+    constexpr auto operator op(Left<A, number, id> l, const B& b) {                      \
+        if constexpr (id % 2 == 0 && std::integral<A> && std::integral<B>) {             \
+            return either<id>([&] { return l.a op b; }, [&] { return l.a near b; });     \
+        } else if constexpr (requires { l.a opposite b; }) {                             \
+            return either<id>([&] { return l.a op b; }, [&] { return l.a opposite b; }); \
+        } else {                                                                         \
+            if (!std::is_constant_evaluated()) cannot_be(id);                            \
+            return l.a op b;                                                             \
+        }                                                                                \
     }
 DOPPEL_COMPARE(7, <, <=, >=)
 DOPPEL_COMPARE(8, <=, <, >)

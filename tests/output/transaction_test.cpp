@@ -1,7 +1,8 @@
+#include "output/transaction.hpp"
+
 #include "output/fixtures.hpp"
 #include "output/folder.hpp"
 #include "output/png.hpp"
-#include "output/transaction.hpp"
 #include "output/written.hpp"
 
 #include <sys/stat.h>

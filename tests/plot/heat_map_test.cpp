@@ -1,6 +1,5 @@
-#include "plot/heat_map.hpp"
-
 #include "image/color.hpp"
+#include "plot/chart_parts.hpp"
 #include "plot/curves.hpp"
 #include "plot/plot.hpp"
 

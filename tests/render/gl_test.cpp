@@ -1,6 +1,6 @@
 #include "base/error.hpp"
+#include "image/color.hpp"
 #include "image/golden.hpp"
-#include "image/theme.hpp"
 #include "plot/plot_figures.hpp"
 #include "render/gl_context.hpp"
 #include "render/pixels.hpp"

@@ -1,6 +1,6 @@
 #include "scene/forecast.hpp"
 
-#include "analysis/reference_trajectory.hpp"
+#include "analysis/reference.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "analysis/external_method.hpp"
 #include "base/error.hpp"
 #include "chain_rate.hpp"
-#include "analysis/external_method.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -58,12 +58,13 @@ protected:
 /// A peer whose solver is a class template over the number of links, made from (chain, seconds, setting, more …).
 template <template <int> class Solver, class... More>
 ExternalMethod peer_of(std::string name, bool adaptive, double least, double most, More... more) {
-    return {std::move(name), adaptive, least, most,
-            [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<ExternalSolver> {
-                if (chain.links() == 2) return std::make_unique<Solver<2>>(chain, seconds, setting, more...);
-                if (chain.links() == 3) return std::make_unique<Solver<3>>(chain, seconds, setting, more...);
-                return std::make_unique<Solver<Eigen::Dynamic>>(chain, seconds, setting, more...);
-            }};
+    return {
+        std::move(name), adaptive, least, most,
+        [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<ExternalSolver> {
+            if (chain.links() == 2) return std::make_unique<Solver<2>>(chain, seconds, setting, more...);
+            if (chain.links() == 3) return std::make_unique<Solver<3>>(chain, seconds, setting, more...);
+            return std::make_unique<Solver<Eigen::Dynamic>>(chain, seconds, setting, more...);
+        }};
 }
 
 }  // namespace doppel

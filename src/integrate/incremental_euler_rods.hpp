@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrate/euler_carried.hpp"
+#include "integrate/incremental_euler.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <array>
@@ -17,12 +17,12 @@ namespace doppel {
 /// solved by its adjugate. Then u_k grows by the pull p_k = r_k x_k of each rod on the masses at its ends, and r_k by
 /// u_k.
 template <class Scalar, int N>
-class CarriedEuler<RodChain<Scalar, N>> {
+class IncrementalEuler<RodChain<Scalar, N>> {
 public:
     using Model = RodChain<Scalar, N>;
     using State = typename Model::State;
 
-    CarriedEuler(const Model& model, const State& start, const Scalar& step) : start_(start), h_(step) {
+    IncrementalEuler(const Model& model, const State& start, const Scalar& step) : start_(start), h_(step) {
         by_.gravity = step * step * model.g;
         const Scalar rho2 = model.w[1] / model.w[0];
         by_.kappa2 = Scalar(1) + rho2;

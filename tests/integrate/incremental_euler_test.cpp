@@ -1,4 +1,4 @@
-#include "integrate/euler_carried.hpp"
+#include "integrate/incremental_euler.hpp"
 
 #include "integrate/euler.hpp"
 
@@ -10,7 +10,7 @@
 #include <random>
 
 namespace doppel {
-namespace euler_carried_test {
+namespace incremental_euler_test {
 
 constexpr double step = 1.0 / 30000;  // s
 
@@ -48,23 +48,23 @@ typename Model::State after(const Pendulum<double>& p, double h, long steps) {
     return stepper.state();
 }
 
-/// How far the carried form ends from the plain one.
+/// How far the incremental form ends from the plain one.
 template <class Model>
 double apart(const Pendulum<double>& p, double seconds, double h = step) {
     const long steps = std::lround(seconds / h);
     const typename Model::State y =
-        after<Model, CarriedEuler<Model>>(p, h, steps) - after<Model, Plain<Model>>(p, h, steps);
+        after<Model, IncrementalEuler<Model>>(p, h, steps) - after<Model, Plain<Model>>(p, h, steps);
     return y.cwiseAbs().maxCoeff();
 }
 
-TEST(CarriedEuler, IsWhatEulerStepsDoubleWith) {
-    static_assert(std::is_same_v<Euler::Stepper<DoublePendulum<double>>, CarriedEuler<DoublePendulum<double>>>);
-    static_assert(std::is_same_v<Euler::Stepper<RodChain<Lanes<4>, 3>>, CarriedEuler<RodChain<Lanes<4>, 3>>>);
+TEST(IncrementalEuler, IsWhatEulerStepsDoubleWith) {
+    static_assert(std::is_same_v<Euler::Stepper<DoublePendulum<double>>, IncrementalEuler<DoublePendulum<double>>>);
+    static_assert(std::is_same_v<Euler::Stepper<RodChain<Lanes<4>, 3>>, IncrementalEuler<RodChain<Lanes<4>, 3>>>);
     static_assert(std::is_same_v<Euler::Stepper<RodChain<long double, 3>>, Plain<RodChain<long double, 3>>>);
     static_assert(std::is_same_v<Euler::Stepper<RodChain<double, 4>>, Plain<RodChain<double, 4>>>);
 }
 
-TEST(CarriedEuler, IsThePlainMethodUpToRounding) {
+TEST(IncrementalEuler, IsThePlainMethodUpToRounding) {
     // regular motions, which keep small differences small; the plain form errs as much against quad
     using Angles = DoublePendulum<double>;
     using Two = RodChain<double, 2>;
@@ -80,7 +80,7 @@ TEST(CarriedEuler, IsThePlainMethodUpToRounding) {
     EXPECT_LT(apart<Three>(uneven<3>(), 1), 5e-13);           // measured 1.1e-13
 }
 
-TEST(CarriedEuler, TakesSinesAfreshWhereStepsAreLarge) {
+TEST(IncrementalEuler, TakesSinesAfreshWhereStepsAreLarge) {
     // 90 rad/s at 1 ms: 0.09 rad a step, far above 2⁻¹⁰
     auto p = released<2>(10, 50);
     p.rate = {90, -90};
@@ -91,7 +91,7 @@ TEST(CarriedEuler, TakesSinesAfreshWhereStepsAreLarge) {
     EXPECT_LT(apart<DoublePendulum<double>>(p, 0.1, 1e-3), 2e-15);  // measured 0
 }
 
-TEST(CarriedEuler, TurnsByTheSeriesAsFarAsItMay) {
+TEST(IncrementalEuler, TurnsByTheSeriesAsFarAsItMay) {
     // just within the largest turn the series must still give the sine and cosine of the sum
     TurningAngle<double> angle;
     for (double theta = -3; theta < 3; theta += 0.01) {
@@ -120,44 +120,44 @@ void expect_no_bit_changes_when_chopped(const Pendulum<double>& p) {
     EXPECT_EQ(once.evaluations(), often.evaluations());
 }
 
-TEST(CarriedEuler, AdvancesTheSameInOneGoOrInMany) {
+TEST(IncrementalEuler, AdvancesTheSameInOneGoOrInMany) {
     expect_no_bit_changes_when_chopped<DoublePendulum<double>>(released<2>(90, 90));
     expect_no_bit_changes_when_chopped<RodChain<double, 2>>(released<2>(90, 90));
     expect_no_bit_changes_when_chopped<RodChain<double, 3>>(released<3>(90, 90));
 }
 
-TEST(CarriedEuler, StartsExactlyWhereItIsReleased) {
+TEST(IncrementalEuler, StartsExactlyWhereItIsReleased) {
     const auto p = uneven<2>();
     using Angles = DoublePendulum<double>;
     using Rods = RodChain<double, 2>;
-    EXPECT_EQ((after<Angles, CarriedEuler<Angles>>(p, step, 0)), Angles::start(p));
-    EXPECT_EQ((after<Rods, CarriedEuler<Rods>>(p, step, 0)), Rods::start(p));
+    EXPECT_EQ((after<Angles, IncrementalEuler<Angles>>(p, step, 0)), Angles::start(p));
+    EXPECT_EQ((after<Rods, IncrementalEuler<Rods>>(p, step, 0)), Rods::start(p));
 }
 
-TEST(CarriedEuler, MirrorImageStaysTheMirrorImage) {
-    const auto left = after<DoublePendulum<double>, CarriedEuler<DoublePendulum<double>>>(released<2>(-120, 35), step,
-                                                                                          50'000),
-               right = after<DoublePendulum<double>, CarriedEuler<DoublePendulum<double>>>(released<2>(120, -35), step,
-                                                                                           50'000);
+TEST(IncrementalEuler, MirrorImageStaysTheMirrorImage) {
+    const auto left = after<DoublePendulum<double>, IncrementalEuler<DoublePendulum<double>>>(released<2>(-120, 35),
+                                                                                              step, 50'000),
+               right = after<DoublePendulum<double>, IncrementalEuler<DoublePendulum<double>>>(released<2>(120, -35),
+                                                                                               step, 50'000);
     EXPECT_EQ(left, -right);
 }
 
-TEST(CarriedEuler, LanesDoNotDependOnTheirNeighbours) {
+TEST(IncrementalEuler, LanesDoNotDependOnTheirNeighbours) {
     // one lane fast, the others slow: the slow ones take the series all the same
     using Side = Lanes<4>;
     const double h = 1e-3;
     auto p = released<2>(40, 60).cast<Side>();
     p.rate[0].set(2, 30);
     DoublePendulum<Side> model(p);
-    CarriedEuler<DoublePendulum<Side>> sides(model, model.start(p), Side(h));
+    IncrementalEuler<DoublePendulum<Side>> sides(model, model.start(p), Side(h));
     sides.advance(1000);
     for (int lane = 0; lane < 4; ++lane) {
         auto q = released<2>(40, 60);
         q.rate[0] = lane == 2 ? 30 : 0;
-        const auto alone = after<DoublePendulum<double>, CarriedEuler<DoublePendulum<double>>>(q, h, 1000);
+        const auto alone = after<DoublePendulum<double>, IncrementalEuler<DoublePendulum<double>>>(q, h, 1000);
         for (Eigen::Index i = 0; i < 4; ++i) EXPECT_EQ(sides.state()[i][lane], alone[i]) << lane;
     }
 }
 
-}  // namespace euler_carried_test
+}  // namespace incremental_euler_test
 }  // namespace doppel

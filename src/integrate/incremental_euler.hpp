@@ -21,7 +21,7 @@ namespace doppel {
 ///
 /// However advance() is chopped, no bit of the result changes.
 template <class Model>
-class CarriedEuler;
+class IncrementalEuler;
 
 /// Put before the loops of a lone pendulum: paired in vectors, its components wait for each other's shuffles.
 #if defined(__GNUC__) && !defined(__clang__)
@@ -32,13 +32,13 @@ class CarriedEuler;
 
 /// For which models there is one.
 template <class Model>
-inline constexpr bool has_carried_euler = false;
+inline constexpr bool has_incremental_euler = false;
 template <class Scalar>
 inline constexpr bool is_machine_number = std::is_same_v<Scalar, double> || is_lanes<Scalar>;
 template <class Scalar>
-inline constexpr bool has_carried_euler<DoublePendulum<Scalar>> = is_machine_number<Scalar>;
+inline constexpr bool has_incremental_euler<DoublePendulum<Scalar>> = is_machine_number<Scalar>;
 template <class Scalar, int N>
-inline constexpr bool has_carried_euler<RodChain<Scalar, N>> = is_machine_number<Scalar> && (N == 2 || N == 3);
+inline constexpr bool has_incremental_euler<RodChain<Scalar, N>> = is_machine_number<Scalar> && (N == 2 || N == 3);
 
 /// Sine and cosine, times one factor, of an angle that advances by small steps. They turn with it by three shears,
 ///     u = cosθ − t sinθ,   sin(θ+δ) = sinθ + sinδ u,   cos(θ+δ) = u − t sin(θ+δ),   t = tan(δ/2),
@@ -79,12 +79,12 @@ struct TurningAngle {
 ///     θ1″ = (ω2² + q C) f − (g/l1) sinθ1
 ///     θ2″ = −(q lever + ω2² C) f,      f = S / (ratio + S²),   ratio = (m1/m2) / L²,   lever = (1 + m1/m2) / L²
 template <class Scalar>
-class CarriedEuler<DoublePendulum<Scalar>> {
+class IncrementalEuler<DoublePendulum<Scalar>> {
 public:
     using Model = DoublePendulum<Scalar>;
     using State = typename Model::State;
 
-    CarriedEuler(const Model& model, const State& start, const Scalar& step) : start_(start), h_(step) {
+    IncrementalEuler(const Model& model, const State& start, const Scalar& step) : start_(start), h_(step) {
         using std::abs, std::sqrt;
         const Scalar longer = model.l2 / model.l1, masses = model.m1 / model.m2, square = longer * longer;
         inverse_longer_ = Scalar(1) / longer;

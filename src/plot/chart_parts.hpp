@@ -1,0 +1,92 @@
+#pragma once
+
+#include "image/color.hpp"
+#include "plot/axis.hpp"
+#include "plot/plot.hpp"
+#include "render/display_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+
+/// What all parts of a figure share: colours, sizes of text (px an em) and of lines (px).
+struct PlotStyle {
+    const Theme& theme;
+    float unit;   // of a picture of 1600 × 900, px
+    float scale;  // pixels that one px becomes in the end: what images are drawn for
+
+    float title = 37 * unit, subtitle = 21 * unit, heading = 24 * unit;
+    float axis = 20 * unit, tick = 18.5f * unit, text = 20 * unit, caption = 18 * unit;
+    float hairline = unit > 0.9f ? unit : 1, line = std::max(1.0f, std::round(hairline));  // line: of whole pixels
+    float curve = unit > 0.47f ? 3.2f * unit : 1.5f, thin = unit > 0.5f ? 2 * unit : 1;
+    float marker = unit > 0.4f ? 5.2f * unit : 2.1f;  // its radius
+};
+
+/// The ranges of a panel's axes.
+struct PlotRanges {
+    Axis x, y;
+    std::optional<Axis> right;
+};
+
+/// What was asked for; the rest holds all that is drawn, with a little margin (none around a map, none below a zero).
+PlotRanges fitted_ranges(const Plot& plot);
+
+/// The range of a map's colours.
+Axis fitted_scale(const HeatMap& map);
+
+/// Throws bad_input where a figure cannot be drawn: series of unequal length, a logarithm of nothing, …
+void check(const Figure& figure);
+
+/// Ticks with labels beside a vertical axis, and below a horizontal one.
+std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
+std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
+
+/// The grid, the axes, their ticks with labels, and the x axis's label. No text leaves `held`; `right` may be null.
+void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
+               const PlotStyle& style, DisplayList& list);
+
+/// px that the labels above a panel `width` px wide take: one line if all fit side by side, else one each.
+float axis_labels_height(const Plot& plot, float width, const PlotStyle& style);
+
+/// The panel's title in the uppermost `title` px of `held`; in the `labels` px below, the labels of the vertical axes
+/// and of the map's bar.
+void draw_headings(const Plot& plot, const Area& held, float title, float labels, const PlotStyle& style,
+                   DisplayList& list);
+
+/// The map's cells in `area` as seen through the axes: crisp where they are larger than pixels, else averaged, the
+/// logarithm where the scale is logarithmic. Below zero on such a scale is as good as no value.
+Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
+                Color none, float scale);
+
+/// px that the colour bar of a map and its labels take on the right of a panel `height` px high.
+float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
+
+/// The bar beside `area`, from `left` on: colours with ticks, and below them what stands for no value.
+void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
+
+/// The same for a bar that maps share, with its label above it.
+float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
+void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
+
+/// The colour of what has no value.
+Color none_color(const HeatMap& map, const Theme& theme);
+
+/// px around a panel's area for its labels.
+struct Gutters {
+    float left = 0, right = 0, title = 0, labels = 0, bottom = 0;
+
+    float top(const PlotStyle& style) const { return title + labels + 0.75f * style.tick; }
+};
+
+/// Of a panel alone in a cell of this size; panels beside each other share the largest.
+Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const PlotStyle& style);
+
+/// The larger of each.
+Gutters united(const Gutters& a, const Gutters& b);
+
+/// The panel in its cell. Nothing where the labels leave it no room.
+void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
+                const PlotStyle& style, DisplayList& list);
+
+}  // namespace doppel
