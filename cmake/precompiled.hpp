@@ -1,6 +1,6 @@
 // What most files include of other people's headers, parsed once for all of them (rooms.cmake).
 #include <Eigen/Core>
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

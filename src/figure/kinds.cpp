@@ -2,6 +2,8 @@
 
 #include "scene/captions.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 

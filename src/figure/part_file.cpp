@@ -5,6 +5,8 @@
 #include "output/written.hpp"
 #include "scene/manifest_json.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdio>

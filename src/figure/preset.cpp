@@ -2,6 +2,8 @@
 
 #include "figure/kinds.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -3,6 +3,8 @@
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -2,6 +2,8 @@
 #include "figure/work_precision.hpp"
 #include "scene/method_choice.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -6,6 +6,8 @@
 #include "physics/angle_chain.hpp"
 #include "physics/rod_chain.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 

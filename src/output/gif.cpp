@@ -7,6 +7,7 @@
 #include "output/workers.hpp"
 
 extern "C" {
+#include <fmt/ranges.h>
 #include <libavutil/imgutils.h>
 }
 

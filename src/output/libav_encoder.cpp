@@ -5,6 +5,7 @@
 #include "output/video.hpp"
 
 extern "C" {
+#include <fmt/ranges.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
 }

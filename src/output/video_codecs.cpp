@@ -3,6 +3,7 @@
 #include "output/png.hpp"
 
 extern "C" {
+#include <fmt/ranges.h>
 #include <libavutil/imgutils.h>
 }
 

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 
 extern "C" {
+#include <fmt/ranges.h>
 #include <libavutil/mem.h>
 #include <libavutil/sha.h>
 }

@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 
-#include <GL/osmesa.h>
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -86,18 +85,23 @@ private:
     void* handle_ = nullptr;
 };
 
+/// What Doppel uses of GL/osmesa.h, which Mesa has dropped with version 25.1.
+namespace osmesa {
+using Handle = struct osmesa_context*;
+using Create = Handle (*)(const int* attributes, Handle shared_with);
+using MakeCurrent = GLboolean (*)(Handle context, void* pixels, GLenum type, GLsizei width, GLsizei height);
+using Destroy = void (*)(Handle context);
+using Address = gl::Function (*)(const char* name);
+constexpr int format = 0x22, profile = 0x33, core_profile = 0x34, major_version = 0x36, minor_version = 0x37;
+}  // namespace osmesa
+
 class OsmesaContext final : public Context {
 public:
     explicit OsmesaContext(const std::vector<std::string>& libraries) : library_(libraries) {
-        const int attributes[] = {OSMESA_FORMAT,
-                                  OSMESA_RGBA,
-                                  OSMESA_PROFILE,
-                                  OSMESA_CORE_PROFILE,
-                                  OSMESA_CONTEXT_MAJOR_VERSION,
-                                  3,
-                                  OSMESA_CONTEXT_MINOR_VERSION,
-                                  3,
-                                  0};
+        // clang-format off
+        const int attributes[] = {osmesa::format, GL_RGBA, osmesa::profile, osmesa::core_profile,
+                                  osmesa::major_version, 3, osmesa::minor_version, 3, 0};
+        // clang-format on
         context_ = create_(attributes, nullptr);
         if (!context_) throw io_failed("it gives no OpenGL 3.3 core context");
     }
@@ -116,11 +120,11 @@ private:
     gl::Function function(const char* name) const override { return address_(name); }
 
     const Library library_;
-    decltype(&OSMesaCreateContextAttribs) create_ = library_["OSMesaCreateContextAttribs"];
-    decltype(&OSMesaMakeCurrent) make_current_ = library_["OSMesaMakeCurrent"];
-    decltype(&OSMesaDestroyContext) destroy_ = library_["OSMesaDestroyContext"];
-    decltype(&OSMesaGetProcAddress) address_ = library_["OSMesaGetProcAddress"];
-    OSMesaContext context_ = nullptr;
+    osmesa::Create create_ = library_["OSMesaCreateContextAttribs"];
+    osmesa::MakeCurrent make_current_ = library_["OSMesaMakeCurrent"];
+    osmesa::Destroy destroy_ = library_["OSMesaDestroyContext"];
+    osmesa::Address address_ = library_["OSMesaGetProcAddress"];
+    osmesa::Handle context_ = nullptr;
     std::array<unsigned char, 4> window_{};  // one pixel, which OSMesa demands; drawing goes to framebuffer objects
 };
 

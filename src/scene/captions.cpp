@@ -2,7 +2,7 @@
 
 #include "plot/axis.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

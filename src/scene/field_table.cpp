@@ -2,6 +2,8 @@
 
 #include "scene/preset_fields.hpp"
 
+#include <fmt/ranges.h>
+
 namespace doppel {
 namespace {
 

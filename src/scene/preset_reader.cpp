@@ -2,6 +2,8 @@
 #include "integrate/methods.hpp"
 #include "scene/preset_fields.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

@@ -2,7 +2,7 @@
 
 #include "scene/preset.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,8 @@
 #include "scene/preset_fields.hpp"
 #include "scene/scene.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <set>

@@ -3,6 +3,8 @@
 #include "base/text.hpp"
 #include "render/font.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>

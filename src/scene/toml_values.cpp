@@ -1,6 +1,8 @@
 #include "base/text.hpp"
 #include "scene/toml_reader.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Requests at and beyond the edge of sense, to the real program.
 #include "cli/sandbox.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include <csignal>

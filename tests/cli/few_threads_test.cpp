@@ -1,7 +1,7 @@
 // Where the system gives the program only some threads, or none.
 #include "cli/sandbox.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace doppel {
 namespace few_threads_test {

@@ -1,5 +1,6 @@
 #include "film/support.hpp"
 #include "image/golden.hpp"
+#include "render/osmesa_or_egl.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ void expect_the_same_film(const std::string& preset, long samples, long stride) 
     Composer composer(scene);
     PairRun pair(scene);
     const std::atomic<bool> never = false;
-    Renderer osmesa(scene.preset.video.size, composer.backdrop(), Gl::osmesa),
+    Renderer osmesa(scene.preset.video.size, composer.backdrop(), test::osmesa_or_egl()),
         egl(scene.preset.video.size, composer.backdrop(), Gl::egl);
     for (long n = 0; n <= samples; ++n) {
         composer.add({pair.next(never), {}});

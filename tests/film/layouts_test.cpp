@@ -7,6 +7,7 @@
 #include "render/pixels.hpp"
 #include "scene/resolved.hpp"
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

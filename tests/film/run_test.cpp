@@ -6,6 +6,7 @@
 #include "output/png.hpp"
 #include "output/written.hpp"
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sched.h>
