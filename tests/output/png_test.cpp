@@ -58,11 +58,11 @@ TEST(Png, WordsCanBeReadBack) {
     const Picture picture = noise({64, 48}, 3);
     const Metadata words{{"title", "Sensitivity, 90.003°"}, {"comment", "θ → π"}, {"encoder", "doppel 0.1"}};
     const auto check_words = [&](const std::filesystem::path& path) {
-        // libav reads tEXt, but not iTXt
-        const auto found = read_video(path).metadata;
-        EXPECT_EQ(found.at("title"), "Sensitivity, 90.003°");
-        EXPECT_EQ(found.at("software"), "doppel 0.1");
-        EXPECT_NE(test::bytes_of(path).find(std::string("iTXtComment\0\0\0\0\0θ → π", 24)), std::string::npos);
+        // libav reads tEXt, but not iTXt; and FFmpeg 7.1 no letter beyond ASCII
+        EXPECT_EQ(read_video(path).metadata.at("software"), "doppel 0.1");
+        const auto bytes = test::bytes_of(path);
+        EXPECT_NE(bytes.find(std::string("tEXtTitle\0Sensitivity, 90.003\xb0", 30)), std::string::npos);
+        EXPECT_NE(bytes.find(std::string("iTXtComment\0\0\0\0\0θ → π", 24)), std::string::npos);
         EXPECT_EQ(read_png(path).rgba, picture.rgba);
     };
     write_png(folder / "x.png", picture, {.metadata = words});
