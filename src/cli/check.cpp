@@ -2,6 +2,7 @@
 #include "base/machine.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
+#include "cli/schema.hpp"
 #include "cli/terminal.hpp"
 #include "figure/computation.hpp"
 #include "film/film.hpp"
@@ -234,6 +235,7 @@ void add_check(CLI::App& app) {
         const auto& stop = watch_interrupts();
         for (const auto& name : options->presets) {
             const auto preset = find_preset(name, &stop);
+            if (const auto fault = schema_line_fault(preset)) print_line("{}", *fault);
             if (is_figure(preset))
                 print_figure(read_figure(preset, overrides_of(*options)), stop);
             else

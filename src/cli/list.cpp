@@ -1,4 +1,5 @@
 #include "cli/program.hpp"
+#include "cli/schema.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"
 #include "scene/scene.hpp"
@@ -65,7 +66,10 @@ void add_show(CLI::App& app) {
     auto& command = *app.add_subcommand("show", "The TOML of a preset, a start for one of your own");
     command.footer("Example:\n  doppel show butterfly > mine.toml");
     command.add_option("PRESET", *name, "Name (see doppel list) or path")->required();
-    command.callback([name] { show(find_preset(*name, &watch_interrupts()).text); });
+    command.callback([name] {
+        const auto preset = find_preset(*name, &watch_interrupts());
+        show(preset.call == preset.name ? with_schema_line(preset.text) : preset.text);
+    });
 }
 
 }  // namespace doppel

@@ -86,6 +86,7 @@ int run_program(int argc, char** argv) {
         add_list(app);
         add_show(app);
         add_check(app);
+        add_schema(app);
         if (words.size() > 1 && !words[1].starts_with('-')) refuse_unknown_command(app, words[1]);
         try {
             app.parse(argc, argv);

@@ -17,5 +17,6 @@ void add_compare(CLI::App& app, int& exit_code);  // the code is 1 where the pic
 void add_list(CLI::App& app);
 void add_show(CLI::App& app);
 void add_check(CLI::App& app);
+void add_schema(CLI::App& app);
 
 }  // namespace doppel

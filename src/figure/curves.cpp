@@ -135,7 +135,7 @@ public:
 private:
     template <class Visit>
     static void curve_fields(Visit& visit, PairCurve& curve) {
-        visit({"column", "its name in the CSV", "", {}, "must be given"}, curve.column);
+        visit({"column", "its name in the CSV", "", {}, must_be_given}, curve.column);
         curve.label = curve.column;
         visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true},
               curve.label);

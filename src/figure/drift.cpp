@@ -76,8 +76,15 @@ public:
         visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100)}, points_per_decade_);
         visit({"evaluations_per_s", "of the right-hand side, a second of motion: the same for all methods", "", costs},
               spec_.evaluations_per_s);
-        visit({"methods", "names of methods", "", {}, "all that step chains"}, methods_);
-        visit({"projected", "methods that are also shown with projection onto the constraints"}, projected_);
+        visit({.key = "methods",
+               .help = "names of methods",
+               .absent = "all that step chains",
+               .known = names_of_methods()},
+              methods_);
+        visit({.key = "projected",
+               .help = "methods that are also shown with projection onto the constraints",
+               .known = names_of_methods()},
+              projected_);
     }
 
     std::size_t trials() const override { return runs_.size(); }

@@ -26,6 +26,7 @@ public:
     Links() = default;
     explicit Links(FigureReader& reader) : release_(reader.release()) {
         auto table = reader.settings(*this);
+        if (to_ < from_) throw table.fault("to", "must be at least `from`, {}; it is {}", from_, to_);
         spec_.transient_s = spec_.duration_s / 10;
         settings_ = resolved_release(release_) + table.finish();
         if (release_.links() != 1)
@@ -37,7 +38,7 @@ public:
     void fields(Visit& visit) {
         constexpr int most = 1000;
         visit({"from", "links of the shortest chain", "", from_to(1, most)}, from_);
-        visit({"to", "links of the longest", "", from_to(from_, most)}, to_);
+        visit({"to", "links of the longest", "", from_to(1, most)}, to_);
         visit({"duration_s", "of the motion that an exponent is found by", "s", positive}, spec_.duration_s);
     }
 

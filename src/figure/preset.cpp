@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace doppel {
 namespace {
@@ -32,6 +33,11 @@ angle_deg = [90.003, 90]
 Side a has the keys of `[system]` with those of `[a]` in their place, side b those of `[b]`. Arrays with one number a
 link may also be one number for all links. `[[a.particle]]`, `[[a.constraint]]` and `[[a.force]]` with the `name` of one
 in `[system]` change it; others are added.
+
+Editors that read JSON schemas (taplo, Even Better TOML) complete keys and mark mistakes as you type, where the first line
+names the schema: `#:schema ./preset.schema.json` for a file that `doppel schema > preset.schema.json` wrote beside the
+preset. `doppel show` names the schema that it finds, in `presets/` here or installed with the program, and leaves the line
+out where there is none. `doppel check` tells if the line names another file.
 )";
 
 constexpr std::string_view figure_introduction = R"(
@@ -63,6 +69,15 @@ void chart_fields(Visit& visit, Chart& chart) {
     theme_field(visit, chart.theme);
     visit({"scale", "picture pixels to a pixel of `size`: 2 for print", "", {.low = 0, .high = 8, .is_open = true}},
           chart.scale);
+}
+
+/// [system] of figures that step a chain themselves.
+FieldTable release_table() {
+    const SideSpec side;
+    FieldTable release{"[system]"};
+    chain_fields(release, side);
+    gravity_field(release, side);
+    return release;
 }
 
 void read_chart(TomlReader& table, ChartSpec& chart) {
@@ -120,12 +135,10 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
 
 std::vector<FieldTable> figure_tables() {
     FigurePreset figure;
-    const SideSpec side;
-    FieldTable top{"title, subtitle, erratum, captions"}, chart{"[chart]"}, release{"[system]"};
+    FieldTable top{"title, subtitle, erratum, captions"}, chart{"[chart]"};
     top_fields(top, figure);
     chart_fields(chart, figure.chart);
-    chain_fields(release, side);
-    gravity_field(release, side);
+    const auto release = release_table();
     std::vector<std::string_view> release_keys;
     for (const auto& field : release.fields) release_keys.push_back(field.key);
     const std::string systems[] = {
@@ -139,6 +152,39 @@ std::vector<FieldTable> figure_tables() {
                     fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, systems[static_cast<std::size_t>(kind.system)]);
             all.push_back(std::move(table));
         }
+    return all;
+}
+
+std::vector<FieldTable> tables_of(std::string_view kind) {
+    const auto film = film_tables();
+    const auto& [top, scene, system] = std::tie(film[0], film[1], film[2]);
+    const auto named = [](FieldTable table, std::string_view key) {
+        table.name = fmt::format("[{}]", key);
+        return table;
+    };
+    const std::vector<FieldTable> pair{scene, named(system, "system"), named(system, "a"), named(system, "b")};
+    std::vector<FieldTable> all{named(top, "")};
+    if (kind == pair_kind) {
+        all.insert(all.end(), pair.begin(), pair.end());
+        all.push_back(film.back());
+        return all;
+    }
+    const auto figures = figure_tables();
+    all = {named(figures[0], "")};
+    for (const auto& figure : figure_kinds()) {
+        if (figure.name != kind) continue;
+        if (figure.system == FigureKind::System::pair)
+            all.insert(all.end(), pair.begin(), pair.end());
+        else
+            all.push_back(named({"", "", {scene.fields.front()}}, "scene"));
+        if (figure.system == FigureKind::System::release) all.push_back(release_table());
+        all.push_back(figures[1]);
+        for (auto& table : figure.tables())
+            if (table.key() == "chart")
+                all.back().fields.insert(all.back().fields.end(), table.fields.begin(), table.fields.end());
+            else
+                all.insert(all.end() - 1, std::move(table));
+    }
     return all;
 }
 

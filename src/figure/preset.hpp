@@ -41,6 +41,13 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
 /// What all figures have, then the tables that are a kind's own (figure/kinds.hpp).
 std::vector<FieldTable> figure_tables();
 
+/// The tables that a preset of this kind may have, those of particles, constraints and forces aside: "[]" for the keys
+/// outside of tables, "[scene]", "[system]", "[a]" … and "[[curve]]".
+std::vector<FieldTable> tables_of(std::string_view kind);
+
+/// What a preset may say, as a JSON schema (Draft 4).
+std::string preset_schema();
+
 /// docs/presets.md: all tables and keys of films and figures.
 std::string preset_reference();
 

@@ -49,7 +49,8 @@ public:
         visit({.key = "model", .help = "the equations; auto: angles where the method serves them", .names = models},
               model_);
         method_names_ = names_that_serve();
-        visit({"methods", "names of methods", "", {}, "all that serve the model"}, method_names_);
+        visit({.key = "methods", .help = "names of methods", .absent = "all of the model", .known = names_of_methods()},
+              method_names_);
         visit({"duration_s", "of each motion", "s", positive}, duration_);
         const Only fixed{named(false), "is for methods of fixed step, of which none is named"};
         const Only adaptive{named(true), "is for methods that go by a tolerance, of which none is named"};

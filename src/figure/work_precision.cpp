@@ -67,7 +67,7 @@ public:
         visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, most_evaluations_);
         visit({"least_error", "below which no finer setting is taken", "", positive}, least_error_);
         visit({.key = "models", .help = "the equations", .names = names_of<Model>}, model_names_);
-        visit({"methods", "names of methods", "", {}, "all"}, methods_);
+        visit({.key = "methods", .help = "names of methods", .absent = "all", .known = names_of_methods()}, methods_);
     }
     static FieldTable other_table() {
         FieldTable chart{"[chart] kind = \"work-precision\"", "Besides those of all figures:\n"};

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace doppel {
 
@@ -24,6 +25,15 @@ std::span<const MethodEntry> methods() {
         return entries;
     }();
     return all;
+}
+
+std::span<const std::string_view> names_of_methods() {
+    static const auto names = [] {
+        std::vector<std::string_view> all;
+        for (const auto& method : methods()) all.push_back(method.name);
+        return all;
+    }();
+    return names;
 }
 
 const MethodEntry* find_method(std::string_view name) {

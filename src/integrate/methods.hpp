@@ -23,6 +23,9 @@ struct MethodEntry : Method {
 /// All of them, in the order of integrate/registry.hpp.
 std::span<const MethodEntry> methods();
 
+/// Their names, in the same order.
+std::span<const std::string_view> names_of_methods();
+
 /// The one of that name; null where there is none.
 const MethodEntry* find_method(std::string_view name);
 

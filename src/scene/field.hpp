@@ -37,7 +37,7 @@ struct Only {
 };
 
 /// One key of a table. Lists of fields (preset_fields.hpp, and those of each kind of figure) serve the reader, the
-/// resolved preset and docs/presets.md; type and default are those of the member that a list pairs it with.
+/// resolved preset, its JSON schema and docs/presets.md; type and default are those of the member that a list pairs it with.
 struct Field {
     std::string_view key, help;
     std::string_view unit = {};
@@ -49,6 +49,7 @@ struct Field {
     std::string_view needed_by = {};               // an entry of this kind must have it
     bool is_drawn = false;                         // pictures show it: of letters that the font has
     std::size_t most = 0;                          // numbers of an array that may have 1 or more
+    std::span<const std::string_view> known = {};  // names that it takes, where not the reader checks them
 };
 
 /// The names of an enumeration's values in presets, in their order.

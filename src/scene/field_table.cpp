@@ -4,24 +4,17 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace doppel {
 namespace {
-
-/// The range of a number: "> 0", "0 (none) to 100".
-std::string range_text(const Bounds& bounds) {
-    if (bounds.is_open) return bounds.has_high() ? fmt::format("> 0, to {}", bounds.high) : "> 0";
-    if (!bounds.has_low()) return "";
-    if (!bounds.has_high()) return fmt::format("≥ {}", bounds.low);
-    return fmt::format("{}{} to {}", bounds.low, bounds.zero.empty() ? "" : fmt::format(" ({})", bounds.zero),
-                       bounds.high);
-}
 
 std::string takes_text(const ListedField& field) {
     std::string text(field.type);
     if (!field.choices.empty()) text = fmt::format("`\"{}\"`", fmt::join(field.choices, "\"`, `\""));
-    if (!field.choices.empty() && field.type.starts_with("list")) text = "list of " + text;
+    if (!field.choices.empty() && field.is_list()) text = "list of " + text;
     if (field.most > 0) text = fmt::format("1 to {} {}", field.most, text);
-    if (const auto range = range_text(field.bounds); !range.empty()) text += ", " + range;
+    if (const auto range = field.range_text(); !range.empty()) text += ", " + range;
     return text;
 }
 
@@ -40,6 +33,35 @@ void add_part_tables(const std::string& name, std::vector<FieldTable>& tables) {
 
 }  // namespace
 
+std::string ListedField::range_text() const {
+    if (bounds.is_open) return bounds.has_high() ? fmt::format("> 0, to {}", bounds.high) : "> 0";
+    if (!bounds.has_low()) return "";
+    if (!bounds.has_high()) return fmt::format("≥ {}", bounds.low);
+    return fmt::format("{}{} to {}", bounds.low, bounds.zero.empty() ? "" : fmt::format(" ({})", bounds.zero),
+                       bounds.high);
+}
+
+std::string ListedField::default_value() const {
+    const bool is_value =
+        by_default.size() > 2 && by_default.front() == '`' && by_default.find('`', 1) + 1 == by_default.size();
+    return is_value ? by_default.substr(1, by_default.size() - 2) : "";
+}
+
+void FieldTable::widen(const FieldTable& other) {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        auto& bounds = fields[i].bounds;
+        const auto& more = other.fields[i].bounds;
+        if (more.low < bounds.low || (more.low == bounds.low && !more.is_open))
+            bounds.low = more.low, bounds.is_open = more.is_open;
+        bounds.high = std::max(bounds.high, more.high);
+    }
+}
+
+std::string_view FieldTable::key() const {
+    const std::string_view inside = std::string_view(name).substr(0, name.find(']'));
+    return inside.substr(inside.find_last_of("[.") + 1);
+}
+
 std::string FieldTable::markdown() const {
     auto page = fmt::format("\n## `{}`\n\n{}{}| key | takes | unit | default | |\n|---|---|---|---|---|\n", name, text,
                             text.empty() ? "" : "\n");
@@ -54,6 +76,10 @@ std::vector<FieldTable> film_tables() {
     const Preset preset;
     const SideSpec& side = preset.a;
     const ParticleSpec released;
+    SideSpec mechanism;
+    mechanism.particles.resize(1);
+    VideoSpec webm;
+    webm.format = FilmFormat::webm;
     FieldTable top{"title"}, scene{"[scene]"}, system{"[system], [a], [b]"}, video{"[video]"};
     FieldTable particle{
         "[[system.particle]]",
@@ -63,15 +89,24 @@ std::vector<FieldTable> film_tables() {
     scene(kind_field, std::string(pair_kind));
     clock_fields(scene, preset);
     chain_fields(system, side);
-    gravity_field(system, side);
+    FieldTable gravity{"[system]"}, other_gravity = gravity;
+    gravity_field(gravity, side);
+    gravity_field(other_gravity, static_cast<const SideSpec&>(mechanism));
+    gravity.widen(other_gravity);
+    system.fields.push_back(gravity.fields[0]);
     system(model_field, side.model);
     system(accuracy_field, side.accuracy);
     method_fields(system, side);
     precision_fields(system, side);
-    particle.fields.push_back({"name", "text", "", "by which constraints and forces call it", "must be given"});
+    particle.fields.push_back(
+        {"name", "text", "", "by which constraints and forces call it", std::string(must_be_given)});
     part_fields(particle, released);
     video(size_field, preset.video.size);
-    format_fields(video, preset.video);
+    FieldTable format{"[video]"}, other_format = format;
+    format_fields(format, preset.video);
+    format_fields(other_format, webm);
+    format.widen(other_format);
+    video.fields.insert(video.fields.end(), format.fields.begin(), format.fields.end());
     time_fields(video, preset.video);
     layout_fields(video, preset.video);
     style_fields(video, preset.video);

@@ -17,7 +17,8 @@ constexpr std::string_view type_words() {
     if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Quad>) return "number";
     if constexpr (std::is_same_v<T, Rational>) return "number or \"a/b\"";
     if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, std::vector<Quad>>) return "numbers";
-    if constexpr (std::is_same_v<T, std::vector<std::string>> || std::is_same_v<T, Panels>) return "list of text";
+    if constexpr (std::is_same_v<T, std::vector<std::string>>) return "list of text";
+    if constexpr (std::is_same_v<T, Panels>) return "list of text, not empty";
     if constexpr (std::is_same_v<T, QuadPair>) return "[x, y]";
     if constexpr (std::is_same_v<T, EndSpec>) return "text or [x, y]";
     if constexpr (std::is_same_v<T, Size> || std::is_same_v<T, std::array<int, 2>>) return "two whole numbers";
@@ -27,6 +28,9 @@ constexpr std::string_view type_words() {
     return "text";
 }
 
+/// Of a key without a default.
+inline constexpr std::string_view must_be_given = "must be given";
+
 /// A key with what a list of fields says of it.
 struct ListedField {
     std::string_view key, type, unit, help;  // `type` is one of type_words()
@@ -34,6 +38,13 @@ struct ListedField {
     std::vector<std::string> choices = {};   // of text, or of a list's elements
     Bounds bounds = {};
     std::size_t most = 0;  // as in Field
+
+    bool is_list() const { return type.starts_with("list"); }
+    bool is_needed() const { return by_default == must_be_given; }
+    /// The range of a number: "> 0", "0 (none) to 100"; empty where there is none.
+    std::string range_text() const;
+    /// The default as TOML; empty where it is none or only words.
+    std::string default_value() const;
 };
 
 /// A table of presets, "[scene]", and its keys: what a list of fields says, as data. table(field, default) takes a key.
@@ -45,6 +56,7 @@ struct FieldTable {
     template <class T>
     void operator()(const Field& field, const T& by_default) {
         std::vector<std::string> choices(field.names.begin(), field.names.end());
+        if (choices.empty()) choices.assign(field.known.begin(), field.known.end());
         if constexpr (std::is_enum_v<T>) choices.assign(names_of<T>.begin(), names_of<T>.end());
         if constexpr (std::is_same_v<T, Panels>) {
             choices = {"pendulums"};
@@ -59,13 +71,18 @@ struct FieldTable {
     }
     static bool from_command_line(std::string_view) { return false; }
 
+    /// Takes the numbers that `other`, the same list beside other values, takes too.
+    void widen(const FieldTable& other);
+
+    /// "system" of "[system]", "colors" of "[video.colors]".
+    std::string_view key() const;
     /// A section of docs/presets.md, with those of the tables inside.
     std::string markdown() const;
 
 private:
     template <class T>
     static std::string default_text(const Field& field, const T& value) {
-        if (!field.needed_by.empty()) return "must be given";
+        if (!field.needed_by.empty()) return std::string(must_be_given);
         if constexpr (is_optional<T>)
             return field.absent.empty() ? "none" : std::string(field.absent);
         else
@@ -73,7 +90,8 @@ private:
     }
 };
 
-/// All tables of a film's preset.
+/// All tables of a film's preset: the keys outside of tables; [scene]; [system], [a], [b]; particles; the kinds of
+/// constraints and of forces; [video].
 std::vector<FieldTable> film_tables();
 
 }  // namespace doppel

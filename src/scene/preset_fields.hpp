@@ -66,9 +66,7 @@ inline const Field accuracy_field{"accuracy",
 /// The method, and the step or the tolerance that it goes by.
 template <class Visit, class Side>
 void method_fields(Visit& visit, Side& side) {
-    std::vector<std::string_view> names;
-    for (const auto& method : methods()) names.push_back(method.name);
-    visit({.key = "integrator", .help = "the method", .names = names}, side.integrator);
+    visit({.key = "integrator", .help = "the method", .names = names_of_methods()}, side.integrator);
     const bool adaptive = find_method(side.integrator)->adaptive;
     const auto only = [&](bool holds, const char* what) {
         return Only{
@@ -169,7 +167,7 @@ void format_fields(Visit& visit, Video& video) {
           video.transparent);
     visit({"preset", "of mp4 and webm: effort of the encoder", "", {}, "", encoded, "", encoder_presets}, video.preset);
     const auto quality = from_to(0, is_webm ? 63 : 51);
-    visit({"crf", "of mp4 and webm: lower is better; of webm up to 63", "", quality, "", encoded}, video.crf);
+    visit({"crf", "of mp4 and webm: lower is better; of mp4 up to 51", "", quality, "", encoded}, video.crf);
 }
 
 /// What is shown when.

@@ -1,6 +1,7 @@
 #include "figure/preset.hpp"
 
 #include "figure/part_file.hpp"
+#include "figure/refused_figures.hpp"
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>
@@ -149,18 +150,7 @@ TEST(FigurePreset, OfALogarithmOfRatiosTakesADistance) {
         << message;
 }
 
-struct Case {
-    std::string kind;   // of [scene]
-    std::string text;   // what follows, from line 3 on
-    std::string place;  // what the message begins with after the path
-    std::vector<std::string> words;
-};
-
-void PrintTo(const Case& c, std::ostream* out) {
-    *out << c.kind << ": " << c.text;
-}
-
-class FigureErrors : public testing::TestWithParam<Case> {};
+class FigureErrors : public testing::TestWithParam<RefusedFigure> {};
 
 /// "path:line:column: [table] key" and the rest.
 TEST_P(FigureErrors, NamePlaceValueAndRemedy) {
@@ -171,117 +161,15 @@ TEST_P(FigureErrors, NamePlaceValueAndRemedy) {
     for (const auto& words : c.words) EXPECT_NE(message.find(words), std::string::npos) << message;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Sweep, FigureErrors,
-    testing::Values(
-        Case{"sweep", "[sweep]\nstep = 0", ":4:1: [sweep] step", {"must be > 0; it is 0"}},
-        Case{"sweep", "[sweep]\nstep = -0.5", ":4:1: [sweep] step", {"must be > 0; it is -0.5"}},
-        Case{"sweep", "[sweep]\nfrom = 10\nto = 5", ":5:1: [sweep] to", {"it is 5"}},
-        Case{"sweep", "[sweep]\nto = 1e12", ":4:1: [sweep] to", {"it is 1000000000000"}},
-        Case{"sweep", "[sweep]\nparameter = \"theta1\"", ":4:1: [sweep] parameter", {"theta1_deg", "it is \"theta1\""}},
-        Case{"sweep", "[sweep]\nfrm = 1", ":4:1: [sweep] has no \"frm\"", {"did you mean \"from\"?"}},
-        Case{"sweep", "[sweep]\nfrom = \"1\"", ":4:1: [sweep] from", {"must be a number; it is a string (\"1\")"}},
-        Case{"sweep", "[sweep]\nfrom = nan", ":4:1: [sweep] from", {"must be finite; it is nan"}},
-        Case{"sweep", "[sweep]\nto = inf", ":4:1: [sweep] to", {"must be finite; it is inf"}},
-        Case{"sweep", "[sweep]\nexponent = 1", ":4:1: [sweep] exponent", {"must be true or false"}},
-        Case{"sweep",
-             "[sweep]\nexponent = true\nexponent_duration_s = -5",
-             ":5:1: [sweep] exponent_duration_s",
-             {"must be > 0"}},
-        Case{"sweep",
-             "[system]\nlinks = 1\n[sweep]\nparameter = \"mass_ratio\"",
-             ":6:1: [sweep] parameter",
-             {"2 links"}},
-        Case{"sweep", "[system]\nlenght_m = 3", ":4:1: [system] has no \"lenght_m\"", {"did you mean \"length_m\"?"}},
-        Case{"sweep", "[curves]\nquantity = \"distance\"", ":3:2: a preset has no \"curves\"", {}},
-        Case{"sweep", "[video]\nfps = 60", ":3:2: a preset has no \"video\"", {}},
-        Case{"sweep", "sample_hz = 7", ":3:1: [scene] sample_hz", {"must divide the step rate"}}));
+INSTANTIATE_TEST_SUITE_P(Sweep, FigureErrors, testing::ValuesIn(refused_figures_sweep));
 
-INSTANTIATE_TEST_SUITE_P(
-    Values, FigureErrors,
-    testing::Values(
-        Case{"sweep", "[sweep]\nparameter = \"mass_ratio\"\nfrom = 0\nto = 1", ":5:1: [sweep] from", {"> 0"}},
-        Case{"sweep", "[sweep]\nparameter = \"length_ratio\"\nfrom = -1\nto = 1", ":5:1: [sweep] from", {"> 0"}},
-        Case{"sweep", "[sweep]\nto = 1\nstep = 0.4", "", {"[sweep]", "step"}},
-        Case{"convergence", "[convergence]\nmethods = []", ":4:1: [convergence] methods", {}},
-        Case{"curves", "[[curve]]\ncolumn = \"x\"\n[[curve]]\ncolumn = \"x\"", ":6:1: [[curve]] 2 column", {"\"x\""}},
-        Case{"curves", "[[curve]]\ncolumn = \"time_s\"", ":4:1: [[curve]] 1 column", {"\"time_s\""}},
-        Case{"sweep",
-             "[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]\n[sweep]\nexponent = true",
-             ":8:1: [sweep] exponent",
-             {}},
-        Case{"section", "[system]\nangle_deg = [3, 3]", ":4:1: [system]", {"angle_deg"}}));
+INSTANTIATE_TEST_SUITE_P(Values, FigureErrors, testing::ValuesIn(refused_figures_values));
 
-INSTANTIATE_TEST_SUITE_P(
-    Chart, FigureErrors,
-    testing::Values(Case{"sweep", "[chart]\nsize = [0, 3]", ":4:1: [chart] size", {"it is [0, 3]"}},
-                    Case{"sweep", "[chart]\nscale = 9", ":4:1: [chart] scale", {"at most 8; it is 9"}},
-                    Case{"sweep", "[chart]\nscale = 0", ":4:1: [chart] scale", {"must be > 0; it is 0"}},
-                    Case{"sweep",
-                         "[chart]\ntheme = \"blue\"",
-                         ":4:1: [chart] theme",
-                         {"\"dark\", \"light\" or \"high-contrast\"; it is \"blue\""}},
-                    Case{"sweep", "[chart]\nfps = 3", ":4:1: [chart] has no \"fps\"", {}}));
+INSTANTIATE_TEST_SUITE_P(Chart, FigureErrors, testing::ValuesIn(refused_figures_chart));
 
-INSTANTIATE_TEST_SUITE_P(
-    Curves, FigureErrors,
-    testing::Values(
-        Case{"curves", "[curves]\nquantity = \"dist\"", ":4:1: [curves] quantity", {"\"distance\" or \"log_ratio\""}},
-        Case{"curves", "[[curve]]\nlabel = \"x\"", "", {"[[curve]] 1 column is missing"}},
-        Case{"curves", "[[curve]]\ncolumn = \"x\"\ncolour = 3", ":5:1: [[curve]] 1 has no \"colour\"", {}},
-        Case{"curves", "[[curve]]\ncolumn = \"x\"\nsystem.angle = [3, 3]", ":5:8: ", {"has no \"angle\""}},
-        Case{"curves", "[curves]\ncheck_tolerance = 1e-9", ":4:1: [curves] check_tolerance", {"a tolerance"}},
-        Case{"curves", "[curve]\ncolumn = \"x\"", ":3:2: curve", {"[[curve]]"}}));
+INSTANTIATE_TEST_SUITE_P(Curves, FigureErrors, testing::ValuesIn(refused_figures_curves));
 
-INSTANTIATE_TEST_SUITE_P(
-    Others, FigureErrors,
-    testing::Values(
-        Case{"sweep",
-             "[chart]\nscale = 0.001",
-             ":4:1: [chart] scale",
-             {"16 to 16384 px a side; 0.001 times 1600×900 px"}},
-        Case{"sweep", "[chart]\nscale = 8\nsize = [4000, 900]", ":4:1: [chart] scale", {"is 32000×7200"}},
-        Case{"sweep", "[sweep]\nfrom = 2e6\nto = 2e6", ":4:1: [sweep] from", {"from -1000000 to 1000000°"}},
-        Case{"sweep", "[sweep]\ndifference = -1e300", ":4:1: [sweep] difference", {"from -1000000 to 1000000°"}},
-        Case{"convergence",
-             "[convergence]\nmethods = [\"rk4\", \"rk4\"]",
-             ":4:1: [convergence] methods",
-             {"must differ"}},
-        Case{"drift", "[drift]\nmethods = [\"rk4\", \"rk4\"]", ":4:1: [drift] methods", {"must differ; \"rk4\""}},
-        Case{"drift", "[drift]\nprojected = [\"rk4\", \"rk4\"]", ":4:1: [drift] projected", {"must differ"}},
-        Case{"work-precision",
-             "[work_precision]\nmethods = [\"rk4\", \"rk4\"]",
-             ":4:1: [work_precision] methods",
-             {"must differ"}},
-        Case{"convergence", "[convergence]\nmethods = [\"magic\"]", ":4:1: [convergence] methods", {"\"magic\""}},
-        Case{"convergence",
-             "[convergence]\nmethods = [\"euler/dop853\"]",
-             ":4:1: [convergence] methods",
-             {"\"euler/dop853\""}},
-        Case{"convergence", "[convergence]\nhalvings = 0", ":4:1: [convergence] halvings", {"it is 0"}},
-        Case{"convergence", "[convergence]\nhalvings = 2.5", ":4:1: [convergence] halvings", {"a whole number"}},
-        Case{"spectrum", "[system]\nintegrator = \"rk4\"", ":4:1: [system] has no \"integrator\"", {}},
-        Case{"spectrum", "[system]\nmodel = \"angles\"", ":4:1: [system] has no \"model\"", {}},
-        Case{"spectrum", "[system]\nlinks = 5", "", {"1 to 4 links; there are 5"}},
-        Case{"spectrum", "[spectrum]\nsamples = 1", ":4:1: [spectrum] samples", {"it is 1"}},
-        Case{"spectrum", "[spectrum]\nduration_s = 0", ":4:1: [spectrum] duration_s", {"must be > 0"}},
-        Case{"spectrum", "duration_s = 3", ":3:1: [scene] has no \"duration_s\"", {}},
-        Case{"spectrum", "[a]\nlinks = 2", ":3:2: a preset has no \"a\"", {}},
-        Case{"section", "[section]\nenergy_J = []", ":4:1: [section] energy_J", {"1 to 6 numbers"}},
-        Case{"section", "[section]\nenergy_J = [1, -1]", ":4:1: [section] energy_J[1]", {"must be > 0; it is -1"}},
-        Case{"section", "[section]\nenergy_J = [1, 2, 3, 4, 5, 6, 7]", ":4:1: [section] energy_J", {"1 to 6 numbers"}},
-        Case{"section", "[system]\nlinks = 3", "", {"two links; there are 3"}},
-        Case{"section", "[system]\nprecision = \"quad\"", ":4:1: [system] has no \"precision\"", {}},
-        Case{"flip-map", "[system]\nangle_deg = [90, 90]", ":4:1: [system] angle_deg", {"flip map"}},
-        Case{"flip-map", "[system]\nlinks = 3", ":4:1: [system] links", {"flip map"}},
-        Case{"flip-map", "[system]\nstep_s = 0.1", ":4:1: [system] has no \"step_s\"", {}},
-        Case{"flip-map", "[flip_map]\ncolumns = 1", ":4:1: [flip_map] columns", {"from 2 to 20000; it is 1"}},
-        Case{"flip-map", "[flip_map]\nduration_s = 0", ":4:1: [flip_map] duration_s", {"must be > 0"}},
-        Case{"flip-map", "[flip_map]\nchecked = -1", ":4:1: [flip_map] checked", {"it is -1"}},
-        Case{"links", "[system]\nlinks = 2", "", {"one link"}},
-        Case{"links", "[system]\nlinks = 1\n[links]\nfrom = 5\nto = 3", ":7:1: [links] to", {"it is 3"}},
-        Case{"links", "[system]\nlinks = 1\nintegrator = \"rk4\"", ":5:1: [system] has no \"integrator\"", {}},
-        Case{"fractal", "", ":2:1: [scene] kind", {"\"sweep\"", "it is \"fractal\""}}));
+INSTANTIATE_TEST_SUITE_P(Others, FigureErrors, testing::ValuesIn(refused_figures_others));
 
 TEST(FigureErrors, OfTheTopAreNamed) {
     const std::string scene = "\n[scene]\nkind = \"spectrum\"";

@@ -1,0 +1,219 @@
+#include "figure/kinds.hpp"
+#include "figure/preset.hpp"
+#include "scene/manifest_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace doppel {
+namespace {
+
+/// A number of JSON: whole where it is.
+Json json_number(double number) {
+    constexpr double most = 1e15;
+    if (number == std::floor(number) && std::abs(number) < most) return std::llround(number);
+    return number;
+}
+
+Json number_schema(const Bounds& bounds) {
+    Json schema{{"type", "number"}};
+    if (bounds.has_low() || bounds.is_positive) {
+        schema["minimum"] = json_number(std::max(bounds.low, bounds.is_positive ? 0.0 : -Bounds::infinity));
+        if (bounds.is_open) schema["exclusiveMinimum"] = true;
+    }
+    if (bounds.has_high()) schema["maximum"] = json_number(bounds.high);
+    return schema;
+}
+
+Json list_schema(Json items, std::size_t least, std::size_t most) {
+    Json schema{{"type", "array"}, {"items", std::move(items)}};
+    if (least > 0) schema["minItems"] = least;
+    if (most > 0) schema["maxItems"] = most;
+    return schema;
+}
+
+Json text_schema(const ListedField& field) {
+    Json schema{{"type", "string"}};
+    if (!field.choices.empty()) schema["enum"] = field.choices;
+    if (field.is_needed()) schema["minLength"] = 1;
+    return schema;
+}
+
+/// A ratio is not negative.
+Json ratio_schema(Bounds bounds) {
+    constexpr std::string_view decimal = R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE]\+?-?[0-9]+)?)";
+    if (!bounds.has_low()) bounds.low = 0;
+    const auto pattern = fmt::format(R"(^(\+?{0}(/\+?{0})?|-{0}/-{0})$)", decimal);
+    return {{"anyOf", {number_schema(bounds), {{"type", "string"}, {"pattern", pattern}}}}};
+}
+
+/// What the reader of a key takes (scene/toml_reader.hpp), by type_words().
+Json value_schema(const ListedField& field) {
+    const auto number = number_schema(field.bounds);
+    auto whole = number;
+    whole["multipleOf"] = 1;
+    const Json color{{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}};
+    const auto pair = list_schema(number, 2, 2);
+    const auto is = [&](std::string_view words) { return field.type == words; };
+    if (is(type_words<bool>())) return {{"type", "boolean"}};
+    if (is(type_words<double>())) return number;
+    if (is(type_words<Rational>())) return ratio_schema(field.bounds);
+    if (is(type_words<std::vector<double>>()))
+        return field.most > 0 ? list_schema(number, 1, field.most)
+                              : Json{{"anyOf", {number, list_schema(number, 1, 0)}}};
+    if (field.is_list()) return list_schema(text_schema(field), is(type_words<Panels>()) ? 1 : 0, 0);
+    if (is(type_words<QuadPair>()) || is(type_words<Range>())) return pair;
+    if (is(type_words<EndSpec>())) return {{"anyOf", {text_schema(field), pair}}};
+    if (is(type_words<Size>())) return list_schema(whole, 2, 2);
+    if (is(type_words<Color>())) return color;
+    if (is(type_words<std::array<Color, 2>>())) return list_schema(color, 2, 2);
+    if (is(type_words<std::string>())) return text_schema(field);
+    if (!is(type_words<int>())) throw std::logic_error(fmt::format("no schema of \"{}\"", field.type));
+    auto schema = number;
+    schema["type"] = "integer";
+    return schema;
+}
+
+/// "a whole number of samples. Unit: s. Range: > 0. Default: 30."
+std::string description_of(const ListedField& field) {
+    auto text = fmt::format("{}.", field.help);
+    if (!field.unit.empty()) text += fmt::format(" Unit: {}.", field.unit);
+    if (const auto range = field.range_text(); !range.empty()) text += fmt::format(" Range: {}.", range);
+    return text + (field.is_needed() ? " Must be given." : fmt::format(" Default: {}.", field.by_default));
+}
+
+Json key_schema(const ListedField& field) {
+    auto schema = value_schema(field);
+    schema["title"] = field.unit.empty() ? std::string(field.key) : fmt::format("{}, {}", field.key, field.unit);
+    schema["description"] = description_of(field);
+    if (const auto value = field.default_value(); !value.empty())
+        schema["default"] = json_of_toml("value = " + value)["value"];
+    return schema;
+}
+
+Json table_schema(const FieldTable& table) {
+    Json properties = Json::object();
+    for (const auto& field : table.fields) properties[std::string(field.key)] = key_schema(field);
+    for (const auto& inner : table.tables) properties[std::string(inner.key())] = table_schema(inner);
+    return {{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
+}
+
+Json reference(std::string_view definition) {
+    return {{"$ref", fmt::format("#/definitions/{}", definition)}};
+}
+
+Json needed_keys(const FieldTable& table) {
+    Json keys = Json::array();
+    for (const auto& field : table.fields)
+        if (field.is_needed()) keys.push_back(field.key);
+    return keys;
+}
+
+/// "rod" of "[[system.constraint]] kind = "rod"".
+std::string part_kind(const FieldTable& table) {
+    const auto quote = table.name.find('"');
+    return table.name.substr(quote + 1, table.name.rfind('"') - quote - 1);
+}
+
+/// An entry of [[system.constraint]] or [[system.force]]. One with the name of an earlier one may say less: it changes it.
+Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, bool may_change) {
+    Json kinds = Json::array();
+    for (const auto& table : film) {
+        if (!table.name.starts_with(fmt::format("[[system.{}]]", key))) continue;
+        auto schema = table_schema(table);
+        Json properties{{"kind", {{"enum", {part_kind(table)}}, {"title", "kind"}}}};
+        properties.update(schema["properties"]);
+        schema["properties"] = properties;
+        auto needed = needed_keys(table);
+        needed.push_back("kind");
+        if (may_change)
+            schema["anyOf"] = {{{"required", {"name"}}}, {{"required", needed}}};
+        else
+            schema["required"] = needed;
+        kinds.push_back(std::move(schema));
+    }
+    return {{"anyOf", std::move(kinds)}};
+}
+
+/// [system], or [a] and [b], which change what stands there.
+Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
+    auto schema = table_schema(film[2]);
+    auto particle = table_schema(film[3]);
+    particle["required"] = needed_keys(film[3]);
+    schema["properties"]["particle"] = list_schema(particle, 0, 0);
+    for (const auto* key : {"constraint", "force"})
+        schema["properties"][key] = list_schema(entry_schema(film, key, may_change), 0, 0);
+    return schema;
+}
+
+/// [[curve]]: its keys, and sides on top of those of the preset.
+Json entries_schema(const FieldTable& table) {
+    auto entry = table_schema(table);
+    entry["required"] = needed_keys(table);
+    for (const auto* side : {"system", "a", "b"}) entry["properties"][side] = reference("side");
+    return list_schema(entry, 0, 0);
+}
+
+bool is_of_entries(const FieldTable& table) {
+    return table.name.starts_with("[[");
+}
+
+/// Which tables, and which keys of those that differ from kind to kind, a preset of this kind may have. What they hold
+/// is not said again.
+Json kind_schema(std::string_view kind) {
+    Json tables = Json::object();
+    for (const auto& table : tables_of(kind)) {
+        Json keys = Json::object();
+        for (const auto& field : table.fields) keys[std::string(field.key)] = Json::object();
+        const bool differs =
+            table.key() == "scene" || table.key() == "chart" || (table.key() == "system" && table.name == "[system]");
+        if (table.key().empty())
+            tables.update(keys);
+        else if (!differs)
+            tables[std::string(table.key())] = Json::object();
+        else
+            tables[std::string(table.key())] = {{"properties", keys}, {"additionalProperties", false}};
+    }
+    if (tables.contains("a")) tables["system"] = Json::object();
+    tables["scene"]["properties"]["kind"] = {{"enum", {kind}}};
+    Json schema{{"properties", std::move(tables)}, {"additionalProperties", false}};
+    if (kind == pair_kind) return schema;
+    schema["required"] = {"scene"};
+    schema["properties"]["scene"]["required"] = {"kind"};
+    return schema;
+}
+
+}  // namespace
+
+std::string preset_schema() {
+    const auto film = film_tables();
+    Json properties = Json::object(), kinds = Json::array();
+    for (const auto kind : scene_kinds) {
+        kinds.push_back(kind_schema(kind));
+        for (const auto& table : tables_of(kind)) {
+            const auto schema = is_of_entries(table) ? entries_schema(table) : table_schema(table);
+            if (table.key().empty())
+                properties.update(schema["properties"]);
+            else if (auto& known = properties[std::string(table.key())]; known.is_null())
+                known = schema;
+            else  // what another kind knows of the same table: of [chart] and [system] some know more
+                for (const auto& [key, value] : schema["properties"].items())
+                    if (!known["properties"].contains(key)) known["properties"][key] = value;
+        }
+    }
+    properties["system"] = reference("system");
+    properties["a"] = properties["b"] = reference("side");
+    const Json schema{{"$schema", "http://json-schema.org/draft-04/schema#"},
+                      {"title", "Preset of Doppel"},
+                      {"description", "A film of two pendulums, or a figure: docs/presets.md."},
+                      {"type", "object"},
+                      {"additionalProperties", false},
+                      {"properties", std::move(properties)},
+                      {"anyOf", std::move(kinds)},
+                      {"definitions", {{"system", side_schema(film, false)}, {"side", side_schema(film, true)}}}};
+    return schema.dump(2) + "\n";
+}
+
+}  // namespace doppel

@@ -1,0 +1,64 @@
+// The schema of presets, and the line by which editors find it. With the real program.
+#include "cli/sandbox.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace doppel {
+namespace schema_test {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+const fs::path source = DOPPEL_SOURCE_DIR;
+
+TEST(Schema, IsPrinted) {
+    const auto printed = doppel(fresh_folder(), {"schema"});
+    EXPECT_EQ(printed.code, 0);
+    EXPECT_EQ(printed.out, bytes_of(source / "presets/preset.schema.json"));
+    EXPECT_EQ(nlohmann::json::parse(printed.out)["$schema"], "http://json-schema.org/draft-04/schema#");
+}
+
+TEST(Schema, LineOfAShownPresetIsRightForACopy) {
+    const auto folder = fresh_folder();
+    const auto whole = bytes_of(source / "presets/butterfly.toml");
+    const auto rest = whole.substr(whole.find('\n') + 1);
+    EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out, rest);  // there is no schema
+    fs::create_directories(folder / "presets");
+    fs::copy_file(source / "presets/preset.schema.json", folder / "presets/preset.schema.json");
+    EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out, "#:schema ./presets/preset.schema.json\n" + rest);
+    write_bytes(folder / "mine.toml", whole);
+    EXPECT_EQ(doppel(folder, {"show", "mine.toml"}).out, whole);  // one's own stays as it is
+    // as a package has it
+    fs::create_directories(folder / "usr/bin");
+    fs::create_directories(folder / "usr/share/doppel");
+    fs::rename(folder / "presets/preset.schema.json", folder / "usr/share/doppel/preset.schema.json");
+    fs::copy_file(DOPPEL_PROGRAM, folder / "usr/bin/doppel");
+    const auto installed = wait_for(start_program(folder, (folder / "usr/bin/doppel").c_str(), {"show", "butterfly"}));
+    EXPECT_EQ(installed, 0);
+    EXPECT_EQ(bytes_of(folder / "stdout"),
+              "#:schema file://" + (folder / "usr/share/doppel/preset.schema.json").string() + "\n" + rest);
+}
+
+TEST(Schema, LineThatIsWrongIsToldInOneLine) {
+    const auto folder = fresh_folder();
+    const auto note = [&](const std::string& line) {
+        write_bytes(folder / "mine.toml", "# mine\n" + line + "\n[system]\nintegrator = \"taylor\"\n");
+        const auto result = doppel(folder, {"check", "mine.toml", "--set", "scene.duration_s=0.1"});
+        EXPECT_EQ(result.code, 0) << result.err;
+        const auto end = result.out.find("\n") + 1;
+        return result.out.starts_with("mine.toml:") ? result.out.substr(0, end) : "";
+    };
+    const std::string remedy = "; \"doppel schema\" prints the one that editors want\n";
+    EXPECT_EQ(note("#:schema ./none.json"),
+              "mine.toml:2:1: #:schema names ./none.json, and there is no such file" + remedy);
+    write_bytes(folder / "other.json", "{}");
+    EXPECT_EQ(note("#:schema other.json"),
+              "mine.toml:2:1: #:schema names other.json, which is not this program's schema" + remedy);
+    EXPECT_EQ(note("#:schema https://example.org/x.json"), "");
+    EXPECT_EQ(note("# no schema"), "");
+    EXPECT_EQ(note("#:schema " + (source / "presets/preset.schema.json").string()), "");
+    EXPECT_EQ(note("#:schema file://" + (source / "presets/preset.schema.json").string() + " "), "");
+}
+
+}  // namespace schema_test
+}  // namespace doppel

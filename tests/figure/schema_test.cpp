@@ -1,0 +1,133 @@
+// The schema of presets takes what the reader takes, and refuses what a schema can refuse.
+#include "figure/json_schema.hpp"
+#include "figure/kinds.hpp"
+#include "figure/refused_figures.hpp"
+#include "figure/support.hpp"
+#include "fuzz/mutation.hpp"
+#include "scene/manifest_json.hpp"
+#include "scene/refused_presets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+namespace doppel {
+namespace schema_test {
+
+namespace fs = std::filesystem;
+
+const test::JsonSchema& schema() {
+    static const test::JsonSchema known(Json::parse(preset_schema()));
+    return known;
+}
+
+/// Whether it accepts the text as TOML.
+bool accepts(const std::string& text) {
+    return schema().accepts(json_of_toml(text));
+}
+
+/// The reader's refusal; empty where it reads the text.
+std::string refusal_of(const std::string& text) {
+    const PresetText preset{"x", "presets/x.toml", text, "x"};
+    const auto [code, message] = error_of([&] {
+        if (is_figure(preset))
+            read_figure(preset);
+        else
+            read_preset(preset);
+    });
+    return code == ExitCode::done ? "" : message;
+}
+
+/// Whether the message is of one key alone, whatever the others say: then a schema can refuse its value, too.
+bool is_of_one_key(const std::string& message) {
+    static const std::regex one_key(
+        R"( has no "|must be (a |an |true|whole numbers|two |from |at most |> |≥ |"|colours|written as|names of)|may hold|must hold at least|must have 2 colours| is missing; )"
+        R"(|of 1 to \d+ numbers)");
+    // what more than the key decides: the values of others, the font, how long a number is
+    static const std::regex of_more(
+        R"(one a link|must be at most \d+ samples|at most 1000 and|from 1 to \d+, as|\[system\] gravity|\[video\] crf must be from 0 to 51|must be "mechanism" or|\[links\] to must|°|must be that of|must be higher|or "one/other"|more digits|a fraction such as .*e-?[0-9]{3}|whole number of samples|"from" and at most|as ratios are|title is missing)");
+    return std::regex_search(message, one_key) && !std::regex_search(message, of_more);
+}
+
+TEST(Schema, IsThatOfTheLists) {
+    const fs::path path = DOPPEL_SOURCE_DIR "/presets/preset.schema.json";
+    if (std::getenv("DOPPEL_UPDATE_REFERENCE")) test::write_bytes(path, preset_schema());
+    EXPECT_EQ(test::bytes_of(path), preset_schema()) << "tests/update-reference makes it anew";
+}
+
+TEST(Schema, AcceptsEveryPresetAsItIsAndResolved) {
+    for (const auto& preset : builtin_presets()) {
+        EXPECT_TRUE(accepts(preset.text)) << preset.path;
+        const auto resolved = is_figure(preset) ? read_figure(preset).resolved() : resolved_toml(read_preset(preset));
+        EXPECT_TRUE(accepts(resolved)) << preset.path << "\n" << resolved;
+        EXPECT_TRUE(preset.text.starts_with(is_figure(preset) ? "#:schema ../preset.schema.json\n"
+                                                              : "#:schema ./preset.schema.json\n"))
+            << preset.path;
+    }
+}
+
+TEST(Schema, RefusesWhatTheReaderRefusesOfOneKey) {
+    std::vector<std::pair<std::string, std::string>> refused;  // texts and messages
+    for (const auto& list : {refused_keys, refused_system, refused_rates, refused_video})
+        for (const auto& preset : list) refused.emplace_back(preset.text, preset.message);
+    for (const auto& preset : refused_video_keys)
+        refused.emplace_back(std::string("[video]\n") + preset.text, preset.message);
+    for (const auto& list : {refused_figures_sweep, refused_figures_values, refused_figures_chart,
+                             refused_figures_curves, refused_figures_others})
+        for (const auto& figure : list) {
+            const auto text = "[scene]\nkind = \"" + figure.kind + "\"\n" + figure.text;
+            refused.emplace_back(text, refusal_of(text));
+        }
+    int caught = 0;
+    for (const auto& [text, message] : refused) {
+        if (message.find("Error while parsing") != std::string::npos) continue;
+        const bool is_refused = !accepts(text);
+        caught += is_refused;
+        EXPECT_TRUE(is_refused || !is_of_one_key(message)) << text << "\n" << message;
+    }
+    EXPECT_GE(caught, 89) << "of " << refused.size();
+}
+
+/// What the reader takes, the schema takes; where it refuses one key's value, so does the schema.
+TEST(Schema, AgreesWithTheReaderOnMutations) {
+    constexpr int mutations = 60;  // of each preset
+    std::vector<std::string> texts;
+    for (const auto& preset : builtin_presets()) texts.push_back(preset.text);
+    const auto tokens = test::tokens_of(texts);
+    std::mt19937 random(2026);
+    int read = 0, refused = 0;
+    for (const auto& text : texts)
+        for (int i = 0; i < mutations; ++i) {
+            const auto mutated = test::mutated(text, tokens, random);
+            std::string message;
+            Json value;
+            try {
+                value = json_of_toml(mutated);
+                message = refusal_of(mutated);
+            } catch (const std::exception&) {
+                continue;  // no TOML
+            }
+            ++(message.empty() ? read : refused);
+            if (message.empty()) {
+                EXPECT_TRUE(schema().accepts(value)) << mutated;
+            } else if (is_of_one_key(message)) {
+                EXPECT_FALSE(schema().accepts(value)) << message << "\n" << mutated;
+            }
+        }
+    EXPECT_GT(read, 100);
+    EXPECT_GT(refused, 100);
+}
+
+TEST(Schema, KeepsKindsApart) {
+    EXPECT_TRUE(accepts(""));
+    EXPECT_TRUE(accepts("[scene]\nkind = \"links\""));
+    EXPECT_FALSE(accepts("[links]"));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[video]"));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[sweep]"));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[chart]\ncost = \"time\""));
+    EXPECT_TRUE(accepts("[scene]\nkind = \"work-precision\"\n[chart]\ncost = \"time\""));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"audit\"\n[system]"));
+}
+
+}  // namespace schema_test
+}  // namespace doppel

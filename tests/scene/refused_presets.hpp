@@ -1,0 +1,208 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+// Presets that are refused, and how: the reader's tests go through them, and those of the schema.
+
+namespace doppel {
+
+/// Its text, presets/x.toml, and the error's message, all of it.
+struct RefusedPreset {
+    const char *text, *message;
+};
+
+inline void PrintTo(const RefusedPreset& c, std::ostream* out) {
+    *out << c.text;
+}
+
+inline const std::vector<RefusedPreset> refused_keys{
+    RefusedPreset{"[system]\nlenght_m = [1, 1]",
+                  R"(presets/x.toml:2:1: [system] has no "lenght_m"; did you mean "length_m"?)"},
+    RefusedPreset{"titel = \"x\"", R"(presets/x.toml:1:1: a preset has no "titel"; did you mean "title"?)"},
+    RefusedPreset{"[vidoe]\nfps = 3", R"(presets/x.toml:1:2: a preset has no "vidoe"; did you mean "video"?)"},
+    RefusedPreset{"[scene]\nzzzzzzzz = 1",
+                  R"(presets/x.toml:2:1: [scene] has no "zzzzzzzz"; it has duration_s, kind, sample_hz)"},
+    RefusedPreset{"scene = 3", "presets/x.toml:1:1: scene must be a table; it is a whole number (3)"},
+    RefusedPreset{"[scene", "presets/x.toml:1:7: Error while parsing table header: encountered end-of-file"}};
+
+inline const std::vector<RefusedPreset> refused_system{
+    RefusedPreset{"[b]\n\nmass_kg = [1, -1]", "presets/x.toml:3:1: [b] mass_kg[1] must be > 0; it is -1"},
+    RefusedPreset{"[system]\nlength_m = [0, 1]", "presets/x.toml:2:1: [system] length_m[0] must be > 0; it is 0"},
+    RefusedPreset{"[a]\nangle_deg = [1, nan]", "presets/x.toml:2:1: [a] angle_deg[1] must be finite; it is nan"},
+    RefusedPreset{"[system]\nomega_deg_per_s = [inf, 0]",
+                  "presets/x.toml:2:1: [system] omega_deg_per_s[0] must be finite; it is inf"},
+    RefusedPreset{"[system]\nangle_deg = [1, 2, 3]",
+                  "presets/x.toml:2:1: [system] angle_deg must have 2 numbers, one a link; it has 3: [1, 2, 3]"},
+    RefusedPreset{
+        "[system]\nangle_deg = \"90\"",
+        "presets/x.toml:2:1: [system] angle_deg must be a number, or an array of 2 numbers, one a link; it is a "
+        "string (\"90\")"},
+    RefusedPreset{"[system]\nangle_deg = [90, \"90\"]",
+                  "presets/x.toml:2:1: [system] angle_deg[1] must be a number; it is a string (\"90\")"},
+    RefusedPreset{"[system]\ngravity_m_per_s2 = 0",
+                  "presets/x.toml:2:1: [system] gravity_m_per_s2 must be > 0; it is 0"},
+    RefusedPreset{"[system]\ngravity_m_per_s2 = true",
+                  "presets/x.toml:2:1: [system] gravity_m_per_s2 must be a number; it is a boolean (true)"},
+    RefusedPreset{
+        "[b]\nlinks = 3",
+        "presets/x.toml:2:1: [b] links must be that of the other side, so that the two can be compared; they are 2 "
+        "and 3"},
+    RefusedPreset{"[system]\nlinks = 2.0",
+                  "presets/x.toml:2:1: [system] links must be a whole number; it is a decimal number (2)"},
+    RefusedPreset{"[system]\nlinks = 0", "presets/x.toml:2:1: [system] links must be from 1 to 10000; it is 0"},
+    RefusedPreset{
+        "[system]\nmodel = \"angels\"",
+        R"(presets/x.toml:2:1: [system] model must be "auto", "angles", "constraints" or "mechanism"; it is "angels"; did you mean "angles"?)"},
+    RefusedPreset{
+        "[system]\nintegrator = \"magic\"",
+        R"(presets/x.toml:2:1: [system] integrator must be "euler", "semi-implicit-euler", "midpoint", "rk4", "dopri5", "dop853", "adams", "gauss4", "gauss6", "taylor", "rattle" or "rattle6"; it is "magic")"},
+    RefusedPreset{"[system]\nintegrator = 4",
+                  "presets/x.toml:2:1: [system] integrator must be a string; it is a whole number (4)"},
+    RefusedPreset{"[system]\nprecision = \"half\"",
+                  R"(presets/x.toml:2:1: [system] precision must be "double" or "quad"; it is "half")"},
+    RefusedPreset{
+        "[system]\nintegrator = \"taylor\"\nstep_s = 0.1",
+        R"(presets/x.toml:3:1: [system] step_s is for methods with a fixed step; "taylor" goes by tolerance)"},
+    RefusedPreset{"[system]\nintegrator = \"dop853\"\ntolerance = 0",
+                  "presets/x.toml:3:1: [system] tolerance must be > 0; it is 0"},
+    RefusedPreset{
+        "[system]\nmodel = \"angles\"\nintegrator = \"rattle\"",
+        R"(presets/x.toml:3:1: [system] integrator "rattle" serves constraints and mechanism, not model = "angles")"},
+    RefusedPreset{"[system]\nmodel = \"constraints\"\nintegrator = \"gauss6\"",
+                  R"(presets/x.toml:3:1: [system] integrator "gauss6" serves angles, not model = "constraints")"},
+    RefusedPreset{"[system]\nstabilise = \"baumgarte\"\nmodel = \"angles\"",
+                  "presets/x.toml:2:1: [system] stabilise is for constraints; in angles the rods keep their length by "
+                  "themselves"},
+    RefusedPreset{"[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
+                  R"(presets/x.toml:2:1: [system] stabilise is not for "rattle6", which keeps the constraints itself)"},
+    RefusedPreset{
+        "[system]\nstabilise = \"tape\"",
+        R"(presets/x.toml:2:1: [system] stabilise must be "none", "baumgarte" or "projection"; it is "tape")"},
+    RefusedPreset{"[system]\ntolerance = 1e-9",
+                  R"(presets/x.toml:2:1: [system] tolerance is for adaptive methods; "euler" goes by step_s)"},
+    RefusedPreset{
+        "[system]\nstep_s = \"fast\"",
+        "presets/x.toml:2:1: [system] step_s must be a number or a fraction such as \"1/30000\"; it is \"fast\""},
+    RefusedPreset{"[system]\nstep_s = -0.1", "presets/x.toml:2:1: [system] step_s must be > 0; it is -0.1"},
+    RefusedPreset{"[system]\nstep_s = 1e-300",
+                  "presets/x.toml:2:1: [system] step_s has more digits than Doppel counts with; it is 1e-300"}};
+
+inline const std::vector<RefusedPreset> refused_rates{
+    RefusedPreset{
+        "[scene]\nsample_hz = 7",
+        "presets/x.toml:2:1: [scene] sample_hz must divide the step rate, 30000 Hz on side a; it is 7; 6 or 8 "
+        "would do"},
+    RefusedPreset{
+        "[b]\nstep_s = \"1/100\"",
+        "presets/x.toml: [scene] sample_hz must divide the step rate, 100 Hz on side b; it is 120; 100 would do"},
+    RefusedPreset{"[scene]\nduration_s = 0", "presets/x.toml:2:1: [scene] duration_s must be > 0; it is 0"},
+    RefusedPreset{
+        "[scene]\nduration_s = 0.01",
+        "presets/x.toml:2:1: [scene] duration_s must be a whole number of samples at 120 Hz; 1/100 s are 6/5"},
+    RefusedPreset{"[scene]\nduration_s = 1e12",
+                  "presets/x.toml:2:1: [scene] duration_s must be at most 100000000 samples; it is 120000000000000"},
+    RefusedPreset{
+        "[scene]\nkind = \"trio\"",
+        R"(presets/x.toml:2:1: [scene] kind must be "pair", "sweep", "curves", "convergence", "spectrum", "section", "flip-map", "links", "work-precision", "stability", "drift" or "audit"; it is "trio")"},
+    RefusedPreset{
+        "[video]\nfps = 50",
+        "presets/x.toml:2:1: [video] fps must divide sample_hz · speed = 120, so that each frame is a sample; it "
+        "is 50"},
+    RefusedPreset{
+        "[scene]\nduration_s = 0.025\n[video]\nfps = 60",
+        "presets/x.toml:4:1: [video] fps must let the last of 3 samples be a frame; with 60 one sample in 2 is "
+        "one"},
+    RefusedPreset{
+        "[video]\nspeed = 30",
+        "presets/x.toml: [video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is "
+        "3600"}};
+
+inline const std::vector<RefusedPreset> refused_video{
+    RefusedPreset{
+        "[video]\nsize = [641, 360]",
+        "presets/x.toml:2:1: [video] size must be even, as H.264 needs it in yuv420p; it is [641, 360]; [642, "
+        "360] would do"},
+    RefusedPreset{"[video]\nsize = [0, 100]",
+                  "presets/x.toml:2:1: [video] size must be whole numbers from 64 to 16384; it is [0, 100]"},
+    RefusedPreset{"[video]\nformat = \"avi\"",
+                  R"(presets/x.toml:2:1: [video] format must be "mp4", "webm", "gif", "apng" or "png"; it is "avi")"},
+    RefusedPreset{"[video]\ncrf = 60", "presets/x.toml:2:1: [video] crf must be from 0 to 51; it is 60"},
+    RefusedPreset{
+        "[video]\ntheme = \"drak\"",
+        R"(presets/x.toml:2:1: [video] theme must be "dark", "light" or "high-contrast"; it is "drak"; did you mean "dark"?)"},
+    RefusedPreset{
+        "[video]\npreset = \"quick\"",
+        R"(presets/x.toml:2:1: [video] preset must be "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower" or "veryslow"; it is "quick")"},
+    RefusedPreset{"[video]\nside_colors = [\"red\", \"#0000ff\"]",
+                  R"(presets/x.toml:2:1: [video] side_colors must be colours such as "#ff9f40"; [0] is "red")"},
+    RefusedPreset{"[video]\nside_colors = [\"#0000ff\"]",
+                  "presets/x.toml:2:1: [video] side_colors must have 2 colours, a and b; it has 1"},
+    RefusedPreset{"[video]\nside_colors = [1, 2]",
+                  "presets/x.toml:2:1: [video] side_colors must be an array of strings; 1 is a whole number"},
+    RefusedPreset{
+        "[video]\npanels = []",
+        R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force")"},
+    RefusedPreset{
+        "[video]\npanels = [\"phase\"]",
+        R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force"; "phase" is none of them)"},
+    RefusedPreset{"[video]\npanels = \"energy\"",
+                  "presets/x.toml:2:1: [video] panels must be an array of strings; it is a string (\"energy\")"},
+    RefusedPreset{"[video]\ntrail_s = -1",
+                  "presets/x.toml:2:1: [video] trail_s must be from 0 (none) to 3600; it is -1"},
+    RefusedPreset{"[video]\ndistance_range = [1, 2]",
+                  "presets/x.toml:2:1: [video] distance_range must rise by 1 to 60 powers of ten; it is [1, 2]"}};
+
+// The text is that of [video]; the message follows the place of the key and "[video] ".
+
+inline const std::vector<RefusedPreset> refused_video_keys{
+    RefusedPreset{
+        "layout = \"fan\"",
+        R"([video] layout must be "side-by-side", "overlay", "ensemble", "phase" or "portrait"; it is "fan")"},
+    RefusedPreset{"members = 5", R"([video] members is of the layout "ensemble"; it is "side-by-side")"},
+    RefusedPreset{"members = 1\nlayout = \"ensemble\"", "[video] members must be from 2 to 1000; it is 1"},
+    RefusedPreset{"phase_link = 3\nlayout = \"phase\"",
+                  "[video] phase_link must be from 1 to 2, as there are links; it is 3"},
+    RefusedPreset{
+        "panels = [\"distnce\"]",
+        R"([video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force"; "distnce" is none of them)"},
+    RefusedPreset{"panels = [\"distance\"]\nlayout = \"overlay\"",
+                  R"([video] panels must hold "pendulums" for the layout "overlay")"},
+    RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must rise; it is [1, 1]"},
+    RefusedPreset{"size = [1280, 720]\nlayout = \"portrait\"",
+                  R"([video] size must be higher than wide for the layout "portrait"; it is [1280, 720])"},
+    RefusedPreset{"size = [301, 200]",
+                  "[video] size must be even, as H.264 needs it in yuv420p; it is [301, 200]; [302, 200] would do"},
+    RefusedPreset{"codec = \"av1\"", R"([video] codec is a choice of webm; the format is "mp4")"},
+    RefusedPreset{"pixel_format = \"yuv444p\"\nformat = \"gif\"",
+                  R"([video] pixel_format is of mp4 and webm; the format is "gif")"},
+    RefusedPreset{"crf = 20\nformat = \"png\"", R"([video] crf is of mp4 and webm; the format is "png")"},
+    RefusedPreset{"preset = \"slow\"\nformat = \"apng\"", R"([video] preset is of mp4 and webm; the format is "apng")"},
+    RefusedPreset{
+        "transparent = true",
+        R"([video] transparent takes a format with opacity: png, apng, or webm (VP9, yuv420p); the format is "mp4")"},
+    RefusedPreset{"poster_s = 0.001",
+                  "[video] poster_s must be the time of a frame, a multiple of 1/120 s up to 30 s; it is 1/1000"},
+    RefusedPreset{"contact_sheet = [0, 4]",
+                  "[video] contact_sheet must be two whole numbers from 1 to 32; it is [0, 4]"},
+    RefusedPreset{"contact_sheet = [4, 33]",
+                  "[video] contact_sheet must be two whole numbers from 1 to 32; it is [4, 33]"},
+    RefusedPreset{"hold_end_s = -1", "[video] hold_end_s must be ≥ 0; it is -1"},
+    RefusedPreset{"title_card_s = 4000", "[video] title_card_s must be from 0 (none) to 3600; it is 4000"},
+    RefusedPreset{"glow_px = -1", "[video] glow_px must be from 0 (none) to 100; it is -1"},
+    RefusedPreset{"trail_s = 1\nlayout = \"ensemble\"",
+                  R"([video] trail_s must be 0 for the layout "ensemble", whose members leave no trails; it is 1)"},
+    RefusedPreset{"glow_px = 2\nlayout = \"ensemble\"",
+                  R"([video] glow_px must be 0 for the layout "ensemble", whose members leave no trails; it is 2)"},
+    RefusedPreset{"trail_s = nan", "[video] trail_s must be finite; it is nan"},
+    RefusedPreset{"theme = \"drak\"",
+                  R"([video] theme must be "dark", "light" or "high-contrast"; it is "drak"; did you mean "dark"?)"},
+    RefusedPreset{"colors.backgruond = \"#000000\"",
+                  R"([video.colors] has no "backgruond"; did you mean "background"?)"},
+    RefusedPreset{"colors.background = 3",
+                  "[video.colors] background must be a colour such as \"#ff9f40\"; it is a whole number (3)"},
+    RefusedPreset{"widths_px.trail = 1000", "[video.widths_px] trail must be from 0 to 200 px; it is 1000"},
+    RefusedPreset{"fonts_px.title = 1", "[video.fonts_px] title must be from 4 to 400 px; it is 1"}};
+
+}  // namespace doppel
