@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CompareOptions {
-    std::string expected, actual, out = "out", junit;
+    std::string expected, actual, out = "out", junit, html;
 };
 
 fs::path folder_in(const fs::path& out) {
@@ -139,7 +139,9 @@ bool compare(const CompareOptions& options) {
     if (folders != fs::is_directory(options.actual))
         throw bad_input("{} is a folder and {} is none; compare takes two pictures or two folders",
                         folders ? options.expected : options.actual, folders ? options.actual : options.expected);
-    Report junit(options.junit);
+    const auto is_one_file = fs::path(options.junit).lexically_normal() == fs::path(options.html).lexically_normal();
+    if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
+    Report junit(options.junit), html(options.html);
     Comparison comparison{options.expected, options.actual, {}};
     std::optional<Error> first_fault;
     if (folders) {
@@ -152,6 +154,7 @@ bool compare(const CompareOptions& options) {
         comparison.pictures.push_back(std::move(pair));
     }
     junit.publish(write_junit, comparison);
+    html.publish(write_compare_page, comparison);
     if (!first_fault) return comparison.count(Match::passes) == std::ssize(comparison.pictures);
     if (!folders) throw Error(*first_fault);
     throw Error(first_fault->code(),
@@ -183,6 +186,10 @@ void add_compare(CLI::App& app, int& exit_code) {
         ->type_name("DIR")
         ->capture_default_str();
     command.add_option("--junit", options->junit, "Also writes a report for test servers: JUnit's XML")
+        ->type_name("FILE");
+    command
+        .add_option("--html", options->html,
+                    "Also writes a page that shows expected, actual and difference of what differs, with a slider")
         ->type_name("FILE");
     command.callback([options, &exit_code] {
         if (!compare(*options)) exit_code = static_cast<int>(ExitCode::differs);

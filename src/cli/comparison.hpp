@@ -39,4 +39,9 @@ std::string markup(std::string_view text);
 /// that cannot be read an error. Throws Error (exit 4) where it cannot be written.
 void write_junit(const FilePlace& place, const Comparison& comparison);
 
+/// One page of HTML that needs nothing else: the summary, and every picture that differs as expected, actual and
+/// difference × 16, with a slider between the first two. Of a page over 100 MB the rest is named, not shown. Reads the
+/// pictures that differ again, one at a time. Throws Error (exit 4).
+void write_compare_page(const FilePlace& place, const Comparison& comparison);
+
 }  // namespace doppel

@@ -102,7 +102,8 @@ TEST(CompareJunit, OfTwoPicturesAndOfNoDifference) {
 TEST(CompareReports, ReplaceOnlyTheirOwn) {
     const auto folder = fresh_folder();
     make(folder / "one.png", plain(10));
-    for (const std::string option : {"--junit"}) {
+    for (const std::string option : {"--junit", "--html"}) {
+        fs::remove(folder / "mine");
         const auto run = [&](const std::string& file) {
             return doppel(folder, {"compare", "one.png", "one.png", option, file});
         };
@@ -118,6 +119,7 @@ TEST(CompareReports, ReplaceOnlyTheirOwn) {
         EXPECT_EQ(run("folder/").code, 2);
         EXPECT_EQ(run("/proc/no/report").code, 4);
     }
+    EXPECT_EQ(doppel(folder, {"compare", "one.png", "one.png", "--html", "a/../b", "--junit", "./b"}).code, 2);
 }
 
 }  // namespace compare_report_test
