@@ -1,17 +1,20 @@
+#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "cli/comparison.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
-#include "image/golden.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -19,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CompareOptions {
-    std::string expected, actual, out = "out";
+    std::string expected, actual, out = "out", junit, html;
 };
 
 fs::path folder_in(const fs::path& out) {
@@ -40,26 +43,42 @@ void remove_difference(const fs::path& folder, const std::string& name) {
     if (maker_of_picture(pictures, name) == maker) pictures.remove(name);
 }
 
-/// True if they pass; else says why and writes the difference picture.
-bool same(const fs::path& expected_path, const fs::path& actual_path, const fs::path& out) {
-    const auto expected = read_png(expected_path), actual = read_png(actual_path);
+/// Compares one pair, and where it differs says why and writes the difference picture. Throws Error (exit 2, 4) where
+/// one cannot be read.
+void compare_pair(ComparedPicture& pair, const fs::path& out) {
+    const auto expected = read_png(pair.expected), actual = read_png(pair.actual);
+    pair.size = expected.size, pair.actual_size = actual.size;
+    const auto [expected_path, actual_path] = std::pair(pair.expected.string(), pair.actual.string());
     if (expected.size != actual.size) {
-        print_line("{}: differs from {}: {}×{} px, expected {}×{}", actual_path.string(), expected_path.string(),
-                   actual.size.width, actual.size.height, expected.size.width, expected.size.height);
-        return false;
+        pair.match = Match::differs;
+        pair.message = fmt::format("{}: differs from {}: {}×{} px, expected {}×{}", actual_path, expected_path,
+                                   actual.size.width, actual.size.height, expected.size.width, expected.size.height);
+        return;
     }
-    const auto verdict = compare_golden(expected, actual);
-    const auto name = difference_name(actual_path);
-    if (verdict.passes) {
-        remove_difference(folder_in(out), name);
-        return true;
-    }
+    pair.verdict = compare_golden(expected, actual);
+    const auto name = difference_name(pair.actual);
+    if (pair.verdict.passes) return remove_difference(folder_in(out), name);
+    pair.match = Match::differs;
     Transaction parts(folder_in(out), name);
     write_png(parts.file(name), difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
     const auto files = parts.publish();
-    print_line("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path.string(),
-               expected_path.string(), verdict.why, files.front().string());
-    return false;
+    pair.message = fmt::format("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path,
+                               expected_path, pair.verdict.why, files.front().string());
+}
+
+/// The same, timed. One that cannot be read is the error `first_fault`, if it is the
+/// first.
+ComparedPicture compared(ComparedPicture pair, const fs::path& out, std::optional<Error>& first_fault) {
+    const double start = seconds_of(CLOCK_MONOTONIC);
+    try {
+        compare_pair(pair, out);
+    } catch (const Error& fault) {
+        pair.match = Match::unreadable;
+        pair.message = fault.what();
+        if (!first_fault) first_fault = fault;
+    }
+    pair.seconds = seconds_of(CLOCK_MONOTONIC) - start;
+    return pair;
 }
 
 std::set<std::string> png_names(const fs::path& folder) {
@@ -69,48 +88,89 @@ std::set<std::string> png_names(const fs::path& folder) {
     return names;
 }
 
-/// Every picture that either folder has. One that cannot be compared does not keep the others from it; it is the error
-/// at the end.
-bool same_folders(const fs::path& expected, const fs::path& actual, const fs::path& out) {
+/// Every picture that either folder has. One that cannot be compared does not keep the others from it.
+void compare_folders(Comparison& comparison, const fs::path& out, std::optional<Error>& first_fault) {
+    const fs::path expected = comparison.expected, actual = comparison.actual;
     const auto wanted = png_names(expected), found = png_names(actual);
     if (wanted.empty()) throw bad_input("{}: there is no PNG to compare with", expected.string());
     auto names = wanted;
     names.insert(found.begin(), found.end());
-    long differing = 0, failed = 0;
-    std::optional<Error> first_fault;
     for (const auto& name : names) {
-        if (!wanted.contains(name) || !found.contains(name)) {
-            print_line("{}: missing", ((wanted.contains(name) ? actual : expected) / name).string());
-            ++differing;
-            continue;
+        ComparedPicture pair{.name = name, .expected = expected / name, .actual = actual / name};
+        if (wanted.contains(name) && found.contains(name)) {
+            pair = compared(std::move(pair), out, first_fault);
+        } else {
+            pair.match = Match::missing;
+            pair.message = fmt::format("{}: missing", (wanted.contains(name) ? pair.actual : pair.expected).string());
         }
-        try {
-            differing += !same(expected / name, actual / name, out);
-        } catch (const Error& fault) {
-            print_line("{}", fault.what());
-            ++failed;
-            if (!first_fault) first_fault = fault;
-        }
+        if (!pair.message.empty()) print_line("{}", pair.message);
+        comparison.pictures.push_back(std::move(pair));
     }
-    print_line("{} of {} pictures differ", differing, names.size());
-    if (first_fault)
-        throw Error(first_fault->code(), fmt::format("{} of {} pictures could not be compared; the first: {}", failed,
-                                                     names.size(), first_fault->what()));
-    return differing == 0;
+    print_line("{}", comparison.summary());
 }
 
+/// A report that was asked for: its place is taken before the work, so that one that cannot be is said at once.
+class Report {
+public:
+    explicit Report(const std::string& file) {
+        if (file.empty()) return;
+        const fs::path path = file;
+        if (!path.has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
+        parts_.emplace(path.has_parent_path() ? path.parent_path() : fs::path("."), path.filename().string());
+        place_ = parts_->file(path.filename().string());
+    }
+
+    void publish(void (*write)(const FilePlace&, const Comparison&), const Comparison& comparison) {
+        if (!parts_) return;
+        write(*place_, comparison);
+        parts_->publish();
+    }
+
+private:
+    std::optional<Transaction> parts_;
+    std::optional<FilePlace> place_;
+};
+
+/// True if all pass. Throws Error where some could not be read, after the reports are written.
 bool compare(const CompareOptions& options) {
     for (const auto& path : {options.expected, options.actual})
         if (!fs::exists(path)) throw bad_input("{}: there is no such file or folder", path);
-    const bool folder = fs::is_directory(options.expected);
-    if (folder != fs::is_directory(options.actual))
+    const bool folders = fs::is_directory(options.expected);
+    if (folders != fs::is_directory(options.actual))
         throw bad_input("{} is a folder and {} is none; compare takes two pictures or two folders",
-                        folder ? options.expected : options.actual, folder ? options.actual : options.expected);
-    return folder ? same_folders(options.expected, options.actual, options.out)
-                  : same(options.expected, options.actual, options.out);
+                        folders ? options.expected : options.actual, folders ? options.actual : options.expected);
+    const auto is_one_file = fs::path(options.junit).lexically_normal() == fs::path(options.html).lexically_normal();
+    if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
+    Report junit(options.junit), html(options.html);
+    Comparison comparison{options.expected, options.actual, {}};
+    std::optional<Error> first_fault;
+    if (folders) {
+        compare_folders(comparison, options.out, first_fault);
+    } else {
+        const fs::path expected = options.expected, actual = options.actual;
+        ComparedPicture pair{.name = actual.filename().string(), .expected = expected, .actual = actual};
+        pair = compared(std::move(pair), options.out, first_fault);
+        if (pair.match == Match::differs) print_line("{}", pair.message);
+        comparison.pictures.push_back(std::move(pair));
+    }
+    junit.publish(write_junit, comparison);
+    html.publish(write_compare_page, comparison);
+    if (!first_fault) return comparison.count(Match::passes) == std::ssize(comparison.pictures);
+    if (!folders) throw Error(*first_fault);
+    throw Error(first_fault->code(),
+                fmt::format("{} of {} pictures could not be compared; the first: {}",
+                            comparison.count(Match::unreadable), comparison.pictures.size(), first_fault->what()));
 }
 
 }  // namespace
+
+long Comparison::count(Match match) const {
+    return std::ranges::count(pictures, match, &ComparedPicture::match);
+}
+
+std::string Comparison::summary() const {
+    return fmt::format("{} of {} pictures differ", count(Match::differs) + count(Match::missing), pictures.size());
+}
 
 void add_compare(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<CompareOptions>();
@@ -125,6 +185,12 @@ void add_compare(CLI::App& app, int& exit_code) {
     command.add_option("-o,--out", options->out, "Where difference pictures go: DIR/compare/")
         ->type_name("DIR")
         ->capture_default_str();
+    command.add_option("--junit", options->junit, "Also writes a report for test servers: JUnit's XML")
+        ->type_name("FILE");
+    command
+        .add_option("--html", options->html,
+                    "Also writes a page that shows expected, actual and difference of what differs, with a slider")
+        ->type_name("FILE");
     command.callback([options, &exit_code] {
         if (!compare(*options)) exit_code = static_cast<int>(ExitCode::differs);
     });

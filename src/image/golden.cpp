@@ -82,22 +82,27 @@ GoldenVerdict compare_golden(const Picture& expected, const Picture& actual) {
     return verdict;
 }
 
-Picture difference_picture(const Picture& expected, const Picture& actual) {
+Picture amplified_difference(const Picture& expected, const Picture& actual) {
     constexpr int gain = 16;
+    Picture difference(expected.size);
+    for (std::size_t i = 0; i < difference.rgba.size(); ++i) {
+        const auto distance = [&](std::size_t at) { return std::abs(actual.rgba[at] - expected.rgba[at]); };
+        const std::size_t opacity = i | 3;
+        const int most = i == opacity ? 255 : gain * std::max(distance(i), distance(opacity));
+        difference.rgba[i] = static_cast<std::uint8_t>(std::min(255, most));
+    }
+    return difference;
+}
+
+Picture difference_picture(const Picture& expected, const Picture& actual) {
+    const Picture difference = amplified_difference(expected, actual);
     const auto [width, height] = expected.size;
     Picture all({3 * width, height});
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const int opacity = std::abs(actual.at(x, y)[3] - expected.at(x, y)[3]);
-            for (int c = 0; c < colours; ++c) {
-                const int e = expected.at(x, y)[c], a = actual.at(x, y)[c];
-                all.at(x, y)[c] = static_cast<std::uint8_t>(e);
-                all.at(x + width, y)[c] = static_cast<std::uint8_t>(a);
-                all.at(x + 2 * width, y)[c] =
-                    static_cast<std::uint8_t>(std::min(255, gain * std::max(std::abs(a - e), opacity)));
-            }
-            for (int part = 0; part < 3; ++part) all.at(x + part * width, y)[3] = 255;
-        }
+    const auto place = [&](const Picture& part, int left) {
+        for (int y = 0; y < height; ++y) std::copy_n(part.at(0, y), std::size_t{4} * width, all.at(left, y));
+    };
+    place(expected, 0), place(actual, width), place(difference, 2 * width);
+    for (std::size_t i = 3; i < all.rgba.size(); i += 4) all.rgba[i] = 255;
     return all;
 }
 

@@ -23,7 +23,10 @@ struct GoldenVerdict {
 /// Throws Error (exit 1) where the sizes differ.
 GoldenVerdict compare_golden(const Picture& expected, const Picture& actual);
 
-/// Expected, actual and their difference, amplified, side by side, all opaque; a difference in opacity alone is grey.
+/// The difference of two pictures of one size × 16, opaque; a difference in opacity alone is grey.
+Picture amplified_difference(const Picture& expected, const Picture& actual);
+
+/// Expected, actual and amplified difference side by side, all opaque.
 Picture difference_picture(const Picture& expected, const Picture& actual);
 
 }  // namespace doppel

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -131,31 +132,39 @@ AVPixelFormat pixels_of(const PngOptions& options) {
 /// A file's text chunks follow its signature and header.
 constexpr std::size_t header_bytes = 8 + 25;
 
-/// `bytes` are the picture's in the format pixels_of().
-void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
-                   const std::string& text_chunks, const std::atomic<bool>& stop) {
-    throw_if_set(stop);
-    OutputFile output(place);
+using Write = std::function<void(std::string_view)>;
+
+/// Gives the bytes of the file to `write`, in order; `bytes` are the picture's in the format pixels_of(). `path` is for
+/// messages.
+void encode_samples(const Write& write, const std::filesystem::path& path, Size size, const std::uint8_t* bytes,
+                    const PngOptions& options, const std::string& text_chunks) {
     struct Target {
-        OutputFile& output;
+        const Write& write;
         const std::string& text_chunks;
         std::exception_ptr error;
-    } target{output, text_chunks, nullptr};
-    const auto write = [](void* context, void* data, int count) {
-        auto& [file, chunks, error] = *static_cast<Target*>(context);
+    } target{write, text_chunks, nullptr};
+    const auto take = [](void* context, void* data, int count) {
+        auto& [pass_on, chunks, error] = *static_cast<Target*>(context);
         const std::string_view png(static_cast<const char*>(data), std::size_t(count));
         try {
-            file.write(png.substr(0, header_bytes));
-            file.write(chunks);
-            file.write(png.substr(header_bytes));
+            pass_on(png.substr(0, header_bytes));
+            pass_on(chunks);
+            pass_on(png.substr(header_bytes));
         } catch (...) {
             error = std::current_exception();  // none can pass through C
         }
     };
     const int channels = options.with_alpha ? 4 : 3;
-    if (!stbi_write_png_to_func(write, &target, size.width, size.height, channels, bytes, channels * size.width))
-        throw io_failed("{}: a picture of {}x{} px cannot be compressed", place.path.string(), size.width, size.height);
+    if (!stbi_write_png_to_func(take, &target, size.width, size.height, channels, bytes, channels * size.width))
+        throw io_failed("{}: a picture of {}x{} px cannot be compressed", path.string(), size.width, size.height);
     if (target.error) std::rethrow_exception(target.error);
+}
+
+void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
+                   const std::string& text_chunks, const std::atomic<bool>& stop) {
+    throw_if_set(stop);
+    OutputFile output(place);
+    encode_samples([&](std::string_view part) { output.write(part); }, place.path, size, bytes, options, text_chunks);
     output.close();
 }
 
@@ -221,6 +230,17 @@ void write_png(const FilePlace& place, const Picture& picture, const PngOptions&
     const AVPixelFormat format = pixels_of(options);
     convert(picture, all, format, bytes.make_room(byte_count(format, all)));
     write_samples(place, picture.size, bytes.data(), options, png_text_chunks(options.metadata), stop);
+}
+
+std::string png_bytes(const Picture& picture, const PngOptions& options) {
+    const Rect all = all_of(picture.size);
+    Buffer samples;
+    const AVPixelFormat format = pixels_of(options);
+    convert(picture, all, format, samples.make_room(byte_count(format, all)));
+    std::string png;
+    encode_samples([&](std::string_view part) { png += part; }, "a PNG", picture.size, samples.data(), options,
+                   png_text_chunks(options.metadata));
+    return png;
 }
 
 std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options,

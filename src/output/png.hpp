@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string>
 
 namespace doppel {
 
@@ -18,6 +19,9 @@ struct PngOptions {
 /// Compressed by libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the picture was compressed.
 void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options = {},
                const std::atomic<bool>& stop = false);
+
+/// The bytes of the same file. Throws Error (exit 4).
+std::string png_bytes(const Picture& picture, const PngOptions& options = {});
 
 /// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it cannot be
 /// decoded.

@@ -107,6 +107,9 @@ bool is_written(const Folder& folder, const std::string& name, const WrittenFile
     if (name.ends_with(".json")) return !manifest_of(folder, name).is_null();
     if (maker_of_picture(folder, name).starts_with("Doppel")) return true;
     const auto head = head_of(folder, name, 64);
+    for (const std::string_view start : {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", "<!DOCTYPE html>\n"})
+        if (head.starts_with(start) && std::string_view(head).substr(start.size()).starts_with("<!-- Doppel "))
+            return true;
     return head.starts_with("sample,time_s,") || head.starts_with(R"({"file":"doppel trials")");
 }
 

@@ -23,7 +23,8 @@ WrittenFiles written_files(const Folder& folder);
 std::string maker_of_picture(const Folder& folder, const std::string& name);
 
 /// Whether Doppel made the regular file `name` there: a manifest lists it (as `within` + name), or its contents show it
-/// (a PNG of Doppel's, a manifest, the table of a film, the trials of a figure).
+/// (a PNG of Doppel's, a manifest, the table of a film, the trials of a figure, a report with a first comment
+/// "<!-- Doppel …").
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written,
                 const std::string& within = {});
 

@@ -1,0 +1,153 @@
+#include "base/embedded.hpp"
+#include "base/error.hpp"
+#include "cli/comparison.hpp"
+#include "embedded/cli.hpp"
+#include "output/data_url.hpp"
+#include "output/png.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace doppel {
+namespace {
+
+constexpr std::size_t most_bytes = 100'000'000;  // that a browser opens with ease
+
+std::string heading(const Comparison& comparison) {
+    const auto all = comparison.pictures.size();
+    const long unreadable = comparison.count(Match::unreadable);
+    if (comparison.count(Match::passes) == std::ssize(comparison.pictures))
+        return all == 1 ? "The picture passes" : fmt::format("All {} pictures pass", all);
+    return comparison.summary() + (unreadable > 0 ? fmt::format(", {} could not be compared", unreadable) : "");
+}
+
+/// What is told of all pictures together.
+std::string header(const Comparison& comparison) {
+    std::string counts;
+    const auto count = [&](Match match, std::string_view kind, std::string_view words) {
+        const long number = comparison.count(match);
+        if (number > 0) counts += fmt::format("<li class=\"{}\"><b>{}</b> {}</li>\n", kind, number, words);
+    };
+    count(Match::passes, "good", "pass");
+    count(Match::differs, "bad", "differ");
+    count(Match::missing, "bad", "missing");
+    count(Match::unreadable, "bad", "not compared");
+    return fmt::format(
+        "<header>\n<p class=\"kind\">Golden comparison</p>\n<h1>{}</h1>\n<ul class=\"counts\">\n{}</ul>\n"
+        "<dl><dt>Expected</dt><dd><code>{}</code></dd><dt>Actual</dt><dd><code>{}</code></dd></dl>\n</header>\n",
+        markup(heading(comparison)), counts, markup(comparison.expected), markup(comparison.actual));
+}
+
+/// Links to the pictures that differ, where there are several.
+std::string contents(const Comparison& comparison) {
+    if (comparison.count(Match::differs) < 2) return {};
+    std::string links;
+    for (std::size_t i = 0; i < comparison.pictures.size(); ++i)
+        if (const auto& picture = comparison.pictures[i]; picture.match == Match::differs)
+            links += fmt::format("<li><a href=\"#picture-{}\">{}</a></li>\n", i + 1, markup(picture.name));
+    return "<nav aria-label=\"Pictures that differ\"><ul>\n" + links + "</ul></nav>\n";
+}
+
+/// The numbers, and the rules that are broken.
+std::string reasons(const ComparedPicture& picture) {
+    const auto& [size, actual] = std::pair(picture.size, picture.actual_size);
+    if (size != actual)
+        return fmt::format("<li>{}×{} px, expected {}×{}</li>", actual.width, actual.height, size.width, size.height);
+    const double pixels = static_cast<double>(size.width) * size.height;
+    auto items = fmt::format("<li>{} of {:.0f} pixels differ ({:.2g} %)</li>", picture.verdict.differing, pixels,
+                             100 * static_cast<double>(picture.verdict.differing) / pixels);
+    for (std::string_view rest = picture.verdict.why; !rest.empty();) {
+        const auto end = std::min(rest.find("; "), rest.size());
+        items += "\n<li>" + markup(rest.substr(0, end)) + "</li>";
+        rest.remove_prefix(std::min(end + 2, rest.size()));
+    }
+    return items;
+}
+
+std::string figure(std::string_view kind, std::string_view caption, const ComparedPicture& picture, Size size,
+                   const std::string& url) {
+    return fmt::format(
+        "<figure><figcaption>{1}</figcaption><button type=\"button\" aria-expanded=\"false\" title=\"Enlarge\">"
+        "<img class=\"{0}\" alt=\"{1}: {2}\" width=\"{3}\" height=\"{4}\" decoding=\"async\" src=\"{5}\"/>"
+        "</button></figure>\n",
+        kind, caption, markup(picture.name), size.width, size.height, url);
+}
+
+/// A picture that differs; `shown` with its pixels.
+std::string section(const ComparedPicture& picture, std::size_t number, bool shown) {
+    const auto [width, height] = picture.size;
+    const bool same_size = picture.size == picture.actual_size;
+    std::string html = fmt::format(
+        "<section class=\"differs{}{}\" id=\"picture-{}\">\n<h2>{}</h2>\n<ul class=\"why\">\n{}\n</ul>\n",
+        width <= 240 ? " small" : "", height > width ? " upright" : "", number, markup(picture.name), reasons(picture));
+    if (!shown) return html + "<p class=\"quiet\">Not shown: the page would be too large.</p>\n</section>\n";
+    html += fmt::format("<div class=\"three{}\">\n", same_size ? "" : " two");
+    html += figure("expected", "Expected", picture, picture.size, data_url(picture.expected));
+    html += figure("actual", "Actual", picture, picture.actual_size, data_url(picture.actual));
+    if (!same_size) return html + "</div>\n</section>\n";
+    const auto difference = amplified_difference(read_png(picture.expected), read_png(picture.actual));
+    html += figure("difference", "Difference ×16", picture, picture.size, data_url(difference));
+    const auto shape = fmt::format("style=\"--width:{};--height:{}\" hidden=\"\"", width, height);
+    return html + fmt::format(
+                      "</div>\n<div class=\"names\" {0}><span>Expected</span><span>Actual</span></div>\n"
+                      "<div class=\"slider\" {0}><input type=\"range\" min=\"0\" max=\"100\" step=\"0.25\" "
+                      "value=\"50\" aria-label=\"Expected over actual: {1}\"/><i></i></div>\n</section>\n",
+                      shape, markup(picture.name));
+}
+
+/// Pictures without pixels to show: those that cannot be compared, with the reason, or those that pass.
+std::string list(const Comparison& comparison, bool passing) {
+    std::string items;
+    for (const auto& picture : comparison.pictures) {
+        const bool passes = picture.match == Match::passes;
+        if (passes != passing || picture.match == Match::differs) continue;
+        const auto note =
+            picture.verdict.differing > 0
+                ? fmt::format(" <span class=\"quiet\">{} px differ a little</span>", picture.verdict.differing)
+                : "";
+        items += passes ? "<li>" + markup(picture.name) + note + "</li>\n"
+                        : "<li><code>" + markup(picture.message) + "</code></li>\n";
+    }
+    if (items.empty()) return {};
+    if (!passing) return "<section>\n<h2>Not compared</h2>\n<ul>\n" + items + "</ul>\n</section>\n";
+    const long count = comparison.count(Match::passes);
+    const bool all = count == std::ssize(comparison.pictures);
+    return fmt::format("<details{}><summary>{} pass</summary>\n<ul class=\"list\">\n{}</ul>\n</details>\n",
+                       all ? " open=\"\"" : "", count, items);
+}
+
+}  // namespace
+
+void write_compare_page(const FilePlace& place, const Comparison& comparison) {
+    const auto files = cli_files();
+    const auto file = std::ranges::find(files, "cli/compare.html", &EmbeddedFile::name);
+    if (file == files.end()) throw io_failed("the page of compare was not built in");
+    const auto title = file->contents.find("{title}"), body = file->contents.find("{body}");
+    OutputFile page(place);
+    std::size_t written = 0;
+    const auto write = [&](std::string_view text) {
+        page.write(text);
+        written += text.size();
+    };
+    write(file->contents.substr(0, title));
+    write(markup(heading(comparison)));
+    write(file->contents.substr(title + 7, body - title - 7));
+    write(header(comparison) + contents(comparison) + "<main>\n" + list(comparison, false));
+    for (std::size_t i = 0; i < comparison.pictures.size(); ++i)
+        if (comparison.pictures[i].match == Match::differs)
+            write(section(comparison.pictures[i], i + 1, written < most_bytes));
+    write(list(comparison, true));
+    write(
+        fmt::format("</main>\n<footer><p>A picture passes where it differs no more than graphics drivers do: in few "
+                    "pixels, by little. Doppel {} ({})</p></footer>",
+                    version(), revision()));
+    write(file->contents.substr(body + 6));
+    page.close();
+}
+
+}  // namespace doppel

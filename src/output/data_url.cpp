@@ -1,0 +1,48 @@
+#include "output/data_url.hpp"
+
+#include "base/error.hpp"
+#include "output/png.hpp"
+
+extern "C" {
+#include <libavutil/base64.h>
+}
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <string_view>
+
+namespace doppel {
+namespace {
+
+constexpr std::string_view start = "data:image/png;base64,";
+constexpr std::size_t block_bytes = std::size_t{3} << 14;  // a multiple of three: padding only after the last block
+
+void add_block(std::string& url, const char* bytes, std::size_t count) {
+    std::array<char, AV_BASE64_SIZE(block_bytes)> digits;
+    url += av_base64_encode(digits.data(), static_cast<int>(digits.size()),
+                            reinterpret_cast<const std::uint8_t*>(bytes), static_cast<int>(count));
+}
+
+}  // namespace
+
+std::string data_url(const FilePlace& png) {
+    const Stream file = stream_of(open_file(png), "rb", png.path, "read");
+    std::string url(start);
+    std::array<char, block_bytes> block;
+    while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get()))
+        add_block(url, block.data(), count);
+    if (std::ferror(file.get())) throw cannot(png.path, "read");
+    return url;
+}
+
+std::string data_url(const Picture& picture) {
+    const std::string png = png_bytes(picture);
+    std::string url(start);
+    for (std::size_t at = 0; at < png.size(); at += block_bytes)
+        add_block(url, &png[at], std::min(block_bytes, png.size() - at));
+    return url;
+}
+
+}  // namespace doppel

@@ -1,0 +1,105 @@
+#include "cli/process.hpp"
+#include "cli/xml.hpp"
+#include "image/golden.hpp"
+#include "output/png.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+extern "C" {
+#include <libavutil/base64.h>
+}
+
+namespace doppel {
+namespace compare_page_test {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::doppel;
+using test::Element;
+using test::fresh_folder;
+
+/// The pictures of a page, decoded: those of one kind, in order.
+std::vector<Picture> pictures_of(const Element& page, const std::string& kind, const fs::path& scratch) {
+    constexpr std::string_view start = "data:image/png;base64,";
+    std::vector<Picture> pictures;
+    for (const auto* image : page.all("img")) {
+        const auto& url = (*image)["src"];
+        EXPECT_TRUE(url.starts_with(start)) << url.substr(0, 40);
+        if ((*image)["class"] != kind) continue;
+        std::string png(url.size(), '\0');
+        const int length = av_base64_decode(reinterpret_cast<std::uint8_t*>(png.data()), &url[start.size()],
+                                            static_cast<int>(png.size()));
+        EXPECT_GT(length, 0);
+        png.resize(static_cast<std::size_t>(std::max(length, 0)));
+        test::write_bytes(scratch, png);
+        pictures.push_back(read_png(scratch));
+        EXPECT_EQ((*image)["width"], std::to_string(pictures.back().size.width));
+        EXPECT_EQ((*image)["height"], std::to_string(pictures.back().size.height));
+    }
+    return pictures;
+}
+
+TEST(ComparePage, HoldsTheVeryPixelsAndNothingFromElsewhere) {
+    const auto folder = fresh_folder();
+    for (const char* side : {"one", "two"}) fs::create_directories(folder / side);
+    const Size size{300, 200};  // 180 kB of noise: several blocks of base64
+    for (const std::string name : {"<b>&\"'.png", "2.png", "same.png", "gone.png", "broken.png", "tall.png"}) {
+        write_png(folder / "one" / name, test::noise(size, 1), {.with_alpha = true});
+        write_png(folder / "two" / name, test::noise(size, name == "same.png" ? 1 : 2), {.with_alpha = true});
+    }
+    write_png(folder / "two/tall.png", test::noise({10, 20}, 2));
+    fs::remove(folder / "two/gone.png");
+    std::ofstream(folder / "two/broken.png") << "no picture";
+    EXPECT_EQ(doppel(folder, {"compare", "one", "two", "--html", "page.html", "--junit", "report.xml"}).code, 4);
+
+    const auto text = bytes_of(folder / "page.html");
+    const auto page = test::XmlReader(text).document();
+    EXPECT_EQ(page.all("h1")[0]->text, "4 of 6 pictures differ, 1 could not be compared");
+    EXPECT_EQ(page.all("title")[0]->text, page.all("h1")[0]->text);
+    EXPECT_EQ(page.all("section").size(), 4u);  // those that differ, and the list of those that cannot be compared
+    EXPECT_EQ(page.all("h2")[1]->text, "2.png");
+    EXPECT_EQ(page.all("h2")[2]->text, "<b>&\"'.png");
+    EXPECT_EQ(page.all("input").size(), 2u);
+    EXPECT_NE(text.find("two/gone.png: missing"), std::string::npos);
+    EXPECT_NE(text.find("two/broken.png: cannot be decoded"), std::string::npos);
+    EXPECT_NE(text.find("10×20 px, expected 300×200"), std::string::npos);
+    for (const char* outside : {"http:", "https:", "src=\"/", "url(", "@import", "<script src"})
+        EXPECT_EQ(text.find(outside), std::string::npos) << outside;
+
+    const auto expected = pictures_of(page, "expected", folder / "scratch.png");
+    const auto actual = pictures_of(page, "actual", folder / "scratch.png");
+    const auto difference = pictures_of(page, "difference", folder / "scratch.png");
+    ASSERT_EQ(expected.size(), 3u);
+    ASSERT_EQ(actual.size(), 3u);
+    ASSERT_EQ(difference.size(), 2u);
+    EXPECT_EQ(page.all("img").size(), 8u);
+    const auto one = read_png(folder / "one/2.png"), two = read_png(folder / "two/2.png");
+    EXPECT_EQ(expected[0].rgba, one.rgba);
+    EXPECT_EQ(actual[0].rgba, two.rgba);
+    EXPECT_EQ(difference[0].rgba, amplified_difference(one, two).rgba);
+    for (std::size_t i = 0; i < one.rgba.size(); i += 4) {
+        const int opacity = std::abs(one.rgba[i + 3] - two.rgba[i + 3]);
+        const int red = std::min(255, 16 * std::max(std::abs(one.rgba[i] - two.rgba[i]), opacity));
+        ASSERT_EQ(difference[0].rgba[i], red) << i;
+        ASSERT_EQ(difference[0].rgba[i + 3], 255);
+    }
+}
+
+TEST(ComparePage, SaysThatAllPass) {
+    const auto folder = fresh_folder();
+    write_png(folder / "one.png", test::noise({8, 8}, 1));
+    EXPECT_EQ(doppel(folder, {"compare", "one.png", "one.png", "--html", "page.html"}).code, 0);
+    const auto page = test::XmlReader(bytes_of(folder / "page.html")).document();
+    EXPECT_EQ(page.all("h1")[0]->text, "The picture passes");
+    EXPECT_TRUE(page.all("img").empty() && page.all("section").empty());
+    EXPECT_EQ(page.all("details")[0]->all("li").size(), 1u);
+}
+
+TEST(ComparePage, StyleAndScriptAreSmall) {
+    const auto template_bytes = fs::file_size(fs::path(DOPPEL_SOURCE_DIR) / "src/cli/compare.html");
+    EXPECT_LT(template_bytes, 10'000u);  // measured 6000
+}
+
+}  // namespace compare_page_test
+}  // namespace doppel

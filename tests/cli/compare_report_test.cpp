@@ -1,0 +1,126 @@
+#include "cli/process.hpp"
+#include "cli/xml.hpp"
+#include "output/png.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+namespace doppel {
+namespace compare_report_test {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::doppel;
+using test::Element;
+using test::fresh_folder;
+
+Picture plain(int red, Size size = {16, 8}) {
+    Picture picture(size);
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+        picture.rgba[i] = static_cast<std::uint8_t>(red), picture.rgba[i + 3] = 255;
+    return picture;
+}
+
+void make(const fs::path& path, const Picture& picture) {
+    fs::create_directories(path.parent_path());
+    write_png(path, picture);
+}
+
+/// Names that markup, terminals and XML would take amiss; the last is U+FFFE, U+FFFF and a byte that is no UTF-8.
+const std::string sharp = "<a> & \"b' --> .png", steered = "line\nnext\x1b[1m\x01.png",
+                  odd = "\xef\xbf\xbe\xef\xbf\xbf\xff\xc3\xa4.png";
+
+/// Two pass, two differ (one in size), two are missing, one cannot be read, and all have unlike names.
+void make_folders(const fs::path& folder) {
+    for (const auto& name : {sharp, steered, odd, std::string("4.png"), std::string("5.png"), std::string("6.png")})
+        make(folder / "one" / name, plain(10));
+    fs::copy(folder / "one", folder / "two");
+    make(folder / "two" / sharp, plain(90));
+    make(folder / "two" / odd, plain(10, {8, 8}));
+    fs::rename(folder / "two/4.png", folder / "two/7.png");
+    std::ofstream(folder / "two/5.png") << "no picture";
+}
+
+const Element* case_of(const Element& root, const std::string& name) {
+    const auto cases = root.all("testcase");
+    const auto found = std::ranges::find_if(cases, [&](const auto* one) { return (*one)["name"] == name; });
+    return found == cases.end() ? nullptr : *found;
+}
+
+TEST(CompareJunit, TellsEveryPictureOnce) {
+    const auto folder = fresh_folder();
+    make_folders(folder);
+    const auto result = doppel(folder, {"compare", "one", "two", "--junit", "new/folder/report.xml"});
+    EXPECT_EQ(result.code, 4) << result.err;
+    const auto root = test::XmlReader(bytes_of(folder / "new/folder/report.xml")).document();
+    EXPECT_EQ(fs::exists(folder / "new/folder/report.xml.part"), false);
+    ASSERT_EQ(root.all("testsuite").size(), 1u);
+    for (const auto* counted : {&root, root.all("testsuite")[0]}) {
+        EXPECT_EQ((*counted)["tests"], "7");
+        EXPECT_EQ((*counted)["failures"], "4");
+        EXPECT_EQ((*counted)["errors"], "1");
+        EXPECT_GE(std::stod((*counted)["time"]), 0);
+    }
+    EXPECT_EQ(root.all("testcase").size(), 7u);
+    EXPECT_EQ(root.all("failure").size(), 4u);
+    for (const char* name : {"line next [1m .png", "6.png"}) {
+        const auto* passes = case_of(root, name);
+        ASSERT_TRUE(passes) << name;
+        EXPECT_TRUE(passes->children.empty());
+        EXPECT_EQ((*passes)["classname"], "one");
+    }
+    const auto* differs = case_of(root, sharp);
+    ASSERT_TRUE(differs && differs->children.size() == 1);
+    EXPECT_EQ(differs->children[0].name, "failure");
+    EXPECT_NE(differs->children[0].text.find("128 pixels differ by more than 3/255"), std::string::npos);
+    EXPECT_NE(differs->children[0].text.find("differing pixels 128, by more than 3/255 128, largest difference 80/255"),
+              std::string::npos)
+        << differs->children[0].text;
+    EXPECT_NE(differs->children[0]["message"].find("two/" + sharp + ": differs"), std::string::npos);
+    const auto* resized = case_of(root, "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xc3\xa4.png");
+    ASSERT_TRUE(resized && resized->children.size() == 1);
+    EXPECT_NE(resized->children[0]["message"].find("8×8 px, expected 16×8"), std::string::npos);
+    EXPECT_EQ(case_of(root, "4.png")->children.at(0)["message"], "two/4.png: missing");
+    EXPECT_EQ(case_of(root, "7.png")->children.at(0)["message"], "one/7.png: missing");
+    EXPECT_EQ(case_of(root, "5.png")->children.at(0).name, "error");
+}
+
+TEST(CompareJunit, OfTwoPicturesAndOfNoDifference) {
+    const auto folder = fresh_folder();
+    make(folder / "one.png", plain(10));
+    make(folder / "two.png", plain(90));
+    std::ofstream(folder / "three.png") << "no picture";
+    const auto report = [&](const char* actual, int code) {
+        EXPECT_EQ(doppel(folder, {"compare", "one.png", actual, "--junit", "r.xml"}).code, code);
+        return test::XmlReader(bytes_of(folder / "r.xml")).document();
+    };
+    EXPECT_EQ(report("one.png", 0)["failures"], "0");
+    EXPECT_EQ(report("two.png", 1)["failures"], "1");
+    EXPECT_EQ(report("three.png", 4)["errors"], "1");
+}
+
+TEST(CompareReports, ReplaceOnlyTheirOwn) {
+    const auto folder = fresh_folder();
+    make(folder / "one.png", plain(10));
+    for (const std::string option : {"--junit", "--html"}) {
+        fs::remove(folder / "mine");
+        const auto run = [&](const std::string& file) {
+            return doppel(folder, {"compare", "one.png", "one.png", option, file});
+        };
+        for (int again = 0; again < 2; ++again) EXPECT_EQ(run("mine").code, 0);
+        std::ofstream(folder / "yours") << "<testsuites/>";
+        const auto refused = run("yours");
+        EXPECT_EQ(refused.code, 4);
+        EXPECT_NE(refused.err.find("yours was not written by Doppel"), std::string::npos) << refused.err;
+        EXPECT_EQ(bytes_of(folder / "yours"), "<testsuites/>");
+        fs::remove(folder / "link");
+        fs::create_symlink("mine", folder / "link");
+        EXPECT_EQ(run("link").code, 4);
+        EXPECT_EQ(run("folder/").code, 2);
+        EXPECT_EQ(run("/proc/no/report").code, 4);
+    }
+    EXPECT_EQ(doppel(folder, {"compare", "one.png", "one.png", "--html", "a/../b", "--junit", "./b"}).code, 2);
+}
+
+}  // namespace compare_report_test
+}  // namespace doppel
