@@ -12,7 +12,7 @@ struct EmbeddedFile {
     std::string_view contents;  // its bytes
 };
 
-std::string_view version();   // "0.1.0"
+std::string_view version();   // "1.0.0"
 std::string_view revision();  // of git when it was built, "-dirty" if changed since; "unknown" without git
 
 }  // namespace doppel

@@ -166,12 +166,20 @@ std::vector<const char*> av1_encoders(const VideoOptions& options) {
     return svt ? std::vector{"libsvtav1", "libaom-av1"} : std::vector{"libaom-av1"};
 }
 
+/// Ticks a second in which an mp4 says how long it lasts: as libav's of the video track, so that no frame is cut short.
+int mp4_timescale(const VideoOptions& options) {
+    int ticks = options.fps_numerator;
+    while (ticks < 10000) ticks *= 2;
+    return ticks;
+}
+
 void choose_encoder(const VideoOptions& options, Encoding& encoding) {
     switch (options.format) {
         case VideoFormat::mp4:
             encoding.encoder = &find_encoder({"libx264"}, AV_CODEC_ID_H264);
             encoding.encoder_options = x264_options(options);
-            encoding.container_options = {{"movflags", "+faststart"}};
+            encoding.container_options = {{"movflags", "+faststart"},
+                                          {"movie_timescale", fmt::to_string(mp4_timescale(options))}};
             break;
         case VideoFormat::webm:
             if (codec_of(options).name == "av1") {

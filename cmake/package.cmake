@@ -1,0 +1,102 @@
+# What `cmake --install` puts beside the program, and the Debian package: cmake --build --preset release --target package.
+include(GNUInstallDirs)
+set(pages ${PROJECT_BINARY_DIR}/pages)  # written by the program itself
+
+install(TARGETS doppel)
+install(DIRECTORY presets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel/presets FILES_MATCHING PATTERN *.toml)
+install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
+install(FILES packaging/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+add_custom_command(
+    OUTPUT ${pages}/made
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}/man
+    COMMAND doppel man --all ${pages}/man
+    COMMAND gzip -9n ${pages}/man/*
+    COMMAND doppel completion bash > ${pages}/doppel
+    COMMAND doppel completion zsh > ${pages}/_doppel
+    COMMAND doppel completion fish > ${pages}/doppel.fish
+    COMMAND doppel schema > ${pages}/preset.schema.json
+    COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > ${pages}/changelog.gz
+    COMMAND ${CMAKE_COMMAND} -E touch ${pages}/made
+    DEPENDS doppel CHANGELOG.md VERBATIM)
+add_custom_target(pages ALL DEPENDS ${pages}/made)
+install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1.gz)
+install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 FILES_MATCHING PATTERN *.5.gz)
+install(FILES ${pages}/doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${pages}/_doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+install(FILES ${pages}/doppel.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+install(FILES ${pages}/preset.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel)
+install(FILES ${pages}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The release of Debian that this is: "deb12", "deb13", "sid".
+set(release "")
+if(EXISTS /etc/os-release)
+    file(STRINGS /etc/os-release lines)
+    foreach(line IN LISTS lines)
+        if(line MATCHES "^([A-Z_]+)=\"?([^\"]*)\"?$")
+            set(os_${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
+        endif()
+    endforeach()
+    if(os_ID STREQUAL "debian" AND os_VERSION_ID MATCHES "^(12|13)$")
+        set(release deb${os_VERSION_ID})
+    elseif(os_ID STREQUAL "debian" AND os_PRETTY_NAME MATCHES "sid$")
+        set(release sid)
+    endif()
+endif()
+if(NOT release)
+    add_custom_target(package COMMAND ${CMAKE_COMMAND} -E echo
+                      "doppel: packages are made on Debian 12, 13 and sid; this is ${os_PRETTY_NAME}" COMMAND false VERBATIM)
+    return()
+endif()
+
+# changelog.Debian.gz and the date in it: that of the commit, so that the same source gives the same package
+set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+if(NOT maintainer MATCHES "^[^<]+ <[^<]+@[^<]+>$")
+    set(maintainer "The Doppel authors <doppel@users.noreply.github.com>")
+endif()
+execute_process(COMMAND git log -1 --format=%cD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE date
+                OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
+if(failed)
+    execute_process(COMMAND date -R OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()
+string(REGEX REPLACE ", ([0-9]) " ", 0\\1 " date "${date}")
+set(debian_version ${PROJECT_VERSION}-1+${release})
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog.Debian CONTENT
+"doppel (${debian_version}) unstable; urgency=medium
+
+  * Release ${PROJECT_VERSION}; changelog.gz tells what is new.
+
+ -- ${maintainer}  ${date}
+")
+execute_process(COMMAND gzip -9nkf ${PROJECT_BINARY_DIR}/changelog.Debian)
+install(FILES ${PROJECT_BINARY_DIR}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# libraries that the program opens itself, which dpkg-shlibdeps cannot see: what draws
+find_library(OSMESA_LIBRARY NAMES libOSMesa.so.8 OSMesa)
+set(egl "libegl1, libegl-mesa0, libgl1-mesa-dri")
+if(OSMESA_LIBRARY)
+    set(CPACK_DEBIAN_PACKAGE_DEPENDS libosmesa6)
+    set(CPACK_DEBIAN_PACKAGE_SUGGESTS "${egl}")
+else()
+    set(CPACK_DEBIAN_PACKAGE_DEPENDS "${egl}")
+endif()
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME doppel)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+                                                WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1+${release})
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainer}")
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "films of chaotic pendulums in pairs, and charts of how they part
+Doppel steps two pendulums that are a hair apart, films them side by side
+with the trace of how they part, and writes videos, pictures and tables.
+It needs no display and no graphics card, and repeats every figure to the
+last digit: for teaching, for videos, for research and for tests.")
+include(CPack)
