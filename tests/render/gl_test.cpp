@@ -158,8 +158,9 @@ TEST(Gl, TakesEglWhereOsmesaIsMissing) {
 }
 
 TEST(Gl, LooksForALibraryUnderSeveralNames) {
-    if (osmesa_or_egl() == Gl::osmesa)
+    if (osmesa_or_egl() == Gl::osmesa) {
         EXPECT_EQ(make_context(Gl::osmesa, {.osmesa = {"libnone.so.9", "libOSMesa.so.8"}})->library(), "OSMesa");
+    }
     EXPECT_EQ(make_context(Gl::egl, {.egl = {"libnone.so.9", "libEGL.so.1"}})->library(), "EGL");
 }
 
