@@ -36,7 +36,7 @@ std::string header(const Comparison& comparison) {
     count(Match::passes, "good", "pass");
     count(Match::differs, "bad", "differ");
     count(Match::missing, "bad", "missing");
-    count(Match::unreadable, "bad", "not compared");
+    count(Match::unreadable, "bad", "not readable");
     return fmt::format(
         "<header>\n<p class=\"kind\">Golden comparison</p>\n<h1>{}</h1>\n<ul class=\"counts\">\n{}</ul>\n"
         "<dl><dt>Expected</dt><dd><code>{}</code></dd><dt>Actual</dt><dd><code>{}</code></dd></dl>\n</header>\n",
@@ -59,7 +59,7 @@ std::string reasons(const ComparedPicture& picture) {
     if (size != actual)
         return fmt::format("<li>{}×{} px, expected {}×{}</li>", actual.width, actual.height, size.width, size.height);
     const double pixels = static_cast<double>(size.width) * size.height;
-    auto items = fmt::format("<li>{} of {:.0f} pixels differ ({:.2g} %)</li>", picture.verdict.differing, pixels,
+    auto items = fmt::format("<li>{} of {:.0f} pixels differ ({:.3g} %)</li>", picture.verdict.differing, pixels,
                              100 * static_cast<double>(picture.verdict.differing) / pixels);
     for (std::string_view rest = picture.verdict.why; !rest.empty();) {
         const auto end = std::min(rest.find("; "), rest.size());
@@ -69,22 +69,27 @@ std::string reasons(const ComparedPicture& picture) {
     return items;
 }
 
+/// All of a section at one scale.
 std::string figure(std::string_view kind, std::string_view caption, const ComparedPicture& picture, Size size,
                    const std::string& url) {
     return fmt::format(
         "<figure><figcaption>{1}</figcaption><button type=\"button\" aria-expanded=\"false\" title=\"Enlarge\">"
-        "<img class=\"{0}\" alt=\"{1}: {2}\" width=\"{3}\" height=\"{4}\" decoding=\"async\" src=\"{5}\"/>"
+        "<img class=\"{0}\" alt=\"{1}: {2}\" width=\"{3}\" height=\"{4}\" style=\"--part:{6:.4g}\" src=\"{5}\"/>"
         "</button></figure>\n",
-        kind, caption, markup(picture.name), size.width, size.height, url);
+        kind, caption, markup(picture.name), size.width, size.height, url,
+        1.0 * size.width / std::max(picture.size.width, picture.actual_size.width));
 }
 
 /// A picture that differs; `shown` with its pixels.
 std::string section(const ComparedPicture& picture, std::size_t number, bool shown) {
     const auto [width, height] = picture.size;
     const bool same_size = picture.size == picture.actual_size;
-    std::string html = fmt::format(
-        "<section class=\"differs{}{}\" id=\"picture-{}\">\n<h2>{}</h2>\n<ul class=\"why\">\n{}\n</ul>\n",
-        width <= 240 ? " small" : "", height > width ? " upright" : "", number, markup(picture.name), reasons(picture));
+    std::string html =
+        fmt::format("<section class=\"differs{}{}\" id=\"picture-{}\">\n<h2>{}</h2>\n<ul class=\"why\">\n{}\n</ul>\n",
+                    width <= 240   ? " small half"
+                    : width <= 480 ? " half"
+                                   : "",
+                    height > width ? " upright" : "", number, markup(picture.name), reasons(picture));
     if (!shown) return html + "<p class=\"quiet\">Not shown: the page would be too large.</p>\n</section>\n";
     html += fmt::format("<div class=\"three{}\">\n", same_size ? "" : " two");
     html += figure("expected", "Expected", picture, picture.size, data_url(picture.expected));
@@ -114,7 +119,7 @@ std::string list(const Comparison& comparison, bool passing) {
                         : "<li><code>" + markup(picture.message) + "</code></li>\n";
     }
     if (items.empty()) return {};
-    if (!passing) return "<section>\n<h2>Not compared</h2>\n<ul>\n" + items + "</ul>\n</section>\n";
+    if (!passing) return "<section>\n<h2>Missing or not readable</h2>\n<ul>\n" + items + "</ul>\n</section>\n";
     const long count = comparison.count(Match::passes);
     const bool all = count == std::ssize(comparison.pictures);
     return fmt::format("<details{}><summary>{} pass</summary>\n<ul class=\"list\">\n{}</ul>\n</details>\n",

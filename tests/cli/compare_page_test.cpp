@@ -48,6 +48,9 @@ TEST(ComparePage, HoldsTheVeryPixelsAndNothingFromElsewhere) {
         write_png(folder / "one" / name, test::noise(size, 1), {.with_alpha = true});
         write_png(folder / "two" / name, test::noise(size, name == "same.png" ? 1 : 2), {.with_alpha = true});
     }
+    Picture clear = test::noise(size, 1);  // two differences: red of the first row, opacity of the second
+    for (int x = 0; x < size.width; ++x) clear.at(x, 0)[0] ^= 5, clear.at(x, 1)[3] ^= 6;
+    write_png(folder / "two/2.png", clear, {.with_alpha = true});
     write_png(folder / "two/tall.png", test::noise({10, 20}, 2));
     fs::remove(folder / "two/gone.png");
     std::ofstream(folder / "two/broken.png") << "no picture";

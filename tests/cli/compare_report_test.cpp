@@ -108,11 +108,14 @@ TEST(CompareReports, ReplaceOnlyTheirOwn) {
             return doppel(folder, {"compare", "one.png", "one.png", option, file});
         };
         for (int again = 0; again < 2; ++again) EXPECT_EQ(run("mine").code, 0);
-        std::ofstream(folder / "yours") << "<testsuites/>";
+        const std::string yours = option == "--html"
+                                      ? "<!DOCTYPE html>\n<html lang=\"en\"></html>"
+                                      : "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"mine\"/>";
+        test::write_bytes(folder / "yours", yours);
         const auto refused = run("yours");
         EXPECT_EQ(refused.code, 4);
         EXPECT_NE(refused.err.find("yours was not written by Doppel"), std::string::npos) << refused.err;
-        EXPECT_EQ(bytes_of(folder / "yours"), "<testsuites/>");
+        EXPECT_EQ(bytes_of(folder / "yours"), yours);
         fs::remove(folder / "link");
         fs::create_symlink("mine", folder / "link");
         EXPECT_EQ(run("link").code, 4);

@@ -1,0 +1,98 @@
+#include "cli/process.hpp"
+#include "cli/xml.hpp"
+#include "output/png.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace doppel {
+namespace cmake_package_test {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::shell;
+
+constexpr const char* project = R"(cmake_minimum_required(VERSION 3.21)
+project(sample NONE)
+enable_testing()
+find_package(doppel REQUIRED)
+doppel_add_golden_test(NAME swing PRESET mine.toml FRAMES 0:2 SIZE 160x90 GOLDEN golden
+                       SET scene.duration_s=0.1 "video.layout=\"overlay\"")
+doppel_add_golden_test(NAME chart PRESET fig6 FIGURE SIZE 160x90 GOLDEN charts SET scene.duration_s=0.5)
+)";
+
+/// A project of somebody's beside an installed Doppel that was moved after it was installed.
+class CmakePackage : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = test::fresh_folder();
+        const auto build = fs::path(DOPPEL_TEST_OUTPUT).parent_path();
+        const auto installed = run(fmt::format("cmake --install '{}' --prefix \"$PWD/first\"", build.string()));
+        ASSERT_EQ(installed.code, 0) << installed.out << installed.err;
+        fs::rename(folder_ / "first", folder_ / "moved here");
+        std::ofstream(folder_ / "CMakeLists.txt") << project;
+        ASSERT_EQ(run("'moved here/bin/doppel' show calm > mine.toml").code, 0);
+        const auto configured = run("cmake -G Ninja -S . -B build -D CMAKE_PREFIX_PATH=\"$PWD/moved here\"");
+        ASSERT_EQ(configured.code, 0) << configured.out << configured.err;
+    }
+
+    test::Outcome run(const std::string& script) const { return shell(folder_, "unset CI; " + script); }
+    test::Outcome run_tests() const { return run("ctest --test-dir build --output-on-failure"); }
+
+    fs::path folder_;
+};
+
+TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
+    const auto without = run_tests();
+    EXPECT_NE(without.code, 0);
+    EXPECT_NE(without.out.find("golden is missing"), std::string::npos) << without.out;
+
+    const auto refused = run("CI=true cmake --build build --target doppel-update-goldens");
+    EXPECT_NE(refused.code, 0);
+    EXPECT_NE(refused.out.find("not by CI"), std::string::npos) << refused.out;
+    EXPECT_FALSE(fs::exists(folder_ / "golden"));
+
+    const auto updated = run("cmake --build build --target doppel-update-goldens");
+    EXPECT_EQ(updated.code, 0) << updated.out;
+    EXPECT_TRUE(fs::exists(folder_ / "charts/fig6.png"));
+    const auto passed = run("cp -r golden kept; CI=true ctest --test-dir build --output-on-failure");
+    EXPECT_EQ(passed.code, 0) << passed.out;
+
+    auto picture = read_png(folder_ / "golden/000001.png");
+    for (int x = 0; x < 40; ++x) picture.at(10 + x, 20)[0] ^= 64;
+    write_png(folder_ / "golden/000001.png", picture);
+    const auto failed = run_tests();
+    EXPECT_NE(failed.code, 0);
+    EXPECT_NE(failed.out.find("1 tests failed out of 2"), std::string::npos) << failed.out;
+    EXPECT_NE(failed.out.find("40 pixels differ by more than 3/255"), std::string::npos) << failed.out;
+    EXPECT_TRUE(fs::exists(folder_ / "build/doppel/swing/compare/000001.diff.png"));
+    const auto junit = test::XmlReader(bytes_of(folder_ / "build/doppel/swing/compare.xml")).document();
+    EXPECT_EQ(junit["tests"] + junit["failures"], "21");
+    const auto page = test::XmlReader(bytes_of(folder_ / "build/doppel/swing/compare.html")).document();
+    EXPECT_EQ(page.all("img").size(), 3u);
+
+    EXPECT_EQ(run("cmake --build build --target doppel-update-goldens-swing").code, 0);
+    EXPECT_EQ(run("diff -r golden kept").code, 0);
+}
+
+TEST_F(CmakePackage, RefusesWhatMakesNoSense) {
+    const std::string good = "NAME one PRESET calm GOLDEN golden ";
+    const std::vector<std::pair<std::string, std::string>> calls{
+        {good, "give either FRAMES"},
+        {good + "FRAMES 0:1 FIGURE", "give either FRAMES"},
+        {good + "FIGURE SZE 3x3", "\"SZE;3x3\" is no argument"},
+        {"NAME one PRESET calm FIGURE", "GOLDEN is missing"},
+    };
+    for (const auto& [arguments, words] : calls) {
+        std::ofstream(folder_ / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.21)\nproject(sample NONE)\n"
+                                                     "find_package(doppel REQUIRED)\ndoppel_add_golden_test("
+                                                  << arguments << ")\n";
+        const auto configured = run("cmake -S . -B build");
+        EXPECT_NE(configured.code, 0);
+        EXPECT_NE(configured.err.find(words), std::string::npos) << configured.err;
+    }
+}
+
+}  // namespace cmake_package_test
+}  // namespace doppel
