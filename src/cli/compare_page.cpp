@@ -23,6 +23,7 @@ std::string heading(const Comparison& comparison) {
     const long unreadable = comparison.count(Match::unreadable);
     if (comparison.count(Match::passes) == std::ssize(comparison.pictures))
         return all == 1 ? "The picture passes" : fmt::format("All {} pictures pass", all);
+    if (all == 1 && comparison.count(Match::differs) == 1) return "The picture differs";
     return comparison.summary() + (unreadable > 0 ? fmt::format(", {} could not be compared", unreadable) : "");
 }
 
