@@ -3,6 +3,7 @@
 #include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "cli/completion.hpp"
 #include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>
@@ -68,7 +69,8 @@ int run_program(int argc, char** argv) {
         fill_standard_streams();
         std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
         const std::vector<std::string> words(argv, argv + argc);
-        refuse_empty_arguments(words);
+        const bool completes = words.size() > 1 && words[1] == "complete";  // of the scripts of "doppel completion"
+        if (!completes) refuse_empty_arguments(words);
 
         CLI::App app("Doppel films chaotic pendulums in pairs, a hair apart, and charts how they part.", "doppel");
         app.set_version_flag("--version", fmt::format("doppel {} ({})", version(), revision()));
@@ -86,7 +88,14 @@ int run_program(int argc, char** argv) {
         add_list(app);
         add_show(app);
         add_check(app);
+        add_init(app);
         add_schema(app);
+        add_completion(app);
+        add_man(app);
+        if (completes) {
+            write_out(completions(app, {words.begin() + 2, words.end()}));
+            return 0;
+        }
         if (words.size() > 1 && !words[1].starts_with('-')) refuse_unknown_command(app, words[1]);
         try {
             app.parse(argc, argv);

@@ -18,5 +18,8 @@ void add_list(CLI::App& app);
 void add_show(CLI::App& app);
 void add_check(CLI::App& app);
 void add_schema(CLI::App& app);
+void add_init(CLI::App& app);
+void add_completion(CLI::App& app);
+void add_man(CLI::App& app);  // of all commands added before
 
 }  // namespace doppel

@@ -28,7 +28,7 @@ std::string schema_line(const fs::path& folder) {
     std::error_code ignored;
     if (const fs::path here = "presets/preset.schema.json"; is_file(here)) {
         const auto way = fs::relative(here, folder, ignored);
-        if (!ignored) return fmt::format("{}./{}\n", directive, way.string());
+        if (!ignored) return fmt::format("{}{}{}\n", directive, *way.begin() == ".." ? "" : "./", way.string());
     }
     const auto program = fs::read_symlink("/proc/self/exe", ignored);
     const auto installed = (program.parent_path() / "../share/doppel/preset.schema.json").lexically_normal();

@@ -149,6 +149,20 @@ void rename_file(const FilePlace& from, const FilePlace& to) {
         throw cannot(from.path, "renamed to " + to.path.filename().string());
 }
 
+void write_file(const std::filesystem::path& path, std::string_view text) {
+    const auto part = part_of(path);
+    try {
+        OutputFile file(part);
+        file.write(text);
+        file.close();
+        rename_file(part, path);
+    } catch (...) {
+        std::error_code ignored;
+        std::filesystem::remove(part.path, ignored);
+        throw;
+    }
+}
+
 FilePlace part_of(const FilePlace& place) {
     return place.folder ? FilePlace(*place.folder, place.name + ".part") : FilePlace(place.path.string() + ".part");
 }

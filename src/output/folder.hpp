@@ -135,6 +135,9 @@ private:
     Stream file_;
 };
 
+/// A small file, in place of an older one; it appears whole or not at all. Throws Error (exit 4).
+void write_file(const std::filesystem::path& path, std::string_view text);
+
 /// "PATH: cannot be WHAT: the system's reason", exit 4, by errno or the given number.
 Error cannot(const std::filesystem::path& path, std::string_view what);
 Error cannot(const std::filesystem::path& path, std::string_view what, int reason);

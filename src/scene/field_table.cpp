@@ -9,15 +9,6 @@
 namespace doppel {
 namespace {
 
-std::string takes_text(const ListedField& field) {
-    std::string text(field.type);
-    if (!field.choices.empty()) text = fmt::format("`\"{}\"`", fmt::join(field.choices, "\"`, `\""));
-    if (!field.choices.empty() && field.is_list()) text = "list of " + text;
-    if (field.most > 0) text = fmt::format("1 to {} {}", field.most, text);
-    if (const auto range = field.range_text(); !range.empty()) text += ", " + range;
-    return text;
-}
-
 template <class Spec>
 void add_part_tables(const std::string& name, std::vector<FieldTable>& tables) {
     const auto add = [&]<class Part>(std::string_view kind, const Part& part) {
@@ -47,6 +38,33 @@ std::string ListedField::default_value() const {
     return is_value ? by_default.substr(1, by_default.size() - 2) : "";
 }
 
+std::string ListedField::takes() const {
+    std::string text(type);
+    if (!choices.empty()) text = fmt::format("`\"{}\"`", fmt::join(choices, "\"`, `\""));
+    if (!choices.empty() && is_list()) text = "list of " + text;
+    if (most > 0) text = fmt::format("1 to {} {}", most, text);
+    if (const auto range = range_text(); !range.empty()) text += ", " + range;
+    return text;
+}
+
+std::string ListedField::example() const {
+    if (const auto value = default_value(); !value.empty()) return value;
+    const auto is = [&](std::string_view words) { return type == words; };
+    const auto first = by_default.substr(0, by_default.find_first_of("; "));  // of "1e-12; in quad 1e-28"
+    const bool is_number = !first.empty() && first.find_first_not_of("0123456789.e-/") == std::string::npos;
+    if (is_number) return first.find('/') == std::string::npos ? first : fmt::format("\"{}\"", first);
+    if (!choices.empty()) return fmt::format("{}\"{}\"{}", is_list() ? "[" : "", choices.front(), is_list() ? "]" : "");
+    if (is_list()) return "[\"\"]";
+    if (is(type_words<Color>())) return "\"#ff9f40\"";
+    if (is(type_words<std::array<Color, 2>>())) return "[\"#ff9f40\", \"#4fc3f7\"]";
+    if (is(type_words<Range>())) return bounds.is_open ? "[1e-6, 10]" : "[0, 10]";
+    if (is(type_words<QuadPair>())) return "[0, 0]";
+    if (is(type_words<Size>())) return "[4, 3]";
+    if (is(type_words<Rational>())) return bounds.is_open ? "60" : "1";
+    if (is(type_words<double>())) return bounds.is_open ? "1e-6" : "1";
+    return "\"\"";
+}
+
 void FieldTable::widen(const FieldTable& other) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
         auto& bounds = fields[i].bounds;
@@ -62,12 +80,17 @@ std::string_view FieldTable::key() const {
     return inside.substr(inside.find_last_of("[.") + 1);
 }
 
+std::string plain_words(std::string text) {
+    std::erase(text, '`');
+    return text;
+}
+
 std::string FieldTable::markdown() const {
     auto page = fmt::format("\n## `{}`\n\n{}{}| key | takes | unit | default | |\n|---|---|---|---|---|\n", name, text,
                             text.empty() ? "" : "\n");
     for (const auto& field : fields)
-        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, takes_text(field), field.unit,
-                            field.by_default, field.help);
+        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, field.takes(), field.unit, field.by_default,
+                            field.help);
     for (const auto& table : tables) page += table.markdown();
     return page;
 }

@@ -43,9 +43,16 @@ struct ListedField {
     bool is_needed() const { return by_default == must_be_given; }
     /// The range of a number: "> 0", "0 (none) to 100"; empty where there is none.
     std::string range_text() const;
+    /// What it takes, in words, with its range: Markdown.
+    std::string takes() const;
     /// The default as TOML; empty where it is none or only words.
     std::string default_value() const;
+    /// The default, or another value that it takes: TOML.
+    std::string example() const;
 };
+
+/// Markdown without its marks of code.
+std::string plain_words(std::string text);
 
 /// A table of presets, "[scene]", and its keys: what a list of fields says, as data. table(field, default) takes a key.
 struct FieldTable {

@@ -168,6 +168,8 @@ PresetText find_preset(const std::string& name_or_path, const std::atomic<bool>*
 /// All presets that are built in, by name.
 std::vector<PresetText> builtin_presets();
 
+/// `kind` of its [scene]. Errors as read_preset()'s.
+std::string kind_of_preset(const PresetText& source);
 /// Whether a preset is a figure (figure/preset.hpp) and not a film. Errors as read_preset()'s.
 bool is_figure(const PresetText& source);
 

@@ -247,11 +247,15 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     return preset;
 }
 
-bool is_figure(const PresetText& source) {
+std::string kind_of_preset(const PresetText& source) {
     const auto document = parse_document(source, {});
     TomlReader top(&document.root, "", document.path, document.texts);
     auto scene = document.table(top, "scene");
-    return read_kind(scene) != pair_kind;
+    return read_kind(scene);
+}
+
+bool is_figure(const PresetText& source) {
+    return kind_of_preset(source) != pair_kind;
 }
 
 }  // namespace doppel

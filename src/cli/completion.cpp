@@ -1,0 +1,289 @@
+#include "cli/completion.hpp"
+
+#include "base/error.hpp"
+#include "cli/program.hpp"
+#include "cli/terminal.hpp"
+#include "figure/preset.hpp"
+#include "scene/preset_fields.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view bash_script = R"(# Completion of doppel for bash: source <(doppel completion bash)
+_doppel() {
+    local program=${COMP_WORDS[0]}
+    if [[ $program == ./doppel && -x build/release/doppel ]]; then program=build/release/doppel; fi  # without building it
+    mapfile -t COMPREPLY < <("$program" complete bash "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
+    # the word goes on after a key, a table or a folder
+    if [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == *[=/] ]]; then compopt -o nospace 2>/dev/null; fi
+    return 0
+}
+complete -F _doppel doppel ./doppel
+)";
+
+constexpr std::string_view zsh_script = R"(#compdef doppel
+# Completion of doppel for zsh: source <(doppel completion zsh), or as a file _doppel in a folder of $fpath
+_doppel() {
+    local line
+    local -a open whole open_help whole_help
+    for line in "${(@f)$("${words[1]}" complete zsh "${(@)words[2,CURRENT]}" 2>/dev/null)}"; do
+        [[ -n $line ]] || continue
+        if [[ ${line%%$'\t'*} == *[=/] ]]; then
+            open+=("${line%%$'\t'*}") open_help+=("${line/$'\t'/  }")
+        else
+            whole+=("${line%%$'\t'*}") whole_help+=("${line/$'\t'/  }")
+        fi
+    done
+    compadd -l -d open_help -S '' -a open
+    compadd -l -d whole_help -a whole
+}
+if [[ $funcstack[1] == _doppel ]]; then _doppel "$@"; else compdef _doppel doppel; fi
+)";
+
+constexpr std::string_view fish_script = R"(# Completion of doppel for fish: doppel completion fish | source
+function __doppel_complete
+    set -l words (commandline -opc) (commandline -ct)
+    $words[1] complete fish $words[2..-1] 2>/dev/null
+end
+complete -c doppel -f -a '(__doppel_complete)'
+)";
+
+struct Candidate {
+    std::string text, help = {};
+};
+using Candidates = std::vector<Candidate>;
+
+/// A word of the command line without its quotes, and the quote that is open at its end.
+struct Word {
+    std::string text;
+    char quote = 0;
+};
+
+Word unquoted(std::string_view raw) {
+    Word word;
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+        const char c = raw[i];
+        if (c == '\\' && word.quote != '\'' && i + 1 < raw.size())
+            word.text += raw[++i];
+        else if (c == word.quote)
+            word.quote = 0;
+        else if (word.quote == 0 && (c == '"' || c == '\''))
+            word.quote = c;
+        else
+            word.text += c;
+    }
+    return word;
+}
+
+/// As the shell wants it inside of that quote, or outside of any.
+std::string quoted(const std::string& text, char quote) {
+    constexpr std::string_view outside = " \t\"'\\$`&|;<>()[]{}*?!#~", inside = "\"\\$`";
+    std::string result;
+    for (const char c : text) {
+        if (quote != '\'' && (quote == 0 ? outside : inside).find(c) != std::string_view::npos) result += '\\';
+        result += c;
+    }
+    return result;
+}
+
+/// The words that bash cuts at = and : as they were written.
+std::vector<std::string> joined(const std::vector<std::string>& words) {
+    const auto cuts = [](const std::string& word) {
+        return !word.empty() && word.find_first_not_of("=:") == std::string::npos;
+    };
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (i > 0 && (cuts(words[i]) || cuts(words[i - 1])))
+            all.back() += words[i];
+        else
+            all.push_back(words[i]);
+    return all;
+}
+
+bool is_figure_file(const std::string& path) {
+    return path.starts_with("presets/figures/");
+}
+
+/// Presets that are built in, and those that lie here, of the kind that the command takes.
+void add_presets(const std::string& command, Candidates& all) {
+    const bool films = command != "figure", figures = command == "figure" || command == "check" || command == "show";
+    if (command == "figure") all.push_back({"all", "every figure that is built in"});
+    const auto add = [&](const std::string& name, const std::string& path) {
+        if (is_figure_file(path) ? figures : films) all.push_back({name, is_figure_file(path) ? "figure" : "film"});
+    };
+    for (const auto& preset : builtin_presets()) add(preset.name, preset.path);
+    std::error_code ignored;
+    for (const auto* folder : {"presets", "presets/figures"})
+        for (const auto& file : fs::directory_iterator(folder, ignored))
+            if (file.path().extension() == ".toml") add(file.path().stem().string(), file.path().string());
+}
+
+/// Folders, and the files with that ending, that the word may go on to.
+void add_files(const std::string& word, std::string_view ending, Candidates& all) {
+    const auto folder = word.substr(0, word.rfind('/') + 1);
+    const bool wants_hidden = fs::path(word).filename().string().starts_with('.');
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+        const auto name = entry.path().filename().string();
+        if (name.starts_with('.') && !wants_hidden) continue;
+        if (entry.is_directory(ignored))
+            all.push_back({folder + name + "/"});
+        else if (name.ends_with(ending))
+            all.push_back({folder + name});
+    }
+}
+
+/// Of a check such as CLI::IsMember: what its description lists, "{mp4,webm}".
+void add_choices(const CLI::Option& option, const std::string& before, Candidates& all) {
+    auto text = option.get_type_name();  // with the descriptions of checks behind a colon
+    const auto open = text.find('{'), close = text.find('}');
+    if (open == std::string::npos || close == std::string::npos) return;
+    text = text.substr(open + 1, close - open - 1);
+    for (const auto& choice : CLI::detail::split(text, ',')) all.push_back({before + choice});
+}
+
+/// The kinds that --set may be for: that of the preset which is named, or those that the command takes.
+std::vector<std::string> kinds_of(const std::string& command, const std::vector<std::string>& words) {
+    for (std::size_t i = 1; i + 1 < words.size(); ++i) {
+        if (words[i].starts_with('-') || words[i - 1].starts_with('-')) continue;
+        try {
+            return {kind_of_preset(find_preset(words[i]))};
+        } catch (const Error&) {
+            continue;  // a value, or not yet whole
+        }
+    }
+    if (command != "figure") return {std::string(pair_kind)};
+    return {scene_kinds.begin() + 1, scene_kinds.end()};
+}
+
+/// "table.key=", or values of the key where it is there.
+void add_keys(const FieldTable& table, const std::string& above, const std::string& word, Candidates& all) {
+    const auto name = table.key().empty() ? "" : fmt::format("{}{}.", above, table.key());
+    for (const auto& inner : table.tables) add_keys(inner, name, word, all);
+    for (const auto& field : table.fields) {
+        const auto key = fmt::format("{}{}=", name, field.key);
+        if (!word.starts_with(key)) {
+            all.push_back(
+                {key, field.unit.empty() ? std::string(field.help) : fmt::format("{}, {}", field.help, field.unit)});
+            continue;
+        }
+        const auto brackets = field.is_list() ? std::pair("[", "]") : std::pair("", "");
+        for (const auto& choice : field.choices)
+            all.push_back({fmt::format("{}{}\"{}\"{}", key, brackets.first, choice, brackets.second)});
+        if (field.type == type_words<bool>()) all.insert(all.end(), {{key + "true"}, {key + "false"}});
+        if (field.choices.empty() && field.type != type_words<bool>()) all.push_back({key + field.example()});
+    }
+}
+
+void add_settings(const std::string& command, const std::vector<std::string>& words, const std::string& word,
+                  Candidates& all) {
+    for (const auto& kind : kinds_of(command, words))
+        for (const auto& table : tables_of(kind))
+            if (!table.name.starts_with("[[")) add_keys(table, "", word, all);
+}
+
+void add_values(const CLI::Option& option, const std::string& command, const std::vector<std::string>& words,
+                const std::string& word, const std::string& before, Candidates& all) {
+    if (option.get_name() == "--set") return add_settings(command, words, word, all);
+    add_choices(option, before, all);
+    if (option.get_type_name() == "DIR") add_files(word, "/", all);  // folders alone
+}
+
+/// What the last of the words may become. `words` begin with the command.
+Candidates candidates(CLI::App& app, const std::vector<std::string>& words) {
+    Candidates all;
+    const auto& word = words.back();
+    CLI::App* command = nullptr;
+    for (auto* each : app.get_subcommands({}))
+        if (words.size() == 1)
+            all.push_back({each->get_name(), each->get_description()});
+        else if (each->get_name() == words[0])
+            command = each;
+    if (words.size() == 1) command = &app;
+    if (!command) return all;
+    const auto takes_value = [&](const std::string& name) -> const CLI::Option* {
+        const auto* option = name.starts_with('-') ? command->get_option_no_throw(name) : nullptr;
+        return option && option->get_items_expected_max() > 0 ? option : nullptr;
+    };
+    if (const auto* option = words.size() > 1 ? takes_value(words[words.size() - 2]) : nullptr) {
+        add_values(*option, words[0], words, word, "", all);
+        return all;
+    }
+    if (const auto equals = word.find('='); word.starts_with("--") && equals != std::string::npos) {
+        if (const auto* option = takes_value(word.substr(0, equals)))
+            add_values(*option, words[0], words, word, word.substr(0, equals + 1), all);
+        return all;
+    }
+    for (const auto* option : command->get_options()) {
+        if (!option->get_positional()) {
+            for (const auto& name : option->get_lnames()) all.push_back({"--" + name, option->get_description()});
+            continue;
+        }
+        add_choices(*option, "", all);
+        const auto name = option->get_name();
+        if (name == "PRESET") add_presets(words[0], all);
+        if (option->get_type_name().find('{') == std::string::npos)
+            add_files(word, name == "PRESET" || name == "FILE" ? ".toml" : "", all);
+    }
+    if (!word.starts_with('-')) std::erase_if(all, [](const Candidate& one) { return one.text.starts_with('-'); });
+    return all;
+}
+
+Candidates starting(Candidates all, const std::string& start) {
+    std::erase_if(all, [&](const Candidate& one) { return !one.text.starts_with(start); });
+    return all;
+}
+
+}  // namespace
+
+std::string completions(CLI::App& app, const std::vector<std::string>& arguments) {
+    if (arguments.size() < 2) return "";
+    const bool is_bash = arguments[0] == "bash";
+    const std::vector<std::string> typed(arguments.begin() + 1, arguments.end());
+    const auto raw = is_bash ? joined(typed) : typed;
+    std::vector<std::string> words;
+    for (const auto& word : raw) words.push_back(unquoted(word).text);
+    const auto last = unquoted(raw.back());
+    // bash replaces what stands behind the last cut alone
+    const auto& piece = typed.back();
+    const bool is_cut = piece.find_first_not_of("=:") == std::string::npos;
+    const auto kept = is_bash ? last.text.size() - (is_cut ? 0 : unquoted(piece).text.size()) : 0;
+    auto all = starting(candidates(app, words), last.text);
+    // bash closes a quote behind a single word, and after a key it would have to be opened again
+    if (is_bash && last.quote != 0 && all.size() == 1 && all[0].text.ends_with('=')) {
+        words.back() = all[0].text;
+        all = starting(candidates(app, words), words.back());
+    }
+    std::vector<std::string> lines;
+    for (const auto& [text, help] : all)
+        lines.push_back(is_bash ? quoted(text.substr(kept), last.quote)
+                                : fmt::format("{}\t{}", text, help.substr(0, help.find('\n'))));
+    std::sort(lines.begin(), lines.end());
+    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    return lines.empty() ? "" : fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+void add_completion(CLI::App& app) {
+    auto shell = std::make_shared<std::string>();
+    auto& command = *app.add_subcommand("completion", "A script by which a shell completes Doppel's words with TAB");
+    command.footer(
+        "Examples:\n"
+        "  source <(doppel completion bash)    # in ~/.bashrc; zsh: the same in ~/.zshrc, after compinit\n"
+        "  doppel completion fish > ~/.config/fish/completions/doppel.fish");
+    command.add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    command.callback([shell] {
+        write_out(*shell == "bash" ? bash_script : *shell == "zsh" ? zsh_script : fish_script);
+    });
+}
+
+}  // namespace doppel

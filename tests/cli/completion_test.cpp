@@ -1,0 +1,192 @@
+// Completion in a real bash. zsh and fish: tests/check-completion.
+#include "base/clock.hpp"
+#include "cli/sandbox.hpp"
+#include "integrate/methods.hpp"
+
+#include <poll.h>
+#include <pty.h>
+
+#include <sstream>
+
+namespace doppel {
+namespace completion_test {
+
+namespace fs = std::filesystem;
+using namespace test;
+using Lines = std::vector<std::string>;
+
+Lines lines_of(const std::string& text) {
+    std::istringstream in(text);
+    Lines lines;
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+/// Folder with "doppel", which completes, and writes the arguments of other calls to the file "args".
+fs::path folder_with_doppel() {
+    const auto folder = fresh_folder();
+    fs::create_directory(folder / "bin");
+    write_bytes(folder / "bin/doppel", std::string("#!/bin/sh\ncase $1 in complete|completion) exec ") +
+                                           DOPPEL_PROGRAM +
+                                           " \"$@\";; esac\nprintf '%s\\n' \"$@\" >args.part; mv args.part args\n");
+    fs::permissions(folder / "bin/doppel", fs::perms::owner_all);
+    return folder;
+}
+
+/// COMPREPLY for the words, of which the last is completed, as bash cuts them.
+Lines completed(const fs::path& folder, const std::string& words) {
+    const auto script = fmt::format(
+        "PATH=$PWD/bin:$PATH; source <(doppel completion bash); COMP_WORDS=(doppel {0}); "
+        "COMP_CWORD=$(({{#COMP_WORDS[@]}} - 1)); _doppel; printf '%s\\n' \"${{COMPREPLY[@]}}\"",
+        words);
+    auto right = script;
+    right.replace(right.find("$(({#"), 5, "$((${#");
+    const auto child = start_program(folder, "/bin/bash", {"--norc", "--noprofile", "-c", right});
+    EXPECT_EQ(wait_for(child), 0) << bytes_of(folder / "stderr");
+    EXPECT_EQ(bytes_of(folder / "stderr"), "");
+    return lines_of(bytes_of(folder / "stdout"));
+}
+
+bool has(const Lines& lines, const std::string& line) {
+    return std::find(lines.begin(), lines.end(), line) != lines.end();
+}
+
+TEST(Completion, KnowsCommandsOptionsAndTheirChoices) {
+    const auto folder = folder_with_doppel();
+    const auto commands = completed(folder, "''");
+    for (const char* command : {"render", "figure", "check", "init", "schema", "completion"})
+        EXPECT_TRUE(has(commands, command)) << command;
+    EXPECT_FALSE(has(commands, "complete"));
+    EXPECT_EQ(completed(folder, "sim"), Lines{"simulate"});
+    EXPECT_EQ(completed(folder, "render --form"), Lines{"--format"});
+    EXPECT_EQ(completed(folder, "render --format ''"), (Lines{"apng", "gif", "mp4", "png", "webm"}));
+    EXPECT_EQ(completed(folder, "render --format = w"), Lines{"webm"});
+    EXPECT_EQ(completed(folder, "render --format=w"), Lines{"--format=webm"});        // where bash does not cut at =
+    EXPECT_EQ(completed(folder, "figure fig6 --merge fig2-r"), Lines{"fig2-right"});  // a flag takes no value
+    EXPECT_EQ(completed(folder, "completion ''"), (Lines{"bash", "fish", "zsh"}));
+    EXPECT_EQ(completed(folder, "list m"), Lines{"methods"});
+    EXPECT_EQ(completed(folder, "nonesuch ''"), Lines{""});
+}
+
+TEST(Completion, KnowsPresetsHereAndBuiltInAndFiles) {
+    const auto folder = folder_with_doppel();
+    fs::create_directories(folder / "presets/figures");
+    fs::create_directories(folder / "films/old");
+    for (const char* file :
+         {"presets/mine.toml", "presets/figures/my-chart.toml", "films/a b.toml", "films/x.txt", "own.toml"})
+        write_bytes(folder / file, "");
+    const auto films = completed(folder, "render ''");
+    for (const char* name : {"butterfly", "mine", "films/", "own.toml"}) EXPECT_TRUE(has(films, name)) << name;
+    for (const char* name : {"fig6", "my-chart", "stdout", "all"}) EXPECT_FALSE(has(films, name)) << name;
+    const auto figures = completed(folder, "figure ''");
+    for (const char* name : {"fig6", "my-chart", "all"}) EXPECT_TRUE(has(figures, name)) << name;
+    EXPECT_FALSE(has(figures, "butterfly"));
+    EXPECT_EQ(completed(folder, "check films/"), (Lines{"films/a\\ b.toml", "films/old/"}));
+    EXPECT_EQ(completed(folder, "render calm -o fi"), Lines{"films/"});
+    EXPECT_TRUE(has(completed(folder, "compare ''"), "stdout"));
+}
+
+TEST(Completion, KnowsKeysAndTheirValues) {
+    const auto folder = folder_with_doppel();
+    EXPECT_EQ(completed(folder, "render calm --set video.lay"), Lines{"video.layout="});
+    EXPECT_EQ(
+        completed(folder, "render calm --set video.layout ="),
+        (Lines{"\\\"ensemble\\\"", "\\\"overlay\\\"", "\\\"phase\\\"", "\\\"portrait\\\"", "\\\"side-by-side\\\""}));
+    EXPECT_EQ(completed(folder, "render calm --set video.layout = '\\\"ov'"), Lines{"\\\"overlay\\\""});
+    EXPECT_EQ(completed(folder, "render calm --set \"'video.layout=\\\"ov\""), Lines{"video.layout=\"overlay\""});
+    EXPECT_EQ(completed(folder, "render calm --set system.integrator =").size(), methods().size());
+    EXPECT_EQ(completed(folder, "render calm --set b.integrator = '\\\"ta'"), Lines{"\\\"taylor\\\""});
+    EXPECT_EQ(completed(folder, "render calm --set video.transparent ="), (Lines{"false", "true"}));
+    EXPECT_EQ(completed(folder, "render calm --set video.colors.backg"), Lines{"video.colors.background="});
+    EXPECT_EQ(completed(folder, "render calm --set scene.duration_s ="), Lines{"30"});
+    EXPECT_EQ(completed(folder, "render calm --set nonesuch"), Lines{""});
+    // of a figure: those of its kind
+    EXPECT_EQ(completed(folder, "figure fig2-right --set sweep.exponent ="), (Lines{"false", "true"}));
+    EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
+    EXPECT_EQ(completed(folder, "check flip-map --set flip_map.col"), Lines{"flip_map.columns="});
+    EXPECT_TRUE(has(completed(folder, "figure --set ''"), "poincare.orbits=") ||
+                has(completed(folder, "figure --set ''"), "section.orbits="));
+}
+
+TEST(Completion, RefusesAnUnknownShell) {
+    const auto result = doppel(fresh_folder(), {"completion", "tcsh"});
+    EXPECT_EQ(result.code, 2);
+    EXPECT_TRUE(one_line(result.err)) << result.err;
+    EXPECT_NE(result.err.find("tcsh"), std::string::npos);
+}
+
+TEST(Completion, IsSoonThere) {
+    const auto folder = fresh_folder();
+    double best = 1;
+    for (int i = 0; i < 5; ++i) {
+        const double start = seconds_of(CLOCK_MONOTONIC);
+        EXPECT_EQ(doppel(folder, {"complete", "bash", "figure", "fig2-right", "--set", "sweep."}).code, 0);
+        best = std::min(best, seconds_of(CLOCK_MONOTONIC) - start);
+    }
+    EXPECT_LT(best, 0.2);  // 0.02 s measured; sanitizers take longer
+}
+
+/// A bash on a terminal.
+class Terminal {
+public:
+    explicit Terminal(const fs::path& folder) {
+        child_ = forkpty(&side_, nullptr, nullptr, nullptr);
+        if (child_ == 0) {
+            if (chdir(folder.c_str()) != 0) _exit(99);
+            setenv("PS1", "ready> ", 1);
+            setenv("TERM", "dumb", 1);
+            setenv("INPUTRC", "/dev/null", 1);
+            setenv("HISTFILE", "/dev/null", 1);
+            setenv("PATH", ((folder / "bin").string() + ":" + getenv("PATH")).c_str(), 1);
+            execl("/bin/bash", "bash", "--norc", "--noprofile", "-i", nullptr);
+            _exit(98);
+        }
+    }
+    ~Terminal() {
+        kill(child_, SIGKILL);
+        close(side_);
+        wait_for(child_);
+    }
+    void type(const std::string& keys) { EXPECT_EQ(write(side_, keys.data(), keys.size()), ssize_t(keys.size())); }
+    /// What it says until there is nothing more for a while after the words.
+    std::string until(const std::string& words) {
+        std::string said;
+        pollfd wanted{.fd = side_, .events = POLLIN, .revents = 0};
+        while (poll(&wanted, 1, said.find(words) == std::string::npos ? 20000 : 100) > 0) {
+            char bytes[4096];
+            const auto count = read(side_, bytes, sizeof bytes);
+            if (count <= 0) break;
+            said.append(bytes, static_cast<std::size_t>(count));
+        }
+        return said;
+    }
+
+private:
+    int side_ = -1;
+    pid_t child_ = -1;
+};
+
+TEST(Completion, WorksOnATerminal) {
+    const auto folder = folder_with_doppel();
+    Terminal terminal(folder);
+    terminal.until("ready> ");
+    terminal.type("source <(doppel completion bash)\n");
+    terminal.until("ready> ");
+    const auto arguments = [&](const std::string& keys) {
+        fs::remove(folder / "args");
+        terminal.type(keys + "\n");
+        EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "args"); })) << keys;
+        terminal.until("ready> ");
+        return lines_of(bytes_of(folder / "args"));
+    };
+    EXPECT_EQ(arguments("doppel rend\tbutterf\t--form\tweb\t"), (Lines{"render", "butterfly", "--format", "webm"}));
+    EXPECT_EQ(arguments("doppel render calm --set video.layo\t\\\"ov\t"),
+              (Lines{"render", "calm", "--set", "video.layout=\"overlay\""}));
+    EXPECT_EQ(arguments("doppel render calm --set 'video.layo\tov\t--jobs 2"),
+              (Lines{"render", "calm", "--set", "video.layout=\"overlay\"", "--jobs", "2"}));
+    EXPECT_EQ(arguments("doppel figure poinc\t --set section.orb\t3"),
+              (Lines{"figure", "poincare", "--set", "section.orbits=3"}));
+}
+
+}  // namespace completion_test
+}  // namespace doppel

@@ -1,0 +1,87 @@
+// The preset that "doppel init" writes. With the real program.
+#include "cli/sandbox.hpp"
+#include "scene/resolved.hpp"
+
+#include <sstream>
+
+namespace doppel {
+namespace init_test {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+Preset read(const std::string& text) {
+    return read_preset({"mine", "mine.toml", text, "mine.toml"});
+}
+
+TEST(Init, WritesAPresetThatIsCheckedAndRendered) {
+    const auto folder = fresh_folder();
+    const auto result = doppel(folder, {"init", "mine.toml"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.out, "mine.toml: edit it, then: doppel check mine.toml\n");
+    EXPECT_EQ(listing(folder), (std::set<std::string>{"mine.toml", "stdout", "stderr"}));
+    EXPECT_EQ(doppel(folder, {"check", "mine.toml", "--set", "scene.duration_s=0.1"}).code, 0);
+    const auto film = doppel(folder, {"render", "mine.toml", "--set", "scene.duration_s=0.1", "--size", "160x90"});
+    EXPECT_EQ(film.code, 0) << film.err;
+    EXPECT_TRUE(fs::exists(folder / "out/mine/mine.mp4"));
+    // the difference is that of butterfly
+    const auto preset = read(bytes_of(folder / "mine.toml"));
+    EXPECT_EQ(resolved_pair(preset), resolved_pair(read_preset(find_preset("butterfly"))));
+}
+
+TEST(Init, EachKeyCanBeTakenIntoUse) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(doppel(folder, {"init", "mine.toml"}).code, 0);
+    std::istringstream lines(bytes_of(folder / "mine.toml"));
+    const auto whole = lines.str();
+    std::size_t at = 0, keys = 0;
+    std::set<std::string> refused;
+    for (std::string line; std::getline(lines, line); at += line.size() + 1) {
+        if (line.size() < 2 || line[0] != '#' || !std::isalpha(static_cast<unsigned char>(line[1]))) continue;
+        auto text = whole;
+        text.erase(at, 1);
+        ++keys;
+        try {
+            read(text);
+        } catch (const std::exception&) {
+            refused.insert(line.substr(1, line.find(' ') - 1));
+        }
+    }
+    EXPECT_GT(keys, 50u);
+    // those that are for other values of other keys
+    EXPECT_EQ(refused, (std::set<std::string>{"codec", "members", "phase", "phase_link", "tolerance"}));
+}
+
+TEST(Init, LeavesWhatIsThere) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "mine.toml", "title = \"mine\"\n");
+    fs::create_symlink("nowhere", folder / "link.toml");
+    for (const auto& [name, message] : std::vector<std::pair<std::string, std::string>>{
+             {"mine.toml", "mine.toml: is there already; give the name of a new file"},
+             {"link.toml", "link.toml: is there already; give the name of a new file"},
+             {"mine.txt", "mine.txt: the name of a preset's file ends in .toml"},
+             {".toml", ".toml: the name of a preset's file ends in .toml"}}) {
+        const auto result = doppel(folder, {"init", name});
+        EXPECT_EQ(result.code, 2);
+        EXPECT_EQ(result.err, "doppel: " + message + "\n");
+    }
+    EXPECT_EQ(bytes_of(folder / "mine.toml"), "title = \"mine\"\n");
+    const auto missing = doppel(folder, {"init", "no/such/folder/mine.toml"});
+    EXPECT_EQ(missing.code, 4);
+    EXPECT_TRUE(one_line(missing.err)) << missing.err;
+    EXPECT_FALSE(fs::exists(folder / "no"));
+}
+
+TEST(Init, NamesTheSchemaThatIsThere) {
+    const auto folder = fresh_folder();
+    fs::create_directories(folder / "presets");
+    fs::create_directories(folder / "films");
+    fs::copy_file(fs::path(DOPPEL_SOURCE_DIR) / "presets/preset.schema.json", folder / "presets/preset.schema.json");
+    ASSERT_EQ(doppel(folder, {"init", "films/mine.toml"}).code, 0);
+    EXPECT_TRUE(bytes_of(folder / "films/mine.toml").starts_with("#:schema ../presets/preset.schema.json\n"));
+    const auto check = doppel(folder, {"check", "films/mine.toml", "--set", "scene.duration_s=0.1"});
+    EXPECT_FALSE(check.out.starts_with("films/mine.toml:")) << check.out;
+}
+
+}  // namespace init_test
+}  // namespace doppel
