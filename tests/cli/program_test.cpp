@@ -99,7 +99,7 @@ TEST(Program, HelpTeaches) {
     for (const char* command : {"render", "simulate", "compare", "list", "show", "check"})
         EXPECT_NE(help.out.find(command), std::string::npos) << command;
     EXPECT_NE(doppel(folder, {"render", "--help"}).out.find("--frames"), std::string::npos);
-    EXPECT_EQ(doppel(folder, {"--version"}).out.rfind("doppel 0.", 0), 0u);
+    EXPECT_EQ(doppel(folder, {"--version"}).out.rfind("doppel 1.", 0), 0u);
 }
 
 TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {

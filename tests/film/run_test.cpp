@@ -182,7 +182,7 @@ TEST(Run, FilmsCanBeTracedToTheirManifest) {
         std::string said;
         for (const auto& [key, text] : film.metadata) said += text + "\n";
         for (const std::string word :
-             {"Three thousandths of a degree", "preset butterfly", "butterfly.json", "Doppel 0."})
+             {"Three thousandths of a degree", "preset butterfly", "butterfly.json", "Doppel 1."})
             EXPECT_NE(said.find(word), std::string::npos) << format << " lacks " << word << " in " << said;
     }
 }
