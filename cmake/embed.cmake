@@ -17,6 +17,7 @@ function(embed room)
         DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
         COMMENT "Embedding the files of ${room}"
         VERBATIM)
+    set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     target_sources(${room} PRIVATE ${output} ${folder}/embedded/${room}.hpp)
     target_include_directories(${room} PRIVATE ${folder})
 endfunction()
