@@ -12,7 +12,7 @@ add_custom_command(
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}/man
     COMMAND doppel man --all ${pages}/man
-    COMMAND gzip -9n ${pages}/man/*
+    COMMAND gzip -9nr ${pages}/man
     COMMAND doppel completion bash > ${pages}/doppel
     COMMAND doppel completion zsh > ${pages}/_doppel
     COMMAND doppel completion fish > ${pages}/doppel.fish
