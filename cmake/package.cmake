@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 set(pages ${PROJECT_BINARY_DIR}/pages)  # written by the program itself
 
 install(TARGETS doppel)
-install(DIRECTORY presets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel/presets FILES_MATCHING PATTERN *.toml)
+install(DIRECTORY presets DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel FILES_MATCHING PATTERN *.toml PATTERN *.json)
 install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 install(FILES packaging/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
@@ -16,7 +16,6 @@ add_custom_command(
     COMMAND doppel completion bash > ${pages}/doppel
     COMMAND doppel completion zsh > ${pages}/_doppel
     COMMAND doppel completion fish > ${pages}/doppel.fish
-    COMMAND doppel schema > ${pages}/preset.schema.json
     COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > ${pages}/changelog.gz
     COMMAND ${CMAKE_COMMAND} -E touch ${pages}/made
     DEPENDS doppel CHANGELOG.md VERBATIM)
@@ -26,7 +25,6 @@ install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 FILES_M
 install(FILES ${pages}/doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES ${pages}/_doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${pages}/doppel.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-install(FILES ${pages}/preset.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel)
 install(FILES ${pages}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The release of Debian that this is: "deb12", "deb13", "sid".
@@ -94,8 +92,8 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainer}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "films of chaotic pendulums in pairs, and charts of how they part
-Doppel steps two pendulums that are a hair apart, films them side by side
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"Doppel steps two pendulums that are a hair apart, films them side by side
 with the trace of how they part, and writes videos, pictures and tables.
 It needs no display and no graphics card, and repeats every figure to the
 last digit: for teaching, for videos, for research and for tests.")

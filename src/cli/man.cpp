@@ -50,7 +50,7 @@ The results of the preset NAME: film or picture, CSV, and the manifest
 .IR presets/ ", " presets/figures/
 Where a preset is looked for by its name; others are built in.
 .TP
-.I /usr/share/doppel/preset.schema.json
+.I /usr/share/doppel/presets/preset.schema.json
 The schema of presets, where the package installed it.
 )";
 

@@ -31,7 +31,7 @@ std::string schema_line(const fs::path& folder) {
         if (!ignored) return fmt::format("{}{}{}\n", directive, *way.begin() == ".." ? "" : "./", way.string());
     }
     const auto program = fs::read_symlink("/proc/self/exe", ignored);
-    const auto installed = (program.parent_path() / "../share/doppel/preset.schema.json").lexically_normal();
+    const auto installed = (program.parent_path() / "../share/doppel/presets/preset.schema.json").lexically_normal();
     return is_file(installed) ? fmt::format("{}{}{}\n", directive, address_of_file, installed.string()) : "";
 }
 
