@@ -41,11 +41,14 @@ Json text_schema(const ListedField& field) {
     return schema;
 }
 
-/// A ratio is not negative.
+/// A ratio is not negative, and nothing is divided by 0.
 Json ratio_schema(Bounds bounds) {
-    constexpr std::string_view decimal = R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE]\+?-?[0-9]+)?)";
+    constexpr std::string_view exponent = R"(([eE]\+?-?[0-9]+)?)", any = R"(([0-9]+\.?[0-9]*|\.[0-9]+))",
+                               not_0 = R"(([0-9]*[1-9][0-9]*\.?[0-9]*|[0-9]*\.[0-9]*[1-9][0-9]*))";
+    const auto above = fmt::format("{}{}", bounds.is_open ? not_0 : any, exponent);
+    const auto below = fmt::format("{}{}", not_0, exponent);
     if (!bounds.has_low()) bounds.low = 0;
-    const auto pattern = fmt::format(R"(^(\+?{0}(/\+?{0})?|-{0}/-{0})$)", decimal);
+    const auto pattern = fmt::format(R"(^(\+?{0}(/\+?{1})?|-{0}/-{1})$)", above, below);
     return {{"anyOf", {number_schema(bounds), {{"type", "string"}, {"pattern", pattern}}}}};
 }
 
