@@ -41,11 +41,14 @@ Json text_schema(const ListedField& field) {
     return schema;
 }
 
-/// A ratio is not negative.
+/// A ratio is not negative, and nothing is divided by 0.
 Json ratio_schema(Bounds bounds) {
-    constexpr std::string_view decimal = R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE]\+?-?[0-9]+)?)";
+    constexpr std::string_view exponent = R"(([eE]\+?-?[0-9]+)?)", any = R"(([0-9]+\.?[0-9]*|\.[0-9]+))",
+                               not_0 = R"(([0-9]*[1-9][0-9]*\.?[0-9]*|[0-9]*\.[0-9]*[1-9][0-9]*))";
+    const auto above = fmt::format("{}{}", bounds.is_open ? not_0 : any, exponent);
+    const auto below = fmt::format("{}{}", not_0, exponent);
     if (!bounds.has_low()) bounds.low = 0;
-    const auto pattern = fmt::format(R"(^(\+?{0}(/\+?{0})?|-{0}/-{0})$)", decimal);
+    const auto pattern = fmt::format(R"(^(\+?{0}(/\+?{1})?|-{0}/-{1})$)", above, below);
     return {{"anyOf", {number_schema(bounds), {{"type", "string"}, {"pattern", pattern}}}}};
 }
 
@@ -117,24 +120,39 @@ std::string part_kind(const FieldTable& table) {
     return table.name.substr(quote + 1, table.name.rfind('"') - quote - 1);
 }
 
-/// An entry of [[system.constraint]] or [[system.force]]. One with the name of an earlier one may say less: it changes it.
+/// An object with these keys, and nothing said of their values.
+Json with_keys(const FieldTable& table) {
+    Json keys = Json::object();
+    for (const auto& field : table.fields) keys[std::string(field.key)] = Json::object();
+    return {{"properties", std::move(keys)}, {"additionalProperties", false}};
+}
+
+/// An entry of [[system.constraint]] or [[system.force]]: what its keys take, then which keys each kind has. An entry
+/// with the name of an earlier one may say less: it changes it.
 Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, bool may_change) {
-    Json kinds = Json::array();
+    Json properties = Json::object(), names = Json::array(), kinds = Json::array();
     for (const auto& table : film) {
         if (!table.name.starts_with(fmt::format("[[system.{}]]", key))) continue;
-        auto schema = table_schema(table);
-        Json properties{{"kind", {{"enum", {part_kind(table)}}, {"title", "kind"}}}};
-        properties.update(schema["properties"]);
-        schema["properties"] = properties;
+        const auto name = part_kind(table);
+        auto kind = with_keys(table);
+        kind["title"] = name;
+        kind["properties"]["kind"] = {{"enum", {name}}};
         auto needed = needed_keys(table);
         needed.push_back("kind");
         if (may_change)
-            schema["anyOf"] = {{{"required", {"name"}}}, {{"required", needed}}};
+            kind["anyOf"] = {{{"required", {"name"}}}, {{"required", needed}}};
         else
-            schema["required"] = needed;
-        kinds.push_back(std::move(schema));
+            kind["required"] = needed;
+        kinds.push_back(std::move(kind));
+        names.push_back(name);
+        for (const auto& field : table.fields)
+            if (const std::string known(field.key); !properties.contains(known)) properties[known] = key_schema(field);
     }
-    return {{"anyOf", std::move(kinds)}};
+    properties["kind"] = {{"title", "kind"}, {"type", "string"}, {"enum", std::move(names)}};
+    return {{"type", "object"},
+            {"additionalProperties", false},
+            {"properties", std::move(properties)},
+            {"anyOf", std::move(kinds)}};
 }
 
 /// [system], or [a] and [b], which change what stands there.
@@ -165,20 +183,19 @@ bool is_of_entries(const FieldTable& table) {
 Json kind_schema(std::string_view kind) {
     Json tables = Json::object();
     for (const auto& table : tables_of(kind)) {
-        Json keys = Json::object();
-        for (const auto& field : table.fields) keys[std::string(field.key)] = Json::object();
+        const auto keys = with_keys(table);
         const bool differs =
             table.key() == "scene" || table.key() == "chart" || (table.key() == "system" && table.name == "[system]");
         if (table.key().empty())
-            tables.update(keys);
+            tables.update(keys["properties"]);
         else if (!differs)
             tables[std::string(table.key())] = Json::object();
         else
-            tables[std::string(table.key())] = {{"properties", keys}, {"additionalProperties", false}};
+            tables[std::string(table.key())] = keys;
     }
     if (tables.contains("a")) tables["system"] = Json::object();
     tables["scene"]["properties"]["kind"] = {{"enum", {kind}}};
-    Json schema{{"properties", std::move(tables)}, {"additionalProperties", false}};
+    Json schema{{"title", kind}, {"properties", std::move(tables)}, {"additionalProperties", false}};
     if (kind == pair_kind) return schema;
     schema["required"] = {"scene"};
     schema["properties"]["scene"]["required"] = {"kind"};
