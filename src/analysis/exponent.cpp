@@ -4,7 +4,6 @@
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "physics/pendulum.hpp"
 
 #include <atomic>
+#include <vector>
 
 namespace doppel {
 
@@ -36,5 +37,26 @@ Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, c
 /// numbers. Times the rounding of a double, 2⁻⁵³, it is the error that no method in double can be expected to beat.
 /// Throws Error: exit 3 where a step cannot be made, exit 130 soon after `stop` is set.
 double angle_sensitivity(const Pendulum<double>& p, double seconds, const std::atomic<bool>& stop);
+
+struct SpectrumSpec {
+    double duration_s = 500;   // of the motion
+    int samples = 500;         // equally spaced, the last at the end
+    double tolerance = 1e-10;  // of dop853, for the state and its tangents alike
+};
+
+/// The exponents as estimated up to a time.
+struct SpectrumSample {
+    double time_s;
+    std::vector<double> exponents;  // 1/s, 2N of them; the greatest first as time grows
+};
+
+/// Estimates of all 2N Lyapunov exponents of a chain of 1 to 4 links.
+/// Errors  exit 2 where the spec or the number of links makes no sense, exit 3 where dop853 breaks down, exit 130 soon
+///         after `stop` is set.
+std::vector<SpectrumSample> lyapunov_spectrum(const Pendulum<double>& p, const SpectrumSpec& spec,
+                                              const std::atomic<bool>& stop);
+
+/// The greatest |λ_i + λ_{2N+1−i}|, 1/s: what the pairs of a Hamiltonian system lack at a finite time.
+double pair_mismatch(const SpectrumSample& sample);
 
 }  // namespace doppel

@@ -1,5 +1,4 @@
-#include "analysis/spectrum.hpp"
-
+#include "analysis/exponent.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "physics/canonical.hpp"

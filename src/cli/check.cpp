@@ -2,12 +2,10 @@
 #include "base/machine.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
-#include "cli/schema.hpp"
 #include "cli/terminal.hpp"
 #include "figure/computation.hpp"
 #include "film/film.hpp"
 #include "scene/captions.hpp"
-#include "scene/forecast.hpp"
 #include "scene/method_choice.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
-#include "cli/completion.hpp"
-
 #include "base/error.hpp"
+#include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"

@@ -1,7 +1,6 @@
 #include "base/error.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
-#include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "figure/run.hpp"
 

@@ -1,6 +1,6 @@
 #include "base/error.hpp"
+#include "cli/options.hpp"
 #include "cli/program.hpp"
-#include "cli/schema.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"
 #include "output/folder.hpp"

@@ -1,18 +1,22 @@
+#include "cli/options.hpp"
 #include "cli/program.hpp"
-#include "cli/schema.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"
 #include "scene/scene.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <sstream>
 
 namespace doppel {
+
 namespace {
 
 /// The films or the figures among the presets, and their titles.
@@ -70,6 +74,66 @@ void add_show(CLI::App& app) {
         const auto preset = find_preset(*name, &watch_interrupts());
         show(preset.call == preset.name ? with_schema_line(preset.text) : preset.text);
     });
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view directive = "#:schema ", address_of_file = "file://";
+
+bool is_file(const fs::path& path) {
+    std::error_code ignored;
+    return fs::is_regular_file(path, ignored);
+}
+
+}  // namespace
+
+std::string schema_line(const fs::path& folder) {
+    std::error_code ignored;
+    if (const fs::path here = "presets/preset.schema.json"; is_file(here)) {
+        const auto way = fs::relative(here, folder, ignored);
+        if (!ignored) return fmt::format("{}{}{}\n", directive, *way.begin() == ".." ? "" : "./", way.string());
+    }
+    const auto program = fs::read_symlink("/proc/self/exe", ignored);
+    const auto installed = (program.parent_path() / "../share/doppel/presets/preset.schema.json").lexically_normal();
+    return is_file(installed) ? fmt::format("{}{}{}\n", directive, address_of_file, installed.string()) : "";
+}
+
+std::string with_schema_line(const std::string& text) {
+    return text.starts_with(directive) ? schema_line() + text.substr(text.find('\n') + 1) : text;
+}
+
+std::optional<std::string> schema_line_fault(const PresetText& preset) {
+    if (!is_file(preset.path)) return std::nullopt;  // built in
+    std::istringstream lines(preset.text);
+    int number = 0;
+    std::string line;
+    do {
+        if (!std::getline(lines, line) || !line.starts_with('#')) return std::nullopt;
+        ++number;
+    } while (!line.starts_with(directive));
+    auto name = line.substr(directive.size());
+    name.erase(name.find_last_not_of(" \t\r") + 1);
+    if (name.starts_with(address_of_file)) name.erase(0, address_of_file.size());
+    if (name.find("://") != std::string::npos) return std::nullopt;
+    const auto path = fs::path(preset.path).parent_path() / name;
+    const auto fault = [&](std::string_view what) {
+        return fmt::format("{}:{}:1: #:schema names {}, {}; \"doppel schema\" prints the one that editors want",
+                           preset.path, number, path.string(), what);
+    };
+    if (!is_file(path)) return fault("and there is no such file");
+    std::ifstream file(path, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    return text == preset_schema() ? std::nullopt : std::optional(fault("which is not this program's schema"));
+}
+
+void add_schema(CLI::App& app) {
+    auto& command = *app.add_subcommand("schema", "The JSON schema of presets, which editors of TOML read");
+    command.footer(
+        "Example:\n"
+        "  doppel schema > preset.schema.json    # for presets beside it that begin with #:schema "
+        "./preset.schema.json");
+    command.callback([] { write_out(preset_schema()); });
 }
 
 }  // namespace doppel

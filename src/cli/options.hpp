@@ -5,6 +5,7 @@
 
 #include <CLI/App.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,5 +48,19 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
 
 /// Runs the scenes one after the other and tells the person how far they are.
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options);
+
+/// The first line of a preset in `folder`, "#:schema PATH\n": the schema in presets/ here, or else the one that is
+/// installed with the program; empty where there is neither.
+std::string schema_line(const std::filesystem::path& folder = ".");
+
+/// The text of a preset that came with the program, with that line in place of its own.
+std::string with_schema_line(const std::string& text);
+
+/// What is wrong with the line of a preset's file: it names a file that is not there, or not this program's schema.
+std::optional<std::string> schema_line_fault(const PresetText& preset);
+
+/// What the scripts of "doppel completion" ask for, "doppel complete SHELL WORD…": what the last word may become, a line
+/// each; for zsh and fish with a tab and a few words on it. The words are as they were typed, quotes included.
+std::string completions(CLI::App& app, const std::vector<std::string>& arguments);
 
 }  // namespace doppel

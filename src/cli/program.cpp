@@ -3,7 +3,7 @@
 #include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/completion.hpp"
+#include "cli/options.hpp"
 #include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>

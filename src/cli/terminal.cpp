@@ -1,10 +1,19 @@
 #include "cli/terminal.hpp"
 
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 
 namespace doppel {
+
 namespace {
 
 // a signal can reach nothing but what is global; only this file sees it
@@ -40,6 +49,124 @@ void write_out(std::string_view text) {
 
 Error unwritten(const std::error_code& why) {
     return io_failed("standard output cannot be written: {}", why.message());
+}
+
+namespace {
+
+std::string bar(double share) {
+    constexpr int width = 28;
+    const auto full = static_cast<int>(share * width);
+    std::string text;
+    for (int i = 0; i < width; ++i) text += i < full ? "━" : "─";
+    return text;
+}
+
+/// Where nobody reads it any more, the run goes on all the same.
+template <class... Args>
+void say(std::FILE* to, fmt::format_string<Args...> format, Args&&... args) {
+    std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), to);
+}
+
+std::string duration(double seconds) {
+    const auto whole = std::lround(seconds);
+    return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
+}
+
+std::string bytes(double count) {
+    return count < 1e6 ? fmt::format("{:.0f} kB", count / 1e3) : fmt::format("{:.1f} MB", count / 1e6);
+}
+
+}  // namespace
+
+ProgressStyle progress_style(const std::string& name) {
+    if (name == "bar") return ProgressStyle::bar;
+    if (name == "plain") return ProgressStyle::plain;
+    if (name == "json") return ProgressStyle::json;
+    if (name == "none") return ProgressStyle::none;
+    return isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
+}
+
+ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::string unit)
+    : style_(style), name_(std::move(name)), unit_(std::move(unit)), start_(Clock::now()), shown_(start_) {}
+
+void ProgressReport::operator()(const Progress& progress) {
+    if (style_ == ProgressStyle::none || progress.total == 0) return;
+    const auto now = Clock::now();
+    if (!before_) {
+        before_ = progress.done;
+        start_ = now;
+    }
+    const auto pause = style_ == ProgressStyle::bar    ? std::chrono::milliseconds(100)
+                       : style_ == ProgressStyle::json ? std::chrono::milliseconds(500)
+                                                       : std::chrono::milliseconds(5000);
+    if (now - shown_ < pause || progress.done == *before_) return;
+    shown_ = now;
+
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double rate = static_cast<double>(progress.done - *before_) / elapsed;
+    const double left = static_cast<double>(progress.total - progress.done) / rate;
+    const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
+    if (style_ == ProgressStyle::json) {
+        tell({{"event", "progress"},
+              {"preset", name_},
+              {"unit", unit_},
+              {"done", progress.done},
+              {"total", progress.total},
+              {"per_second", rate},
+              {"seconds_left", left}});
+    } else if (style_ == ProgressStyle::bar) {
+        say(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
+            progress.done, progress.total, unit_, rate, unit_, duration(left));
+        on_screen_ = true;
+    } else {
+        say(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
+            100 * share, rate, unit_, duration(left));
+    }
+}
+
+void ProgressReport::note(const std::string& sentence) {
+    if (style_ == ProgressStyle::none) return;
+    clear();
+    if (style_ == ProgressStyle::json)
+        tell({{"event", "note"}, {"preset", name_}, {"text", sentence}});
+    else
+        say(stderr, "{}: {}\n", name_, on_one_line(sentence));
+}
+
+void ProgressReport::tell(const nlohmann::ordered_json& event) {
+    const auto fault =
+        try_write_out(event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    const bool left = fault == std::errc::broken_pipe;  // of their own accord
+    if (fault && !left) unheard_ = fault;
+}
+
+void ProgressReport::clear() {
+    if (on_screen_) say(stderr, "\r\033[K");
+    on_screen_ = false;
+}
+
+void ProgressReport::done(const RunResult& result) {
+    clear();
+    const long count = result.frames > 0 ? result.frames : result.samples;
+    if (style_ == ProgressStyle::json) {
+        nlohmann::ordered_json line = {
+            {"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
+        for (const auto& file : result.files) line["files"].push_back(file.string());
+        tell(line);
+        if (unheard_) throw unwritten(unheard_);
+        return;
+    }
+    constexpr long few = 10;  // whose rate says nothing
+    if (style_ != ProgressStyle::none && count < few)
+        say(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
+    else if (style_ != ProgressStyle::none)
+        say(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
+            static_cast<double>(count) / result.wall_s, unit_);
+    for (const auto& file : result.files)
+        say(stdout, "{}\n",
+            std::filesystem::is_directory(file)
+                ? file.string() + "/"
+                : fmt::format("{} ({})", file.string(), bytes(static_cast<double>(std::filesystem::file_size(file)))));
 }
 
 }  // namespace doppel

@@ -1,5 +1,4 @@
-#include "analysis/spectrum.hpp"
-
+#include "analysis/exponent.hpp"
 #include "figure/kinds.hpp"
 #include "scene/captions.hpp"
 

@@ -5,7 +5,7 @@
 #include "base/threads.hpp"
 #include "image/picture.hpp"
 #include "output/png.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 
 #include <algorithm>
 #include <cmath>

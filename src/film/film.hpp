@@ -6,7 +6,6 @@
 #include "integrate/motion_batch.hpp"
 #include "output/sink.hpp"
 #include "output/transaction.hpp"
-#include "output/video.hpp"
 #include "output/workers.hpp"
 #include "render/renderer.hpp"
 #include "scene/scene.hpp"

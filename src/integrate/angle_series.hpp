@@ -3,7 +3,6 @@
 #include "integrate/lane_series.hpp"
 #include "integrate/taylor_series.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 
 #include <array>
 #include <cmath>

@@ -5,7 +5,6 @@
 
 #include "integrate/batch_kernel.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
 
 namespace doppel {

@@ -2,7 +2,7 @@
 
 #include "integrate/stepper.hpp"
 #include "numeric/lanes.hpp"
-#include "physics/double_pendulum.hpp"
+#include "physics/angle_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <algorithm>

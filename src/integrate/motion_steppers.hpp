@@ -5,7 +5,6 @@
 #include "integrate/registry.hpp"
 #include "integrate/stabilise.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 #include "physics/mechanism.hpp"
 #include "physics/rod_chain.hpp"
 

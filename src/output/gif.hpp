@@ -2,7 +2,7 @@
 
 #include "output/folder.hpp"
 #include "output/samples.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 
 #include <libdeflate.h>
 

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 
 extern "C" {
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 
 #include "image/picture.hpp"
 #include "output/folder.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -1,8 +1,7 @@
-#include "output/video.hpp"
-
 #include "base/machine.hpp"
 #include "output/gif.hpp"
 #include "output/libav_encoder.hpp"
+#include "output/sink.hpp"
 #include "output/workers.hpp"
 
 extern "C" {

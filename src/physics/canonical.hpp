@@ -1,7 +1,6 @@
 #pragma once
 
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 
 #include <concepts>
 #include <limits>

@@ -1,6 +1,5 @@
 #include "plot/axis.hpp"
 #include "plot/chart_parts.hpp"
-#include "plot/curves.hpp"
 #include "plot/text.hpp"
 #include "render/font.hpp"
 

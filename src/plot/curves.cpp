@@ -1,5 +1,4 @@
-#include "plot/curves.hpp"
-
+#include "plot/chart_parts.hpp"
 #include "render/stroke.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "plot/chart_parts.hpp"
-#include "plot/curves.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "plot/curves.hpp"
+#include "plot/chart_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

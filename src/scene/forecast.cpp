@@ -1,7 +1,6 @@
-#include "scene/forecast.hpp"
-
 #include "analysis/reference.hpp"
 #include "analysis/stability.hpp"
+#include "scene/method_choice.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "image/color.hpp"
 #include "image/picture.hpp"
 #include "numeric/rational.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 #include "scene/field.hpp"
 
 #include <array>

@@ -6,7 +6,6 @@
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,3 @@
-#include "analysis/spectrum.hpp"
-
 #include "analysis/exponent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"

@@ -3,7 +3,7 @@
 #include "film/run.hpp"
 #include "output/png.hpp"
 #include "output/samples.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 #include "render/renderer.hpp"
 
 #include <benchmark/benchmark.h>

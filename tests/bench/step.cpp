@@ -2,7 +2,6 @@
 #include "integrate/runge_kutta.hpp"
 #include "peers/chain_rate.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <benchmark/benchmark.h>

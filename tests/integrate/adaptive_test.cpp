@@ -4,7 +4,6 @@
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"
-#include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,6 @@
 #include "integrate/batch_kernel.hpp"
 #include "integrate/widths.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>

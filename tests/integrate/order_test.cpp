@@ -5,7 +5,7 @@
 #include "integrate/euler.hpp"
 #include "integrate/runge_kutta.hpp"
 #include "numeric/quad.hpp"
-#include "physics/double_pendulum.hpp"
+#include "physics/angle_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,6 @@
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"
-#include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <Eigen/LU>

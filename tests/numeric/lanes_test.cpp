@@ -3,7 +3,6 @@
 #include "integrate/euler.hpp"
 #include "integrate/runge_kutta.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/double_pendulum.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>

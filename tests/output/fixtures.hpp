@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "image/picture.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
 #include "output/libav_encoder.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
 #include "output/gif.hpp"
-#include "output/video.hpp"
+#include "output/sink.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
-#include "output/video.hpp"
-
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
+#include "output/sink.hpp"
 
 #include <algorithm>
 #include <ctime>

@@ -1,5 +1,3 @@
-#include "physics/double_pendulum.hpp"
-
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"

@@ -1,6 +1,5 @@
 #include "image/color.hpp"
 #include "plot/chart_parts.hpp"
-#include "plot/curves.hpp"
 #include "plot/plot.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 #include "base/error.hpp"
 #include "cli/options.hpp"
-#include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "figure/run.hpp"
 #include "peers.hpp"
