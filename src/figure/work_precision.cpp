@@ -277,7 +277,6 @@ private:
     }
 
     inline static const Field cost_field{.key = "cost", .help = "what the error is drawn over"};
-
     Cost cost_ = Cost::time;
     std::optional<std::string> scene_;
     Preset film_;  // of the scene
