@@ -7,10 +7,10 @@
 #include "output/workers.hpp"
 
 extern "C" {
-#include <fmt/ranges.h>
 #include <libavutil/imgutils.h>
 }
 
+#include <fmt/ranges.h>
 #include <libdeflate.h>
 #include <libimagequant.h>
 

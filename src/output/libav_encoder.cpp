@@ -5,10 +5,11 @@
 #include "output/sink.hpp"
 
 extern "C" {
-#include <fmt/ranges.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
 }
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

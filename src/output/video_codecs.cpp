@@ -3,9 +3,10 @@
 #include "output/png.hpp"
 
 extern "C" {
-#include <fmt/ranges.h>
 #include <libavutil/imgutils.h>
 }
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

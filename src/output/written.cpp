@@ -3,11 +3,11 @@
 #include "base/error.hpp"
 
 extern "C" {
-#include <fmt/ranges.h>
 #include <libavutil/mem.h>
 #include <libavutil/sha.h>
 }
 
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
