@@ -69,7 +69,7 @@ AVIOContext* open_stream(int file, bool writes) {
         av_free(buffer);
         throw std::bad_alloc();
     }
-    stream.release();
+    static_cast<void>(stream.release());  // the context has it
     return context;
 }
 

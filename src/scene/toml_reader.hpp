@@ -153,7 +153,7 @@ private:
     bool counts(const Field& field);
     void demand(const Field& field, bool given) const;
     double number(std::string_view key, std::string_view element, const toml::node& node, double) const;
-    Quad number(std::string_view key, std::string_view element, const toml::node& node, Quad) const;
+    Quad number(std::string_view key, std::string_view element, const toml::node& node, const Quad&) const;
     template <class Number>
     void check(const Field& field, std::string_view element, const Number& value) const;
     template <class Number>

@@ -90,7 +90,7 @@ double TomlReader::number(std::string_view key, std::string_view element, const 
     return *value + 0.0;  // −0 is 0
 }
 
-Quad TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, Quad) const {
+Quad TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, const Quad&) const {
     const double rounded = number(key, element, node, 0.0);
     if (const auto* whole = node.as_integer()) return Quad(whole->get());
     const auto& origin = node.source().path;

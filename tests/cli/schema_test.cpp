@@ -30,7 +30,7 @@ TEST(Schema, LineOfAShownPresetIsRightForACopy) {
     EXPECT_EQ(doppel(folder, {"show", "mine.toml"}).out, whole);  // one's own stays as it is
     // as a package has it
     fs::create_directories(folder / "usr/bin");
-    fs::create_directories(folder / "usr/share/doppel");
+    fs::create_directories(folder / "usr/share/doppel/presets");
     fs::rename(folder / "presets/preset.schema.json", folder / "usr/share/doppel/presets/preset.schema.json");
     fs::copy_file(DOPPEL_PROGRAM, folder / "usr/bin/doppel");
     const auto installed = wait_for(start_program(folder, (folder / "usr/bin/doppel").c_str(), {"show", "butterfly"}));
