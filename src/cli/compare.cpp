@@ -66,8 +66,8 @@ void compare_pair(ComparedPicture& pair, const fs::path& out) {
                                expected_path, pair.verdict.why, files.front().string());
 }
 
-/// The same, timed. One that cannot be read is the error `first_fault`, if it is the
-/// first.
+/// The same, timed. One that cannot be read is the error `first_fault`, if it is
+/// the first.
 ComparedPicture compared(ComparedPicture pair, const fs::path& out, std::optional<Error>& first_fault) {
     const double start = seconds_of(CLOCK_MONOTONIC);
     try {

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 9> used_keys{"title",     "duration_s",  
 
 /// "# help (number, > 0; unit s; default: none)", then the key, as a comment where it is seldom used.
 std::string key_lines(const ListedField& field, const std::string& prefix) {
-    const bool is_live = std::find(used_keys.begin(), used_keys.end(), field.key) != used_keys.end();
+    const bool is_live = prefix.empty() && std::find(used_keys.begin(), used_keys.end(), field.key) != used_keys.end();
     auto text = fmt::format("# {} ({}", field.help, plain_words(field.takes()));
     if (!field.unit.empty()) text += fmt::format("; unit {}", field.unit);
     if (field.default_value().empty()) text += fmt::format("; default: {}", plain_words(field.by_default));

@@ -150,15 +150,15 @@ void rename_file(const FilePlace& from, const FilePlace& to) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view text) {
-    const auto part = part_of(path);
+    const auto folder = Folder::at(path.has_parent_path() ? path.parent_path() : ".");
+    const FilePlace place(folder, path.filename().string()), part = part_of(place);
+    OutputFile file(part);  // a new file: what stands there already is somebody's
     try {
-        OutputFile file(part);
         file.write(text);
         file.close();
-        rename_file(part, path);
+        rename_file(part, place);
     } catch (...) {
-        std::error_code ignored;
-        std::filesystem::remove(part.path, ignored);
+        folder.remove(part.name);
         throw;
     }
 }

@@ -72,6 +72,19 @@ TEST(Init, LeavesWhatIsThere) {
     EXPECT_FALSE(fs::exists(folder / "no"));
 }
 
+TEST(Init, LeavesAFileUnderItsTemporaryName) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "mine.toml.part", "mine");
+    write_bytes(folder / "thesis", "thesis");
+    fs::create_symlink("thesis", folder / "other.toml.part");
+    for (const char* name : {"mine.toml", "other.toml"}) {
+        EXPECT_EQ(doppel(folder, {"init", name}).code, 4) << name;
+        EXPECT_FALSE(fs::exists(folder / name));
+    }
+    EXPECT_EQ(bytes_of(folder / "mine.toml.part"), "mine");
+    EXPECT_EQ(bytes_of(folder / "thesis"), "thesis");
+}
+
 TEST(Init, NamesTheSchemaThatIsThere) {
     const auto folder = fresh_folder();
     fs::create_directories(folder / "presets");
