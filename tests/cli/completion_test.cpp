@@ -6,7 +6,9 @@
 #include <poll.h>
 #include <pty.h>
 
+#include <optional>
 #include <sstream>
+#include <system_error>
 
 namespace doppel {
 namespace completion_test {
@@ -129,8 +131,9 @@ TEST(Completion, IsSoonThere) {
 /// A bash on a terminal.
 class Terminal {
 public:
+    /// Throws where the machine has no terminal to give.
     explicit Terminal(const fs::path& folder) {
-        child_ = forkpty(&side_, nullptr, nullptr, nullptr);
+        child_ = forked(forkpty(&side_, nullptr, nullptr, nullptr));
         if (child_ == 0) {
             if (chdir(folder.c_str()) != 0) _exit(99);
             setenv("PS1", "ready> ", 1);
@@ -168,7 +171,13 @@ private:
 
 TEST(Completion, WorksOnATerminal) {
     const auto folder = folder_with_doppel();
-    Terminal terminal(folder);
+    std::optional<Terminal> started;
+    try {
+        started.emplace(folder);
+    } catch (const std::system_error& error) {
+        GTEST_SKIP() << "no terminal, as in a root without /dev/pts: " << error.what();
+    }
+    Terminal& terminal = *started;
     terminal.until("ready> ");
     terminal.type("source <(doppel completion bash)\n");
     terminal.until("ready> ");

@@ -16,7 +16,7 @@ namespace doppel::test {
 /// Starts a program in `folder`; standard output and error go to the files stdout and stderr there.
 inline pid_t start_program(const std::filesystem::path& folder, const char* program,
                            const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
-    const pid_t child = fork();
+    const pid_t child = forked(fork());
     if (child != 0) return child;
     if (chdir(folder.c_str()) != 0) _exit(99);
     const int out = open("stdout", O_CREAT | O_TRUNC | O_WRONLY, 0644),

@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace doppel::test {
@@ -18,6 +20,12 @@ std::filesystem::path fresh_folder();
 
 std::string bytes_of(const std::filesystem::path& path);
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
+
+/// What fork() gave. Throws std::system_error where it failed: kill(-1, …) would end every process there is.
+inline int forked(int child) {
+    if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
+    return child;
+}
 
 /// Frame k of something like ours: a dark ground, two pendulums with antialiased discs and fading trails, thin lines.
 Picture moving_scene(Size size, long k);

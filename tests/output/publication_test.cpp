@@ -79,7 +79,7 @@ Contents after_new_run(const fs::path& where) {
 
 /// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer.
 bool killed_before(int n, const std::function<void()>& action, const CallWatch& other = {}) {
-    const pid_t child = fork();
+    const pid_t child = test::forked(fork());
     if (child == 0) {
         watch_calls([&, calls = 0](const std::string& call) mutable {
             if (++calls == n) raise(SIGKILL);

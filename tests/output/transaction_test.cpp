@@ -52,7 +52,7 @@ void write_record(const fs::path& folder, const std::vector<std::string>& names)
 
 /// Runs `action` in a process of its own, until it raises SIGKILL.
 void killed(const std::function<void()>& action) {
-    const pid_t child = fork();
+    const pid_t child = test::forked(fork());
     if (child == 0) {
         action();
         _exit(0);
