@@ -49,6 +49,19 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
             throw table.fault(key, "must differ; \"{}\" is named more than once", name);
 }
 
+Preset film_named(const std::string& name, const TomlReader& table) {
+    const auto source = [&] {
+        try {
+            return find_preset(name);
+        } catch (const Error& fault) {
+            throw table.fault("scene", "cannot be taken: {}", fault.what());
+        }
+    }();
+    table.demand_drawable("scene", source.name);
+    if (is_figure(source)) throw table.fault("scene", "must name a film; \"{}\" is a figure", name);
+    return read_preset(source);
+}
+
 namespace {
 
 std::string number_words(std::size_t number) {
@@ -143,8 +156,8 @@ std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_a
 
 std::span<const FigureKind> figure_kinds() {
     static const std::array<FigureKind, scene_kinds.size() - 1> kinds{
-        sweep_kind, curves_kind,         convergence_kind, spectrum_kind, section_kind, flip_map_kind,
-        links_kind, work_precision_kind, stability_kind,   drift_kind,    audit_kind};
+        sweep_kind, curves_kind,         convergence_kind, spectrum_kind, section_kind,  flip_map_kind,
+        links_kind, work_precision_kind, stability_kind,   drift_kind,    encoders_kind, audit_kind};
     return kinds;
 }
 

@@ -67,6 +67,9 @@ inline bool serves(const MethodEntry& method, Model model) {
 /// Throws Error (exit 2) where no method has that name, one of `methods`.
 const MethodEntry& method_named(const TomlReader& table, const std::string& name);
 
+/// The film of that name or path, `scene` of the table. Throws Error (exit 2).
+Preset film_named(const std::string& name, const TomlReader& table);
+
 /// What sweeps and maps vary in a release.
 struct ReleaseParameter {
     std::string_view name, label;  // the column's, the axis's
@@ -128,6 +131,6 @@ std::span<const FigureKind> figure_kinds();
 
 // One file each.
 extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, flip_map_kind,
-    links_kind, work_precision_kind, stability_kind, drift_kind, audit_kind;
+    links_kind, work_precision_kind, stability_kind, drift_kind, encoders_kind, audit_kind;
 
 }  // namespace doppel

@@ -17,8 +17,6 @@ struct WorkProblems {
 /// Those of the standard that are named. `table` = whose key `problems` has the names. Throws Error (exit 2).
 WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table);
 std::span<const std::string_view> standard_problem_names();
-/// The film of that name or path, `scene` of the table, whose side a is a problem. Throws Error (exit 2).
-Preset film_named(const std::string& name, const TomlReader& table);
 WorkProblems problem_of(Preset film);
 
 /// Everything that the diagram of one problem shows.

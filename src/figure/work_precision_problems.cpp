@@ -97,19 +97,6 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
     return problems;
 }
 
-Preset film_named(const std::string& name, const TomlReader& table) {
-    const auto source = [&] {
-        try {
-            return find_preset(name);
-        } catch (const Error& fault) {
-            throw table.fault("scene", "cannot be taken: {}", fault.what());
-        }
-    }();
-    table.demand_drawable("scene", source.name);
-    if (is_figure(source)) throw table.fault("scene", "must name a film; \"{}\" is a figure", name);
-    return read_preset(source);
-}
-
 /// What the film says stands beside its name, so that two films of one name are told apart.
 WorkProblems problem_of(Preset film) {
     WorkProblems problems;

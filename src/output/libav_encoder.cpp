@@ -5,6 +5,7 @@
 #include "output/sink.hpp"
 
 extern "C" {
+#include <libavutil/imgutils.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
 }
@@ -67,6 +68,61 @@ const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID cod
                     others.empty() ? "none" : fmt::format("{}", fmt::join(others, ", ")));
 }
 
+void check_libav(int result, const std::string& name, std::string_view what) {
+    if (result >= 0) {
+        take_libav_error();  // a warning
+        return;
+    }
+    std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
+    av_strerror(result, reason.data(), reason.size());
+    const auto error = take_libav_error();
+    throw io_failed("{}: {}: {}{}{}", name, what, error, error.empty() ? "" : ": ", reason.data());
+}
+
+Libav<AVFrame> make_frame(Size size, AVPixelFormat pixels) {
+    auto frame = owned(av_frame_alloc());
+    frame->width = size.width;
+    frame->height = size.height;
+    frame->format = pixels;
+    if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+    return frame;
+}
+
+void put(const SampledAreas& changes, AVFrame& frame) {
+    const auto pixels = static_cast<AVPixelFormat>(frame.format);
+    const std::uint8_t* from = changes.bytes.data();
+    for (const Rect& area : changes.areas)
+        for (int k = 0; k < av_pix_fmt_count_planes(pixels); ++k) {
+            const auto [offset, row_bytes, top, rows] = plane_area(pixels, k, area);
+            const int stride = frame.linesize[k];
+            av_image_copy_plane(frame.data[k] + std::ptrdiff_t{top} * stride + offset, stride, from, row_bytes,
+                                row_bytes, rows);
+            from += std::ptrdiff_t{row_bytes} * rows;
+        }
+}
+
+Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& name) {
+    const std::string_view encoder = encoding.encoder->name;
+    // without threads to be had SVT-AV1, which starts some 110, hangs, and libaom ends the program
+    if (has_chroma(encoding.pixels)) need_threads(encoder == "libsvtav1" ? 200 : 3 * encoding.threads);
+    auto codec = owned(avcodec_alloc_context3(encoding.encoder));
+    codec->width = encoding.size.width;
+    codec->height = encoding.size.height;
+    codec->sample_aspect_ratio = {1, 1};
+    codec->framerate = encoding.frame_rate;
+    codec->time_base = encoding.tick;
+    codec->pix_fmt = encoding.pixels;
+    if (has_chroma(encoding.pixels)) tag_bt709(*codec);
+    codec->thread_count = static_cast<int>(encoding.threads);
+    codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    for (const auto& [key, value] : encoding.encoder_options)
+        check_libav(av_opt_set(codec.get(), key.c_str(), value.c_str(), AV_OPT_SEARCH_CHILDREN), name,
+                    fmt::format("{} refuses {} = {}", encoder, key, value));
+    check_libav(avcodec_open2(codec.get(), encoding.encoder, nullptr), name,
+                fmt::format("{} cannot be opened", encoder));
+    return codec;
+}
+
 Encoder::Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bool>& stop)
     : path_(place.path.string()),
       encoding_(std::move(encoding)),
@@ -76,35 +132,7 @@ Encoder::Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bo
       packet_(owned(av_packet_alloc())) {
     for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
     file_.attach(*format_);
-    open_frame();
-}
-
-void Encoder::open_frame() {
-    frame_ = owned(av_frame_alloc());
-    frame_->width = encoding_.size.width;
-    frame_->height = encoding_.size.height;
-    frame_->format = encoding_.pixels;
-    check(av_frame_get_buffer(frame_.get(), 0), "no memory for a frame");
-}
-
-void Encoder::open_codec() {
-    const std::string_view name = encoding_.encoder->name;
-    // without threads to be had SVT-AV1, which starts some 110, hangs, and libaom ends the program
-    if (has_chroma(encoding_.pixels)) need_threads(name == "libsvtav1" ? 200 : 3 * encoding_.threads);
-    codec_ = owned(avcodec_alloc_context3(encoding_.encoder));
-    codec_->width = encoding_.size.width;
-    codec_->height = encoding_.size.height;
-    codec_->sample_aspect_ratio = {1, 1};
-    codec_->framerate = encoding_.frame_rate;
-    codec_->time_base = encoding_.tick;
-    codec_->pix_fmt = encoding_.pixels;
-    if (has_chroma(encoding_.pixels)) tag_bt709(*codec_);
-    codec_->thread_count = static_cast<int>(encoding_.threads);
-    codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    for (const auto& [key, value] : encoding_.encoder_options)
-        check(av_opt_set(codec_.get(), key.c_str(), value.c_str(), AV_OPT_SEARCH_CHILDREN),
-              fmt::format("{} refuses {} = {}", name, key, value));
-    check(avcodec_open2(codec_.get(), encoding_.encoder, nullptr), fmt::format("{} cannot be opened", name));
+    frame_ = make_frame(encoding_.size, encoding_.pixels);
 }
 
 void Encoder::write_header() {
@@ -138,7 +166,7 @@ AVFrame& Encoder::frame() {
 void Encoder::send_frame(std::int64_t time, std::int64_t duration) {
     frame_->pts = time;
     duration_ = duration;
-    if (!codec_) open_codec();
+    if (!codec_) codec_ = open_encoder(encoding_, path_);
     check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
     if (!stream_) write_header();
     write_packets();
@@ -184,14 +212,7 @@ void Encoder::finish(std::string_view ending, int replaced) {
 }
 
 void Encoder::check(int result, std::string_view what) const {
-    if (result >= 0) {
-        take_libav_error();  // a warning
-        return;
-    }
-    std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
-    av_strerror(result, reason.data(), reason.size());
-    const auto error = take_libav_error();
-    throw io_failed("{}: {}: {}{}{}", path_, what, error, error.empty() ? "" : ": ", reason.data());
+    check_libav(result, path_, what);
 }
 
 std::string libav_description() {

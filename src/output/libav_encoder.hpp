@@ -2,6 +2,7 @@
 
 #include "image/picture.hpp"
 #include "output/folder.hpp"
+#include "output/samples.hpp"
 #include "output/sink.hpp"
 
 extern "C" {
@@ -77,6 +78,18 @@ void check_options(const VideoOptions& options);
 /// For options that check_options() passes. Throws Error (exit 4) where libav lacks the encoder.
 Encoding encoding_of(const VideoOptions& options);
 
+/// An encoder with these parameters, opened. `name` = what errors are about. Throws Error (exit 4).
+Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& name);
+
+/// Throws Error (exit 4) where libav returned an error: "NAME: WHAT: …", with its reasons.
+void check_libav(int result, const std::string& name, std::string_view what);
+
+/// A frame with room for its samples.
+Libav<AVFrame> make_frame(Size size, AVPixelFormat pixels);
+
+/// Copies what changed to its place in the frame.
+void put(const SampledAreas& changes, AVFrame& frame);
+
 /// An encoder and the file it fills. All throw Error: exit 4 with the path and libav's reason, exit 130 soon after
 /// `stop` is set.
 class Encoder {
@@ -96,8 +109,6 @@ public:
     void finish(std::string_view ending = {}, int replaced = 0);
 
 private:
-    void open_codec();
-    void open_frame();
     void write_header();
     void write_packets();
     void insert_png_chunks();

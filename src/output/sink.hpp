@@ -47,7 +47,7 @@ struct VideoOptions {
     int fps_numerator = 120;  // frames/s
     int fps_denominator = 1;
     PixelFormat pixel_format = PixelFormat::yuv420;  // gif and apng: not used
-    std::string preset = "veryfast";                 // x264's names, for each codec; gif and apng: not used
+    std::string preset = "doppel";                   // or x264's names, for each codec; gif and apng: not used
     int crf = 18;              // h264 0…51, vp9 and av1 0…63, lower is better; gif and apng: not used
     bool transparent = false;  // the pictures' alpha counts: apng, webm of vp9; else it is taken for 255
     Metadata metadata = {};

@@ -4,10 +4,6 @@
 #include "output/sink.hpp"
 #include "output/workers.hpp"
 
-extern "C" {
-#include <libavutil/imgutils.h>
-}
-
 namespace doppel {
 namespace {
 
@@ -33,16 +29,7 @@ public:
 
 private:
     void encode(SampledAreas& changes) {
-        AVFrame& frame = encoder_.frame();
-        const std::uint8_t* from = changes.bytes.data();
-        for (const Rect& area : changes.areas)
-            for (int k = 0; k < av_pix_fmt_count_planes(pixels_); ++k) {
-                const auto [offset, row_bytes, top, rows] = plane_area(pixels_, k, area);
-                const int stride = frame.linesize[k];
-                av_image_copy_plane(frame.data[k] + std::ptrdiff_t{top} * stride + offset, stride, from, row_bytes,
-                                    row_bytes, rows);
-                from += std::ptrdiff_t{row_bytes} * rows;
-            }
+        put(changes, encoder_.frame());
         spare_.give_back(std::move(changes));
         encoder_.send_frame(sent_++, 1);
     }

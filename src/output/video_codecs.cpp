@@ -36,15 +36,15 @@ constexpr std::array codecs{
     Codec{VideoFormat::apng, "apng", "", "APNG", 65535, 0, true},
 };
 
-/// A preset of x264, and the speed of the other encoders that compares with it (the higher, the faster).
+/// "doppel", or a preset of x264, and the speed of the other encoders that compares with it (the higher, the faster).
 struct Preset {
     std::string_view name;
     int vpx, svt, aom;
 };
-constexpr std::array presets{Preset{"ultrafast", 5, 12, 6}, Preset{"superfast", 5, 11, 6}, Preset{"veryfast", 4, 10, 6},
-                             Preset{"faster", 3, 9, 5},     Preset{"fast", 3, 8, 5},       Preset{"medium", 2, 7, 4},
-                             Preset{"slow", 1, 6, 3},       Preset{"slower", 1, 5, 2},     Preset{"veryslow", 0, 4, 1},
-                             Preset{"placebo", 0, 3, 0}};
+constexpr std::array presets{Preset{"doppel", 4, 10, 6},   Preset{"ultrafast", 5, 12, 6}, Preset{"superfast", 5, 11, 6},
+                             Preset{"veryfast", 4, 10, 6}, Preset{"faster", 3, 9, 5},     Preset{"fast", 3, 8, 5},
+                             Preset{"medium", 2, 7, 4},    Preset{"slow", 1, 6, 3},       Preset{"slower", 1, 5, 2},
+                             Preset{"veryslow", 0, 4, 1},  Preset{"placebo", 0, 3, 0}};
 
 const Preset* find_preset(std::string_view name) {
     const auto* found = std::ranges::find(presets, name, &Preset::name);
@@ -138,8 +138,22 @@ void check_rate(const VideoOptions& options) {
     }
 }
 
+/// Threads of x264 in "doppel", a slice of the picture each: with a frame each, as else, it takes a fifth more CPU time.
+constexpr std::size_t slice_threads = 4;
+
+/// In "doppel", found by `figure encoders`, all that serves pictures which change everywhere is off: of ours 97 % of the
+/// macroblocks stay as they are. A fine first frame keeps sharp what rests; quantizers are constant, and a frame is whole
+/// every 5 s. It looks as veryfast does at the same crf.
 Metadata x264_options(const VideoOptions& options) {
-    return {{"preset", options.preset}, {"crf", fmt::to_string(options.crf)}};
+    if (options.preset != "doppel") return {{"preset", options.preset}, {"crf", fmt::to_string(options.crf)}};
+    const int finer = options.pixel_format == PixelFormat::yuv420_10 ? 12 : 0;  // 6 quantizers a bit
+    const int quantizer = options.crf == 0 ? 0 : std::min(options.crf + 7, 51) + finer;
+    const auto key_interval = 5 * std::int64_t{options.fps_numerator} / options.fps_denominator;
+    return {{"preset", "veryfast"},
+            {"x264-params",
+             fmt::format("qp={}:ipratio=3:pbratio=2:bframes=3:b-adapt=0:b-pyramid=none:direct=temporal:weightb=0:"
+                         "weightp=0:subme=2:mbtree=0:aq-mode=0:rc-lookahead=0:scenecut=0:sliced-threads=1:keyint={}",
+                         quantizer, std::max<std::int64_t>(key_interval, 1))}};
 }
 
 Metadata vpx_options(const VideoOptions& options) {
@@ -179,6 +193,7 @@ void choose_encoder(const VideoOptions& options, Encoding& encoding) {
         case VideoFormat::mp4:
             encoding.encoder = &find_encoder({"libx264"}, AV_CODEC_ID_H264);
             encoding.encoder_options = x264_options(options);
+            if (options.preset == "doppel") encoding.threads = slice_threads;
             encoding.container_options = {{"movflags", "+faststart"},
                                           {"movie_timescale", fmt::to_string(mp4_timescale(options))}};
             break;

@@ -12,9 +12,9 @@ namespace doppel {
 
 /// `kind` of [scene]: of a film, and of the figures (figure/kinds.cpp).
 inline constexpr std::string_view pair_kind = "pair";
-inline constexpr std::array<std::string_view, 12> scene_kinds{pair_kind,        "sweep",     "curves",   "convergence",
-                                                              "spectrum",       "section",   "flip-map", "links",
-                                                              "work-precision", "stability", "drift",    "audit"};
+inline constexpr std::array<std::string_view, 13> scene_kinds{
+    pair_kind, "sweep",          "curves",    "convergence", "spectrum", "section", "flip-map",
+    "links",   "work-precision", "stability", "drift",       "encoders", "audit"};
 
 // The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and FieldTable visit:
 // visit(field, member), visit.table(name, list). A table may be const. The reader checks what keys say together.
@@ -152,8 +152,8 @@ void theme_field(Visit& visit, auto& theme) {
 template <class Visit, class Video>
 void format_fields(Visit& visit, Video& video) {
     static constexpr std::array<std::string_view, 2> codecs{"vp9", "av1"};
-    static constexpr std::array<std::string_view, 9> encoder_presets{
-        "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"};
+    static constexpr std::array<std::string_view, 10> encoder_presets{
+        "doppel", "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"};
     visit({"format", "the file; png: a picture a frame"}, video.format);
     const auto only = [&](bool holds, const char* what) {
         return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
@@ -165,7 +165,15 @@ void format_fields(Visit& visit, Video& video) {
     visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
     visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.holds = video.transparent}},
           video.transparent);
-    visit({"preset", "of mp4 and webm: effort of the encoder", "", {}, "", encoded, "", encoder_presets}, video.preset);
+    visit({"preset",
+           "of mp4 and webm: effort of the encoder; \"doppel\": chosen for such pictures",
+           "",
+           {},
+           "",
+           encoded,
+           "",
+           encoder_presets},
+          video.preset);
     const auto quality = from_to(0, is_webm ? 63 : 51);
     visit({"crf", "of mp4 and webm: lower is better; of mp4 up to 51", "", quality, "", encoded}, video.crf);
 }

@@ -125,7 +125,7 @@ struct VideoSpec : Panels {
     std::string codec;  // of webm; the usual one where empty
     PixelFormat pixel_format = PixelFormat::yuv420;
     bool transparent = false;  // no page, no panels; what is drawn alone
-    std::string preset = "veryfast";
+    std::string preset = "doppel";
     int crf = 18;
     std::optional<Rational> poster_s;                 // the frame at this time as a picture of its own
     std::optional<std::array<int, 2>> contact_sheet;  // frames across and down

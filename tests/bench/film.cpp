@@ -1,6 +1,9 @@
-#include "base/error.hpp"
+#include "film/film.hpp"
+
+#include "base/clock.hpp"
 #include "film/composer.hpp"
 #include "film/run.hpp"
+#include "output/encoding_trial.hpp"
 #include "output/png.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"
@@ -9,18 +12,8 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <memory>
-
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavutil/frame.h>
-#include <libavutil/opt.h>
-#include <libavutil/pixdesc.h>
-}
 
 // What a frame of butterfly costs at 1920×1080, stage by stage, and the whole against the encoder alone.
 
@@ -106,116 +99,61 @@ BENCHMARK(png)->Unit(benchmark::kMillisecond);
 
 struct Cost {
     double wall_s = 0, cpu_s = 0;
+    void add(double wall, double cpu) {
+        wall_s += wall;
+        cpu_s += cpu;
+    }
 };
 
-template <class Action>
-Cost cost_of(Action&& action) {
-    const auto now = [](clockid_t clock) {
-        timespec t{};
-        clock_gettime(clock, &t);
-        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-    };
-    const Cost start{now(CLOCK_MONOTONIC), now(CLOCK_PROCESS_CPUTIME_ID)};
-    action();
-    return {now(CLOCK_MONOTONIC) - start.wall_s, now(CLOCK_PROCESS_CPUTIME_ID) - start.cpu_s};
-}
-
-/// A film in memory: of each frame what differs from the one before it.
-using Reel = std::vector<SampledAreas>;
-
-Reel reel_of(const Scene& scene) {
-    Reel reel;
+RecordedFrames recorded(const Scene& scene) {
+    RecordedFrames reel{scene.preset.video.size, {}};
     Composer composer(scene);
     PairRun pair(scene);
-    Renderer renderer(scene.preset.video.size, composer.backdrop());
+    Renderer renderer(reel.size, composer.backdrop());
     for (long n = 0; n <= scene.samples; ++n) {
         composer.add({pair.next(never), {}});
         const auto& picture = renderer.draw(composer.frame());
-        convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, reel.emplace_back());
+        convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, reel.frames.emplace_back());
     }
     return reel;
 }
 
-/// Copies what changed to its place in the frame.
-void put(const SampledAreas& changed, AVFrame& frame) {
-    const std::uint8_t* from = changed.bytes.data();
-    for (const Rect& area : changed.areas)
-        for (int plane = 0; plane < av_pix_fmt_count_planes(AV_PIX_FMT_YUV420P); ++plane) {
-            const auto place = plane_area(AV_PIX_FMT_YUV420P, plane, area);
-            for (int row = 0; row < place.rows; ++row, from += place.row_bytes)
-                std::memcpy(frame.data[plane] + std::ptrdiff_t{place.top + row} * frame.linesize[plane] + place.offset,
-                            from, static_cast<std::size_t>(place.row_bytes));
-        }
-}
-
-/// x264 with the settings of the video, fed from memory: nothing can be faster. The frames are put together in the one
-/// that the encoder reads, on its own time.
-Cost encode_alone(const Reel& reel, const Scene& scene) {
-    const auto& video = scene.preset.video;
-    const auto* codec = avcodec_find_encoder_by_name("libx264");
-    if (!codec) throw io_failed("libav has no libx264");
-    auto* context = avcodec_alloc_context3(codec);
-    context->width = video.size.width;
-    context->height = video.size.height;
-    context->pix_fmt = AV_PIX_FMT_YUV420P;
-    context->time_base = {1, 120};
-    context->framerate = {120, 1};
-    context->thread_count = static_cast<int>(encoder_threads);
-    av_opt_set(context->priv_data, "preset", video.preset.c_str(), 0);
-    av_opt_set(context->priv_data, "crf", std::to_string(video.crf).c_str(), 0);
-    auto* packet = av_packet_alloc();
-    auto* frame = av_frame_alloc();
-    frame->format = AV_PIX_FMT_YUV420P;
-    frame->width = video.size.width;
-    frame->height = video.size.height;
-    Cost cost;
-    const auto encode = [&](AVFrame* next) {
-        avcodec_send_frame(context, next);
-        while (avcodec_receive_packet(context, packet) == 0) av_packet_unref(packet);
-    };
-    cost = cost_of([&] {
-        if (avcodec_open2(context, codec, nullptr) < 0) throw io_failed("libx264 cannot be opened");
-        if (av_frame_get_buffer(frame, 0) < 0) throw io_failed("no memory for a frame");
-        for (std::size_t k = 0; k < reel.size(); ++k) {
-            put(reel[k], *frame);
-            frame->pts = static_cast<std::int64_t>(k);
-            encode(frame);  // copies it before it returns
-        }
-        encode(nullptr);
-    });
-    av_frame_free(&frame);
-    av_packet_free(&packet);
-    avcodec_free_context(&context);
-    return cost;
-}
-
-/// The whole of Doppel, all of the film, against the encoder alone on the same frames, turn by turn.
-void end_to_end(benchmark::State& state, const char* speed) {
+/// The whole of Doppel, all of the film, against x264 alone at `floor_preset` on the same frames from memory, turn by
+/// turn; and what both look like.
+void end_to_end(benchmark::State& state, const char* preset_name, const char* floor_preset) {
     auto preset = read_preset(find_preset("butterfly"));
-    preset.video.preset = speed;
+    preset.video.preset = preset_name;
     const auto scene = make_scene(preset);
-    const auto reel = reel_of(scene);
+    const auto reel = recorded(scene);
+    auto options = video_options(scene);
     const auto out = std::filesystem::temp_directory_path() / "doppel-bench";
     Cost whole, floor;
-    const auto add = [](Cost& sum, const Cost& more) {
-        sum.wall_s += more.wall_s;
-        sum.cpu_s += more.cpu_s;
-    };
+    EncodedFrames theirs;
     for (auto _ : state) {
-        add(whole, cost_of([&] { run(scene, {.out = out}, never, [](const Progress&) {}); }));
-        add(floor, encode_alone(reel, scene));
+        const double wall = seconds_of(CLOCK_MONOTONIC), cpu = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+        run(scene, {.out = out}, never, [](const Progress&) {});
+        whole.add(seconds_of(CLOCK_MONOTONIC) - wall, seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu);
+        options.preset = floor_preset;
+        theirs = try_encoding(reel, options);
+        floor.add(theirs.wall_s, theirs.cpu_s);
     }
     std::filesystem::remove_all(out);
-    const auto shown = static_cast<double>(reel.size()) * static_cast<double>(state.iterations());
+    options.preset = preset_name;
+    const auto ours = try_encoding(reel, options);
+    const auto shown = static_cast<double>(reel.frames.size()) * static_cast<double>(state.iterations());
     state.counters["frames/s"] = shown / whole.wall_s;
     state.counters["frames/s floor"] = shown / floor.wall_s;
     state.counters["cpu ms/frame"] = 1e3 * whole.cpu_s / shown;
     state.counters["cpu ms/frame floor"] = 1e3 * floor.cpu_s / shown;
-    state.counters["% of floor, cpu"] = 100 * floor.cpu_s / whole.cpu_s;
-    state.counters["% of floor, wall"] = 100 * floor.wall_s / whole.wall_s;
+    state.counters["cpu of floor"] = whole.cpu_s / floor.cpu_s;
+    state.counters["bytes of floor"] = static_cast<double>(ours.bytes) / static_cast<double>(theirs.bytes);
+    state.counters["dB more"] = ours.whole.psnr_db - theirs.whole.psnr_db;
+    state.counters["dB more, moving"] = ours.moving.psnr_db - theirs.moving.psnr_db;
+    state.counters["ssim more"] = ours.whole.ssim - theirs.whole.ssim;
+    state.counters["ssim more, moving"] = ours.moving.ssim - theirs.moving.ssim;
 }
-BENCHMARK_CAPTURE(end_to_end, veryfast, "veryfast")->Iterations(2)->Unit(benchmark::kSecond)->UseRealTime();
-BENCHMARK_CAPTURE(end_to_end, medium, "medium")->Iterations(2)->Unit(benchmark::kSecond)->UseRealTime();
+BENCHMARK_CAPTURE(end_to_end, doppel, "doppel", "veryfast")->Iterations(2)->Unit(benchmark::kSecond)->UseRealTime();
+BENCHMARK_CAPTURE(end_to_end, veryfast, "veryfast", "veryfast")->Iterations(2)->Unit(benchmark::kSecond)->UseRealTime();
 
 }  // namespace
 }  // namespace doppel

@@ -2,8 +2,14 @@
 #include "output/fixtures.hpp"
 #include "output/sink.hpp"
 
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
 #include <algorithm>
+#include <cmath>
 #include <ctime>
+#include <stdexcept>
 
 namespace doppel {
 namespace video_test {
@@ -44,6 +50,54 @@ TEST(Mp4, LooksLikeItsSource) {
         path, [&](const Luma& luma) { worst = std::min(worst, luma_psnr(moving_scene(small, luma.frame), luma)); });
     EXPECT_EQ(video.times.size(), 60u);
     EXPECT_GT(worst, 36.0);  // dB; measured 42.8
+}
+
+/// The start of each frame that a player can begin with, s.
+std::vector<double> key_times(const fs::path& path) {
+    std::vector<double> times;
+    AVFormatContext* format = nullptr;
+    if (avformat_open_input(&format, path.c_str(), nullptr, nullptr) < 0) throw std::runtime_error("cannot be opened");
+    auto* packet = av_packet_alloc();
+    while (av_read_frame(format, packet) >= 0) {
+        if (packet->flags & AV_PKT_FLAG_KEY)
+            times.push_back(static_cast<double>(packet->pts) * av_q2d(format->streams[0]->time_base));
+        av_packet_unref(packet);
+    }
+    av_packet_free(&packet);
+    avformat_close_input(&format);
+    return times;
+}
+
+TEST(Mp4, CanBeEnteredEveryFiveSeconds) {
+    const auto folder = fresh_folder();
+    for (const auto& [numerator, denominator] : {std::pair{10, 1}, {24000, 1001}, {1, 10}}) {
+        const double fps = double(numerator) / denominator;
+        const long frames = std::lround(std::max(4.0, 12 * fps));
+        const auto path = film(folder / "x.mp4",
+                               {.size = {64, 36}, .fps_numerator = numerator, .fps_denominator = denominator}, frames);
+        const auto times = key_times(path);
+        ASSERT_FALSE(times.empty());
+        EXPECT_EQ(times[0], 0);
+        const double most = std::max(5.0, 1 / fps);
+        for (std::size_t k = 1; k < times.size(); ++k) EXPECT_LE(times[k] - times[k - 1], most + 1e-9) << fps;
+        EXPECT_LE(double(frames) / fps - times.back(), most + 1e-9) << fps;
+    }
+}
+
+// The default's crf is veryfast's for the eye; the quantizers of ten bits are others.
+TEST(Mp4, LooksAlikeWithBothPresetsAndBothDepths) {
+    const auto folder = fresh_folder();
+    const auto noise_of = [&](const char* preset, PixelFormat pixels) {
+        double sum = 0;
+        const auto path = film(folder / "x.mp4", {.size = small, .pixel_format = pixels, .preset = preset}, 60);
+        read_video(path, [&](const Luma& luma) { sum += luma_psnr(moving_scene(small, luma.frame), luma); });
+        return sum / 60;
+    };
+    // dB; measured 47.8 47.9 · 45.4 46.5
+    const double ours = noise_of("doppel", PixelFormat::yuv420), stock = noise_of("veryfast", PixelFormat::yuv420);
+    EXPECT_GT(ours, stock - 0.1);
+    EXPECT_LT(ours, stock + 6);
+    EXPECT_NEAR(noise_of("doppel", PixelFormat::yuv420_10), ours, 3);
 }
 
 TEST(Mp4, OnlyWhatChangedNeedsToBeTaken) {

@@ -134,7 +134,7 @@ inline const std::vector<RefusedPreset> refused_video{
         R"(presets/x.toml:2:1: [video] theme must be "dark", "light" or "high-contrast"; it is "drak"; did you mean "dark"?)"},
     RefusedPreset{
         "[video]\npreset = \"quick\"",
-        R"(presets/x.toml:2:1: [video] preset must be "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower" or "veryslow"; it is "quick")"},
+        R"(presets/x.toml:2:1: [video] preset must be "doppel", "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower" or "veryslow"; it is "quick")"},
     RefusedPreset{"[video]\nside_colors = [\"red\", \"#0000ff\"]",
                   R"(presets/x.toml:2:1: [video] side_colors must be colours such as "#ff9f40"; [0] is "red")"},
     RefusedPreset{"[video]\nside_colors = [\"#0000ff\"]",
