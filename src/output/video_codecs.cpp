@@ -156,10 +156,17 @@ Metadata x264_options(const VideoOptions& options) {
                          quantizer, std::max<std::int64_t>(key_interval, 1))}};
 }
 
+/// In "doppel", found by `figure encoders`, as for a live screen: an eighth of the CPU time for 1.2 times the bytes. (Ten
+/// bits lose 7 dB by that.)
 Metadata vpx_options(const VideoOptions& options) {
-    Metadata result{{"deadline", "good"}, {"cpu-used", fmt::to_string(find_preset(options.preset)->vpx)},
-                    {"row-mt", "1"},      {"tile-columns", "2"},
-                    {"b", "0"},           {"crf", fmt::to_string(options.crf)}};
+    const bool is_live = options.preset == "doppel" && options.pixel_format != PixelFormat::yuv420_10;
+    Metadata result{{"deadline", is_live ? "realtime" : "good"},
+                    {"cpu-used", fmt::to_string(is_live ? 5 : find_preset(options.preset)->vpx)},
+                    {"row-mt", "1"},
+                    {"tile-columns", "2"},
+                    {"b", "0"},
+                    {"crf", fmt::to_string(options.crf)}};
+    if (is_live) result.emplace_back("tune-content", "screen");
     // hidden frames of the colour stream would have no counterpart in that of alpha
     if (options.transparent) result.emplace_back("auto-alt-ref", "0");
     return result;
