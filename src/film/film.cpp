@@ -25,13 +25,8 @@ private:
     double start_;
 };
 
-/// By which a film can be traced to its manifest.
 Metadata metadata_of(const Preset& preset) {
-    const auto program = fmt::format("Doppel {} ({})", version(), revision());
-    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
-    return {{"title", preset.title},
-            {"comment", fmt::format("{}, preset {}; how it was made is in {}.json", program, preset.name, preset.name)},
-            {"encoder", program}};
+    return metadata_of(preset, fmt::format("how it was made is in {}.json", preset.name));
 }
 
 DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
@@ -57,6 +52,35 @@ std::size_t most_ahead(bool with_members) {
 }
 
 }  // namespace
+
+Metadata metadata_of(const Preset& preset, const std::string& record) {
+    const auto program = fmt::format("Doppel {} ({})", version(), revision());
+    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
+    return {{"title", preset.title},
+            {"comment", fmt::format("{}, preset {}; {}", program, preset.name, record)},
+            {"encoder", program}};
+}
+
+Canvas::Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop) : stop_(stop) {
+    const auto& video = scene.preset.video;
+    auto backdrop = composer.backdrop();
+    if (video.transparent) {
+        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), gl, stop);
+        backdrop = on_page(backdrop, video.size, rgb(0x000000));
+        matted_ = Picture(video.size);
+    }
+    renderer_.emplace(video.size, backdrop, gl, stop);
+}
+
+const Picture& Canvas::draw(const DisplayList& list) {
+    const auto& picture = renderer_->draw(list, stop_);
+    changed_ = renderer_->changed();
+    if (!on_white_) return picture;
+    const auto& white = on_white_->draw(list, stop_);
+    changed_.insert(changed_.end(), on_white_->changed().begin(), on_white_->changed().end());
+    for (const auto& area : changed_) matte(picture, white, area, matted_);
+    return matted_;
+}
 
 Schedule schedule_of(const Scene& scene) {
     const auto& video = scene.preset.video;
@@ -116,37 +140,21 @@ Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, Ru
         sink_ = make_video_sink(parts.file(film_name_), file, stop);
         record.libav = libav_description();
     }
-    auto backdrop = composer_.backdrop();
-    if (video.transparent) {
-        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), options.gl, stop);
-        backdrop = on_page(backdrop, video.size, rgb(0x000000));
-        matted_ = Picture(video.size);
-    }
-    renderer_.emplace(video.size, backdrop, options.gl, stop);
-    record.gl = renderer_->description();
+    canvas_.emplace(scene, composer_, options.gl, stop);
+    record.gl = canvas_->description();
     if (video.contact_sheet)
         sheet_samples_ = spread(options.first, options.last, scene.samples_per_frame,
                                 long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]);
-}
-
-const Picture& Film::drawn(const DisplayList& list) {
-    const auto& picture = renderer_->draw(list, stop_);
-    changed_ = renderer_->changed();
-    if (!on_white_) return picture;
-    const auto& white = on_white_->draw(list, stop_);
-    changed_.insert(changed_.end(), on_white_->changed().begin(), on_white_->changed().end());
-    for (const auto& area : changed_) matte(picture, white, area, matted_);
-    return matted_;
 }
 
 const Picture& Film::take(const DisplayList& list, RunRecord& record) {
     const Picture* picture = nullptr;
     {
         Stopwatch watch(record.draw_cpu_s);
-        picture = &drawn(list);
+        picture = &canvas_->draw(list);
     }
     Stopwatch watch(record.write_cpu_s);
-    sink_->take(*picture, changed_);
+    sink_->take(*picture, canvas_->changed());
     ++record.frames;
     return *picture;
 }

@@ -34,6 +34,28 @@ Schedule schedule_of(const Scene& scene);
 /// never more than half of the card.
 double card_opacity(long k, long count, double fps, bool fades_in);
 
+/// By which a picture or a film can be traced to how it was made; `record` says where that is written.
+Metadata metadata_of(const Preset& preset, const std::string& record);
+
+/// Draws a composer's frames; with the opacity of each pixel where the film is transparent.
+class Canvas {
+public:
+    /// Throws Error: exit 4 where nothing can draw, or as Renderer does.
+    Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop);
+
+    const Picture& draw(const DisplayList& list);
+    /// Where the picture drawn last differs from the one before.
+    const std::vector<Rect>& changed() const { return changed_; }
+    /// What draws.
+    std::string description() const { return renderer_->description(); }
+
+private:
+    const std::atomic<bool>& stop_;
+    std::optional<Renderer> renderer_, on_white_;  // with opacity: the same on white, and the two as one
+    Picture matted_;
+    std::vector<Rect> changed_;
+};
+
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
 class Film {
 public:
@@ -58,7 +80,6 @@ private:
     const Picture& take(const DisplayList& list, RunRecord& record);
     void take_card(long frames, bool fades_in, RunRecord& record);
     void keep(const Picture& picture);
-    const Picture& drawn(const DisplayList& list);
 
     const Scene& scene_;
     Schedule schedule_;
@@ -69,11 +90,7 @@ private:
     long sample_ = 0;                     // added last
     std::atomic<long> first_number_ = 0;  // of the first picture; compressor threads ask
     std::unique_ptr<Sink> sink_;
-    std::optional<Renderer> renderer_;
-    // with opacity: the same on white, and the two as one
-    std::optional<Renderer> on_white_;
-    Picture matted_;
-    std::vector<Rect> changed_;
+    std::optional<Canvas> canvas_;
     std::optional<Picture> poster_;
     std::vector<long> sheet_samples_;
     std::vector<Picture> sheet_;

@@ -150,8 +150,24 @@ struct SampleRange {
     long first, last, stride, total;
 };
 
+/// The samples from `from_s` to `to_s`. Throws Error (exit 2) where there is none.
+std::pair<long, long> samples_between(const Scene& scene, const RunOptions& options) {
+    const auto &name = scene.preset.name, duration = scene.preset.duration_s.text();
+    const double hz = scene.preset.sample_hz.value(), end = scene.preset.duration_s.value();
+    const double from = options.from_s ? options.from_s->value() : 0, to = options.to_s ? options.to_s->value() : end;
+    for (const auto& [option, time] : {std::pair("--from", from), {"--to", to}})
+        if (time > end) throw bad_input("{} {}: {} ends at {} s", option, time, name, duration);
+    if (from > to) throw bad_input("--from {} --to {}: the end must not be before the start", from, to);
+    constexpr double slack = 1e-9;  // samples, of rounding
+    const long first = std::lround(std::ceil(from * hz - slack)), last = std::lround(std::floor(to * hz + slack));
+    if (first > last)
+        throw bad_input("--from {} --to {}: {} has no sample there; they are {:.3g} s apart", from, to, name, 1 / hz);
+    return {first, last + 1};
+}
+
 /// Throws Error (exit 2) where the scene has no such samples, none of them is a frame, or the poster is none of them.
-SampleRange range_of(const Scene& scene, const RunOptions& options) {
+SampleRange range_of(const Scene& scene, RunOptions options) {
+    if (options.from_s || options.to_s) std::tie(options.first, options.last) = samples_between(scene, options);
     const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
     if (first < 0 || first >= last || last > scene.samples + 1)
         throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
