@@ -157,7 +157,10 @@ Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, boo
 
 /// [system], or [a] and [b], which change what stands there.
 Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
-    auto schema = table_schema(film[2]);
+    auto table = film[2];
+    const auto text = side_text_table().fields;
+    if (may_change) table.fields.insert(table.fields.end(), text.begin(), text.end());
+    auto schema = table_schema(table);
     auto particle = table_schema(film[3]);
     particle["required"] = needed_keys(film[3]);
     schema["properties"]["particle"] = list_schema(particle, 0, 0);

@@ -46,15 +46,18 @@ public:
         const float second = page_.top + 74 * layout_.text;
         fitted(layout_.title, title_, font.title, Weight::bold, theme_.text, longest, font.clock);
         fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme_.quiet_text, speed, font.subtitle);
+        if (!has_clock_) return;
         list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme_.quiet_text, Align::right));
     }
 
     void frame(DisplayList& list) const override {
+        if (!has_clock_) return;
         list.push_back(label(clock(state_.scene, state_.time()), {page_.right, title_}, px(style_.font.clock),
                              theme_.text, Align::right));
     }
 
 private:
+    const bool has_clock_ = state_.scene.preset.video.shows("clock");
     const Area& page_ = layout_.page;
     const float title_ = page_.top + 38 * layout_.text;  // baseline
 };
@@ -125,8 +128,8 @@ DisplayList Composer::title_card(double opacity) const {
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
     const auto captions = side_captions(state_.scene);
-    return card({{layout.title, font.card, Weight::bold, theme.text},
-                 {layout.subtitle, 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
+    return card({{state_.scene.preset.title, font.card, Weight::bold, theme.text},
+                 {scene_caption(state_.scene), 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
                  {"", font.subtitle, Weight::regular, theme.text},
                  {captions[0].heading, 1.3 * font.heading, Weight::bold, theme.sides[0]},
                  {captions[1].heading, 1.3 * font.heading, Weight::bold, theme.sides[1]}},
@@ -142,16 +145,18 @@ DisplayList Composer::end_card(double opacity) const {
                          : state_.parted
                              ? fmt::format("parted after {:.1f} s", *state_.parted)
                              : fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
-    std::vector<CardLine> lines{{layout.title, 0.7 * font.card, Weight::bold, theme.text},
+    std::vector<CardLine> lines{{state_.scene.preset.title, 0.7 * font.card, Weight::bold, theme.text},
                                 {"", font.subtitle, Weight::regular, theme.text},
                                 {outcome, size, Weight::regular, theme.trace}};
     if (state_.start_distance > 0)
         lines.push_back({fmt::format("from a state-space distance of {} to {}", scientific(state_.start_distance),
                                      scientific(state_.largest_distance)),
                          size, Weight::regular, theme.text});
-    lines.push_back({"", font.subtitle, Weight::regular, theme.text});
-    lines.push_back({fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle, Weight::regular,
-                     theme.quiet_text});
+    if (state_.scene.preset.video.shows("credit")) {
+        lines.push_back({"", font.subtitle, Weight::regular, theme.text});
+        lines.push_back({fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle,
+                         Weight::regular, theme.quiet_text});
+    }
     return card(lines, state_.scene.preset.video.size, theme.background, opacity);
 }
 

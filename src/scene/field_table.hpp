@@ -97,8 +97,11 @@ private:
     }
 };
 
+/// The keys that [a] and [b] of a film have besides those of [system].
+FieldTable side_text_table();
+
 /// All tables of a film's preset: the keys outside of tables; [scene]; [system], [a], [b]; particles; the kinds of
-/// constraints and of forces; [video].
+/// constraints and of forces; side_text_table(); [video].
 std::vector<FieldTable> film_tables();
 
 }  // namespace doppel

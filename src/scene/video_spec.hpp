@@ -6,6 +6,7 @@
 #include "output/sink.hpp"
 #include "scene/field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -107,6 +108,9 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
     {"trace", &Theme::trace, "curves of both sides together"},
 }};
 
+/// What a film's picture says around its pendulums; "credit": Doppel's name on the end card.
+inline constexpr auto shown_parts = std::to_array<std::string_view>({"title", "subtitle", "clock", "labels", "credit"});
+
 /// Whether a film shows the pendulums, and the strips below them.
 struct Panels {
     bool pendulums = true;
@@ -131,6 +135,7 @@ struct VideoSpec : Panels {
     std::optional<std::array<int, 2>> contact_sheet;  // frames across and down
 
     Arrangement layout = Arrangement::side_by_side;
+    std::vector<std::string> show{shown_parts.begin(), shown_parts.end()};
     int members = 100;  // of an ensemble, the pair included
     PhaseKind phase = PhaseKind::rate;
     int phase_link = 2;                                    // whose angle and rate
@@ -144,6 +149,7 @@ struct VideoSpec : Panels {
     std::optional<double> glow_px;  // how far the light of trails and bobs reaches; the theme's where not given
     double trail_s = 2.5;           // s; 0 = none
 
+    bool shows(std::string_view part) const { return std::find(show.begin(), show.end(), part) != show.end(); }
     /// Whether an encoder with a pixel format and a quality writes it.
     bool is_encoded() const { return format == FilmFormat::mp4 || format == FilmFormat::webm; }
 };
