@@ -63,6 +63,11 @@ Json value_schema(const ListedField& field) {
     if (is(type_words<bool>())) return {{"type", "boolean"}};
     if (is(type_words<double>())) return number;
     if (is(type_words<Rational>())) return ratio_schema(field.bounds);
+    if (is(type_words<Speed>())) {
+        const auto ratio = ratio_schema(field.bounds), time = ratio_schema(not_negative);
+        const Json change{{"type", "array"}, {"items", {time, ratio}}, {"minItems", 2}, {"additionalItems", false}};
+        return {{"anyOf", {ratio, list_schema(change, 1, 0)}}};
+    }
     if (is(type_words<std::vector<double>>()))
         return field.most > 0 ? list_schema(number, 1, field.most)
                               : Json{{"anyOf", {number, list_schema(number, 1, 0)}}};

@@ -21,7 +21,7 @@
 
 namespace doppel {
 
-/// How many frames a film has of each kind, in their order; those of the motion show samples 0, samples_per_frame …
+/// How many frames a film has of each kind, in their order; those of the motion show what FrameTimes says
 struct Schedule {
     long title = 0, hold_start = 0, motion = 0, hold_end = 0, end = 0;
 
@@ -64,9 +64,9 @@ public:
     Film(const Scene& scene, const RunOptions& options, Transaction& parts, RunRecord& record,
          const std::atomic<bool>& stop);
 
-    /// Every sample, from 0 on.
+    /// Every sample and frame, from 0 on.
     void add(const Snapshot& snapshot) {
-        sample_ = snapshot.pair.sample;
+        tick_ = snapshot.pair.tick;
         composer_.add(snapshot);
     }
 
@@ -87,17 +87,18 @@ private:
     Transaction& parts_;
     std::string film_name_;  // of the video, or the folder of pictures
     const std::atomic<bool>& stop_;
-    long sample_ = 0;                     // added last
+    long tick_ = 0;                       // added last
     std::atomic<long> first_number_ = 0;  // of the first picture; compressor threads ask
     std::unique_ptr<Sink> sink_;
     std::optional<Canvas> canvas_;
     std::optional<Picture> poster_;
-    std::vector<long> sheet_samples_;
+    std::vector<long> sheet_ticks_;
     std::vector<Picture> sheet_;
 };
 
-/// The sample that the poster shows, where there is one.
-std::optional<long> poster_sample(const Scene& scene);
+/// The tick that the poster shows, where there is one: that of the frame at its time, or of the nearest where the speed
+/// changes.
+std::optional<long> poster_tick(const Scene& scene);
 
 /// How the video file of a scene is written.
 VideoOptions video_options(const Scene& scene);
@@ -105,9 +106,9 @@ VideoOptions video_options(const Scene& scene);
 /// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of snapshots ahead.
 class Simulation {
 public:
-    /// Snapshots 0 … last − 1. The members of an ensemble are stepped where `with_members`. Throws Error (exit 4) where
+    /// Samples 0 … last − 1 and, `with_pictures`, the frames between them; the members of an ensemble, too. Throws Error (exit 4) where
     /// there is no thread to be had.
-    Simulation(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
+    Simulation(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop);
     ~Simulation() { ahead_.close(); }
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
@@ -120,7 +121,7 @@ public:
     std::pair<Effort, Effort> efforts();
 
 private:
-    void work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
+    void work(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop);
 
     Queue<Snapshot> ahead_;
     std::exception_ptr fault_;

@@ -46,12 +46,14 @@ RunResult draw_still(const Scene& scene, const Rational& time, const RunOptions&
     Composer composer(scene, stop);
     Canvas canvas(scene, composer, options.gl, stop);  // what cannot draw says so at once
     Simulation simulation(scene, last + 1, true, stop);
-    for (long sample = 0; sample <= last; ++sample) {
+    const long end = last * scene.frames.ticks_per_sample;
+    for (long tick = -1; tick < end;) {
         const auto snapshot = simulation.next();
         throw_if_set(stop);
         check_distance(scene, snapshot.pair);
         composer.add(snapshot);
-        report({sample + 1, last + 1});
+        tick = snapshot.pair.tick;
+        report({snapshot.pair.sample + 1, last + 1});
     }
     write_png(
         place, canvas.draw(composer.frame()),

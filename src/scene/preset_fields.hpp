@@ -191,8 +191,15 @@ template <class Visit, class Video>
 void time_fields(Visit& visit, Video& video) {
     constexpr auto seconds = from_to(0, 3600, "none");
     constexpr std::string_view all_samples = "sample_hz · speed; of a gif 10 to 50";
-    visit({"fps", "frames a second; divides sample_hz · speed", "1/s", positive, all_samples}, video.fps);
-    visit({"speed", "seconds of motion a second of film", "", positive}, video.speed);
+    constexpr auto speeds = Bounds{.low = 0, .is_open = true};
+    visit({"fps", "frames a second; divides sample_hz · speed, unless the speed changes", "1/s", positive, all_samples},
+          video.fps);
+    visit({"speed", "seconds of motion a second of film; a list: each speed is reached at its time", "", speeds},
+          video.speed);
+    const Only of_changes{video.speed.changes_over_time(), "is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]"};
+    constexpr std::string_view ease =
+        "of motion before a change of speed, in which the film's pace goes over by 3u² − 2u³";
+    visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
     visit({"hold_start_s", "how long the first frame stands", "s", seconds}, video.hold_start_s);
     visit({"hold_end_s", "how long the last frame stands", "s", seconds}, video.hold_end_s);
     visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);

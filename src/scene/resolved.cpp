@@ -36,6 +36,14 @@ std::string toml_value(const Panels& panels) {
     return toml_value(names);
 }
 
+std::string toml_value(const Speed& speed) {
+    if (!speed.changes_over_time()) return toml_ratio(speed.constant);
+    std::vector<std::string> changes;
+    for (const auto& [at_s, to] : speed.changes)
+        changes.push_back(fmt::format("[{}, {}]", toml_ratio(at_s), toml_ratio(to)));
+    return fmt::format("[{}]", fmt::join(changes, ", "));
+}
+
 namespace {
 
 template <class Fields>

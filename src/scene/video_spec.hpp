@@ -111,6 +111,18 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
 /// What a film's picture says around its pendulums; "credit": Doppel's name on the end card.
 inline constexpr auto shown_parts = std::to_array<std::string_view>({"title", "subtitle", "clock", "labels", "credit"});
 
+/// Seconds of motion a second of film: one speed; or from each of some times on another, eased (scene/frame_times.hpp).
+struct Speed {
+    struct Change {
+        Rational at_s, speed;
+        friend bool operator==(const Change&, const Change&) = default;
+    };
+    Rational constant{1, 1};      // where there are no changes
+    std::vector<Change> changes;  // from 0 s on
+
+    bool changes_over_time() const { return !changes.empty(); }
+};
+
 /// Whether a film shows the pendulums, and the strips below them.
 struct Panels {
     bool pendulums = true;
@@ -121,7 +133,8 @@ struct Panels {
 struct VideoSpec : Panels {
     Size size{1920, 1080};
     std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif about 30
-    Rational speed{1, 1};         // seconds of motion shown a second
+    Speed speed;
+    double speed_ease_s = 0.5;                      // of motion, before each change
     Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // how long the first and the last frame stand
     Rational title_card_s{0, 1}, end_card_s{0, 1};  // 0 = none
 

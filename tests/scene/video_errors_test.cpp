@@ -63,7 +63,7 @@ TEST(VideoErrors, TheUsualRatesOfFilmsComeFromSampleRatesThatTheirRemedyNames) {
         const auto scene =
             scene_of("butterfly", {fmt::format("video.fps={}", fps), fmt::format("scene.sample_hz={}", hz)});
         EXPECT_EQ(scene.fps.text(), fps);
-        EXPECT_EQ(scene.samples % scene.samples_per_frame, 0);
+        EXPECT_EQ(scene.samples % scene.frames.stride, 0);
     }
 }
 
