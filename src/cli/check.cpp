@@ -52,6 +52,7 @@ double make_brief(Scene& scene, Side& side) {
     if (!brief) return 1;
     motion.sample_interval = *brief;
     if (!adaptive) motion.steps_per_sample = steps;
+    scene.frames.ticks_per_sample = 1;
     scene.preset.sample_hz = quotient({1, 1}, *brief).value_or(scene.preset.sample_hz);
     return parts;
 }
@@ -194,8 +195,7 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
                : estimate.at_least ? "more than "
                                    : "about ",
                counted(estimate.steps));
-    const auto stride =
-        scene.samples_per_frame == 1 ? "" : fmt::format(" (one of {} samples is one)", scene.samples_per_frame);
+    const auto stride = scene.frames.stride == 1 ? "" : fmt::format(" (one of {} samples is one)", scene.frames.stride);
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
                video.size.height, scene.fps.text(), stride, format_words(video));
     print_line("  takes  {} {:.2g} s to simulate, {:.2g} s to render", estimate.at_least ? "more than" : "about",

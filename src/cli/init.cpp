@@ -52,9 +52,12 @@ std::string starting_preset(const fs::path& file) {
         const auto key = table.key();
         if (key.empty()) {
             text += fmt::format("\n# shown above the pictures\ntitle = {}\n", toml_text(file.stem().string()));
+            for (const auto& field : table.fields)
+                if (field.key != title_field.key) text += key_lines(field, "");
         } else if (key == "a" || key == "b") {
             text += fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", key);
             if (key == "b") text += "angle_deg = [90.003, 90]\n";
+            text += table_lines(side_text_table());
         } else {
             text += fmt::format("\n[{}]{}\n{}", key, key == "system" ? "  # both sides" : "", table_lines(table));
             if (key == "system")

@@ -20,16 +20,20 @@ void add_preset_options(CLI::App& command, PresetOptions& options) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs) {
-    add_preset_options(command, options);
-    command.add_option("-o,--out", options.out, "Folder for the results; they go to DIR/NAME/")
+void add_out_options(CLI::App& command, std::string& out, std::string& progress) {
+    command.add_option("-o,--out", out, "Folder for the results; they go to DIR/NAME/")
         ->type_name("DIR")
         ->capture_default_str();
-    command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
-    command.add_option("--progress", options.progress, "How to show progress: auto, bar, plain, json or none")
+    command.add_option("--progress", progress, "How to show progress: auto, bar, plain, json or none")
         ->type_name("STYLE")
         ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
         ->capture_default_str();
+}
+
+void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs) {
+    add_preset_options(command, options);
+    add_out_options(command, options.out, options.progress);
+    command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
 }
 
 void add_gl_option(CLI::App& command, std::string& gl) {
@@ -47,6 +51,13 @@ std::optional<std::pair<long, long>> two_numbers(const std::string& text, char s
     const auto [stop, second_fault] = std::from_chars(middle + 1, end, second);
     if (second_fault != std::errc() || stop != end) return std::nullopt;
     return std::pair{first, second};
+}
+
+Rational seconds_of_option(const std::string& option, const std::string& text) {
+    const auto seconds = parse_rational(text);
+    if (!seconds || seconds->numerator < 0)
+        throw bad_input("{} wants seconds ≥ 0, such as 6.8 or 1/3; it is \"{}\"", option, text);
+    return *seconds;
 }
 
 Override size_override(const std::string& key, const std::string& size) {
@@ -82,20 +93,26 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     return scenes;
 }
 
-void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options) {
-    const auto& stop = watch_interrupts();
-    const auto style = progress_style(options.progress);
+void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+                 const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
+    const auto style = progress_style(progress);
     outlive_readers();
-    for (const auto& scene : scenes) check_range(scene, run_options);
     for (const auto& scene : scenes) {
-        ProgressReport report(style, scene.preset.name, run_options.pictures ? "frames" : "samples");
+        ProgressReport report(style, scene.preset.name, unit);
         try {
-            report.done(run(scene, run_options, stop, std::ref(report)));
+            report.done(work(scene, std::ref(report)));
         } catch (...) {
             report.clear();
             throw;
         }
     }
+}
+
+void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options) {
+    const auto& stop = watch_interrupts();
+    for (const auto& scene : scenes) check_range(scene, run_options);
+    work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples",
+                [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
 }
 
 }  // namespace doppel

@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,7 +26,9 @@ struct RunCommandOptions : PresetOptions {
 };
 
 void add_preset_options(CLI::App& command, PresetOptions& options);
-/// `jobs` = what --jobs counts, for the help.
+/// --out and --progress.
+void add_out_options(CLI::App& command, std::string& out, std::string& progress);
+/// The same, and --jobs; `jobs` = what it counts, for the help.
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
 
 /// --gl, a name of gl_named().
@@ -33,6 +36,9 @@ void add_gl_option(CLI::App& command, std::string& gl);
 
 /// "A<separator>B" as two whole numbers; nothing where it is not.
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator);
+
+/// The value of --at, --from or --to, "6.8" or "1/3". Throws Error (exit 2).
+Rational seconds_of_option(const std::string& option, const std::string& text);
 
 /// --size WIDTHxHEIGHT as the key of a preset that it sets. Throws Error (exit 2).
 Override size_override(const std::string& key, const std::string& size);
@@ -45,6 +51,10 @@ std::vector<Override> overrides_of(const PresetOptions& options);
 
 /// The scene of each preset, all of them read before the first one runs. `more` = overrides from other options.
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});
+
+/// Calls work(scene, report) for one scene after the other and tells the person how far it is, in `unit`.
+void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+                 const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work);
 
 /// Runs the scenes one after the other and tells the person how far they are.
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options);

@@ -83,6 +83,7 @@ int run_program(int argc, char** argv) {
         int exit_code = 0;
         add_render(app);
         add_simulate(app);
+        add_still(app);
         add_figure(app);
         add_compare(app, exit_code);
         add_list(app);

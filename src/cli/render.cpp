@@ -11,8 +11,24 @@ namespace doppel {
 namespace {
 
 struct RenderOptions : RunCommandOptions {
-    std::string frames, size, format, quality, gl = "auto";
+    std::string frames, from, to, size, format, quality, gl = "auto";
 };
+
+struct StillOptions : PresetOptions {
+    std::string at, size, out = "out", progress = "auto", gl = "auto";
+};
+
+/// The samples of --frames, or the times of --from and --to.
+void take_range(const RenderOptions& options, RunOptions& run) {
+    if (!options.from.empty()) run.from_s = seconds_of_option("--from", options.from);
+    if (!options.to.empty()) run.to_s = seconds_of_option("--to", options.to);
+    if (options.frames.empty()) return;
+    if (run.from_s || run.to_s) throw bad_input("--frames counts samples, --from and --to seconds; give one");
+    const auto range = two_numbers(options.frames, ':');
+    if (!range || range->first < 0 || range->second <= range->first)
+        throw bad_input("--frames wants A:B with 0 ≤ A < B, the samples A to B−1; it is \"{}\"", options.frames);
+    std::tie(run.first, run.last) = *range;
+}
 
 std::vector<Override> overrides(const RenderOptions& options) {
     std::vector<Override> all;
@@ -37,6 +53,7 @@ void add_render(CLI::App& app) {
         "  doppel render butterfly\n"
         "  doppel render calm --size 1280x720 --format png --frames 0:240\n"
         "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films\n"
+        "  doppel render butterfly --from 6.8 --to 9\n"
         "  doppel render butterfly --format gif --size 640x360\n"
         "  doppel render butterfly --set 'video.layout=\"overlay\"' --set video.poster_s=14 --set "
         "'video.contact_sheet=[4, 3]'");
@@ -45,6 +62,9 @@ void add_render(CLI::App& app) {
                     "not depend on it");
     command.add_option("--frames", options->frames, "Only the samples A to B-1; the same pixels as in the whole")
         ->type_name("A:B");
+    command.add_option("--from", options->from, "Only from this time on, s; the same pixels as in the whole")
+        ->type_name("SECONDS");
+    command.add_option("--to", options->to, "Only up to this time, s, itself included")->type_name("SECONDS");
     command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")
         ->type_name("WxH");
     command
@@ -58,18 +78,40 @@ void add_render(CLI::App& app) {
     add_gl_option(command, options->gl);
     command.callback([options] {
         RunOptions run{.out = options->out, .pictures = true, .jobs = options->jobs, .gl = gl_named(options->gl)};
-        if (!options->frames.empty()) {
-            const auto range = two_numbers(options->frames, ':');
-            if (!range || range->first < 0 || range->second <= range->first)
-                throw bad_input("--frames wants A:B with 0 ≤ A < B, the samples A to B−1; it is \"{}\"",
-                                options->frames);
-            std::tie(run.first, run.last) = *range;
-        }
+        take_range(*options, run);
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first of them is filmed
         for (const auto& scene : scenes)
             if (scene.preset.video.format != FilmFormat::png) check_video(video_options(scene));
         run_all(scenes, *options, run);
+    });
+}
+
+void add_still(CLI::App& app) {
+    auto options = std::make_shared<StillOptions>();
+    auto& command = *app.add_subcommand("still", "Draws one picture of a film: DIR/NAME/NAME.14s.png");
+    command.footer(
+        "Examples:\n"
+        "  doppel still butterfly --at 14 --size 3840x2160\n"
+        "  doppel still butterfly --at 14 --set video.transparent=true");
+    add_preset_options(command, *options);
+    command.add_option("--at", options->at, "The time of the picture, s; there must be a sample")
+        ->type_name("SECONDS")
+        ->required();
+    add_out_options(command, options->out, options->progress);
+    command.add_option("--size", options->size, "Size of the picture, px; the preset's where not given")
+        ->type_name("WxH");
+    add_gl_option(command, options->gl);
+    command.callback([options] {
+        const auto at = seconds_of_option("--at", options->at);
+        std::vector<Override> more{{"video.format", "\"png\"", "still, which draws PNG"}};
+        if (!options->size.empty()) more.push_back(size_override("video.size", options->size));
+        const RunOptions run{.out = options->out, .gl = gl_named(options->gl)};
+        const auto scenes = read_scenes(*options, more);
+        for (const auto& scene : scenes) still_sample(scene, at);
+        const auto& stop = watch_interrupts();
+        work_on_all(scenes, options->progress, "samples",
+                    [&](const Scene& scene, const auto& report) { return draw_still(scene, at, run, stop, report); });
     });
 }
 

@@ -63,6 +63,11 @@ Json value_schema(const ListedField& field) {
     if (is(type_words<bool>())) return {{"type", "boolean"}};
     if (is(type_words<double>())) return number;
     if (is(type_words<Rational>())) return ratio_schema(field.bounds);
+    if (is(type_words<Speed>())) {
+        const auto ratio = ratio_schema(field.bounds), time = ratio_schema(not_negative);
+        const Json change{{"type", "array"}, {"items", {time, ratio}}, {"minItems", 2}, {"additionalItems", false}};
+        return {{"anyOf", {ratio, list_schema(change, 1, 0)}}};
+    }
     if (is(type_words<std::vector<double>>()))
         return field.most > 0 ? list_schema(number, 1, field.most)
                               : Json{{"anyOf", {number, list_schema(number, 1, 0)}}};
@@ -157,7 +162,10 @@ Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, boo
 
 /// [system], or [a] and [b], which change what stands there.
 Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
-    auto schema = table_schema(film[2]);
+    auto table = film[2];
+    const auto text = side_text_table().fields;
+    if (may_change) table.fields.insert(table.fields.end(), text.begin(), text.end());
+    auto schema = table_schema(table);
     auto particle = table_schema(film[3]);
     particle["required"] = needed_keys(film[3]);
     schema["properties"]["particle"] = list_schema(particle, 0, 0);

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -16,7 +18,11 @@ constexpr double together_at = 0.1 * parted_at;  // up to which a pair starts as
 
 /// As many decimals as tell one frame from the next.
 std::string clock(const Scene& scene, double time) {
-    const double frame = 1 / (scene.fps.value() / scene.preset.video.speed.value());
+    const auto& speed = scene.preset.video.speed;
+    double slowest = speed.constant.value();
+    if (speed.changes_over_time()) slowest = speed.changes.front().speed.value();
+    for (const auto& change : speed.changes) slowest = std::min(slowest, change.speed.value());
+    const double frame = 1 / (scene.fps.value() / slowest);
     return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
 }
 
@@ -26,6 +32,21 @@ std::string speed_text(const Rational& speed) {
 }
 
 /// The background, the title, and what is said beside it: the speed and the time.
+/// What the clock says where the speed changes: "¼ speed".
+std::string changing_speed_text(const Rational& speed) {
+    constexpr std::array<std::pair<Rational, std::string_view>, 8> fractions{{{{1, 2}, "½"},
+                                                                              {{1, 3}, "⅓"},
+                                                                              {{2, 3}, "⅔"},
+                                                                              {{1, 4}, "¼"},
+                                                                              {{3, 4}, "¾"},
+                                                                              {{1, 5}, "⅕"},
+                                                                              {{1, 6}, "⅙"},
+                                                                              {{1, 8}, "⅛"}}};
+    for (const auto& [fraction, sign] : fractions)
+        if (speed == fraction) return fmt::format("{} speed", sign);
+    return speed_text(speed);
+}
+
 class PageLayer final : public Layer {
 public:
     using Layer::Layer;
@@ -41,20 +62,29 @@ public:
             const float size = fitting_size(text, px(wanted), weight, width);
             list.push_back(label(text, {page_.left, y}, size, color, Align::left, weight));
         };
-        const auto speed = speed_text(state_.scene.preset.video.speed);
+        const auto speed = changes_ ? std::string("slow motion ×0.25") : speed_text(speed_.constant);
         const auto longest = clock(state_.scene, state_.scene.time(state_.scene.samples));
         const float second = page_.top + 74 * layout_.text;
         fitted(layout_.title, title_, font.title, Weight::bold, theme_.text, longest, font.clock);
         fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme_.quiet_text, speed, font.subtitle);
+        if (!has_clock_ || changes_) return;
         list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme_.quiet_text, Align::right));
     }
 
     void frame(DisplayList& list) const override {
+        if (!has_clock_) return;
         list.push_back(label(clock(state_.scene, state_.time()), {page_.right, title_}, px(style_.font.clock),
                              theme_.text, Align::right));
+        if (changes_)
+            list.push_back(label(changing_speed_text(speed_at(state_.scene.preset.video, state_.time())),
+                                 {page_.right, page_.top + 74 * layout_.text}, px(style_.font.subtitle),
+                                 theme_.quiet_text, Align::right));
     }
 
 private:
+    const Speed& speed_ = state_.scene.preset.video.speed;
+    const bool changes_ = speed_.changes_over_time();
+    const bool has_clock_ = state_.scene.preset.video.shows("clock");
     const Area& page_ = layout_.page;
     const float title_ = page_.top + 38 * layout_.text;  // baseline
 };
@@ -108,7 +138,7 @@ DisplayList Composer::backdrop() const {
 void Composer::add(const Snapshot& snapshot) {
     state_.snapshot = snapshot;
     const auto& state = snapshot.pair;
-    if (state.sample == 0) state_.start_distance = state.distance;
+    if (state.tick == 0) state_.start_distance = state.distance;
     state_.largest_distance = std::max(state_.largest_distance, state.distance);
     if (state_.start_as_one() && !state_.parted && state.distance >= parted_at) state_.parted = state_.time();
     for (const auto& layer : layers_) layer->add();
@@ -125,8 +155,8 @@ DisplayList Composer::title_card(double opacity) const {
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
     const auto captions = side_captions(state_.scene);
-    return card({{layout.title, font.card, Weight::bold, theme.text},
-                 {layout.subtitle, 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
+    return card({{state_.scene.preset.title, font.card, Weight::bold, theme.text},
+                 {scene_caption(state_.scene), 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
                  {"", font.subtitle, Weight::regular, theme.text},
                  {captions[0].heading, 1.3 * font.heading, Weight::bold, theme.sides[0]},
                  {captions[1].heading, 1.3 * font.heading, Weight::bold, theme.sides[1]}},
@@ -142,16 +172,18 @@ DisplayList Composer::end_card(double opacity) const {
                          : state_.parted
                              ? fmt::format("parted after {:.1f} s", *state_.parted)
                              : fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
-    std::vector<CardLine> lines{{layout.title, 0.7 * font.card, Weight::bold, theme.text},
+    std::vector<CardLine> lines{{state_.scene.preset.title, 0.7 * font.card, Weight::bold, theme.text},
                                 {"", font.subtitle, Weight::regular, theme.text},
                                 {outcome, size, Weight::regular, theme.trace}};
     if (state_.start_distance > 0)
         lines.push_back({fmt::format("from a state-space distance of {} to {}", scientific(state_.start_distance),
                                      scientific(state_.largest_distance)),
                          size, Weight::regular, theme.text});
-    lines.push_back({"", font.subtitle, Weight::regular, theme.text});
-    lines.push_back({fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle, Weight::regular,
-                     theme.quiet_text});
+    if (state_.scene.preset.video.shows("credit")) {
+        lines.push_back({"", font.subtitle, Weight::regular, theme.text});
+        lines.push_back({fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle,
+                         Weight::regular, theme.quiet_text});
+    }
     return card(lines, state_.scene.preset.video.size, theme.background, opacity);
 }
 

@@ -25,13 +25,8 @@ private:
     double start_;
 };
 
-/// By which a film can be traced to its manifest.
 Metadata metadata_of(const Preset& preset) {
-    const auto program = fmt::format("Doppel {} ({})", version(), revision());
-    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
-    return {{"title", preset.title},
-            {"comment", fmt::format("{}, preset {}; how it was made is in {}.json", program, preset.name, preset.name)},
-            {"encoder", program}};
+    return metadata_of(preset, fmt::format("how it was made is in {}.json", preset.name));
 }
 
 DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
@@ -40,15 +35,16 @@ DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
     return list;
 }
 
-/// The samples of `count` frames spread over those from first to last − 1, both ends included.
-std::vector<long> spread(long first, long last, long stride, long count) {
-    const long low = (first + stride - 1) / stride, high = (last - 1) / stride;
-    std::vector<long> samples;
+/// The ticks of `count` frames spread over those of the samples from first to last − 1, both ends included.
+std::vector<long> spread(const FrameTimes& frames, long first, long last, long count) {
+    const long low = frames.first_from(first * frames.ticks_per_sample),
+               high = frames.first_from((last - 1) * frames.ticks_per_sample + 1) - 1;
+    std::vector<long> ticks;
     for (long k = 0; k < count; ++k)
-        samples.push_back(stride * (count == 1 ? high
-                                               : low + std::lround(static_cast<double>((high - low) * k) /
-                                                                   static_cast<double>(count - 1))));
-    return samples;
+        ticks.push_back(frames.tick(
+            count == 1 ? high
+                       : low + std::lround(static_cast<double>((high - low) * k) / static_cast<double>(count - 1))));
+    return ticks;
 }
 
 /// Snapshots ahead: many of a pair, few of an ensemble, whose snapshots are large.
@@ -58,12 +54,41 @@ std::size_t most_ahead(bool with_members) {
 
 }  // namespace
 
+Metadata metadata_of(const Preset& preset, const std::string& record) {
+    const auto program = fmt::format("Doppel {} ({})", version(), revision());
+    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
+    return {{"title", preset.title},
+            {"comment", fmt::format("{}, preset {}; {}", program, preset.name, record)},
+            {"encoder", program}};
+}
+
+Canvas::Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop) : stop_(stop) {
+    const auto& video = scene.preset.video;
+    auto backdrop = composer.backdrop();
+    if (video.transparent) {
+        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), gl, stop);
+        backdrop = on_page(backdrop, video.size, rgb(0x000000));
+        matted_ = Picture(video.size);
+    }
+    renderer_.emplace(video.size, backdrop, gl, stop);
+}
+
+const Picture& Canvas::draw(const DisplayList& list) {
+    const auto& picture = renderer_->draw(list, stop_);
+    changed_ = renderer_->changed();
+    if (!on_white_) return picture;
+    const auto& white = on_white_->draw(list, stop_);
+    changed_.insert(changed_.end(), on_white_->changed().begin(), on_white_->changed().end());
+    for (const auto& area : changed_) matte(picture, white, area, matted_);
+    return matted_;
+}
+
 Schedule schedule_of(const Scene& scene) {
     const auto& video = scene.preset.video;
     const auto frames = [&](const Rational& seconds) { return std::lround(seconds.value() * scene.fps.value()); };
     return {.title = frames(video.title_card_s),
             .hold_start = frames(video.hold_start_s),
-            .motion = scene.samples / scene.samples_per_frame + 1,
+            .motion = scene.frames.count(),
             .hold_end = frames(video.hold_end_s),
             .end = frames(video.end_card_s)};
 }
@@ -75,10 +100,15 @@ double card_opacity(long k, long count, double fps, bool fades_in) {
     return share * share * (3 - 2 * share);
 }
 
-std::optional<long> poster_sample(const Scene& scene) {
+std::optional<long> poster_tick(const Scene& scene) {
     const auto& seconds = scene.preset.video.poster_s;
     if (!seconds) return std::nullopt;
-    return product(*seconds, scene.preset.sample_hz)->numerator;  // whole: the preset's reader saw to it
+    const auto& frames = scene.frames;
+    const double tick =
+        seconds->value() * scene.preset.sample_hz.value() * static_cast<double>(frames.ticks_per_sample);
+    const long frame = std::min(frames.first_from(std::lround(tick)), frames.count() - 1);
+    const auto off = [&](long k) { return std::abs(static_cast<double>(frames.tick(k)) - tick); };
+    return frames.tick(frame > 0 && off(frame - 1) < off(frame) ? frame - 1 : frame);
 }
 
 VideoOptions video_options(const Scene& scene) {
@@ -116,37 +146,21 @@ Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, Ru
         sink_ = make_video_sink(parts.file(film_name_), file, stop);
         record.libav = libav_description();
     }
-    auto backdrop = composer_.backdrop();
-    if (video.transparent) {
-        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), options.gl, stop);
-        backdrop = on_page(backdrop, video.size, rgb(0x000000));
-        matted_ = Picture(video.size);
-    }
-    renderer_.emplace(video.size, backdrop, options.gl, stop);
-    record.gl = renderer_->description();
+    canvas_.emplace(scene, composer_, options.gl, stop);
+    record.gl = canvas_->description();
     if (video.contact_sheet)
-        sheet_samples_ = spread(options.first, options.last, scene.samples_per_frame,
-                                long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]);
-}
-
-const Picture& Film::drawn(const DisplayList& list) {
-    const auto& picture = renderer_->draw(list, stop_);
-    changed_ = renderer_->changed();
-    if (!on_white_) return picture;
-    const auto& white = on_white_->draw(list, stop_);
-    changed_.insert(changed_.end(), on_white_->changed().begin(), on_white_->changed().end());
-    for (const auto& area : changed_) matte(picture, white, area, matted_);
-    return matted_;
+        sheet_ticks_ = spread(scene.frames, options.first, options.last,
+                              long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]);
 }
 
 const Picture& Film::take(const DisplayList& list, RunRecord& record) {
     const Picture* picture = nullptr;
     {
         Stopwatch watch(record.draw_cpu_s);
-        picture = &drawn(list);
+        picture = &canvas_->draw(list);
     }
     Stopwatch watch(record.write_cpu_s);
-    sink_->take(*picture, changed_);
+    sink_->take(*picture, canvas_->changed());
     ++record.frames;
     return *picture;
 }
@@ -165,8 +179,8 @@ void Film::take_card(long frames, bool fades_in, RunRecord& record) {
 /// What is wanted of a frame besides the film.
 void Film::keep(const Picture& picture) {
     const auto& video = scene_.preset.video;
-    if (poster_sample(scene_) == sample_) poster_ = picture;
-    const auto times = std::count(sheet_samples_.begin(), sheet_samples_.end(), sample_);
+    if (poster_tick(scene_) == tick_) poster_ = picture;
+    const auto times = std::count(sheet_ticks_.begin(), sheet_ticks_.end(), tick_);
     if (times == 0) return;
     constexpr int sheet_width = 1920;  // px, about
     const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
@@ -175,7 +189,7 @@ void Film::keep(const Picture& picture) {
 }
 
 void Film::write_frame(RunRecord& record) {
-    const long number = sample_ / scene_.samples_per_frame;
+    const long number = scene_.frames.first_from(tick_);
     const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
     if (record.frames == 0) first_number_ = is_first ? 0 : schedule_.title + schedule_.hold_start + number;
     if (is_first) take_card(schedule_.title, false, record);
@@ -203,9 +217,9 @@ void Film::finish() {
         write(".contact.png", contact_sheet(sheet_, (*preset.video.contact_sheet)[0], 8, composer_.page_color()));
 }
 
-Simulation::Simulation(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop)
-    : ahead_(most_ahead(with_members)),
-      thread_(start_thread([this, &scene, last, with_members, &stop] { work(scene, last, with_members, stop); })) {}
+Simulation::Simulation(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop)
+    : ahead_(most_ahead(with_pictures)),
+      thread_(start_thread([this, &scene, last, with_pictures, &stop] { work(scene, last, with_pictures, stop); })) {}
 
 Snapshot Simulation::next() {
     auto snapshot = ahead_.pop();
@@ -218,15 +232,17 @@ std::pair<Effort, Effort> Simulation::efforts() {
     return efforts_;
 }
 
-void Simulation::work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop) {
+void Simulation::work(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop) {
     try {
         PairRun pair(scene);
         std::optional<MotionBatch> members;
-        if (with_members && !scene.members.empty()) members.emplace(scene.members, 1);
-        for (long sample = 0; sample < last; ++sample) {
-            Snapshot snapshot{pair.next(stop), {}};
+        if (with_pictures && !scene.members.empty()) members.emplace(scene.members, 1);
+        const auto& frames = scene.frames;
+        for (long tick = 0, before = 0; tick <= (last - 1) * frames.ticks_per_sample;
+             before = std::exchange(tick, with_pictures ? frames.next_moment(tick) : tick + frames.ticks_per_sample)) {
+            Snapshot snapshot{pair.advance_to(tick, stop), {}};
             if (members) {
-                if (sample > 0) members->advance(stop);
+                for (long k = before; k < tick; ++k) members->advance(stop);
                 for (std::size_t k = 0; k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
             }
             cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID);

@@ -21,7 +21,7 @@
 
 namespace doppel {
 
-/// How many frames a film has of each kind, in their order; those of the motion show samples 0, samples_per_frame …
+/// How many frames a film has of each kind, in their order; those of the motion show what FrameTimes says
 struct Schedule {
     long title = 0, hold_start = 0, motion = 0, hold_end = 0, end = 0;
 
@@ -34,6 +34,28 @@ Schedule schedule_of(const Scene& scene);
 /// never more than half of the card.
 double card_opacity(long k, long count, double fps, bool fades_in);
 
+/// By which a picture or a film can be traced to how it was made; `record` says where that is written.
+Metadata metadata_of(const Preset& preset, const std::string& record);
+
+/// Draws a composer's frames; with the opacity of each pixel where the film is transparent.
+class Canvas {
+public:
+    /// Throws Error: exit 4 where nothing can draw, or as Renderer does.
+    Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop);
+
+    const Picture& draw(const DisplayList& list);
+    /// Where the picture drawn last differs from the one before.
+    const std::vector<Rect>& changed() const { return changed_; }
+    /// What draws.
+    std::string description() const { return renderer_->description(); }
+
+private:
+    const std::atomic<bool>& stop_;
+    std::optional<Renderer> renderer_, on_white_;  // with opacity: the same on white, and the two as one
+    Picture matted_;
+    std::vector<Rect> changed_;
+};
+
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
 class Film {
 public:
@@ -42,9 +64,9 @@ public:
     Film(const Scene& scene, const RunOptions& options, Transaction& parts, RunRecord& record,
          const std::atomic<bool>& stop);
 
-    /// Every sample, from 0 on.
+    /// Every sample and frame, from 0 on.
     void add(const Snapshot& snapshot) {
-        sample_ = snapshot.pair.sample;
+        tick_ = snapshot.pair.tick;
         composer_.add(snapshot);
     }
 
@@ -58,7 +80,6 @@ private:
     const Picture& take(const DisplayList& list, RunRecord& record);
     void take_card(long frames, bool fades_in, RunRecord& record);
     void keep(const Picture& picture);
-    const Picture& drawn(const DisplayList& list);
 
     const Scene& scene_;
     Schedule schedule_;
@@ -66,21 +87,18 @@ private:
     Transaction& parts_;
     std::string film_name_;  // of the video, or the folder of pictures
     const std::atomic<bool>& stop_;
-    long sample_ = 0;                     // added last
+    long tick_ = 0;                       // added last
     std::atomic<long> first_number_ = 0;  // of the first picture; compressor threads ask
     std::unique_ptr<Sink> sink_;
-    std::optional<Renderer> renderer_;
-    // with opacity: the same on white, and the two as one
-    std::optional<Renderer> on_white_;
-    Picture matted_;
-    std::vector<Rect> changed_;
+    std::optional<Canvas> canvas_;
     std::optional<Picture> poster_;
-    std::vector<long> sheet_samples_;
+    std::vector<long> sheet_ticks_;
     std::vector<Picture> sheet_;
 };
 
-/// The sample that the poster shows, where there is one.
-std::optional<long> poster_sample(const Scene& scene);
+/// The tick that the poster shows, where there is one: that of the frame at its time, or of the nearest where the speed
+/// changes.
+std::optional<long> poster_tick(const Scene& scene);
 
 /// How the video file of a scene is written.
 VideoOptions video_options(const Scene& scene);
@@ -88,9 +106,9 @@ VideoOptions video_options(const Scene& scene);
 /// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of snapshots ahead.
 class Simulation {
 public:
-    /// Snapshots 0 … last − 1. The members of an ensemble are stepped where `with_members`. Throws Error (exit 4) where
+    /// Samples 0 … last − 1 and, `with_pictures`, the frames between them; the members of an ensemble, too. Throws Error (exit 4) where
     /// there is no thread to be had.
-    Simulation(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
+    Simulation(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop);
     ~Simulation() { ahead_.close(); }
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
@@ -103,7 +121,7 @@ public:
     std::pair<Effort, Effort> efforts();
 
 private:
-    void work(const Scene& scene, long last, bool with_members, const std::atomic<bool>& stop);
+    void work(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop);
 
     Queue<Snapshot> ahead_;
     std::exception_ptr fault_;

@@ -21,7 +21,7 @@ struct FilmState {
     double start_distance = 0, largest_distance = 0;
     std::optional<double> parted{};  // s
 
-    double time() const { return scene.time(snapshot.pair.sample); }
+    double time() const { return scene.time_of_tick(snapshot.pair.tick); }
     const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
     const Observation& seen(std::size_t side) const { return side == 0 ? snapshot.pair.a : snapshot.pair.b; }
     bool start_as_one() const;  // else there is no parting to speak of

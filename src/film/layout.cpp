@@ -134,7 +134,8 @@ void place_panels(Layout& layout, const Scene& scene, const Area& room) {
     const bool apart = video.layout == Arrangement::side_by_side || video.layout == Arrangement::portrait;
     const bool has_phase = video.layout == Arrangement::phase;
     const auto areas = panel_areas(room, apart || has_phase ? 2 : 1, is_tall(video), std::round(24 * layout.unit));
-    const auto said = side_captions(scene);
+    auto said = side_captions(scene);
+    if (!video.shows("labels")) said = {};
     using Caption = PendulumPanel::Caption;
     if (apart) {
         for (std::size_t side = 0; side < 2; ++side)
@@ -160,6 +161,7 @@ void place_panels(Layout& layout, const Scene& scene, const Area& room) {
 std::vector<Area> caption_areas(const PendulumPanel& panel, const Layout& layout, float widest) {
     std::vector<Area> areas;
     for (const auto& caption : panel.captions) {
+        if (caption.heading.empty() && caption.note.empty()) continue;
         const float bottom = panel.area.top + (caption.note.empty() ? 60 : 92) * layout.text;
         const float width = 36 * layout.unit + widest;
         if (caption.align == Align::right)
@@ -187,7 +189,7 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
         if (view.is_circle)
             place_pendulum(panel, captions, view, 30 * u);
         else
-            place_mechanism(panel, captions.front().bottom, view, 40 * u);
+            place_mechanism(panel, captions.empty() ? panel.area.top : captions.front().bottom, view, 40 * u);
     }
     const float px_per_m = layout.panels.front().px_per_m;
     const float radius = px_per_m * static_cast<float>(std::max(view.width, view.height)) / 2;
@@ -247,11 +249,12 @@ Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
     layout.style = make_style(video, layout.unit, layout.text);
     const float u = layout.unit, t = layout.text;
     layout.page = {std::round(60 * u), std::round(28 * u), width - std::round(60 * u), height - std::round(26 * u)};
-    layout.title = scene.preset.title;
-    layout.subtitle = scene_caption(scene);
+    if (video.shows("title")) layout.title = scene.preset.title;
+    if (video.shows("subtitle")) layout.subtitle = scene_caption(scene);
     const auto seen = motion_bounds(scene, stop);
 
-    const float header = layout.page.top + 96 * t;
+    const bool has_header = !layout.title.empty() || !layout.subtitle.empty() || video.shows("clock");
+    const float header = layout.page.top + (has_header ? 96 * t : 0);
     const float bottom = place_strips(layout, scene, header, seen);
     if (!video.pendulums) return layout;
     place_panels(layout, scene, {layout.page.left, std::round(header), layout.page.right, std::round(bottom)});

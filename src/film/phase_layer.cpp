@@ -57,6 +57,7 @@ private:
     std::array<Trail, 2> trails_;
     std::array<std::optional<Bobs<double>>, 2> last_bobs_;  // of a section
     std::array<std::vector<Point>, 2> section_;
+    double last_time_ = 0;  // s
 };
 
 void PhaseLayer::backdrop(DisplayList& list) const {
@@ -90,7 +91,7 @@ void PhaseLayer::backdrop(DisplayList& list) const {
 void PhaseLayer::add_to_section(std::size_t side) {
     const auto& bobs = state_.seen(side).bobs;
     if (const auto& last = last_bobs_[side]) {
-        const double dt = 1 / state_.scene.preset.sample_hz.value();
+        const double dt = state_.time() - last_time_;
         if (const auto share = upward_passage((*last)[0], bobs[0], dt)) {
             const auto &from = (*last)[link_], &to = bobs[link_];
             const double theta = hermite(from.theta, from.omega, to.theta, to.omega, dt, *share);
@@ -98,6 +99,7 @@ void PhaseLayer::add_to_section(std::size_t side) {
         }
     }
     last_bobs_[side] = bobs;
+    if (side == 1) last_time_ = state_.time();
 }
 
 void PhaseLayer::frame(DisplayList& list) const {

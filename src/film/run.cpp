@@ -145,27 +145,47 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());
 }
 
-/// The samples that are asked for: first … last − 1; every `stride`th is reported, `total` in all.
+/// The samples that are asked for: first … last − 1; `total` is reported of them, the frames where there are pictures.
 struct SampleRange {
-    long first, last, stride, total;
+    long first, last, total;
 };
 
+/// The samples from `from_s` to `to_s`. Throws Error (exit 2) where there is none.
+std::pair<long, long> samples_between(const Scene& scene, const RunOptions& options) {
+    const auto &name = scene.preset.name, duration = scene.preset.duration_s.text();
+    const double hz = scene.preset.sample_hz.value(), end = scene.preset.duration_s.value();
+    const double from = options.from_s ? options.from_s->value() : 0, to = options.to_s ? options.to_s->value() : end;
+    for (const auto& [option, time] : {std::pair("--from", from), {"--to", to}})
+        if (time > end) throw bad_input("{} {}: {} ends at {} s", option, time, name, duration);
+    if (from > to) throw bad_input("--from {} --to {}: the end must not be before the start", from, to);
+    constexpr double slack = 1e-9;  // samples, of rounding
+    const long first = std::lround(std::ceil(from * hz - slack)), last = std::lround(std::floor(to * hz + slack));
+    if (first > last)
+        throw bad_input("--from {} --to {}: {} has no sample there; they are {:.3g} s apart", from, to, name, 1 / hz);
+    return {first, last + 1};
+}
+
 /// Throws Error (exit 2) where the scene has no such samples, none of them is a frame, or the poster is none of them.
-SampleRange range_of(const Scene& scene, const RunOptions& options) {
+SampleRange range_of(const Scene& scene, RunOptions options) {
+    if (options.from_s || options.to_s) std::tie(options.first, options.last) = samples_between(scene, options);
     const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
     if (first < 0 || first >= last || last > scene.samples + 1)
         throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
                         scene.preset.name, scene.samples, scene.samples + 1);
-    const long stride = options.pictures ? scene.samples_per_frame : 1;
-    const long total = (last - 1) / stride - (first - 1 + stride) / stride + 1;
-    if (options.pictures && total < 1)
+    if (!options.pictures) return {first, last, last - first};
+    const auto& frames = scene.frames;
+    const long begin = first * frames.ticks_per_sample, end = (last - 1) * frames.ticks_per_sample;
+    const long total = frames.first_from(end + 1) - frames.first_from(begin);
+    if (total < 1)
         throw bad_input("--frames {}:{}: no frame of {} falls into it; every {}th sample is one", first, last,
-                        scene.preset.name, stride);
-    if (const auto poster = poster_sample(scene); options.pictures && poster && (*poster < first || *poster >= last))
+                        scene.preset.name, frames.stride);
+    if (const auto poster = poster_tick(scene); poster && (*poster < begin || *poster > end)) {
+        const long sample = *poster / frames.ticks_per_sample, after = (*poster - 1) / frames.ticks_per_sample + 1;
         throw bad_input("--frames {}:{}: the poster of {}, poster_s = {}, is sample {}; --frames {}:{} would have it",
-                        first, last, scene.preset.name, scene.preset.video.poster_s->text(), *poster,
-                        std::min(first, *poster), std::max(last, *poster + 1));
-    return {first, last, stride, total};
+                        first, last, scene.preset.name, scene.preset.video.poster_s->text(), sample,
+                        std::min(first, sample), std::max(last, after + 1));
+    }
+    return {first, last, total};
 }
 
 }  // namespace
@@ -177,7 +197,7 @@ void check_range(const Scene& scene, const RunOptions& options) {
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-    const auto [first, last, stride, total] = range_of(scene, options);
+    const auto [first, last, total] = range_of(scene, options);
     RunRecord record{.first_sample = first, .last_sample = last - 1};
     Transaction parts(options.out / scene.preset.name);
     std::optional<Film> film;
@@ -190,7 +210,9 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     Simulation simulation(scene, last, options.pictures, stop);
     const auto take_efforts = [&] { std::tie(record.a.effort, record.b.effort) = simulation.efforts(); };
     double start_distance = 0;
-    for (long sample = 0, done = 0; sample < last; ++sample) {
+    const auto& frames = scene.frames;
+    const long begin = first * frames.ticks_per_sample, end = (last - 1) * frames.ticks_per_sample;
+    for (long tick = -1, done = 0; tick < end;) {
         Snapshot snapshot;
         try {
             snapshot = simulation.next();
@@ -203,14 +225,16 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         const auto& state = snapshot.pair;
         throw_if_set(stop);
         check_distance(scene, state);
-        if (sample == 0) start_distance = state.distance;
+        tick = state.tick;
+        if (tick == 0) start_distance = state.distance;
         watch(record.a, state.a, state.energy_error_a);
         watch(record.b, state.b, state.energy_error_b);
         record.largest_distance = std::max(record.largest_distance, state.distance);
         if (film) film->add(snapshot);
-        if (sample < first) continue;
-        table.add(state, start_distance);
-        if (sample % stride != 0) continue;
+        if (tick < begin) continue;
+        if (tick % frames.ticks_per_sample == 0) table.add(state, start_distance);
+        const long frame = frames.first_from(tick);
+        if (film && (frame == frames.count() || frames.tick(frame) != tick)) continue;
         if (film) film->write_frame(record);
         report({++done, total});
     }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,11 +15,12 @@ namespace doppel {
 
 /// What a run writes, and where.
 struct RunOptions {
-    std::filesystem::path out = "out";  // the files go to OUT/NAME/
-    bool pictures = true;               // false: the table and the manifest alone; no GL
-    long first = 0, last = -1;          // samples first … last − 1; all where last < 0
-    int jobs = 0;                       // threads that compress PNGs; 0 = one a core
-    Gl gl = Gl::automatic;              // what draws
+    std::filesystem::path out = "out";               // the files go to OUT/NAME/
+    bool pictures = true;                            // false: the table and the manifest alone; no GL
+    long first = 0, last = -1;                       // samples first … last − 1; all where last < 0
+    std::optional<Rational> from_s = {}, to_s = {};  // in their place: times, both included
+    int jobs = 0;                                    // threads that compress PNGs; 0 = one a core
+    Gl gl = Gl::automatic;                           // what draws
 };
 
 /// How far a run is, as often as a frame is done.
@@ -33,6 +35,13 @@ struct RunResult {
     long samples = 0;  // rows of the table
     double wall_s = 0;
 };
+
+/// One picture, OUT/NAME/NAME.14s.png: that of the sample at `time`, s. `options` say where to, and what draws. Throws
+/// Error as run(), and exit 2 where there is no sample at that time.
+RunResult draw_still(const Scene& scene, const Rational& time, const RunOptions& options, const std::atomic<bool>& stop,
+                     const std::function<void(const Progress&)>& report);
+/// The sample at that time. Throws Error (exit 2) where there is none.
+long still_sample(const Scene& scene, const Rational& time);
 
 /// Throws Error (exit 2) where the scene has none of the samples, or of the frames, that `options` ask for.
 void check_range(const Scene& scene, const RunOptions& options);

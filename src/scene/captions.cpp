@@ -138,7 +138,8 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene) {
             else if (statement.is_start_angle)
                 start.push_back(statement.text);
         }
-        if (differs.empty()) differs.push_back(side == 0 ? "a" : "b, the same");
+        const bool says_nothing = differs.empty();
+        if (says_nothing) differs.push_back(side == 0 ? "a" : "b, the same");
         // a heading holds two statements; more go to the note
         constexpr std::size_t most = 2;
         constexpr std::size_t most_noted = 4;
@@ -148,12 +149,16 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene) {
             start.back() = "…";
         }
         differs.resize(std::min(most, differs.size()));
-        words[side] = {joined(differs), joined(start)};
+        const auto& spec = side == 0 ? scene.preset.a : scene.preset.b;
+        // under a label of its own the note says what sets it apart, too
+        if (spec.label && !says_nothing) start.insert(start.begin(), differs.begin(), differs.end());
+        words[side] = {spec.label.value_or(joined(differs)), spec.note.value_or(joined(start))};
     }
     return words;
 }
 
 std::string scene_caption(const Scene& scene) {
+    if (scene.preset.subtitle) return *scene.preset.subtitle;
     const auto at_rest = [](const SideSpec& side) {
         const auto rests = [](const ParticleSpec& particle) {
             return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;

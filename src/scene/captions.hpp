@@ -7,14 +7,15 @@
 
 namespace doppel {
 
-/// What a picture says about one side: `heading`, what sets it apart from the other; `note`, the start it has besides.
+/// What a picture says about one side: `heading`, what sets it apart from the other; `note`, the start it has besides;
+/// or what the preset says in their place.
 struct SideCaptions {
     std::string heading, note;
 };
 
 std::array<SideCaptions, 2> side_captions(const Scene& scene);
 
-/// What both sides have in common: "two double pendulums, released at rest · angles, explicit Euler, 1/30 000 s".
+/// The preset's subtitle, or what both sides have in common: "two double pendulums, released at rest · angles, explicit Euler, 1/30 000 s".
 std::string scene_caption(const Scene& scene);
 
 /// How finely a side is stepped: "1/30 000 s", "tolerance 1e-12".

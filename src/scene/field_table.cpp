@@ -95,6 +95,12 @@ std::string FieldTable::markdown() const {
     return page;
 }
 
+FieldTable side_text_table() {
+    FieldTable table{"[a], [b]", "What a picture says of a side.\n"};
+    side_text_fields(table, SideSpec());
+    return table;
+}
+
 std::vector<FieldTable> film_tables() {
     const Preset preset;
     const SideSpec& side = preset.a;
@@ -103,12 +109,13 @@ std::vector<FieldTable> film_tables() {
     mechanism.particles.resize(1);
     VideoSpec webm;
     webm.format = FilmFormat::webm;
-    FieldTable top{"title"}, scene{"[scene]"}, system{"[system], [a], [b]"}, video{"[video]"};
+    FieldTable top{"title, subtitle"}, scene{"[scene]"}, system{"[system], [a], [b]"}, video{"[video]"};
     FieldTable particle{
         "[[system.particle]]",
         "In place of a chain, a system may have particles; constraints and forces may stand on top of a chain, too, "
         "whose\nbobs are called `bob1`, `bob2` …\n"};
     top(title_field, preset.title);
+    top(subtitle_field, preset.subtitle);
     scene(kind_field, std::string(pair_kind));
     clock_fields(scene, preset);
     chain_fields(system, side);
@@ -136,6 +143,7 @@ std::vector<FieldTable> film_tables() {
     std::vector<FieldTable> tables{top, scene, system, particle};
     add_part_tables<ConstraintSpec>("constraint", tables);
     add_part_tables<ForceSpec>("force", tables);
+    tables.push_back(side_text_table());
     tables.push_back(video);
     return tables;
 }

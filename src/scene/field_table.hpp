@@ -19,6 +19,7 @@ constexpr std::string_view type_words() {
     if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, std::vector<Quad>>) return "numbers";
     if constexpr (std::is_same_v<T, std::vector<std::string>>) return "list of text";
     if constexpr (std::is_same_v<T, Panels>) return "list of text, not empty";
+    if constexpr (std::is_same_v<T, Speed>) return "number, \"a/b\", or list of [s, number]";
     if constexpr (std::is_same_v<T, QuadPair>) return "[x, y]";
     if constexpr (std::is_same_v<T, EndSpec>) return "text or [x, y]";
     if constexpr (std::is_same_v<T, Size> || std::is_same_v<T, std::array<int, 2>>) return "two whole numbers";
@@ -97,8 +98,11 @@ private:
     }
 };
 
+/// The keys that [a] and [b] of a film have besides those of [system].
+FieldTable side_text_table();
+
 /// All tables of a film's preset: the keys outside of tables; [scene]; [system], [a], [b]; particles; the kinds of
-/// constraints and of forces; [video].
+/// constraints and of forces; side_text_table(); [video].
 std::vector<FieldTable> film_tables();
 
 }  // namespace doppel

@@ -116,6 +116,7 @@ struct SideSpec {
     std::vector<ParticleSpec> particles;  // in place of a chain
     std::vector<ConstraintSpec> constraints;
     std::vector<ForceSpec> forces;
+    std::optional<std::string> label, note;  // in place of what pictures say of the side by themselves
 
     /// How finely to step where nothing was given, too.
     Rational step() const { return step_s.value_or(usual_step); }
@@ -132,8 +133,9 @@ struct SideSpec {
 
 /// A scene as a preset file describes it: read, complete and checked, nothing computed yet.
 struct Preset {
-    std::string name;   // of the file, without folder and ending
-    std::string title;  // the name where it is not given
+    std::string name;                     // of the file, without folder and ending
+    std::string title;                    // the name where it is not given
+    std::optional<std::string> subtitle;  // in place of what the scene says of itself
     Rational duration_s{30, 1};
     Rational sample_hz{120, 1};
     SideSpec a, b;

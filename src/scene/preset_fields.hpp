@@ -21,6 +21,10 @@ inline constexpr std::array<std::string_view, 13> scene_kinds{
 
 inline const Field title_field{
     .key = "title", .help = "shown above the pictures", .absent = "the file's name", .is_drawn = true};
+inline const Field subtitle_field{.key = "subtitle",
+                                  .help = "the line below the title; \"\" = none",
+                                  .absent = "what both sides have in common",
+                                  .is_drawn = true};
 inline const Field kind_field{
     .key = "kind", .help = "\"pair\" is a film, the others are figures", .names = scene_kinds};
 
@@ -48,6 +52,18 @@ void chain_fields(Visit& visit, Side& side) {
     constexpr std::string_view from_vertical = "at the start, from the downward vertical, counter-clockwise";
     visit({"angle_deg", from_vertical, "deg", turns, "", {}, "one a link"}, side.angle_deg);
     visit({"omega_deg_per_s", "rates at the start", "deg/s", {}, "", {}, "one a link"}, side.omega_deg_per_s);
+}
+
+/// Of [a] and [b] of a film.
+template <class Visit, class Side>
+void side_text_fields(Visit& visit, Side&& side) {
+    visit({.key = "label",
+           .help = "what the side is called in the picture; \"\" = nothing",
+           .absent = "what sets it apart",
+           .is_drawn = true},
+          side.label);
+    visit({.key = "note", .help = "the line below the label; \"\" = none", .absent = "how it starts", .is_drawn = true},
+          side.note);
 }
 
 template <class Visit, class Side>
@@ -183,8 +199,15 @@ template <class Visit, class Video>
 void time_fields(Visit& visit, Video& video) {
     constexpr auto seconds = from_to(0, 3600, "none");
     constexpr std::string_view all_samples = "sample_hz · speed; of a gif 10 to 50";
-    visit({"fps", "frames a second; divides sample_hz · speed", "1/s", positive, all_samples}, video.fps);
-    visit({"speed", "seconds of motion a second of film", "", positive}, video.speed);
+    constexpr auto speeds = Bounds{.low = 0, .is_open = true};
+    visit({"fps", "frames a second; divides sample_hz · speed, unless the speed changes", "1/s", positive, all_samples},
+          video.fps);
+    visit({"speed", "seconds of motion a second of film; a list: each speed is reached at its time", "", speeds},
+          video.speed);
+    const Only of_changes{video.speed.changes_over_time(), "is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]"};
+    constexpr std::string_view ease =
+        "of motion before a change of speed, in which the film's pace goes over by 3u² − 2u³";
+    visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
     visit({"hold_start_s", "how long the first frame stands", "s", seconds}, video.hold_start_s);
     visit({"hold_end_s", "how long the last frame stands", "s", seconds}, video.hold_end_s);
     visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);
@@ -214,6 +237,10 @@ void layout_fields(Visit& visit, Video& video) {
         visit(panels_field, static_cast<const Panels&>(video));
     else
         visit(panels_field, static_cast<Panels&>(video));
+    visit({.key = "show",
+           .help = "what is said around the pendulums; credit: by whom, on the end card",
+           .names = shown_parts},
+          video.show);
     constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
     for (std::size_t i = 0; i < strip_kinds; ++i) {
         const auto bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{};
@@ -250,16 +277,21 @@ void style_fields(Visit& visit, Video& video) {
 /// One of scene_kinds.
 std::string read_kind(TomlReader& scene);
 
-/// [system], [a] or [b].
-void read_side(TomlReader& table, SideSpec& side);
+/// [system], [a] or [b]; `has_text` = with side_text_fields().
+void read_side(TomlReader& table, SideSpec& side, bool has_text = false);
 
 /// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say.
 void read_release(TomlReader& table, SideSpec& side);
 
-/// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier.
-void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset);
+/// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier. Those
+/// of a film have texts of their own.
+void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset,
+                bool is_film = false);
 
 /// Steps and samples must fall on each other exactly.
 void check_clock(const Preset& preset, const TomlReader& scene);
+
+/// Frames must fall on samples exactly, the poster on a frame; a GIF that names no rate gets one.
+void check_frames(Preset& preset, const TomlReader& video);
 
 }  // namespace doppel

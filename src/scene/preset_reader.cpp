@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace doppel {
 namespace {
@@ -27,56 +26,6 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
     for (long n = start + 1; n < start + 10000; ++n)
         if (divides(n)) return text.empty() ? fmt::format("{} would", n) : fmt::format("{} or {} would", text, n);
     return text.empty() ? "a longer or shorter step_s would" : text + " would";
-}
-
-/// The rate of a GIF that names none, at which the last sample is a frame: the most frames a second up to 30, from 10
-/// on or of all samples; where there is none, the fewest up to 50, which is what GIF can time. A film shorter than a
-/// frame keeps all samples.
-Rational usual_gif_rate(const Rational& sampled, const Preset& preset, long samples, const TomlReader& video) {
-    constexpr double fewest = 10, usual = 30, most = 50;
-    std::optional<Rational> faster;
-    for (long stride = 1; stride <= samples; ++stride) {
-        const auto rate = samples % stride == 0 ? quotient(sampled, {stride, 1}) : std::nullopt;
-        if (!rate || rate->value() > most) continue;
-        if (rate->value() <= usual && (stride == 1 || rate->value() >= fewest)) return *rate;
-        if (rate->value() < fewest) break;
-        faster = rate;
-    }
-    if (faster) return *faster;
-    if (sampled.value() > most * static_cast<double>(samples)) return sampled;
-    const long stride = std::lround(std::ceil(sampled.value() / usual));
-    const auto shorter = quotient({std::max(samples - samples % stride, stride), 1}, preset.sample_hz);
-    throw video.fault("fps",
-                      "of a GIF must let the last of {} samples be a frame, and no rate from {} to {} does; "
-                      "scene.duration_s = \"{}\" would do",
-                      samples, fewest, most, shorter ? shorter->text() : "?");
-}
-
-/// Frames must fall on samples exactly.
-void check_frames(Preset& preset, const TomlReader& video) {
-    const long samples = product(preset.duration_s, preset.sample_hz)->numerator;  // check_clock() saw to it
-    const auto sampled = product(preset.sample_hz, preset.video.speed);
-    if (sampled && !preset.video.fps && preset.video.format == FilmFormat::gif)
-        preset.video.fps = usual_gif_rate(*sampled, preset, samples, video);
-    const auto fps = preset.video.fps ? preset.video.fps : sampled;
-    constexpr double most_fps = 1000;
-    constexpr long most_digits = 1'000'000;
-    if (!fps || fps->value() > most_fps || fps->numerator > most_digits || fps->denominator > most_digits)
-        throw video.fault("fps", "must be at most {} and a fraction of whole numbers up to {}; it is {}", most_fps,
-                          most_digits, fps ? fps->text() : "beyond them");
-    const auto stride = sampled ? quotient(*sampled, *fps) : std::nullopt;
-    if (!stride || !stride->is_whole())
-        throw video.fault("fps", "must divide sample_hz · speed = {}, so that each frame is a sample; it is {}",
-                          sampled ? sampled->text() : "?", preset.video.fps->text());
-    if (samples % stride->numerator != 0)
-        throw video.fault("fps", "must let the last of {} samples be a frame; with {} one sample in {} is one", samples,
-                          preset.video.fps->text(), stride->numerator);
-    if (!preset.video.poster_s) return;
-    const auto poster = product(*preset.video.poster_s, preset.sample_hz);
-    if (!poster || !poster->is_whole() || poster->numerator > samples || poster->numerator % stride->numerator != 0)
-        throw video.fault("poster_s", "must be the time of a frame, a multiple of {} s up to {} s; it is {}",
-                          quotient(*stride, preset.sample_hz).value_or(Rational{0, 1}).text(), preset.duration_s.text(),
-                          preset.video.poster_s->text());
 }
 
 /// What layouts and strips ask of the system.
@@ -186,7 +135,7 @@ std::string read_kind(TomlReader& scene) {
     return kind;
 }
 
-void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset) {
+void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
     for (auto* level : levels) {
         auto system = document.table(*level, "system");
         read_side(system, preset.a);
@@ -194,8 +143,8 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
     preset.b = preset.a;
     for (auto* level : levels) {
         auto a = document.table(*level, "a"), b = document.table(*level, "b");
-        read_side(a, preset.a);
-        read_side(b, preset.b);
+        read_side(a, preset.a, is_film);
+        read_side(b, preset.b, is_film);
         if (preset.a.links() != preset.b.links())
             throw b.fault("links",
                           "must be that of the other side, so that the two can be compared; they are {} and {}",
@@ -231,13 +180,14 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     TomlReader top(&document.root, "", document.path, document.texts);
     top.demand_title(preset.name);
     top(title_field, preset.title);
+    top(subtitle_field, preset.subtitle);
 
     auto scene = document.table(top, "scene");
     if (read_kind(scene) != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     clock_fields(scene, preset);
     scene.finish();
-    read_sides(document, {&top}, preset);
+    read_sides(document, {&top}, preset, true);
     auto video = document.table(top, "video");
     read_video(video, preset.video);
     top.finish();

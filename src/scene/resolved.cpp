@@ -36,6 +36,14 @@ std::string toml_value(const Panels& panels) {
     return toml_value(names);
 }
 
+std::string toml_value(const Speed& speed) {
+    if (!speed.changes_over_time()) return toml_ratio(speed.constant);
+    std::vector<std::string> changes;
+    for (const auto& [at_s, to] : speed.changes)
+        changes.push_back(fmt::format("[{}, {}]", toml_ratio(at_s), toml_ratio(to)));
+    return fmt::format("[{}]", fmt::join(changes, ", "));
+}
+
 namespace {
 
 template <class Fields>
@@ -54,6 +62,7 @@ std::string side_toml(const std::string& name, const SideSpec& side) {
         complete.step_s = side.step();
     auto text = table_text(fmt::format("[{}]", name), [&](TomlWriter& writer) {
         const auto& all = complete;
+        side_text_fields(writer, all);
         if (all.particles.empty()) chain_fields(writer, all);
         gravity_field(writer, all);
         writer(model_field, all.model);
@@ -107,8 +116,11 @@ std::string resolved_chain(const SideSpec& side) {
 }
 
 std::string resolved_toml(const Preset& preset) {
-    return fmt::format("title = {}\n\n[scene]\nkind = \"{}\"\n", toml_text(preset.title), pair_kind) +
-           resolved_pair(preset) + table_text("[video]", [&](TomlWriter& writer) {
+    TomlWriter top;
+    top.add("title", toml_text(preset.title));
+    top(subtitle_field, preset.subtitle);
+    return fmt::format("{}\n[scene]\nkind = \"{}\"\n", top.text(), pair_kind) + resolved_pair(preset) +
+           table_text("[video]", [&](TomlWriter& writer) {
                const auto& video = preset.video;
                writer(size_field, video.size);
                format_fields(writer, video);

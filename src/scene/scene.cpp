@@ -7,12 +7,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace doppel {
 
 double Scene::time(long sample) const {
     return static_cast<double>(sample) * static_cast<double>(preset.sample_hz.denominator) /
            static_cast<double>(preset.sample_hz.numerator);
+}
+
+double Scene::time_of_tick(long tick) const {
+    return static_cast<double>(tick) * static_cast<double>(preset.sample_hz.denominator) /
+           static_cast<double>(preset.sample_hz.numerator * frames.ticks_per_sample);
 }
 
 std::optional<double> Scene::horizon() const {
@@ -83,6 +89,19 @@ Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::a
     }
 }
 
+/// By which the steps of a sample can be divided on both sides; 0 = by anything.
+long common_steps(const Scene& scene) {
+    const auto steps = [](const Side& side) { return side.method.adaptive ? 0 : side.motion.steps_per_sample; };
+    return std::gcd(steps(scene.a), steps(scene.b));
+}
+
+/// The same motion, observed at each tick of a sample.
+MotionSpec in_ticks(MotionSpec motion, long ticks_per_sample) {
+    motion.sample_interval = *quotient(motion.sample_interval, {ticks_per_sample, 1});
+    if (!find_method(motion.method)->adaptive) motion.steps_per_sample /= ticks_per_sample;
+    return motion;
+}
+
 /// The members of an ensemble, stepped as side a is.
 std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto &first = scene.preset.a, &last = scene.preset.b;
@@ -96,7 +115,7 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
             std::transform((first.*numbers).begin(), (first.*numbers).end(), (last.*numbers).begin(),
                            (member.*numbers).begin(), between);
         member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
-        members.push_back(scene.a.motion);
+        members.push_back(in_ticks(scene.a.motion, scene.frames.ticks_per_sample));
         members.back().chain = chain_of(member);
         members.back().wants_tension = false;
     }
@@ -112,10 +131,9 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
                 .samples = product(preset.duration_s, preset.sample_hz)->numerator,
                 .members = {},
                 .fps = {},
-                .samples_per_frame = 1};
-    const auto samples_a_second = *product(preset.sample_hz, preset.video.speed);
-    scene.fps = preset.video.fps.value_or(samples_a_second);
-    scene.samples_per_frame = quotient(samples_a_second, scene.fps)->numerator;
+                .frames = {}};
+    scene.fps = preset.video.fps ? *preset.video.fps : *product(preset.sample_hz, preset.video.speed.constant);
+    scene.frames = frame_times(preset, scene.fps, scene.samples, common_steps(scene));
     const auto wanted = [&](StripKind kind) {
         return std::find(preset.video.strips.begin(), preset.video.strips.end(), kind) != preset.video.strips.end();
     };
@@ -153,7 +171,7 @@ double kinetic_energy(const Bobs<double>& bobs) {
 /// Errors say whose they are.
 std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
     try {
-        return make_motion(side.motion);
+        return make_motion(in_ticks(side.motion, scene.frames.ticks_per_sample));
     } catch (const Error& fault) {
         throw Error(fault.code(), fmt::format("{}: side {}: {}", scene.preset.name, name, fault.what()));
     }
@@ -176,10 +194,11 @@ std::optional<double> SideRun::energy_error(const Observation& seen) const {
 }
 
 BreakDown SideRun::broken(const std::string& what) const {
+    const long ticks = scene_.frames.ticks_per_sample;
     return {fmt::format("{}: side {} broke down by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_,
-                        scene_.time(sample_), what, name_of(side_.motion.model), side_.method.title,
+                        scene_.time_of_tick(tick_), what, name_of(side_.motion.model), side_.method.title,
                         step_control_text(side_)),
-            name_, sample_};
+            name_, (tick_ + ticks - 1) / ticks};
 }
 
 void SideRun::watch(const Observation& seen) {
@@ -192,9 +211,15 @@ void SideRun::watch(const Observation& seen) {
 }
 
 Observation SideRun::next(const std::atomic<bool>& stop) {
+    const long ticks = scene_.frames.ticks_per_sample;
+    return advance_to(tick_ < 0 ? 0 : (tick_ / ticks + 1) * ticks, stop);
+}
+
+Observation SideRun::advance_to(long tick, const std::atomic<bool>& stop) {
     throw_if_set(stop);
-    ++sample_;
-    if (sample_ > 0) {
+    tick_ = std::max(tick_, 0L);
+    while (tick_ < tick) {
+        ++tick_;
         try {
             motion_->advance(stop);
         } catch (const Error& fault) {
@@ -208,10 +233,15 @@ Observation SideRun::next(const std::atomic<bool>& stop) {
 }
 
 PairState PairRun::next(const std::atomic<bool>& stop) {
+    return advance_to(tick_ < 0 ? 0 : (tick_ / ticks_per_sample_ + 1) * ticks_per_sample_, stop);
+}
+
+PairState PairRun::advance_to(long tick, const std::atomic<bool>& stop) {
     PairState now;
-    now.sample = ++sample_;
-    now.a = a_.next(stop);
-    now.b = b_.next(stop);
+    now.tick = tick_ = tick;
+    now.sample = tick / ticks_per_sample_;
+    now.a = a_.advance_to(tick, stop);
+    now.b = b_.advance_to(tick, stop);
     now.energy_error_a = a_.energy_error(now.a);
     now.energy_error_b = b_.energy_error(now.b);
     const bool exact = !now.a.exact.empty() && !now.b.exact.empty();

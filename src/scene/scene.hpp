@@ -4,6 +4,7 @@
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
 #include "physics/mechanism_assembly.hpp"
+#include "scene/frame_times.hpp"
 #include "scene/preset.hpp"
 
 #include <atomic>
@@ -73,9 +74,10 @@ struct Scene {
     long samples;                     // of the run: 0 … samples, both ends included
     std::vector<MotionSpec> members;  // of an ensemble: from a to b in equal steps of all numbers, both included
     Rational fps;                     // frames/s of the video
-    long samples_per_frame;           // frame k shows sample k · samples_per_frame
+    FrameTimes frames;                // which moments they show
 
-    double time(long sample) const;  // s
+    double time(long sample) const;        // s
+    double time_of_tick(long tick) const;  // s
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
     std::optional<double> horizon() const;
 };
@@ -86,7 +88,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 
 /// Both sides and how they differ at one sample.
 struct PairState {
-    long sample = 0;
+    long sample = 0;  // the last one that is over
+    long tick = 0;    // FrameTimes::ticks_per_sample a sample
     Observation a, b;
     std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
     double distance = 0;                                   // state space, analysis/difference.hpp
@@ -110,6 +113,8 @@ public:
     /// out of all proportion, a rod is off by its own length, or a step cannot be made; exit 130 soon after `stop` is
     /// set.
     Observation next(const std::atomic<bool>& stop);
+    /// A tick that is later, or 0 at first. Throws as next().
+    Observation advance_to(long tick, const std::atomic<bool>& stop);
 
     /// Relative (analysis/difference.hpp); nothing where damping takes energy, so that no change of it is an error.
     std::optional<double> energy_error(const Observation& seen) const;
@@ -124,7 +129,7 @@ private:
     char name_;
     std::unique_ptr<Motion> motion_;
     double energy_scale_ = 1, largest_energy_ = 0, longest_rod_ = 0;  // J, J, m
-    long sample_ = -1;
+    long tick_ = -1;
 };
 
 /// Throws Error where the sides are so far apart that their distance is out of the range of a double; it names the
@@ -134,17 +139,20 @@ void check_distance(const Scene& scene, const PairState& state);
 /// Steps the pair from sample to sample.
 class PairRun {
 public:
-    explicit PairRun(const Scene& scene) : a_(scene, scene.a, 'a'), b_(scene, scene.b, 'b') {}
+    explicit PairRun(const Scene& scene)
+        : ticks_per_sample_(scene.frames.ticks_per_sample), a_(scene, scene.a, 'a'), b_(scene, scene.b, 'b') {}
 
     /// Sample 0, then 1, 2, … Throws as SideRun does.
     PairState next(const std::atomic<bool>& stop);
+    PairState advance_to(long tick, const std::atomic<bool>& stop);
 
     Effort effort_a() const { return a_.effort(); }
     Effort effort_b() const { return b_.effort(); }
 
 private:
+    long ticks_per_sample_;
     SideRun a_, b_;
-    long sample_ = -1;
+    long tick_ = -1;
 };
 
 }  // namespace doppel

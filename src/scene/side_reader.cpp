@@ -155,7 +155,8 @@ void read_release(TomlReader& table, SideSpec& side) {
     table.finish();
 }
 
-void read_side(TomlReader& table, SideSpec& side) {
+void read_side(TomlReader& table, SideSpec& side, bool has_text) {
+    if (has_text) side_text_fields(table, side);
     chain_fields(table, side);
     read_mechanism(table, side);
     gravity_field(table, side);

@@ -6,6 +6,7 @@
 #include "output/sink.hpp"
 #include "scene/field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -107,6 +108,21 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
     {"trace", &Theme::trace, "curves of both sides together"},
 }};
 
+/// What a film's picture says around its pendulums; "credit": Doppel's name on the end card.
+inline constexpr auto shown_parts = std::to_array<std::string_view>({"title", "subtitle", "clock", "labels", "credit"});
+
+/// Seconds of motion a second of film: one speed; or from each of some times on another, eased (scene/frame_times.hpp).
+struct Speed {
+    struct Change {
+        Rational at_s, speed;
+        friend bool operator==(const Change&, const Change&) = default;
+    };
+    Rational constant{1, 1};      // where there are no changes
+    std::vector<Change> changes;  // from 0 s on
+
+    bool changes_over_time() const { return !changes.empty(); }
+};
+
 /// Whether a film shows the pendulums, and the strips below them.
 struct Panels {
     bool pendulums = true;
@@ -117,7 +133,8 @@ struct Panels {
 struct VideoSpec : Panels {
     Size size{1920, 1080};
     std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif about 30
-    Rational speed{1, 1};         // seconds of motion shown a second
+    Speed speed;
+    double speed_ease_s = 0.5;                      // of motion, before each change
     Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // how long the first and the last frame stand
     Rational title_card_s{0, 1}, end_card_s{0, 1};  // 0 = none
 
@@ -131,6 +148,7 @@ struct VideoSpec : Panels {
     std::optional<std::array<int, 2>> contact_sheet;  // frames across and down
 
     Arrangement layout = Arrangement::side_by_side;
+    std::vector<std::string> show{shown_parts.begin(), shown_parts.end()};
     int members = 100;  // of an ensemble, the pair included
     PhaseKind phase = PhaseKind::rate;
     int phase_link = 2;                                    // whose angle and rate
@@ -144,6 +162,7 @@ struct VideoSpec : Panels {
     std::optional<double> glow_px;  // how far the light of trails and bobs reaches; the theme's where not given
     double trail_s = 2.5;           // s; 0 = none
 
+    bool shows(std::string_view part) const { return std::find(show.begin(), show.end(), part) != show.end(); }
     /// Whether an encoder with a pixel format and a quality writes it.
     bool is_encoded() const { return format == FilmFormat::mp4 || format == FilmFormat::webm; }
 };

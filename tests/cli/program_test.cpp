@@ -96,7 +96,7 @@ TEST(Program, HelpTeaches) {
     const auto folder = fresh_folder();
     const auto help = doppel(folder, {"--help"});
     EXPECT_EQ(help.code, 0);
-    for (const char* command : {"render", "simulate", "compare", "list", "show", "check"})
+    for (const char* command : {"render", "simulate", "still", "compare", "list", "show", "check"})
         EXPECT_NE(help.out.find(command), std::string::npos) << command;
     EXPECT_NE(doppel(folder, {"render", "--help"}).out.find("--frames"), std::string::npos);
     EXPECT_EQ(doppel(folder, {"--version"}).out.rfind("doppel 1.", 0), 0u);

@@ -156,6 +156,26 @@ TEST(Run, ShowsEveryOtherSampleAtHalfTheRate) {
     EXPECT_EQ(read_png(out / "butterfly/frames/000030.png").rgba, frame_of(scene, 60).rgba);
 }
 
+TEST(Run, OfAChangingSpeedHasTheSameTableAndMoreFrames) {
+    const auto out = fresh_folder();
+    const auto even = small(), slow = small({"video.speed=[[0, 1], [0.2, 0.25], [0.4, 1]]", "video.speed_ease_s=0.1"});
+    render(even, {.out = out / "even"});
+    EXPECT_EQ(render(slow, {.out = out / "slow"}).frames,
+              133);  // 0.1 + 0.1 · 2.5 + 0.1 · 4 + 0.1 · 2.5 + 0.1 = 1.1 s …
+    EXPECT_EQ(bytes_of(out / "even/butterfly/butterfly.csv"), bytes_of(out / "slow/butterfly/butterfly.csv"));
+    // a part of it has the frames of the whole, and the rows of its samples
+    const auto png = small({"video.speed=[[0, 1], [0.2, 0.25]]", "video.format=\"png\""});
+    render(png, {.out = out / "all"});
+    render(png, {.out = out / "part", .first = 24, .last = 31});
+    EXPECT_EQ(lines_of(out / "part/butterfly/butterfly.csv").size(), 8u);
+    long count = 0;
+    for (const auto& entry : fs::directory_iterator(out / "part/butterfly/frames")) {
+        EXPECT_EQ(bytes_of(entry.path()), bytes_of(out / "all/butterfly/frames" / entry.path().filename()));
+        ++count;
+    }
+    EXPECT_EQ(count, 25);  // 6 samples at a quarter of the speed, both ends
+}
+
 TEST(Run, ManifestTellsWhatRanAndHashesIt) {
     const auto out = fresh_folder();
     render(small({"b.model=\"constraints\""}), {.out = out});

@@ -30,6 +30,26 @@ TEST(Captions, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
     EXPECT_EQ(many[1].note, "ω₂ = 2°/s, m₁ = 3 kg, m₂ = 4 kg, …");
 }
 
+TEST(Captions, AreThoseOfThePresetWhereItHasSome) {
+    const auto own = scene_of("butterfly", {"a.label=\"left\"", "b.note=\"\"", "subtitle=\"by me\""});
+    EXPECT_EQ(scene_caption(own), "by me");
+    const auto sides = side_captions(own);
+    EXPECT_EQ(sides[0].heading, "left");
+    EXPECT_EQ(sides[0].note, "θ₁ = 90°, θ₂ = 90°");  // what sets it apart has lost its place above
+    EXPECT_EQ(sides[1].heading, "θ₁ = 90.003°");
+    EXPECT_EQ(sides[1].note, "");
+    // they are in the resolved preset, and nowhere but in a film's sides
+    const auto again = read_preset({"x", "x.toml", resolved_toml(own.preset), "x.toml"});
+    EXPECT_EQ(again.a.label, "left");
+    EXPECT_EQ(again.b.note, "");
+    EXPECT_EQ(again.b.label, std::nullopt);
+    EXPECT_EQ(again.subtitle, "by me");
+    EXPECT_NE(error_of([&] { scene_of("butterfly", {"system.label=\"x\""}); }).second.find("[system] has no \"label\""),
+              std::string::npos);
+    EXPECT_NE(error_of([&] { scene_of("butterfly", {"b.label=\"摆\""}); }).second.find("[b] label holds \"摆\""),
+              std::string::npos);
+}
+
 TEST(Captions, NearestAllowsATypingErrorInThreeLetters) {
     constexpr std::array<std::string_view, 2> names{"poster_s", "background_color"};
     EXPECT_EQ(nearest("backgruond_colour", names), "background_color");

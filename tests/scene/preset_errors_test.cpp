@@ -51,7 +51,7 @@ TEST(Overrides, NameTheOptionInPlaceOfALine) {
     EXPECT_EQ(fault({"nonsense"}), R"(--set wants table.key=VALUE; it is "nonsense")");
     EXPECT_EQ(fault({"video.crf=1", "video.crf=2"}), "video.crf is given twice: --set video.crf and --set video.crf");
     EXPECT_EQ(fault({"foo.bar=3"}),
-              R"(--set foo.bar: a preset has no "foo"; it has a, b, scene, system, title, video)");
+              R"(--set foo.bar: a preset has no "foo"; it has a, b, scene, subtitle, system, title, video)");
     EXPECT_EQ(fault({"video.foo.bar=3"}).rfind(R"(--set video.foo.bar: [video] has no "foo"; )", 0), 0u);
     EXPECT_EQ(fault({"system.links=3", "system={}"}),
               "--set system: would drop --set system.links, which was given before it; give the table first");

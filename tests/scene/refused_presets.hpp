@@ -109,11 +109,11 @@ inline const std::vector<RefusedPreset> refused_rates{
     RefusedPreset{
         "[video]\nfps = 50",
         "presets/x.toml:2:1: [video] fps must divide sample_hz · speed = 120, so that each frame is a sample; it "
-        "is 50"},
+        "is 50; 24, 30, 60 and 120 do; with scene.sample_hz = 150 it does"},
     RefusedPreset{
         "[scene]\nduration_s = 0.025\n[video]\nfps = 60",
         "presets/x.toml:4:1: [video] fps must let the last of 3 samples be a frame; with 60 one sample in 2 is "
-        "one"},
+        "one; 120 does"},
     RefusedPreset{
         "[video]\nspeed = 30",
         "presets/x.toml: [video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is "
@@ -202,6 +202,25 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   R"([video.colors] has no "backgruond"; did you mean "background"?)"},
     RefusedPreset{"colors.background = 3",
                   "[video.colors] background must be a colour such as \"#ff9f40\"; it is a whole number (3)"},
+    RefusedPreset{"show = [\"titel\"]",
+                  R"([video] show are of title, subtitle, clock, labels, credit; "titel" is not)"},
+    RefusedPreset{"fps = 25",
+                  "[video] fps must divide sample_hz · speed = 120, so that each frame is a sample; it is 25; 24, 30, "
+                  "60 and 120 do; with scene.sample_hz = 125 it does"},
+    RefusedPreset{"fps = \"24000/1001\"",
+                  "[video] fps must divide sample_hz · speed = 120, so that each frame is a sample; it is 24000/1001; "
+                  "24, 30, 60 and 120 do"},
+    RefusedPreset{"speed = []",
+                  "[video] speed must be a speed, or times, s, with speeds such as [[0, 1], [6.8, 0.25]]; it is []"},
+    RefusedPreset{"speed = [[0, 1, 2]]",
+                  "[video] speed must be a speed, or times, s, with speeds such as [[0, 1], [6.8, 0.25]]; [0, 1, 2] is "
+                  "none"},
+    RefusedPreset{"speed = [[0, 0]]", "[video] speed must be > 0; it is 0"},
+    RefusedPreset{"speed = [[1, 1]]", "[video] speed must begin at 0 s; it begins at 1 s"},
+    RefusedPreset{"speed = [[0, 1], [40, 2]]",
+                  "[video] speed must change at times that rise, up to 30 s; 40 s comes after 0 s"},
+    RefusedPreset{"speed = [[0, 1], [5, 1e-9]]", "[video] speed must be from 0.001 to 1000; one is 1e-09"},
+    RefusedPreset{"speed_ease_s = 1", "[video] speed_ease_s is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]"},
     RefusedPreset{"widths_px.trail = 1000", "[video.widths_px] trail must be from 0 to 200 px; it is 1000"},
     RefusedPreset{"fonts_px.title = 1", "[video.fonts_px] title must be from 4 to 400 px; it is 1"}};
 

@@ -58,6 +58,15 @@ TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
               "x.toml:5:1: [video] crf must be from 0 to 51; it is 60");
 }
 
+TEST(VideoErrors, TheUsualRatesOfFilmsComeFromSampleRatesThatTheirRemedyNames) {
+    for (const auto& [fps, hz] : {std::pair("24", "120"), {"25", "125"}, {"50", "150"}, {"60", "120"}, {"60", "60"}}) {
+        const auto scene =
+            scene_of("butterfly", {fmt::format("video.fps={}", fps), fmt::format("scene.sample_hz={}", hz)});
+        EXPECT_EQ(scene.fps.text(), fps);
+        EXPECT_EQ(scene.samples % scene.frames.stride, 0);
+    }
+}
+
 TEST(VideoErrors, GifsGetARateThatTheyCanShow) {
     EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\""}).fps, (Rational{30, 1}));
     EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\"", "scene.duration_s=\"1/120\""}).fps, (Rational{120, 1}));
