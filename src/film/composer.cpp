@@ -1,6 +1,7 @@
 #include "film/composer.hpp"
 
 #include "base/embedded.hpp"
+#include "film/headings.hpp"
 #include "render/font.hpp"
 #include "scene/captions.hpp"
 
@@ -11,52 +12,30 @@
 namespace doppel {
 namespace {
 
-constexpr double parted_at = 1;                  // state-space distance from which the two count as parted
-constexpr double together_at = 0.1 * parted_at;  // up to which a pair starts as one, and can part
-
-/// As many decimals as tell one frame from the next.
-std::string clock(const Scene& scene, double time) {
-    const double frame = 1 / (scene.fps.value() / scene.preset.video.speed.value());
-    return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
-}
-
-std::string speed_text(const Rational& speed) {
-    if (speed == Rational{1, 1}) return "real time";
-    return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
-}
-
-/// The background, the title, and what is said beside it: the speed and the time.
 class PageLayer final : public Layer {
 public:
     using Layer::Layer;
 
     void backdrop(DisplayList& list) const override {
-        const auto& font = style_.font;
         if (const auto& video = state_.scene.preset.video; !video.transparent)
             list.push_back(filled(video.size, theme_.background));
-        // long text shrinks until it fits beside the clock
-        const auto fitted = [&](const std::string& text, float y, double wanted, Weight weight, Color color,
-                                const std::string& beside, double beside_size) {
-            const float width = page_.width() - text_width(beside, px(beside_size)) - 30 * layout_.text;
-            const float size = fitting_size(text, px(wanted), weight, width);
-            list.push_back(label(text, {page_.left, y}, size, color, Align::left, weight));
-        };
-        const auto speed = speed_text(state_.scene.preset.video.speed);
-        const auto longest = clock(state_.scene, state_.scene.time(state_.scene.samples));
-        const float second = page_.top + 74 * layout_.text;
-        fitted(layout_.title, title_, font.title, Weight::bold, theme_.text, longest, font.clock);
-        fitted(layout_.subtitle, second, font.subtitle, Weight::regular, theme_.quiet_text, speed, font.subtitle);
-        list.push_back(label(speed, {page_.right, second}, px(font.subtitle), theme_.quiet_text, Align::right));
     }
+    void frame(DisplayList&) const override {}
+};
 
+/// The words that stay, and the time.
+class WordsLayer final : public Layer {
+public:
+    using Layer::Layer;
+
+    void backdrop(DisplayList& list) const override {
+        list.insert(list.end(), layout_.words.begin(), layout_.words.end());
+    }
     void frame(DisplayList& list) const override {
-        list.push_back(label(clock(state_.scene, state_.time()), {page_.right, title_}, px(style_.font.clock),
-                             theme_.text, Align::right));
+        auto clock = layout_.clock;
+        clock.text = clock_text(state_.scene, state_.time());
+        list.push_back(clock);
     }
-
-private:
-    const Area& page_ = layout_.page;
-    const float title_ = page_.top + 38 * layout_.text;  // baseline
 };
 
 /// A line of text on a card.
@@ -87,16 +66,13 @@ DisplayList card(const std::vector<CardLine>& lines, Size size, Color background
 
 }  // namespace
 
-bool FilmState::start_as_one() const {
-    return start_distance <= together_at;
-}
-
 Composer::Composer(const Scene& scene, const std::atomic<bool>& stop) : state_{scene, make_layout(scene, stop)} {
     const auto& layout = state_.layout;
     layers_.push_back(std::make_unique<PageLayer>(state_));
     for (const auto& panel : layout.panels) layers_.push_back(make_pendulum_layer(state_, panel));
     if (layout.phase) layers_.push_back(make_phase_layer(state_, *layout.phase));
     for (std::size_t i = 0; i < layout.strips.size(); ++i) layers_.push_back(make_strip_layer(state_, i));
+    layers_.push_back(std::make_unique<WordsLayer>(state_));
 }
 
 DisplayList Composer::backdrop() const {
@@ -110,7 +86,7 @@ void Composer::add(const Snapshot& snapshot) {
     const auto& state = snapshot.pair;
     if (state.sample == 0) state_.start_distance = state.distance;
     state_.largest_distance = std::max(state_.largest_distance, state.distance);
-    if (state_.start_as_one() && !state_.parted && state.distance >= parted_at) state_.parted = state_.time();
+    state_.parting.add(state_.time(), state.distance);
     for (const auto& layer : layers_) layer->add();
 }
 
@@ -124,7 +100,7 @@ DisplayList Composer::title_card(double opacity) const {
     const auto& layout = state_.layout;
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
-    const auto captions = side_captions(state_.scene);
+    const auto captions = side_captions(state_.scene, wording_of(state_.scene));
     return card({{layout.title, font.card, Weight::bold, theme.text},
                  {layout.subtitle, 1.5 * font.subtitle, Weight::regular, theme.quiet_text},
                  {"", font.subtitle, Weight::regular, theme.text},
@@ -138,9 +114,11 @@ DisplayList Composer::end_card(double opacity) const {
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
     const auto size = 1.3 * font.heading;
-    const auto outcome = !state_.start_as_one() ? "apart from the start"
-                         : state_.parted
-                             ? fmt::format("parted after {:.1f} s", *state_.parted)
+    const auto& parting = state_.parting;
+    const auto outcome = !parting.start_as_one() ? "apart from the start"
+                         : parting.since()       ? fmt::format("parted after {:.1f} s", *parting.since())
+                         : state_.largest_distance >= Parting::apart_at
+                             ? "apart for moments only"
                              : fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
     std::vector<CardLine> lines{{layout.title, 0.7 * font.card, Weight::bold, theme.text},
                                 {"", font.subtitle, Weight::regular, theme.text},

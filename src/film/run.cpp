@@ -207,6 +207,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         watch(record.a, state.a, state.energy_error_a);
         watch(record.b, state.b, state.energy_error_b);
         record.largest_distance = std::max(record.largest_distance, state.distance);
+        record.parting.add(scene.time(sample), state.distance);
         if (film) film->add(snapshot);
         if (sample < first) continue;
         table.add(state, start_distance);

@@ -233,7 +233,7 @@ void style_fields(Visit& visit, Video& video) {
     });
     constexpr auto glow = from_to(0, 100, "none"), trail = from_to(0, 3600, "none");
     visit({"glow_px", "how far the light of trails and bobs reaches", "px", glow, of_theme}, video.glow_px);
-    visit({"trail_s", "how long the path behind the last bob lasts; 0 of an ensemble", "s", trail}, video.trail_s);
+    visit({"trail_s", "how long the path behind the last bob lasts; 0.3 of an ensemble", "s", trail}, video.trail_s);
 }
 
 // Readers of the tables that films and figures share. Each leaves alone what the table does not say, and throws Error

@@ -155,15 +155,15 @@ void check_layout(TomlReader& table, VideoSpec& video) {
         throw table.fault("panels", "must hold \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
-/// Members of an ensemble leave no trails.
+/// Members of an ensemble leave short trails without light.
 void read_style(TomlReader& table, VideoSpec& video) {
     const bool is_ensemble = video.layout == Arrangement::ensemble;
-    if (is_ensemble) video.trail_s = 0;
+    if (is_ensemble) video.trail_s = 0.3;
     style_fields(table, video);
-    for (const auto& [key, value] : {std::pair{"trail_s", video.trail_s}, {"glow_px", video.glow_px.value_or(0)}})
-        if (is_ensemble && value > 0)
-            throw table.fault(key, "must be 0 for the layout \"ensemble\", whose members leave no trails; it is {}",
-                              value);
+    if (!is_ensemble) return;
+    if (video.glow_px.value_or(0) > 0)
+        throw table.fault("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
+                          *video.glow_px);
 }
 
 void read_video(TomlReader& table, VideoSpec& video) {

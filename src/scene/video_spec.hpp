@@ -64,7 +64,7 @@ struct Member {
 
 /// Widths of what is drawn, px of a 1920×1080 picture. Finer lines than these lose their hue in 4:2:0 video.
 struct Widths {
-    double trail = 3.4, trace = 2.8;
+    double trail = 4.4, trace = 2.8;
     double rod = 0, bob = 0;        // a rod's width, the radius of the heaviest bob; 0 = by the size of the panel
     double grid = 1.4, mark = 1.6;  // lines of charts; now, the parting, the horizon
 };
@@ -110,7 +110,7 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
 /// Whether a film shows the pendulums, and the strips below them.
 struct Panels {
     bool pendulums = true;
-    std::vector<StripKind> strips{StripKind::distance, StripKind::energy};
+    std::vector<StripKind> strips{StripKind::distance};
 };
 
 /// [video]: what a film shows and how it is written. Sizes are for 1920×1080 and grow and shrink with the picture.

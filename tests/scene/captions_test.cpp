@@ -30,6 +30,42 @@ TEST(Captions, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
     EXPECT_EQ(many[1].note, "ω₂ = 2°/s, m₁ = 3 kg, m₂ = 4 kg, …");
 }
 
+TEST(Captions, OfAnAccuracyNameNoToleranceThatItChose) {
+    // the sides are 10⁻¹² degrees apart, and each gets a tolerance of its own
+    const auto scene = scene_of("horizon", {"scene.duration_s=5"});
+    for (const auto& side : side_captions(scene)) {
+        EXPECT_EQ(side.heading.find("tolerance"), std::string::npos) << side.heading;
+        EXPECT_EQ(side.note, "θ₂ = 90°");
+    }
+    EXPECT_TRUE(scene_caption(scene).ends_with("accuracy 0.01 rad")) << scene_caption(scene);
+    // one that the preset names is said
+    const auto given = side_captions(scene_of(
+        "butterfly", {"system.integrator=\"taylor\"", "a.tolerance=1e-9", "b.tolerance=1e-12", "b.angle_deg=90"}));
+    EXPECT_EQ(given[0].heading, "tolerance 1e-09");
+    // so are two accuracies
+    const auto two = side_captions(scene_of("horizon", {"scene.duration_s=2", "a.accuracy=1e-3", "b.angle_deg=90"}));
+    EXPECT_EQ(two[0].heading, "accuracy 0.001 rad");
+    EXPECT_EQ(two[1].heading, "accuracy 0.01 rad");
+}
+
+TEST(Captions, OfMechanismsSayWhatDiffers) {
+    const auto springs = side_captions(scene_of("springs"));
+    EXPECT_EQ(springs[0].heading, "bead and middle in place");
+    EXPECT_EQ(springs[1].heading, "bead and middle 1 mm to the right");
+    const auto loop = side_captions(scene_of("loop"));
+    EXPECT_EQ(loop[0].heading, "bob at rest");
+    EXPECT_EQ(loop[1].heading, "bob pushed at 1 mm/s");
+}
+
+TEST(Captions, InPlainWordsHaveNoSymbols) {
+    const auto scene = scene_of("pendulum-portrait", {"scene.duration_s=2"});
+    const auto said = side_captions(scene, Wording::plain);
+    EXPECT_EQ(said[0].heading, "135°");
+    EXPECT_EQ(said[1].heading, "135.0001°");
+    EXPECT_EQ(said[1].note, "");
+    EXPECT_EQ(scene_caption(scene, Wording::plain), "two double pendulums, released at rest");
+}
+
 TEST(Captions, NearestAllowsATypingErrorInThreeLetters) {
     constexpr std::array<std::string_view, 2> names{"poster_s", "background_color"};
     EXPECT_EQ(nearest("backgruond_colour", names), "background_color");
