@@ -1,6 +1,7 @@
 #pragma once
 
 #include "film/composer.hpp"
+#include "film/contact_sheet.hpp"
 #include "film/manifest.hpp"
 #include "film/run.hpp"
 #include "integrate/motion_batch.hpp"
@@ -46,6 +47,7 @@ public:
     void add(const Snapshot& snapshot) {
         sample_ = snapshot.pair.sample;
         composer_.add(snapshot);
+        if (sheet_) sheet_->add(snapshot);
     }
 
     /// The snapshot added last becomes a frame; before the first of all comes the title, after the last the end.
@@ -75,8 +77,7 @@ private:
     Picture matted_;
     std::vector<Rect> changed_;
     std::optional<Picture> poster_;
-    std::vector<long> sheet_samples_;
-    std::vector<Picture> sheet_;
+    std::optional<ContactSheet> sheet_;
 };
 
 /// The sample that the poster shows, where there is one.

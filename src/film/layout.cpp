@@ -159,7 +159,45 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
     if (style.width.bob > 0) layout.bob_radius = px(style.width.bob);
 }
 
+/// px of a tile's panels to one of a film's.
+float tile_unit(const VideoSpec& video, float width) {
+    const auto panels = static_cast<float>(panel_count(video));
+    return width / panels / 888;
+}
+
+/// px of its words to those of a film.
+float tile_text(float unit) {
+    return std::max(2 * unit, 0.5f);
+}
+
+constexpr float tile_clock = 44;  // height of the time above a tile's panels, px of its text
+
+Layout make_tile(const Scene& scene, const std::optional<MotionBounds>& seen) {
+    const auto& video = scene.preset.video;
+    const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
+    Layout layout;
+    layout.unit = tile_unit(video, width);
+    layout.text = tile_text(layout.unit);
+    layout.style = make_style(video, layout.unit, layout.text);
+    layout.page = {0, 0, width, height};
+    layout.clock =
+        label("", {4 * layout.text, 33 * layout.text}, 0.8f * px(layout.style.font.clock), layout.style.theme.text);
+    const auto rooms = shared_out({0, std::round(tile_clock * layout.text), width, height},
+                                  {.panels = panel_count(video), .gap = std::round(24 * layout.unit), .strips = {}});
+    place_panels(layout, scene, rooms.panels, seen);
+    place_pendulums(layout, scene, seen);
+    return layout;
+}
+
 }  // namespace
+
+Size tile_size(const Scene& scene, int width) {
+    const auto& video = scene.preset.video;
+    const float unit = tile_unit(video, static_cast<float>(width)), text = tile_text(unit);
+    const auto across = static_cast<float>(width);
+    const float panel = (across - (panel_count(video) > 1 ? 24 * unit : 0)) / static_cast<float>(panel_count(video));
+    return {width, static_cast<int>(std::ceil(panel + tile_clock * text))};
+}
 
 Style make_style(const VideoSpec& video, float unit, float text) {
     Style style{themed(video), video.widths, video.fonts, 0};
@@ -219,7 +257,8 @@ std::string clock_text(const Scene& scene, double time) {
     return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
 }
 
-Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
+Layout make_layout(const Scene& scene, const std::atomic<bool>& stop, Dress dress) {
+    if (dress == Dress::tile) return make_tile(scene, motion_bounds(scene, stop));
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
     const bool tall = is_tall(video), is_portrait = video.layout == Arrangement::portrait;
@@ -232,7 +271,7 @@ Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
     const float top = is_portrait ? 0.06f * height : 28 * u, bottom = is_portrait ? 0.14f * height : 26 * u;
     layout.page = {std::round(60 * u), std::round(top), width - std::round(60 * u), height - std::round(bottom)};
     layout.title = scene.preset.title;
-    layout.subtitle = scene_caption(scene, wording_of(scene));
+    layout.subtitle = scene_caption(scene, tall ? Wording::plain : Wording::exact);
     const auto seen = motion_bounds(scene, stop);
 
     const float header = std::round(place_header(layout, scene));

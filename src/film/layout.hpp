@@ -96,7 +96,13 @@ struct Layout {
     float time_labels = 0;            // their baseline, px
 };
 
-/// May run the scene beforehand (film/bounds.hpp); throws Error (exit 130) soon after `stop` is set.
-Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false);
+/// A film's picture, or a tile of a contact sheet: pendulums and time alone.
+enum class Dress { film, tile };
+
+/// May run the scene beforehand (film/bounds.hpp); throws Error (exit 130) soon after `stop` is set. A tile has no strips.
+Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false, Dress dress = Dress::film);
+
+/// The size of a tile of that width, px.
+Size tile_size(const Scene& scene, int width);
 
 }  // namespace doppel

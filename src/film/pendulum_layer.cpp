@@ -77,7 +77,8 @@ void PendulumLayer::backdrop(DisplayList& list) const {
     const auto& area = panel_.area;
     if (!state_.scene.preset.video.transparent)
         list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
-    if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), theme_.grid});
+    const float reach = layout_.reach * panel_.px_per_m / layout_.panels.front().px_per_m;
+    if (reach > 0) list.push_back(Ring{panel_.center, reach, px(style_.width.grid), theme_.grid});
     for (const auto side : panel_.sides) draw_tracks(side, list);
 }
 

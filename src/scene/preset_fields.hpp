@@ -183,7 +183,7 @@ void time_fields(Visit& visit, Video& video) {
     visit({"end_card_s", "a card with the outcome after the film", "s", seconds}, video.end_card_s);
     visit({"poster_s", "NAME.poster.png: the frame at this time", "s", not_negative}, video.poster_s);
     constexpr std::string_view across = "frames across and down";
-    visit({"contact_sheet", "NAME.contact.png: frames across and down", "", from_to(1, 32), "", {}, across},
+    visit({"contact_sheet", "NAME.contact.png: pendulums and time at so many moments, across and down", "", from_to(1, 32), "", {}, across},
           video.contact_sheet);
 }
 
