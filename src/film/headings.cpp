@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace doppel {
 namespace {
@@ -112,6 +114,44 @@ void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, cons
                                  std::make_shared<const Picture>(std::move(colors))});
 }
 
+/// What tells the listed members apart, "120.01°", by member; what is said before them, "θ₁ =".
+std::pair<std::string, std::vector<std::string>> legend_words(const std::vector<std::vector<Quad>>& members) {
+    std::vector<std::size_t> differing;
+    for (std::size_t j = 0; j < members[0].size(); ++j)
+        if (std::ranges::any_of(members, [&](const auto& member) { return member[j] != members[0][j]; }))
+            differing.push_back(j);
+    if (differing.empty()) differing.push_back(0);
+    std::string before;
+    for (const auto j : differing) before += fmt::format("{}θ{}", before.empty() ? "" : ", ", subscript(j + 1));
+    std::vector<std::string> words;
+    for (const auto& member : members) {
+        auto& text = words.emplace_back();
+        for (const auto j : differing) text += fmt::format("{}{}°", text.empty() ? "" : ", ", text_of(member[j]));
+    }
+    return {before + " =", words};
+}
+
+/// The listed members' angles, each after a dot of its colour.
+void add_legend(Layout& layout, const Scene& scene, const Area& panel) {
+    const auto [before, words] = legend_words(scene.preset.video.members.angles_deg);
+    const float t = layout.text, base = panel.top - 14 * t;
+    float size = 0.85f * px(layout.style.font.heading);
+    constexpr float dot = 0.32f, after_dot = 0.85f, after_word = 0.8f;  // em
+    float wide = text_width(before, size) + after_word * size;
+    for (const auto& word : words) wide += text_width(word, size) + (after_dot + after_word) * size;
+    size *= std::min(1.0f, panel.width() / (wide - after_word * size));
+    const auto& theme = layout.style.theme;
+    layout.words.push_back(label(before, {panel.left, base}, size, theme.quiet_text));
+    float x = panel.left + text_width(before, size) + after_word * size;
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        const Point at{x + dot * size, base - 0.36f * size};
+        layout.words.push_back(Capsule{at, at, dot * size, member_color(layout.style, scene, k)});
+        x += after_dot * size;
+        layout.words.push_back(label(words[k], {x, base}, size, theme.text));
+        x += text_width(words[k], size) + after_word * size;
+    }
+}
+
 }  // namespace
 
 Wording wording_of(const Scene& scene) {
@@ -162,6 +202,10 @@ Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomN
     }
     needs.heading = 42 * t;
     auto rooms = shared_out(room, needs);
+    if (!scene.preset.video.members.angles_deg.empty()) {
+        add_legend(layout, scene, rooms.panels[0]);
+        return rooms;
+    }
     if (!scene.members.empty()) {
         add_color_bar(layout, {headings[0].said, headings[1].said}, rooms.panels[0]);
         return rooms;

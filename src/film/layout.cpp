@@ -218,6 +218,12 @@ Color member_color(const Style& style, double share) {
     return is_dark(style.theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
 }
 
+Color member_color(const Style& style, const Scene& scene, std::size_t k) {
+    if (!scene.preset.video.members.angles_deg.empty()) return style.theme.palette[k % style.theme.palette.size()];
+    const auto last = static_cast<double>(std::max<std::size_t>(scene.members.size(), 2) - 1);
+    return member_color(style, static_cast<double>(k) / last);
+}
+
 Point PendulumPanel::at(double x_m, double y_m) const {
     const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};

@@ -34,6 +34,8 @@ inline constexpr std::size_t most_full_members = 8;
 
 /// The colour of an ensemble's member: from the first, 0, to the last, 1.
 Color member_color(const Style& style, double share);
+/// The colour of member `k` of a scene's: of a list a hue of its own, else by the scale.
+Color member_color(const Style& style, const Scene& scene, std::size_t k);
 
 /// A panel of pendulums and how metres become pixels in it.
 struct PendulumPanel {

@@ -150,8 +150,7 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
 /// A member's colour; the more members there are, the more they let through, a few nothing.
 Color PendulumLayer::member_hue(std::size_t k, float opacity) const {
     const auto count = state_.scene.members.size();
-    const auto color =
-        member_color(style_, static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(count - 1, 1)));
+    const auto color = member_color(style_, state_.scene, k);
     if (count <= most_full_members) return color;
     return color.with_alpha(std::clamp(opacity * 14 / std::sqrt(static_cast<float>(count)), 0.16f, 0.9f));
 }

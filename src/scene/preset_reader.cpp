@@ -1,6 +1,7 @@
 #include "base/text.hpp"
 #include "integrate/methods.hpp"
 #include "scene/preset_fields.hpp"
+#include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
 
@@ -158,7 +159,7 @@ void check_layout(TomlReader& table, VideoSpec& video) {
 /// Members of an ensemble leave short trails without light.
 void read_style(TomlReader& table, VideoSpec& video) {
     const bool is_ensemble = video.layout == Arrangement::ensemble;
-    if (is_ensemble) video.trail_s = 0.3;
+    if (is_ensemble) video.trail_s = video.members.angles_deg.empty() ? 0.3 : 1;
     style_fields(table, video);
     if (!is_ensemble) return;
     if (video.glow_px.value_or(0) > 0)
@@ -176,6 +177,28 @@ void read_video(TomlReader& table, VideoSpec& video) {
     check_size(table, video);
     read_style(table, video);
     table.finish();
+}
+
+/// The pair of an ensemble whose members are listed is its first and its last. Throws where the file gives a side
+/// other angles, or a member too many or too few of them.
+void place_members(const TomlDocument& document, TomlReader& top, TomlReader& video, Preset& preset) {
+    const auto& members = preset.video.members.angles_deg;
+    if (members.empty()) return;
+    for (std::size_t k = 0; k < members.size(); ++k)
+        if (members[k].size() != preset.a.links())
+            throw video.fault("members", "must have {} angles each, one a link; [{}] has {}", preset.a.links(), k,
+                              members[k].size());
+    const auto check_side = [&](const char* table, const std::vector<Quad>& angles, const std::vector<Quad>& member) {
+        if (video.from_command_line("members") || !document.table(top, table).has("angle_deg") || angles == member)
+            return;
+        throw video.fault("members", "begins with side a and ends with side b; [{}] angle_deg is {}, the member's {}",
+                          table, toml_value(angles), toml_value(member));
+    };
+    check_side("a", preset.a.angle_deg, members.front());
+    check_side("b", preset.b.angle_deg, members.back());
+    check_side("system", preset.a.angle_deg, members.front());
+    preset.a.angle_deg = members.front();
+    preset.b.angle_deg = members.back();
 }
 
 }  // namespace
@@ -240,6 +263,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     read_sides(document, {&top}, preset);
     auto video = document.table(top, "video");
     read_video(video, preset.video);
+    place_members(document, top, video, preset);
     top.finish();
     check_clock(preset, scene);
     check_frames(preset, video);

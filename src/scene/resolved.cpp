@@ -36,6 +36,10 @@ std::string toml_value(const Panels& panels) {
     return toml_value(names);
 }
 
+std::string toml_value(const Members& members) {
+    return members.angles_deg.empty() ? toml_value(members.count) : toml_value(members.angles_deg);
+}
+
 namespace {
 
 template <class Fields>

@@ -2,6 +2,7 @@
 
 #include "image/color.hpp"
 #include "image/picture.hpp"
+#include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 #include "output/sink.hpp"
 #include "scene/field.hpp"
@@ -107,6 +108,15 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
     {"trace", &Theme::trace, "curves of both sides together"},
 }};
 
+/// The pendulums of an ensemble: so many from side a to side b, or each by its angles at the start.
+struct Members {
+    static constexpr std::size_t most_releases = 8;
+    int count = 100;                            // the pair included
+    std::vector<std::vector<Quad>> angles_deg;  // by member and link; none, or 2 to most_releases members
+
+    std::size_t size() const { return angles_deg.empty() ? static_cast<std::size_t>(count) : angles_deg.size(); }
+};
+
 /// Whether a film shows the pendulums, and the strips below them.
 struct Panels {
     bool pendulums = true;
@@ -131,7 +141,7 @@ struct VideoSpec : Panels {
     std::optional<std::array<int, 2>> contact_sheet;  // frames across and down
 
     Arrangement layout = Arrangement::side_by_side;
-    int members = 100;  // of an ensemble, the pair included
+    Members members;  // of an ensemble
     PhaseKind phase = PhaseKind::rate;
     int phase_link = 2;                                    // whose angle and rate
     std::array<std::optional<Range>, strip_kinds> ranges;  // of strips; fitted to the scene where not given

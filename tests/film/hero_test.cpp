@@ -2,6 +2,7 @@
 #include "film/parting.hpp"
 #include "film/support.hpp"
 #include "film/words.hpp"
+#include "render/pixels.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -226,6 +227,38 @@ TEST(Fan, DrawsManyMembersFinerThanFew) {
     EXPECT_NEAR(few.first / many.first, 5, 1e-3);  // √(200/8)
     EXPECT_GT(few.second / many.second, 3);
     EXPECT_EQ(few, sizes_of(8));
+}
+
+TEST(Fan, ShowsListedMembersLargeWithALegend) {
+    const std::string list = "video.members=[[120, 120], [120.01, 120], [140, 120], [170.5, 120]]";
+    const auto scene = at_size(scene_of("fan", {list}), {1920, 1080});
+    ASSERT_EQ(scene.members.size(), 4u);
+    const std::array angles{120.0, 120.01, 140.0, 170.5};
+    const auto layout = make_layout(scene);
+    const auto picture = frame_of(scene, 0);
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+        EXPECT_NEAR(static_cast<double>(scene.members[k].chain->angle[0]) * 180 / pi, angles[k], 1e-12);
+        const auto at_legend = std::ranges::any_of(layout.words, [&](const Item& item) {
+            const auto* dot = std::get_if<Capsule>(&item);
+            return dot && dot->color == layout.style.theme.palette[k];
+        });
+        EXPECT_TRUE(at_legend) << k;
+        if (k == 1) continue;  // behind the first
+        const double x = std::sin(radians(angles[k])) + std::sin(radians(120.0)),
+                     y = -std::cos(radians(angles[k])) - std::cos(radians(120.0));
+        const auto at = layout.panels[0].at(x, y);
+        EXPECT_TRUE(is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), layout.style.theme.palette[k]))
+            << k;
+    }
+    // the distance is that of the first and the last
+    EXPECT_EQ(scene.preset.a.angle_deg[0], parse_quad("120"));
+    EXPECT_EQ(scene.preset.b.angle_deg[0], parse_quad("170.5"));
+    for (const auto& size : sizes) {
+        const auto sized = at_size(scene, size);
+        expect_large_and_central(sized, make_layout(sized), "list");
+        expect_words_in_place(sized, make_layout(sized), "list");
+    }
+    for (const auto* words : {"θ₁ =", "120°", "120.01°", "170.5°"}) EXPECT_TRUE(says(layout.words, words)) << words;
 }
 
 }  // namespace hero_test

@@ -308,6 +308,7 @@ TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {
     const std::vector<std::vector<std::string>> all{
         {"video.layout=\"ensemble\"", "video.members=17", "video.colors.rod=\"#123456\"", "video.widths_px.trail=5",
          "video.fonts_px.axis=30"},
+        {"video.layout=\"ensemble\"", "video.members=[[90, 90], [90.001, 90], [90.003, 90.5]]"},
         {"video.layout=\"phase\"", "video.phase=\"section\"", "video.phase_link=1", "video.glow_px=3"},
         {"video.layout=\"portrait\"", "video.poster_s=5", "video.contact_sheet=[2, 3]", "video.hold_end_s=\"1/3\""},
         {"video.format=\"webm\"", "video.codec=\"av1\"", "video.crf=60", "video.title_card_s=1"},

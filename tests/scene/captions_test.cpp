@@ -80,7 +80,7 @@ TEST(Defaults, AreThoseOfTheReference) {
     EXPECT_EQ(chain.stabilise_rate_per_s, 10);
     EXPECT_EQ(chain.mass_kg, (std::vector<Quad>{1, 1, 1}));
     EXPECT_EQ(chain.length_m, (std::vector<Quad>{1, 1, 1}));
-    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"").video.members, 100);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"").video.members.count, 100);
     const auto none = read("").a;
     EXPECT_EQ(none.mass_kg, (std::vector<Quad>{1, 1}));
     EXPECT_EQ(none.length_m, (std::vector<Quad>{1, 1}));
@@ -96,8 +96,8 @@ TEST(Defaults, OfADropletAndOfTransparency) {
     EXPECT_EQ(
         error_of([&] { read("[video]\nformat = \"webm\"\ntransparent = true\npixel_format = \"yuv444p\""); }).first,
         ExitCode::bad_input);
-    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 1000").video.members, 1000);
-    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 2").video.members, 2);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 1000").video.members.count, 1000);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 2").video.members.count, 2);
     EXPECT_EQ(read("[video]\ncontact_sheet = [32, 1]").video.contact_sheet, (std::array{32, 1}));
 }
 
