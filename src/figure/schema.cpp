@@ -78,10 +78,14 @@ Json value_schema(const ListedField& field) {
     if (is(type_words<Color>())) return color;
     if (is(type_words<std::array<Color, 2>>())) return list_schema(color, 2, 2);
     if (is(type_words<std::string>())) return text_schema(field);
+    auto integer = number;
+    integer["type"] = "integer";
+    if (is(type_words<Members>())) {
+        const auto release = list_schema(number_schema({}), 1, 0);
+        return {{"anyOf", {integer, list_schema(release, 2, Members::most_releases)}}};
+    }
     if (!is(type_words<int>())) throw std::logic_error(fmt::format("no schema of \"{}\"", field.type));
-    auto schema = number;
-    schema["type"] = "integer";
-    return schema;
+    return integer;
 }
 
 /// "a whole number of samples. Unit: s. Range: > 0. Default: 30."

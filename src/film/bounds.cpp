@@ -1,8 +1,9 @@
 #include "film/bounds.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 namespace doppel {
 namespace {
@@ -11,15 +12,22 @@ void include(Range& range, double value) {
     range = {std::min(range.low, value), std::max(range.high, value)};
 }
 
+/// Whether the outstretched chain's circle holds all that is drawn: droplets pull from afar, and are not shown.
+bool stays_in_circle(const SideSpec& side) {
+    return side.particles.empty() && side.constraints.empty() &&
+           std::all_of(side.forces.begin(), side.forces.end(),
+                       [](const ForceSpec& force) { return std::holds_alternative<DropletSpec>(force.part); });
+}
+
+bool has_circle(const Scene& scene) {
+    return stays_in_circle(scene.preset.a) && stays_in_circle(scene.preset.b);
+}
+
 bool is_needed(const Scene& scene) {
     const auto& video = scene.preset.video;
-    const bool is_mechanism = scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism;
-    const auto fits_itself = [&](StripKind kind) {
-        const bool by_formula = is_logarithmic(kind) && !(kind == StripKind::distance && is_mechanism);
-        return !by_formula && !video.ranges[static_cast<std::size_t>(kind)];
-    };
-    const bool view = video.pendulums && (is_mechanism || video.layout == Arrangement::phase);
-    return view || std::any_of(video.strips.begin(), video.strips.end(), fits_itself);
+    const bool view = video.pendulums && (!has_circle(scene) || video.layout == Arrangement::phase);
+    return view || std::any_of(video.strips.begin(), video.strips.end(),
+                               [&](StripKind kind) { return !video.ranges[static_cast<std::size_t>(kind)]; });
 }
 
 void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
@@ -41,52 +49,55 @@ Range padded(const Range& seen) {
     return {low < 0 ? low - width / 10 : 0, high > 0 ? high + width / 10 : 0};
 }
 
-/// How far apart two chains can get in state space: as fast as each can be, in opposite directions, each bob as far
-/// from where it hangs at rest as it can be, on opposite sides. With the energy E above rest, a bob of mass m rises by
-/// at most E/(m g), and one that hangs a length l below the pivot is within √(2 l · rise) of its place at rest.
-double farthest(const Scene& scene, const PairState& start) {
-    const auto energy = [](const Side& side, const Observation& seen) {
-        return std::max(seen.energy + side.energy_unit / 2, 0.0);  // J, above rest
-    };
-    const auto fastest = [](const Side& side, double available) {
-        return std::sqrt(2 * available / *std::min_element(side.mass.begin(), side.mass.end()));
-    };
-    const std::array sides{&scene.a, &scene.b};
-    const std::array available{energy(scene.a, start.a), energy(scene.b, start.b)};
-    double squares = std::pow(fastest(scene.a, available[0]) + fastest(scene.b, available[1]), 2);
-    std::array<double, 2> below{};  // m, of the bob that hangs
-    for (std::size_t k = 0; k < scene.a.mass.size(); ++k) {
-        double swing = 0;
-        for (std::size_t s = 0; s < 2; ++s) {
-            below[s] += static_cast<double>(sides[s]->motion.chain->length[k]);
-            const double rise = available[s] / (sides[s]->mass[k] * sides[s]->gravity);
-            swing += std::sqrt(2 * below[s] * std::min(rise, 2 * below[s]));
+/// m
+double chain_length(const SideSpec& side) {
+    double sum = 0;
+    for (const auto& length : side.length_m) sum += static_cast<double>(length);
+    return sum;
+}
+
+/// The nearest 1, 2 or 5 times a power of ten that is no larger, or no smaller.
+double round_number(double value, bool up) {
+    const double unit = std::pow(10, std::floor(std::log10(value)));
+    double best = up ? 10 * unit : unit;
+    for (const double step : {5.0, 2.0, 1.0})
+        if (up ? step * unit >= value : step * unit <= value) {
+            best = step * unit;
+            if (!up) break;
         }
-        const double apart = std::min(swing + std::abs(below[0] - below[1]), below[0] + below[1]);
-        squares += apart * apart + std::pow(scene.a.mass[k] - scene.b.mass[k], 2);
-    }
-    return std::sqrt(squares);
+    return best;
 }
 
-/// The distance axis where the preset names none: from the decade of the start to as far as the two can get.
-Range fitted_distance(const Scene& scene, const std::optional<MotionBounds>& seen) {
-    const auto start = PairRun(scene).next(std::atomic<bool>(false));
+/// The distance axis where the preset names none: all that the two do, a power of ten at least; of twins that start
+/// alike no more than eight, as they come from nothing.
+Range fitted_distance(const std::optional<MotionBounds>& seen) {
     constexpr double decades = 1e60;  // the most an axis spans, whatever the masses and lengths
-    const bool is_mechanism = scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism;
-    const double most = is_mechanism && seen ? 1.5 * seen->largest_distance : farthest(scene, start),
-                 high = std::isfinite(most) ? std::clamp(most, 1e-12, decades) : decades;
-    const double low = start.distance > 0 ? start.distance / 2 : high * 1e-8;
-    const double top = std::pow(10, std::ceil(2 * std::log10(high)) / 2);  // a half or a whole decade
-    return {std::clamp(std::pow(10, std::floor(std::log10(low))), top / decades, top / 10), top};
+    if (!seen || seen->distance.count == 0) return {1e-8, 1};
+    const double most = std::clamp(seen->distance.most, 1e-290, decades);
+    const double high = round_number(1.02 * most, true);
+    const double least = std::clamp(seen->distance.least, high / decades, most);
+    const double low =
+        most / least < 100 ? round_number(0.98 * least, false) : std::pow(10, std::floor(std::log10(least)));
+    return {std::clamp(low, high / decades, high / 10), high};
 }
 
-/// From the least error that shows to all there is.
-Range fitted_error(const Scene& scene) {
-    const bool low_order = scene.a.method.order == 1 || scene.b.method.order == 1;
-    return low_order ? Range{1e-8, 1} : Range{1e-16, 1};
+/// From the least error that shows to the largest there is, two powers of ten to six.
+Range fitted_error(const Spread& seen) {
+    if (seen.count == 0) return {1e-16, 1};
+    const double high = std::pow(10, std::ceil(std::log10(1.02 * seen.most)));
+    const double low = std::pow(10, std::floor(std::log10(seen.geometric_mean() / 10)));
+    return {std::clamp(low, high * 1e-6, high * 1e-2), high};
 }
 
 }  // namespace
+
+void Spread::add(double value) {
+    if (!(value > 0) || !std::isfinite(value)) return;
+    least = std::min(least, value);
+    most = std::max(most, value);
+    log_sum += std::log(value);
+    ++count;
+}
 
 std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance) {
     if (state.sample == 0 || 20 * state.sample < scene.samples) return std::nullopt;
@@ -99,13 +110,18 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
     PairRun pair(scene);
     auto state = pair.next(stop);
     const auto& first = state.a.bobs.front();
-    MotionBounds seen{first.x, first.x, first.y, first.y};
+    MotionBounds seen{.left = first.x, .right = first.x, .bottom = first.y, .top = first.y};
     const double start_distance = state.distance;
+    const double energy_unit = std::max(scene.a.energy_unit, scene.b.energy_unit);
     try {
         for (;;) {
             add(seen, scene, state.a);
             add(seen, scene, state.b);
-            seen.largest_distance = std::max(seen.largest_distance, state.distance);
+            if (start_distance > 0 || 50 * state.sample >= scene.samples) seen.distance.add(state.distance);
+            for (const auto& [side, now] : {std::pair{&scene.a, &state.a}, {&scene.b, &state.b}}) {
+                if (side->conserves_energy) seen.energy_error.add(std::abs(now->energy_change) / energy_unit);
+                seen.rod_error.add(now->length_error);
+            }
             if (const auto exponent = exponent_so_far(scene, state, start_distance)) include(seen.exponent, *exponent);
             if (state.sample == scene.samples) break;
             state = pair.next(stop);
@@ -117,8 +133,8 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
 
 /// The circle that the outstretched chain reaches; of a mechanism, the places that it visits.
 View fitted_view(const Scene& scene, const std::optional<MotionBounds>& seen) {
-    if (scene.a.motion.model != Model::mechanism && scene.b.motion.model != Model::mechanism) {
-        const double across = 2 * std::max(scene.a.reach, scene.b.reach);
+    if (has_circle(scene)) {
+        const double across = 2 * std::max(chain_length(scene.preset.a), chain_length(scene.preset.b));
         return {.width = across, .height = across};
     }
     double left = seen->left, right = seen->right, bottom = seen->bottom, top = seen->top;
@@ -137,19 +153,20 @@ View fitted_view(const Scene& scene, const std::optional<MotionBounds>& seen) {
     return std::isfinite(view.width + view.height) ? view : View{.width = 2, .height = 2, .is_circle = false};
 }
 
-Range fitted_range(StripKind kind, const Scene& scene, const std::optional<MotionBounds>& seen) {
+Range fitted_range(StripKind kind, const std::optional<MotionBounds>& seen) {
     switch (kind) {
         case StripKind::distance:
-            return fitted_distance(scene, seen);
+            return fitted_distance(seen);
         case StripKind::exponent:
             return padded(seen ? seen->exponent : Range{});
         case StripKind::rod_force:
             return padded(seen ? seen->rod_force : Range{});
         case StripKind::energy:
+            return fitted_error(seen ? seen->energy_error : Spread{});
         case StripKind::rod_error:
             break;
     }
-    return fitted_error(scene);
+    return fitted_error(seen ? seen->rod_error : Spread{});
 }
 
 }  // namespace doppel

@@ -2,21 +2,35 @@
 
 #include "scene/scene.hpp"
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace doppel {
 
+/// How positive numbers spread over powers of ten.
+struct Spread {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    double log_sum = 0;  // of natural logarithms
+    long count = 0;
+
+    /// Leaves out what is 0, or not finite.
+    void add(double value);
+    double geometric_mean() const { return std::exp(log_sum / static_cast<double>(count)); }
+};
+
 /// How far a pair gets, from a run without pictures: what a picture needs to know that no formula gives.
 struct MotionBounds {
     double left, right, bottom, top;  // m, of all bobs of both sides at all samples
-    double largest_distance = 0;      // state space
+    Spread distance;                  // state space; of twins that start alike, after a fiftieth of the scene
+    Spread energy_error, rod_error;   // of both sides; of the potential range; m
     double fastest = 0;               // rad/s, of the link that a phase panel shows
     Range exponent{0, 0};             // 1/s, so far
     Range rod_force{0, 0};            // N, where it was asked for
 };
 
-/// Of the whole motion, whichever frames are drawn: they are the same pixels alone as in the film. Nothing where
-/// formulas do. Ends without an error where a side breaks down; throws Error (exit 130) soon after `stop` is set.
+/// Of the whole motion, whichever frames are drawn: they are the same pixels alone as in the film. Nothing where the
+/// picture needs none of it. Ends without an error where a side breaks down; throws Error (exit 130) soon after `stop` is set.
 std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<bool>& stop);
 
 /// ln(d/d0) / t, 1/s: nothing in the first twentieth of the scene, when it says nothing yet, or where a distance is 0.
@@ -33,6 +47,6 @@ struct View {
 View fitted_view(const Scene& scene, const std::optional<MotionBounds>& seen);
 
 /// The axis of a strip where the preset names none.
-Range fitted_range(StripKind kind, const Scene& scene, const std::optional<MotionBounds>& seen);
+Range fitted_range(StripKind kind, const std::optional<MotionBounds>& seen);
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "film/cards.hpp"
 #include "film/layer.hpp"
 
 #include <vector>
@@ -11,7 +12,7 @@ namespace doppel {
 class Composer {
 public:
     /// Throws as make_layout() does.
-    explicit Composer(const Scene& scene, const std::atomic<bool>& stop = false);
+    explicit Composer(const Scene& scene, const std::atomic<bool>& stop = false, Dress dress = Dress::film);
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 
@@ -26,13 +27,14 @@ public:
 
     Color page_color() const { return state_.layout.style.theme.background; }
 
-    /// A card over the whole picture, `opacity` 0…1: what the film is about, and what came of it so far.
-    DisplayList title_card(double opacity) const;
-    DisplayList end_card(double opacity) const;
+    /// A card over the whole picture, `opacity` 0…1.
+    DisplayList title_card(double opacity) const { return cards_.title(opacity); }
+    DisplayList end_card(double opacity) const { return cards_.end(opacity); }
 
 private:
     FilmState state_;
     std::vector<std::unique_ptr<Layer>> layers_;  // back to front
+    Cards cards_;
 };
 
 }  // namespace doppel

@@ -149,8 +149,10 @@ Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, Ru
     canvas_.emplace(scene, composer_, options.gl, stop);
     record.gl = canvas_->description();
     if (video.contact_sheet)
-        sheet_ticks_ = spread(scene.frames, options.first, options.last,
-                              long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]);
+        sheet_.emplace(scene,
+                       spread(scene.frames, options.first, options.last,
+                              long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]),
+                       options.gl, stop);
 }
 
 const Picture& Film::take(const DisplayList& list, RunRecord& record) {
@@ -178,14 +180,7 @@ void Film::take_card(long frames, bool fades_in, RunRecord& record) {
 
 /// What is wanted of a frame besides the film.
 void Film::keep(const Picture& picture) {
-    const auto& video = scene_.preset.video;
     if (poster_tick(scene_) == tick_) poster_ = picture;
-    const auto times = std::count(sheet_ticks_.begin(), sheet_ticks_.end(), tick_);
-    if (times == 0) return;
-    constexpr int sheet_width = 1920;  // px, about
-    const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
-    const int height = std::max(1, static_cast<int>(std::lround(double(width) * video.size.height / video.size.width)));
-    sheet_.insert(sheet_.end(), static_cast<std::size_t>(times), downscaled(picture, {width, height}));
 }
 
 void Film::write_frame(RunRecord& record) {
@@ -213,8 +208,7 @@ void Film::finish() {
         parts_.finished(name);
     };
     if (poster_) write(".poster.png", *poster_);
-    if (!sheet_.empty())
-        write(".contact.png", contact_sheet(sheet_, (*preset.video.contact_sheet)[0], 8, composer_.page_color()));
+    if (sheet_) write(".contact.png", sheet_->picture());
 }
 
 Simulation::Simulation(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "film/composer.hpp"
+#include "film/contact_sheet.hpp"
 #include "film/manifest.hpp"
 #include "film/run.hpp"
 #include "integrate/motion_batch.hpp"
@@ -68,6 +69,7 @@ public:
     void add(const Snapshot& snapshot) {
         tick_ = snapshot.pair.tick;
         composer_.add(snapshot);
+        if (sheet_) sheet_->add(snapshot);
     }
 
     /// The snapshot added last becomes a frame; before the first of all comes the title, after the last the end.
@@ -92,8 +94,7 @@ private:
     std::unique_ptr<Sink> sink_;
     std::optional<Canvas> canvas_;
     std::optional<Picture> poster_;
-    std::vector<long> sheet_ticks_;
-    std::vector<Picture> sheet_;
+    std::optional<ContactSheet> sheet_;
 };
 
 /// The tick that the poster shows, where there is one: that of the frame at its time, or of the nearest where the speed

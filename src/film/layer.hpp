@@ -1,6 +1,7 @@
 #pragma once
 
 #include "film/layout.hpp"
+#include "film/parting.hpp"
 
 #include <memory>
 #include <optional>
@@ -19,12 +20,11 @@ struct FilmState {
     const Layout layout;
     Snapshot snapshot{};  // added last
     double start_distance = 0, largest_distance = 0;
-    std::optional<double> parted{};  // s
+    Parting parting{};
 
     double time() const { return scene.time_of_tick(snapshot.pair.tick); }
     const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
     const Observation& seen(std::size_t side) const { return side == 0 ? snapshot.pair.a : snapshot.pair.b; }
-    bool start_as_one() const;  // else there is no parting to speak of
 };
 
 /// A part of a film's picture. What it draws depends on the scene and on the snapshots so far, and on nothing else.

@@ -1,15 +1,21 @@
 #include "film/layout.hpp"
 
 #include "film/bounds.hpp"
+#include "film/headings.hpp"
+#include "film/rooms.hpp"
 #include "image/color.hpp"
 #include "numeric/state.hpp"
 #include "render/font.hpp"
 #include "scene/captions.hpp"
+#include "scene/frame_times.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -27,176 +33,129 @@ bool is_dark(const Theme& theme) {
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
 }
 
-/// The places that a mechanism visits as large as the panel allows, below the captions.
-void place_mechanism(PendulumPanel& panel, float captions_bottom, const View& view, float margin) {
-    const Area& area = panel.area;
-    const float width = area.width() - 2 * margin, height = area.bottom - captions_bottom - 2 * margin;
-    panel.center = {(area.left + area.right) / 2, (captions_bottom + area.bottom) / 2};
-    panel.px_per_m = std::min(width / static_cast<float>(view.width), height / static_cast<float>(view.height));
+/// A sample of what stands beside a strip's words: as wide as it gets.
+std::string widest_value(StripKind kind, const Scene& scene) {
+    if (kind == StripKind::distance) return "8.8 × 10⁻⁸⁸";
+    if (kind == StripKind::exponent) return "none: both start alike";
+    if (kind == StripKind::rod_force) return scene.a.mass.size() == 1 ? "a1 b1" : "a32 a32 a32 b32 b32 b32";
+    return "";
 }
 
-/// The circle of the outstretched chain as large as the panel allows, beside or below the captions in its top corners.
-void place_pendulum(PendulumPanel& panel, const std::vector<Area>& captions, const View& view, float margin) {
-    const Area& area = panel.area;
-    float radius = std::min(area.width(), area.height()) / 2 - margin;
-    float x = (area.left + area.right) / 2;
-    float y = (area.top + area.bottom) / 2;
-    const auto clear = [&] {
-        return std::all_of(captions.begin(), captions.end(), [&](const Area& caption) {
-            const float dx = std::max({0.0f, x - caption.right, caption.left - x}),
-                        dy = std::max(0.0f, y - caption.bottom);
-            return dx * dx + dy * dy >= radius * radius;
-        });
-    };
-    if (captions.size() == 1)
-        while (!clear() && x + radius + margin < area.right) x += 1;
-    const float least = radius / 2;
-    while (!clear() && radius > least) {
-        radius -= 1;
-        y = area.bottom - margin - radius;
-    }
-    panel.center = {x, y};
-    panel.px_per_m = 2 * radius / static_cast<float>(view.width);
+/// In how many lines a strip's words go above it: its name and its value; in the first strip, when they parted.
+int caption_lines(const Layout& layout, const Scene& scene, StripKind kind, bool is_first, float width) {
+    const float size = px(layout.style.font.strip), gap = 18 * layout.text;
+    const auto words = strip_words(kind, scene);
+    const float how = words.how.empty() ? 0 : text_width(", " + words.how, size);
+    const float value = text_width(widest_value(kind, scene), size) + gap;
+    const float parted = is_first ? text_width("parted at 00.0 s", size) + gap : 0;
+    if (text_width(words.what, size) + how + value + parted <= width) return 1;
+    return value + how + parted <= width ? 2 : 3;
 }
 
-bool is_tall(const VideoSpec& video) {
-    return video.size.height > video.size.width;
-}
-
-/// How much of the height below the header a strip takes beside pendulums.
-float share_of(StripKind kind) {
-    switch (kind) {
-        case StripKind::distance:
-            return 0.24f;
-        case StripKind::exponent:
-        case StripKind::rod_force:
-            return 0.16f;
-        case StripKind::energy:
-        case StripKind::rod_error:
-            break;
-    }
-    return 0.11f;
-}
-
-/// From the bottom up: labels of the time axis, then the strips, each with a heading above it. Returns where the
-/// room for panels ends.
-float place_strips(Layout& layout, const Scene& scene, float header, const std::optional<MotionBounds>& seen) {
-    const auto& video = scene.preset.video;
-    float bottom = layout.page.bottom;
-    if (video.strips.empty()) return bottom;
+/// From the bottom up: labels of the time axis, then the strips, each with its words above it.
+void place_strips(Layout& layout, const Scene& scene, const Area& room, const std::optional<MotionBounds>& seen) {
+    const auto& strips = scene.preset.video.strips;
+    if (strips.empty()) return;
     const float t = layout.text;
-    layout.time_labels = bottom - 4 * t;
-    bottom -= 38 * t;
-    const float caption = std::round(19 * t + px(layout.style.font.strip));
-    const float room = bottom - header, captions = caption * static_cast<float>(video.strips.size());
-    float shares = 0;
-    for (const auto kind : video.strips) shares += share_of(kind);
-    // beside pendulums about half of it; more where there are many
-    const float most = 0.42f + 0.06f * static_cast<float>(video.strips.size());
-    const float unit = video.pendulums ? std::min(room, (most * room - captions) / shares) : (room - captions) / shares;
-    for (auto kind = video.strips.rbegin(); kind != video.strips.rend(); ++kind) {
-        const float top = bottom - std::max(share_of(*kind) * unit, 8 * t);
-        const Area area{layout.page.left + std::round(84 * t), std::round(top), layout.page.right, std::round(bottom)};
-        const auto& asked = video.ranges[static_cast<std::size_t>(*kind)];
-        const auto range = asked ? *asked : fitted_range(*kind, scene, seen);
-        layout.strips.push_back({*kind,
+    layout.time_labels = room.bottom - 4 * t;
+    const auto words_height = [&](int count) { return (caption_line * static_cast<float>(count) + caption_edge) * t; };
+    float captions = 0, shares = 0;
+    std::vector<int> lines;
+    for (const auto kind : strips) {
+        lines.push_back(caption_lines(layout, scene, kind, lines.empty(), room.width()));
+        captions += words_height(lines.back());
+        shares += share_of(kind);
+    }
+    // where many strips share a little room, curves come before words
+    const float least = 26 * t * static_cast<float>(strips.size());
+    for (auto most = std::ranges::max_element(lines);
+         *most > 1 && room.height() - time_labels_height * t - captions < least;
+         most = std::ranges::max_element(lines)) {
+        captions -= words_height(*most) - words_height(*most - 1);
+        --*most;
+    }
+    float bottom = room.bottom - time_labels_height * t;
+    const float unit = (bottom - room.top - captions) / shares;
+    const float labels = std::round((room.width() < 0.5f * layout.page.width() ? 72 : 84) * t);
+    for (std::size_t i = strips.size(); i-- > 0;) {
+        const auto kind = strips[i];
+        const float top = bottom - std::max(share_of(kind) * unit, 8 * t);
+        const Area area{room.left + labels, std::round(top), room.right, std::round(bottom)};
+        const auto& asked = scene.preset.video.ranges[static_cast<std::size_t>(kind)];
+        const auto range = asked ? *asked : fitted_range(kind, seen);
+        const float words = words_height(lines[i]);
+        // in a narrow column words have all its width
+        const bool narrow = lines[i] > 1 || room.width() < 0.3f * layout.page.width();
+        const float left = narrow ? room.left : area.left;
+        layout.strips.push_back({kind,
                                  area,
                                  {.low = 0, .high = scene.time(scene.samples), .from = area.left, .to = area.right},
                                  {.low = range.low,
                                   .high = range.high,
                                   .from = area.bottom,
                                   .to = area.top,
-                                  .logarithmic = is_logarithmic(*kind)}});
-        bottom = top - caption;
+                                  .logarithmic = is_logarithmic(kind)},
+                                 {left, area.top - words, area.right, area.top},
+                                 lines[i]});
+        bottom = top - words;
     }
     std::reverse(layout.strips.begin(), layout.strips.end());
-    return bottom - 4 * layout.unit;
 }
 
-/// `count` panels side by side, or one above the other.
-std::vector<Area> panel_areas(const Area& room, std::size_t count, bool stacked, float gap) {
-    const auto n = static_cast<float>(count);
-    const float width = stacked ? room.width() : std::floor((room.width() - (n - 1) * gap) / n);
-    const float height = stacked ? std::floor((room.height() - (n - 1) * gap) / n) : room.height();
-    std::vector<Area> areas;
-    for (std::size_t k = 0; k < count; ++k) {
-        const auto i = static_cast<float>(k);
-        const float left = room.left + (stacked ? 0 : i * (width + gap)),
-                    top = room.top + (stacked ? i * (height + gap) : 0);
-        areas.push_back({left, top, left + width, top + height});
-    }
-    return areas;
+std::size_t panel_count(const VideoSpec& video) {
+    if (!video.pendulums) return 0;
+    return video.layout == Arrangement::overlay || video.layout == Arrangement::ensemble ? 1 : 2;
 }
 
-/// The panels' areas, and which sides each shows with which captions.
-void place_panels(Layout& layout, const Scene& scene, const Area& room) {
-    const auto& video = scene.preset.video;
-    const bool apart = video.layout == Arrangement::side_by_side || video.layout == Arrangement::portrait;
-    const bool has_phase = video.layout == Arrangement::phase;
-    const auto areas = panel_areas(room, apart || has_phase ? 2 : 1, is_tall(video), std::round(24 * layout.unit));
-    auto said = side_captions(scene);
-    if (!video.shows("labels")) said = {};
-    using Caption = PendulumPanel::Caption;
-    if (apart) {
-        for (std::size_t side = 0; side < 2; ++side)
-            layout.panels.push_back({.area = areas[side],
-                                     .sides = {side},
-                                     .captions = {Caption{side, said[side].heading, said[side].note}}});
+/// Which sides each panel shows, and the axes of phase space.
+void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& areas,
+                  const std::optional<MotionBounds>& seen) {
+    const auto kind = scene.preset.video.layout;
+    if (kind == Arrangement::side_by_side || kind == Arrangement::portrait) {
+        for (std::size_t side = 0; side < 2; ++side) layout.panels.push_back({.area = areas[side], .sides = {side}});
         return;
     }
-    layout.panels.push_back({.area = areas[0],
-                             .sides = {0, 1},
-                             .captions = {Caption{0, said[0].heading, said[0].note},
-                                          Caption{1, said[1].heading, said[1].note, Align::right}}});
-    if (!has_phase) return;
+    layout.panels.push_back({.area = areas[0], .sides = {0, 1}});
+    if (kind != Arrangement::phase) return;
     const float t = layout.text;
     const Area& area = areas[1];
-    const Area axes{area.left + std::round(96 * t), area.top + std::round(66 * t), area.right - std::round(34 * t),
+    const Area axes{area.left + std::round(96 * t), area.top + std::round(26 * t), area.right - std::round(40 * t),
                     area.bottom - std::round(54 * t)};
-    layout.phase = {
-        axes, {.low = -180, .high = 180, .from = axes.left, .to = axes.right}, {.from = axes.bottom, .to = axes.top}};
+    const double fastest = 1.08 * std::max(seen->fastest, 1e-6) * 180 / pi;
+    layout.phase = {area,
+                    axes,
+                    {.low = -180, .high = 180, .from = axes.left, .to = axes.right},
+                    {.low = -fastest, .high = fastest, .from = axes.bottom, .to = axes.top}};
 }
 
-/// The areas of the captions in a panel's corners.
-std::vector<Area> caption_areas(const PendulumPanel& panel, const Layout& layout, float widest) {
-    std::vector<Area> areas;
-    for (const auto& caption : panel.captions) {
-        if (caption.heading.empty() && caption.note.empty()) continue;
-        const float bottom = panel.area.top + (caption.note.empty() ? 60 : 92) * layout.text;
-        const float width = 36 * layout.unit + widest;
-        if (caption.align == Align::right)
-            areas.push_back({panel.area.right - width, panel.area.top, panel.area.right, bottom});
-        else
-            areas.push_back({panel.area.left, panel.area.top, panel.area.left + width, bottom});
-    }
-    return areas;
+/// How large each of many pendulums in one panel is drawn, to one alone.
+float member_scale(std::size_t members) {
+    return members <= most_full_members
+               ? 1
+               : std::sqrt(static_cast<float>(most_full_members) / static_cast<float>(members));
 }
 
-/// All alike, so that the pendulums are drawn to one scale.
+/// In the middle of their panels, as large as these allow, all to one scale: of a chain the circle that it reaches, of
+/// a mechanism the places that it visits.
 void place_pendulums(Layout& layout, const Scene& scene, const std::optional<MotionBounds>& seen) {
-    const float u = layout.unit;
     const auto& style = layout.style;
     const auto view = fitted_view(scene, seen);
-    float widest = 0;
-    for (const auto& panel : layout.panels)
-        for (const auto& caption : panel.captions)
-            widest = std::max({widest, text_width(caption.heading, px(style.font.heading), Weight::bold),
-                               text_width(caption.note, px(style.font.note))});
+    const auto across = static_cast<float>(view.width), up = static_cast<float>(view.height);
     for (auto& panel : layout.panels) {
-        const auto captions = caption_areas(panel, layout, widest);
+        const Area& area = panel.area;
+        panel.center = {(area.left + area.right) / 2, (area.top + area.bottom) / 2};
         panel.center_x = view.x;
         panel.center_y = view.y;
-        if (view.is_circle)
-            place_pendulum(panel, captions, view, 30 * u);
-        else
-            place_mechanism(panel, captions.empty() ? panel.area.top : captions.front().bottom, view, 40 * u);
+        const float edges = 80 * layout.unit;
+        panel.px_per_m = view.is_circle ? std::min(area.width(), area.height()) / around_circle / across
+                                        : std::min((area.width() - edges) / across, (area.height() - edges) / up);
     }
-    const float px_per_m = layout.panels.front().px_per_m;
-    const float radius = px_per_m * static_cast<float>(std::max(view.width, view.height)) / 2;
+    const float radius = layout.panels.front().px_per_m * std::max(across, up) / 2;
     layout.reach = view.is_circle ? radius : 0;
-    // the bobs of a long chain do not hide its rods; nor do those of an ensemble each other
+    // the bobs of a long chain do not hide its rods
     const float link = view.is_circle ? radius / static_cast<float>(scene.a.mass.size()) : radius;
-    const float size = !view.is_circle || !scene.members.empty() ? 0.6f : 1;  // a mechanism has more to show
+    // a mechanism has more to show; many members share the room of a few
+    const float size = view.is_circle ? member_scale(scene.members.size()) : 0.6f;
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), 0.8f);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
@@ -204,24 +163,69 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
     if (style.width.bob > 0) layout.bob_radius = px(style.width.bob);
 }
 
+/// px of a tile's panels to one of a film's.
+float tile_unit(const VideoSpec& video, float width) {
+    const auto panels = static_cast<float>(panel_count(video));
+    return width / panels / 888;
+}
+
+/// px of its words to those of a film.
+float tile_text(float unit) {
+    return std::max(2 * unit, 0.5f);
+}
+
+constexpr float tile_clock = 44;  // height of the time above a tile's panels, px of its text
+
+Layout make_tile(const Scene& scene, const std::optional<MotionBounds>& seen) {
+    const auto& video = scene.preset.video;
+    const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
+    Layout layout;
+    layout.unit = tile_unit(video, width);
+    layout.text = tile_text(layout.unit);
+    layout.style = make_style(video, layout.unit, layout.text);
+    layout.page = {0, 0, width, height};
+    layout.clock =
+        label("", {4 * layout.text, 33 * layout.text}, 0.8f * px(layout.style.font.clock), layout.style.theme.text);
+    const auto rooms = shared_out({0, std::round(tile_clock * layout.text), width, height},
+                                  {.panels = panel_count(video), .gap = std::round(24 * layout.unit), .strips = {}});
+    place_panels(layout, scene, rooms.panels, seen);
+    place_pendulums(layout, scene, seen);
+    return layout;
+}
+
 }  // namespace
+
+Size tile_size(const Scene& scene, int width) {
+    const auto& video = scene.preset.video;
+    const float unit = tile_unit(video, static_cast<float>(width)), text = tile_text(unit);
+    const auto across = static_cast<float>(width);
+    const float panel = (across - (panel_count(video) > 1 ? 24 * unit : 0)) / static_cast<float>(panel_count(video));
+    return {width, static_cast<int>(std::ceil(panel + tile_clock * text))};
+}
 
 Style make_style(const VideoSpec& video, float unit, float text) {
     Style style{themed(video), video.widths, video.fonts, 0};
     for (const auto& width : width_names) style.width.*width.member *= unit;
     for (const auto& size : font_size_names) style.font.*size.member *= text;
     // small pictures keep lines that can be seen
-    style.width.trail = std::max(style.width.trail, video.widths.trail > 0 ? 1.2 : 0);
+    style.width.trail = std::max(style.width.trail, video.widths.trail > 0 ? 1.6 : 0);
     style.width.trace = std::max(style.width.trace, video.widths.trace > 0 ? 1.2 : 0);
     style.width.grid = std::max(style.width.grid, video.widths.grid > 0 ? 1.0 : 0);
     style.width.mark = std::max(style.width.mark, video.widths.mark > 0 ? 1.0 : 0);
     style.glow = unit * static_cast<float>(video.glow_px.value_or(style.theme.glow));
+    if (video.layout == Arrangement::ensemble) style.glow = 0;
     return style;
 }
 
 Color member_color(const Style& style, double share) {
     // the end of the scale that would drown in the background is left out
     return is_dark(style.theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
+}
+
+Color member_color(const Style& style, const Scene& scene, std::size_t k) {
+    if (!scene.preset.video.members.angles_deg.empty()) return style.theme.palette[k % style.theme.palette.size()];
+    const auto last = static_cast<double>(std::max<std::size_t>(scene.members.size(), 2) - 1);
+    return member_color(style, static_cast<double>(k) / last);
 }
 
 Point PendulumPanel::at(double x_m, double y_m) const {
@@ -240,29 +244,78 @@ std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool a
     return ticks;
 }
 
-Layout make_layout(const Scene& scene, const std::atomic<bool>& stop) {
+StripWords strip_words(StripKind kind, const Scene& scene) {
+    const bool plain = wording_of(scene) == Wording::plain;
+    switch (kind) {
+        case StripKind::distance:
+            return {plain ? "how far apart they are" : "state-space distance",
+                    scene.members.empty() ? "" : "first to last"};
+        case StripKind::exponent:
+            return {"Lyapunov exponent", "so far, 1/s"};
+        case StripKind::energy:
+            return {"energy error", "of the potential range"};
+        case StripKind::rod_error:
+            return {"worst rod error, m", ""};
+        case StripKind::rod_force:
+            break;
+    }
+    return {"force in the rods, N", ""};
+}
+
+std::string clock_text(const Scene& scene, double time) {
+    const auto& speed = scene.preset.video.speed;
+    double slowest = speed.constant.value();
+    if (speed.changes_over_time()) slowest = speed.changes.front().speed.value();
+    for (const auto& change : speed.changes) slowest = std::min(slowest, change.speed.value());
+    const double frame = 1 / (scene.fps.value() / slowest);
+    return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
+}
+
+std::string speed_text(const Scene& scene, double time) {
+    const bool changes = scene.preset.video.speed.changes_over_time();
+    const auto speed = changes ? speed_at(scene.preset.video, time) : scene.preset.video.speed.constant;
+    if (speed == Rational{1, 1}) return "real time";
+    constexpr std::array<std::pair<Rational, std::string_view>, 8> fractions{{{{1, 2}, "½"},
+                                                                              {{1, 3}, "⅓"},
+                                                                              {{2, 3}, "⅔"},
+                                                                              {{1, 4}, "¼"},
+                                                                              {{3, 4}, "¾"},
+                                                                              {{1, 5}, "⅕"},
+                                                                              {{1, 6}, "⅙"},
+                                                                              {{1, 8}, "⅛"}}};
+    for (const auto& [fraction, sign] : fractions)
+        if (changes && speed == fraction) return fmt::format("{} speed", sign);
+    return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
+}
+
+Layout make_layout(const Scene& scene, const std::atomic<bool>& stop, Dress dress) {
+    if (dress == Dress::tile) return make_tile(scene, motion_bounds(scene, stop));
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
+    const bool tall = is_tall(video), is_portrait = video.layout == Arrangement::portrait;
     Layout layout;
-    layout.unit = is_tall(video) ? std::min(width / 1080, height / 1920) : std::min(width / 1920, height / 1080);
-    layout.text = std::max(layout.unit, 0.45f);
+    layout.unit = tall ? std::min(width / 1080, height / 1920) : std::min(width / 1920, height / 1080);
+    // upright pictures are seen on telephones: larger words, and none where an app has its buttons
+    layout.text = tall ? 1.6f * layout.unit : std::max(layout.unit, 0.45f);
     layout.style = make_style(video, layout.unit, layout.text);
-    const float u = layout.unit, t = layout.text;
-    layout.page = {std::round(60 * u), std::round(28 * u), width - std::round(60 * u), height - std::round(26 * u)};
+    const float u = layout.unit;
+    const float top = is_portrait ? 0.06f * height : 28 * u, bottom = is_portrait ? 0.14f * height : 26 * u;
+    layout.page = {std::round(60 * u), std::round(top), width - std::round(60 * u), height - std::round(bottom)};
     if (video.shows("title")) layout.title = scene.preset.title;
-    if (video.shows("subtitle")) layout.subtitle = scene_caption(scene);
+    if (video.shows("subtitle")) layout.subtitle = scene_caption(scene, tall ? Wording::plain : Wording::exact);
     const auto seen = motion_bounds(scene, stop);
 
-    const bool has_header = !layout.title.empty() || !layout.subtitle.empty() || video.shows("clock");
-    const float header = layout.page.top + (has_header ? 96 * t : 0);
-    const float bottom = place_strips(layout, scene, header, seen);
+    const float header = std::round(place_header(layout, scene));
+    const auto rooms = place_headings(layout, scene, {layout.page.left, header, layout.page.right, layout.page.bottom},
+                                      {.panels = panel_count(video),
+                                       .tall = tall,
+                                       .gap = std::round(24 * u),
+                                       .text = layout.text,
+                                       .height = height,
+                                       .strips = video.strips});
+    place_strips(layout, scene, rooms.strips, seen);
     if (!video.pendulums) return layout;
-    place_panels(layout, scene, {layout.page.left, std::round(header), layout.page.right, std::round(bottom)});
-    if (layout.phase) {
-        const double fastest = 1.08 * std::max(seen->fastest, 1e-6) * 180 / pi;
-        layout.phase->rate.low = -fastest;
-        layout.phase->rate.high = fastest;
-    }
+    place_panels(layout, scene, rooms.panels, seen);
     place_pendulums(layout, scene, seen);
     return layout;
 }

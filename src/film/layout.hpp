@@ -29,21 +29,19 @@ struct Style {
 /// `unit` = px of the picture to one of 1920×1080; `text` = the same for text.
 Style make_style(const VideoSpec& video, float unit, float text);
 
+/// Members of an ensemble that are drawn as large as a pair.
+inline constexpr std::size_t most_full_members = 8;
+
 /// The colour of an ensemble's member: from the first, 0, to the last, 1.
 Color member_color(const Style& style, double share);
+/// The colour of member `k` of a scene's: of a list a hue of its own, else by the scale.
+Color member_color(const Style& style, const Scene& scene, std::size_t k);
 
 /// A panel of pendulums and how metres become pixels in it.
 struct PendulumPanel {
-    /// What is said of a side, at the panel's top.
-    struct Caption {
-        std::size_t side = 0;
-        std::string heading, note;  // what differs; what else defines the side
-        Align align = Align::left;
-    };
     Area area;
-    std::vector<std::size_t> sides;  // whose pendulum it shows, the front one first
-    std::vector<Caption> captions;
-    Point center;                       // px, where (center_x, center_y) is
+    std::vector<std::size_t> sides{};   // whose pendulum it shows, the front one first
+    Point center{};                     // px, the area's, where (center_x, center_y) is
     double center_x = 0, center_y = 0;  // m: the pivot of a chain
     float px_per_m = 1;
     Point at(double x_m, double y_m) const;  // within a million px of the centre, wherever a blow-up throws a bob
@@ -51,38 +49,64 @@ struct PendulumPanel {
 
 /// A panel of phase space: angles across, rates up.
 struct PhasePanel {
-    Area area;  // of the axes
+    Area panel, area;  // the panel; the axes in it
     Axis angle, rate;
 };
 
-/// A strip of the chart below: time across, a quantity up.
+/// A strip of the chart: time across, a quantity up.
 struct StripLayout {
     StripKind kind;
     Area area;
     Axis time, value;
+    Area caption;   // the words above it
+    int lines = 1;  // of the caption
 };
+
+/// What the words above a strip say: what it shows, and of what or how.
+struct StripWords {
+    std::string what, how;
+};
+StripWords strip_words(StripKind kind, const Scene& scene);
+
+/// Upright: for a telephone.
+inline bool is_tall(const VideoSpec& video) {
+    return video.size.height > video.size.width;
+}
 
 /// Ticks `spacing` px apart or more, labels of `size` px an em; whole numbers and the fewest decimals.
 std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
 
+/// The time as the clock shows it, with as many decimals as tell one frame from the next.
+std::string clock_text(const Scene& scene, double time);
+/// What the film says of its speed: "slow motion ×0.25"; where it changes, "¼ speed".
+std::string speed_text(const Scene& scene, double time);
+
 /// Where everything of a film's picture goes: a function of the scene alone.
 struct Layout {
     float unit = 1;  // 1 px of a 1920×1080 picture
-    float text = 1;  // the same for text, which stays legible in small pictures
+    float text = 1;  // the same for text, which stays legible in small pictures and on telephones
     Style style;
     Area page;  // within the margins
     std::string title, subtitle;
+    DisplayList words;  // that never change: the title, what is said beside it, the headings above panels
+    std::optional<Label> clock, speed;  // without their texts; the speed where it changes
     std::vector<PendulumPanel> panels;
     std::optional<PhasePanel> phase;
     std::vector<StripLayout> strips;  // from the top down
-    float reach = 0;            // px, the radius of the circle that an outstretched chain reaches; 0 = none to show
-    float bob_radius = 0;       // px, of the heaviest
-    float last_bob_radius = 0;  // px, at least, of the one that leaves the trail; of long chains
-    float rod_radius = 0;       // half its width, px
-    float time_labels = 0;      // their baseline, px
+    float reach = 0;                  // px, the radius of the circle that an outstretched chain reaches; 0 = none
+    float bob_radius = 0;             // px, of the heaviest
+    float last_bob_radius = 0;        // px, at least, of the one that leaves the trail; of long chains
+    float rod_radius = 0;             // half its width, px
+    float time_labels = 0;            // their baseline, px
 };
 
-/// May run the scene beforehand (film/bounds.hpp); throws Error (exit 130) soon after `stop` is set.
-Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false);
+/// A film's picture, or a tile of a contact sheet: pendulums and time alone.
+enum class Dress { film, tile };
+
+/// May run the scene beforehand (film/bounds.hpp); throws Error (exit 130) soon after `stop` is set. A tile has no strips.
+Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false, Dress dress = Dress::film);
+
+/// The size of a tile of that width, px.
+Size tile_size(const Scene& scene, int width);
 
 }  // namespace doppel

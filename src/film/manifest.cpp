@@ -53,6 +53,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"a", side_json(scene, scene.a, record.a)},
         {"b", side_json(scene, scene.b, record.b)},
         {"largest_distance", record.largest_distance},
+        {"parted_s", record.parting.since() ? Json(*record.parting.since()) : Json(nullptr)},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",
          {{"wall_s", record.wall_s},

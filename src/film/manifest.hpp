@@ -1,5 +1,6 @@
 #pragma once
 
+#include "film/parting.hpp"
 #include "scene/manifest_json.hpp"
 #include "scene/scene.hpp"
 
@@ -25,6 +26,7 @@ struct RunRecord {
     double wall_s = 0, cpu_s = 0;
     SideRecord a, b;
     double largest_distance = 0;
+    Parting parting;
     std::string failure;  // what ended the run, where something did
 };
 

@@ -1,6 +1,5 @@
 #include "film/layer.hpp"
 #include "film/trail.hpp"
-#include "render/font.hpp"
 #include "render/stroke.hpp"
 
 #include <algorithm>
@@ -33,8 +32,15 @@ public:
 
     void backdrop(DisplayList& list) const override;
     void add() override {
-        if (state_.scene.preset.video.trail_s > 0)
-            for (const auto side : panel_.sides) extend(paths_[side], state_.seen(side).bobs.back());
+        if (!(state_.scene.preset.video.trail_s > 0)) return;
+        const auto& members = state_.snapshot.members;
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            if (k == member_paths_.size())
+                member_paths_.push_back({{state_.scene, style_, member_hue(k, 0.5f), member_trail_width()}});
+            extend(member_paths_[k], members[k].back());
+        }
+        if (!members.empty()) return;
+        for (const auto side : panel_.sides) extend(paths_[side], state_.seen(side).bobs.back());
     }
     void frame(DisplayList& list) const override;
 
@@ -49,6 +55,9 @@ private:
     bool swing_as_one() const;
     void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
     void draw_members(DisplayList& list) const;
+    void draw_member_bobs(std::size_t k, DisplayList& list) const;
+    Color member_hue(std::size_t k, float opacity) const;
+    float member_trail_width() const;
     void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
     void draw_tracks(std::size_t side, DisplayList& list) const;
     void draw_pivots(std::size_t side, DisplayList& list) const;
@@ -60,29 +69,17 @@ private:
     const PendulumPanel& panel_;
     double heaviest_;  // kg
     std::array<Path, 2> paths_;
+    std::vector<Path> member_paths_;  // of an ensemble
 };
 
 void PendulumLayer::backdrop(DisplayList& list) const {
-    const float t = layout_.text, u = layout_.unit;
+    const float u = layout_.unit;
     const auto& area = panel_.area;
     if (!state_.scene.preset.video.transparent)
         list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
-    if (layout_.reach > 0) list.push_back(Ring{panel_.center, layout_.reach, px(style_.width.grid), theme_.grid});
+    const float reach = layout_.reach * panel_.px_per_m / layout_.panels.front().px_per_m;
+    if (reach > 0) list.push_back(Ring{panel_.center, reach, px(style_.width.grid), theme_.grid});
     for (const auto side : panel_.sides) draw_tracks(side, list);
-
-    const float share = panel_.captions.size() > 1 ? 0.48f : 1;  // of the width: captions in both corners
-    const float width = share * (area.width() - 56 * u);
-    for (const auto& caption : panel_.captions) {
-        const float x = caption.align == Align::right ? area.right - 28 * u : area.left + 28 * u;
-        const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color) {
-            const float size = fitting_size(text, px(wanted), weight, width);
-            list.push_back(label(text, {x, area.top + y}, size, color, caption.align, weight));
-        };
-        const auto color = state_.scene.members.empty() ? theme_.sides[caption.side]
-                                                        : member_color(style_, static_cast<double>(caption.side));
-        add(caption.heading, 50 * t, style_.font.heading, Weight::bold, color);
-        add(caption.note, 82 * t, style_.font.note, Weight::regular, theme_.quiet_text);
-    }
 }
 
 /// Adds the way from the last bob to this one: a cubic through both with their velocities, in pieces of a few pixels.
@@ -150,21 +147,45 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
     }
 }
 
-/// The members of an ensemble, the last one behind: fine rods that let each other shine through, and the last bobs.
+/// A member's colour; the more members there are, the more they let through, a few nothing.
+Color PendulumLayer::member_hue(std::size_t k, float opacity) const {
+    const auto count = state_.scene.members.size();
+    const auto color = member_color(style_, state_.scene, k);
+    if (count <= most_full_members) return color;
+    return color.with_alpha(std::clamp(opacity * 14 / std::sqrt(static_cast<float>(count)), 0.16f, 0.9f));
+}
+
+float PendulumLayer::member_trail_width() const {
+    const auto count = static_cast<float>(state_.scene.members.size());
+    return px(style_.width.trail) * std::clamp(std::sqrt(most_full_members / count), 0.4f, 1.0f);
+}
+
+/// The members of an ensemble, the last one behind: trails, rods that let each other shine through where they are many,
+/// and the last bobs; of a few, all bobs.
 void PendulumLayer::draw_members(DisplayList& list) const {
     const auto& members = state_.snapshot.members;
-    const auto count = members.size();
-    const auto color_of = [&](std::size_t k) {
-        return member_color(style_, static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(count - 1, 1)));
-    };
-    const float rod =
-        style_.width.rod > 0 ? layout_.rod_radius : std::max(0.5f * layout_.rod_radius, 0.6f * layout_.unit);
-    // the more there are, the more they let through
-    const float alpha = std::clamp(6 / std::sqrt(static_cast<float>(count)), 0.16f, 0.9f);
-    for (std::size_t k = count; k-- > 0;) draw_lines(0, members[k], rod, color_of(k).with_alpha(alpha), list);
+    const bool few = members.size() <= most_full_members;
+    for (std::size_t k = member_paths_.size(); k-- > 0;)
+        member_paths_[k].trail.draw(panel_.area, state_.time(), at(members[k].back()), list);
+    for (std::size_t k = members.size(); k-- > 0;) {
+        draw_lines(0, members[k], layout_.rod_radius, member_hue(k, 0.43f), list);
+        if (few) draw_member_bobs(k, list);
+    }
     draw_pivots(0, list);
-    for (std::size_t k = count; k-- > 0;)
-        draw_disc(at(members[k].back()), 0.45f * bob_radius(members[k].back()), color_of(k), list);
+    if (few) return;
+    for (std::size_t k = members.size(); k-- > 0;)
+        draw_disc(at(members[k].back()), bob_radius(members[k].back()), member_hue(k, 1).with_alpha(1), list);
+}
+
+void PendulumLayer::draw_member_bobs(std::size_t k, DisplayList& list) const {
+    const auto& bobs = state_.snapshot.members[k];
+    for (const auto& bob : bobs) {
+        const bool last = &bob == &bobs.back();
+        const float radius = bob_radius(bob), rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
+        const auto color = member_hue(k, 1);
+        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme_.panel, list);
+        draw_disc(at(bob), radius, last ? color : mixed(theme_.bob, color, 0.4f), list, last ? style_.glow : 0);
+    }
 }
 
 /// Rods, and springs as thin zigzags.
@@ -217,7 +238,7 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
 
 /// Where the fixed ends are.
 void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
-    const float radius = std::max(0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius);
+    const float radius = std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
     for (const auto& line : state_.side(side).lines) {
         using Kind = MechanismLine::Kind;
         if (line.kind == Kind::slot_line || line.kind == Kind::slot_circle) continue;

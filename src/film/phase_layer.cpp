@@ -62,15 +62,12 @@ private:
 
 void PhaseLayer::backdrop(DisplayList& list) const {
     const float t = layout_.text, size = px(style_.font.axis), line = px(style_.width.grid);
-    const Area &area = panel_.area, around = layout_.panels.back().area;
-    if (!video_.transparent) {
-        // the panel that the axes lie in: as large as the pendulums', beside or below it
-        const bool below = area.top > around.bottom;
-        const float left = below ? around.left : area.left - std::round(96 * t),
-                    top = below ? area.top - std::round(66 * t) : around.top;
-        list.push_back(Box{left, top, left + around.width(), top + around.height(), 14 * layout_.unit, theme_.panel});
-    }
+    const Area &area = panel_.area, around = panel_.panel;
+    if (!video_.transparent)
+        list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
+    const bool narrow = area.width() < 5 * text_width("−180°", size) + 40 * t;
     for (const double angle : {-180.0, -90.0, 0.0, 90.0, 180.0}) {
+        if (narrow && std::remainder(angle, 180) != 0) continue;
         const float x = panel_.angle.at(angle);
         list.push_back(Capsule{{x, area.top}, {x, area.bottom}, line / 2, theme_.grid});
         list.push_back(
@@ -83,8 +80,8 @@ void PhaseLayer::backdrop(DisplayList& list) const {
     }
     const auto heading = fmt::format("ω{0} over θ{0}, °/s{1}", subscript(link_ + 1),
                                      video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
-    const float fits = fitting_size(heading, px(style_.font.strip), Weight::regular, area.width() + 20 * t);
-    list.push_back(label(heading, {area.left, area.top - 20 * t}, fits, theme_.text));
+    const float fits = fitting_size(heading, px(style_.font.strip), Weight::regular, around.width());
+    list.push_back(label(heading, {around.left, around.top - 12 * t}, fits, theme_.text));
 }
 
 /// A point where the way from the last sample crosses the section.

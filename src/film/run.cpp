@@ -230,6 +230,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         watch(record.a, state.a, state.energy_error_a);
         watch(record.b, state.b, state.energy_error_b);
         record.largest_distance = std::max(record.largest_distance, state.distance);
+        record.parting.add(scene.time_of_tick(tick), state.distance);
         if (film) film->add(snapshot);
         if (tick < begin) continue;
         if (tick % frames.ticks_per_sample == 0) table.add(state, start_distance);

@@ -1,5 +1,6 @@
 #include "film/bounds.hpp"
 #include "film/layer.hpp"
+#include "film/rooms.hpp"
 #include "render/font.hpp"
 #include "render/stroke.hpp"
 #include "scene/captions.hpp"
@@ -54,35 +55,29 @@ public:
 
 private:
     std::vector<StripValue> values() const;
-    std::string heading() const;
+    /// The words of a line of the caption, from 0 on, at its left.
+    float base(int line) const {
+        return heading_base_ - caption_line * layout_.text * static_cast<float>(strip_.lines - 1 - line);
+    }
+    /// px between ticks of the time, at least.
+    float time_spacing() const { return (strip_.area.width() < 400 * layout_.text ? 50 : 90) * layout_.text; }
     void draw_axes(DisplayList& list) const;
     void draw_horizon(DisplayList& list) const;
     void draw_time_labels(DisplayList& list) const;
     void draw_parting(float free_from, DisplayList& list) const;
+    float draw_values(const std::vector<StripValue>& now, DisplayList& list) const;
 
     const std::size_t index_;
     const StripLayout& strip_ = layout_.strips[index_];
-    const float size_ = px(style_.font.strip), heading_base_ = strip_.area.top - 12 * layout_.text;
+    const StripWords words_ = strip_words(strip_.kind, state_.scene);
+    // its first line; what a second line says after the number
+    const bool short_ = strip_.lines > 1;
+    const std::string name_ = words_.what + (short_ || words_.how.empty() ? "" : ", " + words_.how);
+    const float size_ = px(style_.font.strip), heading_base_ = strip_.area.top - 14 * layout_.text;
     // J: one for both sides, or the side that starts near E = 0 would look far worse
     const double energy_unit_ = std::max(state_.scene.a.energy_unit, state_.scene.b.energy_unit);
     std::vector<Trace> traces_;  // by value
 };
-
-std::string StripLayer::heading() const {
-    switch (strip_.kind) {
-        case StripKind::distance:
-            return "state-space distance";
-        case StripKind::exponent:
-            return "Lyapunov exponent so far, 1/s";
-        case StripKind::energy:
-            return "energy error, of the potential range";
-        case StripKind::rod_error:
-            return "worst rod error, m";
-        case StripKind::rod_force:
-            break;
-    }
-    return "force in the rods, N";
-}
 
 std::vector<StripValue> StripLayer::values() const {
     const double width = style_.width.trace;
@@ -118,7 +113,7 @@ std::vector<StripValue> StripLayer::values() const {
 void StripLayer::draw_axes(DisplayList& list) const {
     const float t = layout_.text, line = px(style_.width.grid), size = px(style_.font.axis);
     const auto& area = strip_.area;
-    for (const auto& tick : axis_ticks(strip_.time, size, 90 * t, true))
+    for (const auto& tick : axis_ticks(strip_.time, size, time_spacing(), true))
         list.push_back(vertical_line(strip_.time.at(tick.value), area.top, area.bottom, line, theme_.grid));
     bool has_foot = false;
     for (const auto& tick :
@@ -133,12 +128,13 @@ void StripLayer::draw_axes(DisplayList& list) const {
                 label(tick.text, {area.left - 12 * t, y + 0.36f * size}, size, theme_.quiet_text, Align::right));
     }
     if (!has_foot) list.push_back(horizontal_line(area.bottom, area.left, area.right, line, theme_.frame));
-    list.push_back(label(heading(), {area.left, heading_base_}, size_, theme_.text));
+    const float fits = fitting_size(name_, size_, Weight::regular, strip_.caption.width());
+    list.push_back(label(name_, {strip_.caption.left, base(0)}, fits, theme_.text));
 }
 
 void StripLayer::draw_time_labels(DisplayList& list) const {
     const float t = layout_.text, size = px(style_.font.axis);
-    const auto ticks = axis_ticks(strip_.time, size, 90 * t, true);
+    const auto ticks = axis_ticks(strip_.time, size, time_spacing(), true);
     for (const auto& tick : ticks) {
         const bool last = &tick == &ticks.back();
         const float x = strip_.time.at(tick.value);
@@ -162,43 +158,61 @@ void StripLayer::draw_horizon(DisplayList& list) const {
     if (index_ > 0) return;
     // at the foot: traces are high up by then
     const auto text = fmt::format("predictable to {:.1f} s", *horizon);
-    const bool left = x - area.left > text_width(text, size) + 20 * t;
-    list.push_back(label(text, {x + (left ? -10 : 10) * t, area.bottom - 10 * t}, size, theme_.quiet_text,
-                         left ? Align::right : Align::left));
+    const float most = area.width() - 4 * t, width = text_width(text, size);
+    const bool left = x - area.left > width + 20 * t, right = area.right - x > width + 20 * t;
+    const Point at{left ? x - 10 * t : right ? x + 10 * t : area.right - 2 * t, area.bottom - 10 * t};
+    list.push_back(label(text, at, fitting_size(text, size, Weight::regular, most), theme_.quiet_text,
+                         left || !right ? Align::right : Align::left));
 }
 
 /// The moment of parting: a dashed line, and when it was above it, right of what is there already.
 void StripLayer::draw_parting(float free_from, DisplayList& list) const {
-    const float x = strip_.time.at(*state_.parted);
+    const float x = strip_.time.at(*state_.parting.since());
     add_dashed_line(x, strip_.area, 6 * layout_.text, px(style_.width.mark), theme_.quiet_text, list);
-    const auto text = fmt::format("parted at {:.1f} s", *state_.parted);
+    const auto text = fmt::format("parted at {:.1f} s", *state_.parting.since());
+    const auto& caption = strip_.caption;
+    if (strip_.lines > 2) return list.push_back(label(text, {caption.left, heading_base_}, size_, theme_.text));
+    if (strip_.lines == 2)
+        return list.push_back(label(text, {caption.right, heading_base_}, size_, theme_.text, Align::right));
     const float half = text_width(text, size_) / 2;
-    const float center = std::clamp(x, free_from + half, std::max(free_from + half, strip_.area.right - half));
+    const float center = std::min(std::max(x, free_from + half), strip_.area.right - half);
+    if (center - half < free_from - 14 * layout_.text) return;  // no room: the line alone
     list.push_back(label(text, {center, heading_base_}, size_, theme_.text, Align::center));
 }
 
-void StripLayer::frame(DisplayList& list) const {
-    const float t = layout_.text, x = strip_.time.at(state_.time());
-    const auto now = values();
-
-    // the number now, or which line is which, beside the heading
-    float left = strip_.area.left + text_width(heading(), size_) + 18 * t;
+/// The number now, or which line is which, beside the name or below it. Returns where that ends, px.
+float StripLayer::draw_values(const std::vector<StripValue>& now, DisplayList& list) const {
+    const float t = layout_.text, y = base(short_ ? 1 : 0);
+    float left = strip_.caption.left + (short_ ? 0 : text_width(name_, size_) + 18 * t);
     const auto say = [&](const std::string& text, Color color, float room) {
-        list.push_back(label(text, {left, heading_base_}, size_, color));
-        left += std::max(room, text_width(text, size_) + 14 * t);
+        const float size = fitting_size(text, size_, Weight::regular, strip_.caption.right - left);
+        if (size < 0.6f * size_) return;  // no room
+        list.push_back(label(text, {left, y}, size, color));
+        left += std::max(room, text_width(text, size) + 14 * t);
     };
+    const auto& scene = state_.scene;
     if (strip_.kind == StripKind::distance)
         say(scientific(state_.snapshot.pair.distance), now[0].color, 110 * t);
     else if (strip_.kind == StripKind::exponent && now[0].value)
-        say(fmt::format("{:.2f}", *now[0].value), now[0].color, 110 * t);
+        say(fmt::format("{:.2f}", *now[0].value), now[0].color, short_ ? 50 * t : 110 * t);
     else if (strip_.kind == StripKind::exponent && state_.start_distance == 0)
         say("none: both start alike", theme_.quiet_text, 0);
-    else if (strip_.kind == StripKind::energy && !state_.scene.a.conserves_energy && !state_.scene.b.conserves_energy)
+    else if (strip_.kind == StripKind::energy && !scene.a.conserves_energy && !scene.b.conserves_energy)
         say("none: damping takes energy", theme_.quiet_text, 0);
+    else if (short_ && !words_.how.empty() && strip_.kind != StripKind::exponent)
+        say(words_.how, theme_.quiet_text, 0);
     for (const auto& value : now)
         if (!value.name.empty()) say(value.name, value.color, 0);
+    const bool adds = strip_.kind == StripKind::distance || (strip_.kind == StripKind::exponent && now[0].value);
+    if (short_ && adds && !words_.how.empty()) say(words_.how, theme_.quiet_text, 0);
+    return left;
+}
 
-    if (state_.parted && index_ == 0) draw_parting(left, list);
+void StripLayer::frame(DisplayList& list) const {
+    const float x = strip_.time.at(state_.time());
+    const auto now = values();
+    const float left = draw_values(now, list);
+    if (state_.parting.since() && index_ == 0) draw_parting(left, list);
     list.push_back(vertical_line(x, strip_.area.top, strip_.area.bottom, px(style_.width.mark), theme_.cursor));
     for (std::size_t k = 0; k < now.size(); ++k)
         list.push_back(Stroke{.vertices = traces_[k].vertices(), .width = px(now[k].width), .color = now[k].color});

@@ -16,10 +16,10 @@ constexpr double fading = 1.6;  // the light is this power of the freshness
 
 }  // namespace
 
-Trail::Trail(const Scene& scene, const Style& style, std::size_t side)
+Trail::Trail(const Scene& scene, const Style& style, Color color, float width)
     : sample_hz_(scene.preset.sample_hz.value()),
       trail_s_(scene.preset.video.trail_s),
-      pen_{.vertices = {}, .width = px(style.width.trail), .color = style.theme.sides[side], .glow = style.glow} {}
+      pen_{.vertices = {}, .width = width, .color = color, .glow = style.glow} {}
 
 std::optional<Point> Trail::end() const {
     return points_.empty() ? std::nullopt : std::optional(points_.back().at);

@@ -18,7 +18,10 @@ inline double hermite(double p, double v, double q, double w, double dt, double 
 /// A path that fades and tapers with its age.
 class Trail {
 public:
-    Trail(const Scene& scene, const Style& style, std::size_t side);
+    /// `width` in px.
+    Trail(const Scene& scene, const Style& style, Color color, float width);
+    Trail(const Scene& scene, const Style& style, std::size_t side)
+        : Trail(scene, style, style.theme.sides[side], px(style.width.trail)) {}
 
     std::optional<Point> end() const;
     /// The path goes on to a place, where it was at `time`, s. What has faded by `now` goes.

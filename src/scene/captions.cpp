@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -15,6 +16,7 @@ namespace {
 struct Statement {
     std::string text;
     bool is_start_angle = false;
+    std::string plain = text;  // without symbols
 };
 
 std::string step_words(const Rational& step) {
@@ -50,10 +52,67 @@ void say_links(std::string_view symbol, const std::vector<Quad>& values, const s
     }
     for (std::size_t i = 0; i < values.size(); ++i)
         if (listed || values[i] != others[i])
-            all.push_back({fmt::format("{}{} = {}{}", symbol, subscript(i + 1), text_of(values[i]), unit), angle});
+            all.push_back({fmt::format("{}{} = {}{}", symbol, subscript(i + 1), text_of(values[i]), unit), angle,
+                           fmt::format("{}{}", text_of(values[i]), unit)});
 }
 
-std::vector<Statement> statements(const SideSpec& spec, const SideSpec& other, const Side& side) {
+/// 0.001 → "1 mm"
+std::string length_words(double metres) {
+    if (metres >= 0.1) return fmt::format("{:.6g} m", metres);
+    if (metres >= 1e-4) return fmt::format("{:.6g} mm", 1000 * metres);
+    return scientific(metres) + " m";
+}
+
+/// "1 mm to the right and 2 mm up"
+std::string offset_words(const QuadPair& from, const QuadPair& to) {
+    const auto x = static_cast<double>(to[0] - from[0]), y = static_cast<double>(to[1] - from[1]);
+    std::vector<std::string> parts;
+    if (x != 0) parts.push_back(fmt::format("{} to the {}", length_words(std::abs(x)), x > 0 ? "right" : "left"));
+    if (y != 0) parts.push_back(fmt::format("{} {}", length_words(std::abs(y)), y > 0 ? "up" : "down"));
+    return fmt::format("{}", fmt::join(parts, " and "));
+}
+
+/// "bob pushed at 1 mm/s", where the other side's does not move.
+std::string speed_words(const QuadPair& velocity, const QuadPair& other) {
+    const auto speed = [](const QuadPair& v) {
+        return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]));
+    };
+    if (speed(velocity) == 0) return "at rest";
+    if (speed(other) == 0) return fmt::format("pushed at {}/s", length_words(speed(velocity)));
+    return fmt::format("with ({}, {}) m/s", text_of(velocity[0]), text_of(velocity[1]));
+}
+
+/// What sets the particles of one side apart from those of side a, or of the other where this one is side a. Particles
+/// that are moved alike are named together.
+void say_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<Statement>& all) {
+    std::vector<std::pair<std::string, std::string>> moved;  // how, who
+    for (std::size_t i = 0; i < std::min(a.particles.size(), b.particles.size()); ++i) {
+        const auto &one = a.particles[i], &other = b.particles[i];
+        const auto &self = of_b ? other : one, &twin = of_b ? one : other;
+        if (one.position_m != other.position_m) {
+            const auto how = offset_words(one.position_m, other.position_m);
+            const auto same = std::find_if(moved.begin(), moved.end(), [&](const auto& m) { return m.first == how; });
+            if (same == moved.end())
+                moved.emplace_back(how, one.name);
+            else
+                same->second += " and " + one.name;
+        }
+        if (one.velocity_m_per_s != other.velocity_m_per_s)
+            all.push_back({self.name + " " + speed_words(self.velocity_m_per_s, twin.velocity_m_per_s)});
+        if (one.mass_kg != other.mass_kg) all.push_back({fmt::format("{} {} kg", self.name, text_of(self.mass_kg))});
+    }
+    for (const auto& [how, who] : moved) all.push_back({who + " " + (of_b ? how : "in place")});
+}
+
+/// How finely a side is stepped, as far as its preset says it.
+std::string control_words(const Side& side) {
+    return side.choice ? fmt::format("accuracy {:g} rad", side.choice->accuracy) : step_control_text(side);
+}
+
+/// Of side b, or of side a.
+std::vector<Statement> statements(const Scene& scene, bool of_b) {
+    const auto &spec = of_b ? scene.preset.b : scene.preset.a, &other = of_b ? scene.preset.a : scene.preset.b;
+    const auto& side = of_b ? scene.b : scene.a;
     std::vector<Statement> all;
     if (spec.particles.empty()) {
         say_links("θ", spec.angle_deg, other.angle_deg, "°", true, all);
@@ -61,12 +120,8 @@ std::vector<Statement> statements(const SideSpec& spec, const SideSpec& other, c
         say_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
         say_links("l", spec.length_m, other.length_m, " m", false, all);
     }
+    say_particles(scene.preset.a, scene.preset.b, of_b, all);
     const auto place = [](const QuadPair& xy) { return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1])); };
-    for (const auto& particle : spec.particles) {
-        all.push_back({fmt::format("{} at {} m", particle.name, place(particle.position_m))});
-        all.push_back({fmt::format("{} {} m/s", particle.name, place(particle.velocity_m_per_s))});
-        all.push_back({fmt::format("{} {} kg", particle.name, text_of(particle.mass_kg))});
-    }
     const auto is_droplet = [](const ForceSpec& force) { return std::holds_alternative<DropletSpec>(force.part); };
     const auto droplet = std::find_if(spec.forces.begin(), spec.forces.end(), is_droplet);
     if (droplet != spec.forces.end()) {
@@ -76,9 +131,12 @@ std::vector<Statement> statements(const SideSpec& spec, const SideSpec& other, c
         all.push_back({"no droplet"});
     }
     all.push_back({fmt::format("g = {} m/s²", text_of(spec.gravity_m_per_s2))});
-    all.push_back({model_words(side)});
-    all.push_back({std::string(side.method.title)});
-    all.push_back({step_control_text(side)});
+    // what an accuracy alone has chosen sets no sides apart
+    const bool chosen = scene.a.choice && scene.b.choice;
+    const bool any_model = spec.model == ModelChoice::automatic && other.model == ModelChoice::automatic;
+    all.push_back({chosen && any_model ? "" : model_words(side)});
+    all.push_back({chosen ? "" : std::string(side.method.title)});
+    all.push_back({control_words(side)});
     return all;
 }
 
@@ -125,18 +183,18 @@ std::string roughly(double value) {
     return unit < 1 ? fmt::format("{:.2g}", value) : grouped(std::lround(std::round(value / unit) * unit));
 }
 
-std::array<SideCaptions, 2> side_captions(const Scene& scene) {
-    const std::array all{statements(scene.preset.a, scene.preset.b, scene.a),
-                         statements(scene.preset.b, scene.preset.a, scene.b)};
+std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
+    const std::array all{statements(scene, false), statements(scene, true)};
     std::array<SideCaptions, 2> words;
     for (std::size_t side = 0; side < 2; ++side) {
         std::vector<std::string> differs, start;
         for (std::size_t i = 0; i < all[side].size(); ++i) {
             const auto& statement = all[side][i];
+            const auto& text = wording == Wording::plain ? statement.plain : statement.text;
             if (i >= all[1 - side].size() || all[0][i].text != all[1][i].text)
-                differs.push_back(statement.text);
-            else if (statement.is_start_angle)
-                start.push_back(statement.text);
+                differs.push_back(text);
+            else if (statement.is_start_angle && wording == Wording::exact)
+                start.push_back(text);
         }
         const bool says_nothing = differs.empty();
         if (says_nothing) differs.push_back(side == 0 ? "a" : "b, the same");
@@ -157,7 +215,7 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene) {
     return words;
 }
 
-std::string scene_caption(const Scene& scene) {
+std::string scene_caption(const Scene& scene, Wording wording) {
     if (scene.preset.subtitle) return *scene.preset.subtitle;
     const auto at_rest = [](const SideSpec& side) {
         const auto rests = [](const ParticleSpec& particle) {
@@ -170,7 +228,8 @@ std::string scene_caption(const Scene& scene) {
     std::vector<std::string> common;
     if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));
     if (scene.a.method.name == scene.b.method.name) common.emplace_back(scene.a.method.title);
-    if (step_control_text(scene.a) == step_control_text(scene.b)) common.push_back(step_control_text(scene.a));
+    if (control_words(scene.a) == control_words(scene.b)) common.push_back(control_words(scene.a));
+    if (wording == Wording::plain) common.clear();
     const auto number = scene.members.empty() ? std::string("two") : grouped(static_cast<long>(scene.members.size()));
     return fmt::format("{} {}{}{}{}", number, system_words(scene.preset.a),
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",

@@ -13,10 +13,13 @@ struct SideCaptions {
     std::string heading, note;
 };
 
-std::array<SideCaptions, 2> side_captions(const Scene& scene);
+/// With symbols and methods, or in words for everybody: "θ₁ = 90.003°", "90.003°".
+enum class Wording { exact, plain };
+
+std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording = Wording::exact);
 
 /// The preset's subtitle, or what both sides have in common: "two double pendulums, released at rest · angles, explicit Euler, 1/30 000 s".
-std::string scene_caption(const Scene& scene);
+std::string scene_caption(const Scene& scene, Wording wording = Wording::exact);
 
 /// How finely a side is stepped: "1/30 000 s", "tolerance 1e-12".
 std::string step_control_text(const Side& side);

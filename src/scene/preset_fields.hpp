@@ -214,7 +214,13 @@ void time_fields(Visit& visit, Video& video) {
     visit({"end_card_s", "a card with the outcome after the film", "s", seconds}, video.end_card_s);
     visit({"poster_s", "NAME.poster.png: the frame at this time", "s", not_negative}, video.poster_s);
     constexpr std::string_view across = "frames across and down";
-    visit({"contact_sheet", "NAME.contact.png: frames across and down", "", from_to(1, 32), "", {}, across},
+    visit({"contact_sheet",
+           "NAME.contact.png: pendulums and time at so many moments, across and down",
+           "",
+           from_to(1, 32),
+           "",
+           {},
+           across},
           video.contact_sheet);
 }
 
@@ -229,7 +235,9 @@ void layout_fields(Visit& visit, Video& video) {
     };
     const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
     constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
-    visit({"members", "of an ensemble: pendulums from side a to side b", "", some, "", of_ensemble}, video.members);
+    constexpr std::string_view members =
+        "of an ensemble: pendulums from side a to side b, or the angles of each, [[120, 120], [120.01, 120]]";
+    visit({"members", members, "", some, "", of_ensemble}, video.members);
     visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
           video.phase);
     visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
@@ -268,7 +276,9 @@ void style_fields(Visit& visit, Video& video) {
     });
     constexpr auto glow = from_to(0, 100, "none"), trail = from_to(0, 3600, "none");
     visit({"glow_px", "how far the light of trails and bobs reaches", "px", glow, of_theme}, video.glow_px);
-    visit({"trail_s", "how long the path behind the last bob lasts; 0 of an ensemble", "s", trail}, video.trail_s);
+    visit({"trail_s", "how long the path behind the last bob lasts; 0.3 of an ensemble, 1 of one with a list", "s",
+           trail},
+          video.trail_s);
 }
 
 // Readers of the tables that films and figures share. Each leaves alone what the table does not say, and throws Error

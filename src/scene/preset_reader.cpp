@@ -1,6 +1,7 @@
 #include "base/text.hpp"
 #include "integrate/methods.hpp"
 #include "scene/preset_fields.hpp"
+#include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
 
@@ -104,15 +105,15 @@ void check_layout(TomlReader& table, VideoSpec& video) {
         throw table.fault("panels", "must hold \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
-/// Members of an ensemble leave no trails.
+/// Members of an ensemble leave short trails without light.
 void read_style(TomlReader& table, VideoSpec& video) {
     const bool is_ensemble = video.layout == Arrangement::ensemble;
-    if (is_ensemble) video.trail_s = 0;
+    if (is_ensemble) video.trail_s = video.members.angles_deg.empty() ? 0.3 : 1;
     style_fields(table, video);
-    for (const auto& [key, value] : {std::pair{"trail_s", video.trail_s}, {"glow_px", video.glow_px.value_or(0)}})
-        if (is_ensemble && value > 0)
-            throw table.fault(key, "must be 0 for the layout \"ensemble\", whose members leave no trails; it is {}",
-                              value);
+    if (!is_ensemble) return;
+    if (video.glow_px.value_or(0) > 0)
+        throw table.fault("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
+                          *video.glow_px);
 }
 
 void read_video(TomlReader& table, VideoSpec& video) {
@@ -125,6 +126,28 @@ void read_video(TomlReader& table, VideoSpec& video) {
     check_size(table, video);
     read_style(table, video);
     table.finish();
+}
+
+/// The pair of an ensemble whose members are listed is its first and its last. Throws where the file gives a side
+/// other angles, or a member too many or too few of them.
+void place_members(const TomlDocument& document, TomlReader& top, TomlReader& video, Preset& preset) {
+    const auto& members = preset.video.members.angles_deg;
+    if (members.empty()) return;
+    for (std::size_t k = 0; k < members.size(); ++k)
+        if (members[k].size() != preset.a.links())
+            throw video.fault("members", "must have {} angles each, one a link; [{}] has {}", preset.a.links(), k,
+                              members[k].size());
+    const auto check_side = [&](const char* table, const std::vector<Quad>& angles, const std::vector<Quad>& member) {
+        if (video.from_command_line("members") || !document.table(top, table).has("angle_deg") || angles == member)
+            return;
+        throw video.fault("members", "begins with side a and ends with side b; [{}] angle_deg is {}, the member's {}",
+                          table, toml_value(angles), toml_value(member));
+    };
+    check_side("a", preset.a.angle_deg, members.front());
+    check_side("b", preset.b.angle_deg, members.back());
+    check_side("system", preset.a.angle_deg, members.front());
+    preset.a.angle_deg = members.front();
+    preset.b.angle_deg = members.back();
 }
 
 }  // namespace
@@ -190,6 +213,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     read_sides(document, {&top}, preset, true);
     auto video = document.table(top, "video");
     read_video(video, preset.video);
+    place_members(document, top, video, preset);
     top.finish();
     check_clock(preset, scene);
     check_frames(preset, video);

@@ -44,6 +44,10 @@ std::string toml_value(const Speed& speed) {
     return fmt::format("[{}]", fmt::join(changes, ", "));
 }
 
+std::string toml_value(const Members& members) {
+    return members.angles_deg.empty() ? toml_value(members.count) : toml_value(members.angles_deg);
+}
+
 namespace {
 
 template <class Fields>

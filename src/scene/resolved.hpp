@@ -19,6 +19,7 @@ std::string toml_ratio(const Rational& value);
 std::string toml_value(const Color& color);
 std::string toml_value(const Panels& panels);
 std::string toml_value(const Speed& speed);
+std::string toml_value(const Members& members);
 template <class T>
 std::string toml_value(const T& value) {
     if constexpr (std::is_same_v<T, std::string>) {

@@ -102,18 +102,20 @@ MotionSpec in_ticks(MotionSpec motion, long ticks_per_sample) {
     return motion;
 }
 
-/// The members of an ensemble, stepped as side a is.
+/// The members of an ensemble, stepped as side a is; what no list gives goes from side a to side b in equal steps.
 std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto &first = scene.preset.a, &last = scene.preset.b;
     std::vector<MotionSpec> members;
-    for (int k = 0; k < scene.preset.video.members; ++k) {
-        const Quad share = Quad(k) / (scene.preset.video.members - 1);
+    const auto& asked = scene.preset.video.members;
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+        const Quad share = Quad(k) / Quad(asked.size() - 1);
         const auto between = [&](const Quad& from, const Quad& to) { return Quad(from + share * (to - from)); };
         SideSpec member = first;
         for (const auto numbers :
              {&SideSpec::mass_kg, &SideSpec::length_m, &SideSpec::angle_deg, &SideSpec::omega_deg_per_s})
             std::transform((first.*numbers).begin(), (first.*numbers).end(), (last.*numbers).begin(),
                            (member.*numbers).begin(), between);
+        if (!asked.angles_deg.empty()) member.angle_deg = asked.angles_deg[k];
         member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
         members.push_back(in_ticks(scene.a.motion, scene.frames.ticks_per_sample));
         members.back().chain = chain_of(member);

@@ -141,6 +141,27 @@ void TomlReader::read(const Field& field, const toml::node& node, std::vector<do
     read_array(field, node, std::span(into));
 }
 
+void TomlReader::read(const Field& field, const toml::node& node, Members& into) {
+    into.angles_deg.clear();
+    const auto* releases = node.as_array();
+    if (!releases) return read(field, node, into.count);
+    if (releases->size() < 2 || releases->size() > Members::most_releases)
+        throw fault(field.key, "must be a whole number, or 2 to {} lists of angles; {}", Members::most_releases,
+                    found(node));
+    for (const auto& release : *releases) {
+        const auto* angles = release.as_array();
+        if (!angles || angles->empty())
+            throw fault(field.key, "must be a whole number, or 2 to {} lists of angles; {} is {}",
+                        Members::most_releases, shown(release), kind_of(release));
+        auto& read_angles = into.angles_deg.emplace_back();
+        for (const auto& angle : *angles) {
+            const auto element = fmt::format("[{}][{}]", into.angles_deg.size() - 1, read_angles.size());
+            read_angles.push_back(number(field.key, element, angle, Quad()));
+            check({.key = field.key, .bounds = {.low = -1e6, .high = 1e6}}, element, read_angles.back());
+        }
+    }
+}
+
 std::vector<std::string> TomlReader::texts_in(const Field& field, const toml::node& node) const {
     const auto* array = node.as_array();
     if (!array) throw fault(field.key, "must be an array of strings; {}", found(node));

@@ -2,6 +2,7 @@
 
 #include "image/color.hpp"
 #include "image/picture.hpp"
+#include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 #include "output/sink.hpp"
 #include "scene/field.hpp"
@@ -65,7 +66,7 @@ struct Member {
 
 /// Widths of what is drawn, px of a 1920×1080 picture. Finer lines than these lose their hue in 4:2:0 video.
 struct Widths {
-    double trail = 3.4, trace = 2.8;
+    double trail = 4.4, trace = 2.8;
     double rod = 0, bob = 0;        // a rod's width, the radius of the heaviest bob; 0 = by the size of the panel
     double grid = 1.4, mark = 1.6;  // lines of charts; now, the parting, the horizon
 };
@@ -123,10 +124,19 @@ struct Speed {
     bool changes_over_time() const { return !changes.empty(); }
 };
 
+/// The pendulums of an ensemble: so many from side a to side b, or each by its angles at the start.
+struct Members {
+    static constexpr std::size_t most_releases = 8;
+    int count = 100;                            // the pair included
+    std::vector<std::vector<Quad>> angles_deg;  // by member and link; none, or 2 to most_releases members
+
+    std::size_t size() const { return angles_deg.empty() ? static_cast<std::size_t>(count) : angles_deg.size(); }
+};
+
 /// Whether a film shows the pendulums, and the strips below them.
 struct Panels {
     bool pendulums = true;
-    std::vector<StripKind> strips{StripKind::distance, StripKind::energy};
+    std::vector<StripKind> strips{StripKind::distance};
 };
 
 /// [video]: what a film shows and how it is written. Sizes are for 1920×1080 and grow and shrink with the picture.
@@ -149,7 +159,7 @@ struct VideoSpec : Panels {
 
     Arrangement layout = Arrangement::side_by_side;
     std::vector<std::string> show{shown_parts.begin(), shown_parts.end()};
-    int members = 100;  // of an ensemble, the pair included
+    Members members;  // of an ensemble
     PhaseKind phase = PhaseKind::rate;
     int phase_link = 2;                                    // whose angle and rate
     std::array<std::optional<Range>, strip_kinds> ranges;  // of strips; fitted to the scene where not given

@@ -1,9 +1,9 @@
 #include "film/bounds.hpp"
 #include "film/run.hpp"
 #include "film/support.hpp"
+#include "film/words.hpp"
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
-#include "render/font.hpp"
 #include "render/pixels.hpp"
 #include "scene/resolved.hpp"
 
@@ -41,25 +41,6 @@ TEST(Layouts, PortraitStacksPanelsOfOneScale) {
     EXPECT_LT(layout.panels[0].area.bottom, layout.panels[1].area.top);
     EXPECT_EQ(layout.panels[0].area.left, layout.panels[1].area.left);
     EXPECT_EQ(layout.panels[0].px_per_m, layout.panels[1].px_per_m);
-}
-
-/// What a label covers, px: letters of DejaVu Sans rise 0.73 em above the baseline, tails fall 0.24 em below it.
-Area box_of(const Label& label) {
-    const float width = text_width(label.text, label.size, label.weight);
-    const float share = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
-    const float left = label.anchor.x - share * width;
-    return {left, label.anchor.y - 0.73f * label.size, left + width, label.anchor.y + 0.24f * label.size};
-}
-
-/// The words of the picture after the snapshots 0 … last.
-std::vector<Label> labels_of(const Scene& scene, long last) {
-    Composer composer(scene);
-    for_each_snapshot(scene, last, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-    std::vector<Label> labels;
-    for (const auto& list : {composer.backdrop(), composer.frame()})
-        for (const auto& item : list)
-            if (const auto* label = std::get_if<Label>(&item); label && !label->text.empty()) labels.push_back(*label);
-    return labels;
 }
 
 void expect_room_for_words(const Scene& scene, const Layout& layout, const Area& picture, const std::string& what) {
@@ -254,13 +235,6 @@ TEST(Layouts, TheDistanceAxisHoldsAllThatThePairDoes) {
     }
 }
 
-bool says(const DisplayList& list, const std::string& words) {
-    return std::any_of(list.begin(), list.end(), [&](const auto& item) {
-        const auto* label = std::get_if<Label>(&item);
-        return label && label->text.find(words) != std::string::npos;
-    });
-}
-
 TEST(Layouts, OnlyWhoStartsTogetherParts) {
     const auto outcome = [](std::vector<std::string> keys) {
         keys.emplace_back("system.integrator=\"taylor\"");
@@ -334,6 +308,7 @@ TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {
     const std::vector<std::vector<std::string>> all{
         {"video.layout=\"ensemble\"", "video.members=17", "video.colors.rod=\"#123456\"", "video.widths_px.trail=5",
          "video.fonts_px.axis=30"},
+        {"video.layout=\"ensemble\"", "video.members=[[90, 90], [90.001, 90], [90.003, 90.5]]"},
         {"video.layout=\"phase\"", "video.phase=\"section\"", "video.phase_link=1", "video.glow_px=3"},
         {"video.layout=\"portrait\"", "video.poster_s=5", "video.contact_sheet=[2, 3]", "video.hold_end_s=\"1/3\""},
         {"video.format=\"webm\"", "video.codec=\"av1\"", "video.crf=60", "video.title_card_s=1"},

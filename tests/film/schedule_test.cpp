@@ -81,20 +81,73 @@ TEST(Schedule, FramesComeInItsOrderAndRangesGiveTheSameOnes) {
     EXPECT_EQ(seen.size(), 91u);
 }
 
-TEST(Schedule, PosterAndContactSheetAreFramesOfTheFilm) {
+TEST(Schedule, ThePosterIsAFrameOfTheFilm) {
     const auto out = test::fresh_folder();
-    const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.5", "video.poster_s=0.25",
-                                              "video.contact_sheet=[3, 2]"});
+    const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.5", "video.poster_s=0.25"});
     render(scene, out);
     EXPECT_EQ(read_png(out / "butterfly/butterfly.poster.png").rgba, frame_of(scene, 30).rgba);
+}
+
+TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
+    const auto out = test::fresh_folder();
+    const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.5", "video.trail_s=0",
+                                              "b.angle_deg=[-90, -90]", "video.contact_sheet=[3, 2]"});
+    render(scene, out);
     const auto sheet = read_png(out / "butterfly/butterfly.contact.png");
-    EXPECT_EQ(sheet.size, (Size{3 * 320 + 4 * 8, 2 * 180 + 3 * 8}));
-    // small pictures are taken as they are: the last of them is the last frame
-    const auto last = frame_of(scene, 60);
-    for (int y = 0; y < 180; ++y)
-        for (int x = 0; x < 320; ++x)
-            ASSERT_TRUE(std::equal(last.at(x, y), last.at(x, y) + 4, sheet.at(x + 2 * 328 + 8, y + 188 + 8)))
-                << x << ' ' << y;
+    auto tile = scene;
+    tile.preset.video.size = tile_size(scene, 320);
+    tile.preset.video.strips.clear();
+    const int title = sheet.size.height - 2 * tile.preset.video.size.height - 3 * 8;
+    EXPECT_EQ(sheet.size.width, 3 * 320 + 4 * 8);
+    EXPECT_GT(title, 30);
+    EXPECT_LT(title, 100);
+    // the words of a tile are the time alone
+    Composer composer(tile, false, Dress::tile);
+    std::vector<std::string> words;
+    for_each_snapshot(tile, 60, [&](const Snapshot& snapshot) { composer.add(snapshot); });
+    for (const auto& list : {composer.backdrop(), composer.frame()})
+        for (const auto& item : list)
+            if (const auto* label = std::get_if<Label>(&item)) words.push_back(label->text);
+    EXPECT_EQ(words, std::vector<std::string>{"0.50 s"});
+    // the last tile is the end of the motion
+    Renderer renderer(tile.preset.video.size, composer.backdrop());
+    const auto last = renderer.draw(composer.frame());
+    const int left = 2 * 328 + 8, top = title + tile.preset.video.size.height + 2 * 8;
+    for (int y = 0; y < last.size.height; ++y)
+        for (int x = 0; x < last.size.width; ++x)
+            ASSERT_TRUE(std::equal(last.at(x, y), last.at(x, y) + 4, sheet.at(left + x, top + y))) << x << ' ' << y;
+    // both pendulums fill their halves: a circle takes most of a tile's width
+    const auto layout = make_layout(tile, false, Dress::tile);
+    EXPECT_GT(4 * layout.reach, 0.85f * 320);
+}
+
+TEST(Schedule, CardsHaveAStillOfTheOutcome) {
+    const auto scene = scene_of("pendulum-portrait", {"scene.duration_s=1", "video.trail_s=0"});
+    Composer composer(scene);
+    for_each_snapshot(scene, 120, [&](const Snapshot& snapshot) { composer.add(snapshot); });
+    const auto theme = make_layout(scene).style.theme;
+    const auto discs = [](const DisplayList& list, Color color) {
+        return std::ranges::count_if(list, [&](const Item& item) {
+            const auto* disc = std::get_if<Capsule>(&item);
+            return disc && disc->from.x == disc->to.x && disc->from.y == disc->to.y && disc->color == color;
+        });
+    };
+    for (const auto& card : {composer.end_card(1), composer.title_card(1)})
+        for (std::size_t side = 0; side < 2; ++side) EXPECT_EQ(discs(card, theme.sides[side]), 1) << side;
+    for (const auto& item : composer.end_card(1))
+        if (const auto* label = std::get_if<Label>(&item)) {
+            EXPECT_GT(label->anchor.y - label->size, 110) << label->text;
+            EXPECT_LT(label->anchor.y, 1920 - 260) << label->text;
+        }
+    // all of it fades
+    for (const auto& item : composer.end_card(0.25))
+        std::visit(
+            [](const auto& shape) {
+                if constexpr (!std::is_same_v<std::decay_t<decltype(shape)>, Image>) {
+                    EXPECT_LE(shape.color.a, 0.25f);
+                }
+            },
+            item);
 }
 
 }  // namespace schedule_test

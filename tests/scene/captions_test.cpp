@@ -50,6 +50,42 @@ TEST(Captions, AreThoseOfThePresetWhereItHasSome) {
               std::string::npos);
 }
 
+TEST(Captions, OfAnAccuracyNameNoToleranceThatItChose) {
+    // the sides are 10⁻¹² degrees apart, and each gets a tolerance of its own
+    const auto scene = scene_of("horizon", {"scene.duration_s=5"});
+    for (const auto& side : side_captions(scene)) {
+        EXPECT_EQ(side.heading.find("tolerance"), std::string::npos) << side.heading;
+        EXPECT_EQ(side.note, "θ₂ = 90°");
+    }
+    EXPECT_TRUE(scene_caption(scene).ends_with("accuracy 0.01 rad")) << scene_caption(scene);
+    // one that the preset names is said
+    const auto given = side_captions(scene_of(
+        "butterfly", {"system.integrator=\"taylor\"", "a.tolerance=1e-9", "b.tolerance=1e-12", "b.angle_deg=90"}));
+    EXPECT_EQ(given[0].heading, "tolerance 1e-09");
+    // so are two accuracies
+    const auto two = side_captions(scene_of("horizon", {"scene.duration_s=2", "a.accuracy=1e-3", "b.angle_deg=90"}));
+    EXPECT_EQ(two[0].heading, "accuracy 0.001 rad");
+    EXPECT_EQ(two[1].heading, "accuracy 0.01 rad");
+}
+
+TEST(Captions, OfMechanismsSayWhatDiffers) {
+    const auto springs = side_captions(scene_of("springs"));
+    EXPECT_EQ(springs[0].heading, "bead and middle in place");
+    EXPECT_EQ(springs[1].heading, "bead and middle 1 mm to the right");
+    const auto loop = side_captions(scene_of("loop"));
+    EXPECT_EQ(loop[0].heading, "bob at rest");
+    EXPECT_EQ(loop[1].heading, "bob pushed at 1 mm/s");
+}
+
+TEST(Captions, InPlainWordsHaveNoSymbols) {
+    const auto scene = scene_of("pendulum-portrait", {"scene.duration_s=2"});
+    const auto said = side_captions(scene, Wording::plain);
+    EXPECT_EQ(said[0].heading, "135°");
+    EXPECT_EQ(said[1].heading, "135.0001°");
+    EXPECT_EQ(said[1].note, "");
+    EXPECT_EQ(scene_caption(scene, Wording::plain), "two double pendulums, released at rest");
+}
+
 TEST(Captions, NearestAllowsATypingErrorInThreeLetters) {
     constexpr std::array<std::string_view, 2> names{"poster_s", "background_color"};
     EXPECT_EQ(nearest("backgruond_colour", names), "background_color");
@@ -64,7 +100,7 @@ TEST(Defaults, AreThoseOfTheReference) {
     EXPECT_EQ(chain.stabilise_rate_per_s, 10);
     EXPECT_EQ(chain.mass_kg, (std::vector<Quad>{1, 1, 1}));
     EXPECT_EQ(chain.length_m, (std::vector<Quad>{1, 1, 1}));
-    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"").video.members, 100);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"").video.members.count, 100);
     const auto none = read("").a;
     EXPECT_EQ(none.mass_kg, (std::vector<Quad>{1, 1}));
     EXPECT_EQ(none.length_m, (std::vector<Quad>{1, 1}));
@@ -80,8 +116,8 @@ TEST(Defaults, OfADropletAndOfTransparency) {
     EXPECT_EQ(
         error_of([&] { read("[video]\nformat = \"webm\"\ntransparent = true\npixel_format = \"yuv444p\""); }).first,
         ExitCode::bad_input);
-    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 1000").video.members, 1000);
-    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 2").video.members, 2);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 1000").video.members.count, 1000);
+    EXPECT_EQ(read("[video]\nlayout = \"ensemble\"\nmembers = 2").video.members.count, 2);
     EXPECT_EQ(read("[video]\ncontact_sheet = [32, 1]").video.contact_sheet, (std::array{32, 1}));
 }
 

@@ -1,0 +1,80 @@
+#include "film/contact_sheet.hpp"
+
+#include "image/picture.hpp"
+#include "render/font.hpp"
+#include "scene/captions.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+/// The scene as a tile shows it: its panels beside each other, nothing else.
+Scene tile_scene(Scene scene) {
+    auto& video = scene.preset.video;
+    constexpr int sheet_width = 1920;  // px, about
+    const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
+    video.strips.clear();
+    video.pendulums = true;
+    video.transparent = false;
+    video.title_card_s = video.end_card_s = {0, 1};
+    if (video.layout == Arrangement::portrait) video.layout = Arrangement::side_by_side;
+    if (video.layout == Arrangement::phase) video.layout = Arrangement::overlay;
+    video.size = tile_size(scene, width);
+    return scene;
+}
+
+/// The title of the film, what it is about, and the two sides.
+DisplayList title_of(const Scene& scene, const Style& style, Size size, float unit) {
+    const auto& font = style.font;
+    const auto& theme = style.theme;
+    const auto width = static_cast<float>(size.width);
+    const float edge = 14 * unit, left = 0.58f * width, right = 0.34f * width;
+    const auto said = side_captions(scene);
+    DisplayList list{filled(size, theme.background)};
+    const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, bool at_right) {
+        const float fits = fitting_size(text, px(wanted), weight, at_right ? right : left);
+        list.push_back(label(text, {at_right ? width - edge : edge, y}, fits, color,
+                             at_right ? Align::right : Align::left, weight));
+    };
+    add(scene.preset.title, 50 * unit, font.title, Weight::bold, theme.text, false);
+    add(scene_caption(scene), 86 * unit, font.subtitle, Weight::regular, theme.quiet_text, false);
+    for (std::size_t side = 0; side < 2; ++side)
+        add(said[side].heading, (side == 0 ? 48.0f : 86.0f) * unit, 0.9 * font.heading, Weight::bold,
+            scene.members.empty() ? theme.sides[side] : theme.text, true);
+    return list;
+}
+
+}  // namespace
+
+ContactSheet::ContactSheet(const Scene& scene, std::vector<long> ticks, Gl gl, const std::atomic<bool>& stop)
+    : scene_(tile_scene(scene)),
+      composer_(scene_, stop, Dress::tile),
+      renderer_(scene_.preset.video.size, composer_.backdrop(), gl, stop),
+      ticks_(std::move(ticks)),
+      columns_((*scene.preset.video.contact_sheet)[0]),
+      gl_(gl),
+      stop_(stop) {}
+
+void ContactSheet::add(const Snapshot& snapshot) {
+    composer_.add(snapshot);
+    const auto times = std::count(ticks_.begin(), ticks_.end(), snapshot.pair.tick);
+    if (times == 0) return;
+    const auto& picture = renderer_.draw(composer_.frame(), stop_);
+    tiles_.insert(tiles_.end(), static_cast<std::size_t>(times), picture);
+}
+
+Picture ContactSheet::picture() const {
+    const auto below = contact_sheet(tiles_, columns_, 8, composer_.page_color());
+    const float unit = static_cast<float>(below.size.width) / 1920;
+    const Size title{below.size.width, static_cast<int>(110 * unit) + 1};
+    const auto style = make_style(scene_.preset.video, unit, unit);
+    Renderer renderer(title, title_of(scene_, style, title, unit), gl_, stop_);
+    Picture sheet = renderer.draw({}, stop_);
+    sheet.size.height += below.size.height;
+    sheet.rgba.insert(sheet.rgba.end(), below.rgba.begin(), below.rgba.end());
+    return sheet;
+}
+
+}  // namespace doppel

@@ -1,0 +1,229 @@
+#include "film/headings.hpp"
+
+#include "render/font.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace doppel {
+namespace {
+
+/// What is said of a side above its panel.
+struct Heading {
+    std::size_t panel, side;
+    SideCaptions said;
+    Align align = Align::left;
+};
+
+std::vector<Heading> headings_of(const Scene& scene) {
+    const auto layout = scene.preset.video.layout;
+    const bool apart = layout == Arrangement::side_by_side || layout == Arrangement::portrait;
+    const auto said = side_captions(scene, wording_of(scene));
+    return {{0, 0, said[0]}, {apart ? 1u : 0u, 1, said[1], apart ? Align::left : Align::right}};
+}
+
+/// Sizes at which all headings fit, alike in all panels, px.
+struct HeadingSizes {
+    float heading, note;
+    bool two_lines = false;
+};
+
+constexpr float note_gap = 16;  // px of a 1920×1080 picture, between a heading and the note after it
+
+HeadingSizes fitted(const std::vector<Heading>& headings, const Layout& layout, float width) {
+    const auto& font = layout.style.font;
+    float one = 1, heading = 1, note = 1;
+    for (const auto& words : headings) {
+        const float head = text_width(words.said.heading, px(font.heading), Weight::bold),
+                    tail = text_width(words.said.note, px(font.note));
+        const float gap = words.said.note.empty() ? 0 : note_gap * layout.text;
+        one = std::min(one, width / std::max(head + gap + tail, 1.0f));
+        heading = std::min(heading, width / std::max(head, 1.0f));
+        note = std::min(note, width / std::max(tail, 1.0f));
+    }
+    constexpr float least = 0.85f;  // before notes go to a line of their own
+    const bool two = one < least && std::any_of(headings.begin(), headings.end(),
+                                                [](const Heading& words) { return !words.said.note.empty(); });
+    if (!two) return {one * px(font.heading), one * px(font.note)};
+    return {heading * px(font.heading), note * px(font.note), true};
+}
+
+void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, const Area& panel) {
+    const auto& theme = layout.style.theme;
+    const float t = layout.text, gap = note_gap * t;
+    const float head = text_width(words.said.heading, sizes.heading, Weight::bold),
+                tail = text_width(words.said.note, sizes.note);
+    const bool right = words.align == Align::right;
+    const float base = panel.top - 12 * t, edge = right ? panel.right : panel.left;
+    const auto color = theme.sides[words.side];
+    const auto add = [&](const std::string& text, float x, float y, float size, Color hue, Weight weight) {
+        if (!text.empty()) layout.words.push_back(label(text, {x, y}, size, hue, Align::left, weight));
+    };
+    if (sizes.two_lines) {
+        add(words.said.heading, right ? edge - head : edge, base - 29 * t, sizes.heading, color, Weight::bold);
+        add(words.said.note, right ? edge - tail : edge, base, sizes.note, theme.quiet_text, Weight::regular);
+        return;
+    }
+    const float left = right ? edge - head - (tail > 0 ? gap + tail : 0) : edge;
+    add(words.said.heading, left, base, sizes.heading, color, Weight::bold);
+    add(words.said.note, left + head + gap, base, sizes.note, theme.quiet_text, Weight::regular);
+}
+
+/// Whether a heading leaves the circle of a panel free in its upper left corner; where it stands there.
+std::optional<Label> in_corner(const Layout& layout, const Heading& words, const Area& panel) {
+    if (!words.said.note.empty()) return std::nullopt;
+    const float size = px(layout.style.font.heading), edge = 24 * layout.unit;
+    const Point base{panel.left + edge, panel.top + edge + 0.73f * size};
+    const float right = base.x + text_width(words.said.heading, size, Weight::bold), bottom = base.y + 0.24f * size;
+    const float radius = std::min(panel.width(), panel.height()) / around_circle / 2;
+    const Point away{std::max(0.0f, (panel.left + panel.right) / 2 - right),
+                     std::max(0.0f, (panel.top + panel.bottom) / 2 - bottom)};
+    if (std::hypot(away.x, away.y) < radius + 8 * layout.unit) return std::nullopt;
+    return label(words.said.heading, base, size, layout.style.theme.sides[words.side], Align::left, Weight::bold);
+}
+
+/// A bar of the members' colours between what the first and what the last one is.
+void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, const Area& panel) {
+    const float t = layout.text, base = panel.top - 14 * t, gap = 14 * t;
+    std::array<float, 2> width{};
+    const float most = 0.36f * panel.width();
+    float size = px(layout.style.font.note);
+    for (const auto& side : said) size = std::min(size, fitting_size(side.heading, size, Weight::bold, most));
+    for (std::size_t side = 0; side < 2; ++side) {
+        width[side] = text_width(said[side].heading, size, Weight::bold);
+        layout.words.push_back(label(said[side].heading, {side == 0 ? panel.left : panel.right, base}, size,
+                                     layout.style.theme.text, side == 0 ? Align::left : Align::right, Weight::bold));
+    }
+    constexpr int shades = 256;
+    Picture colors({shades, 1});
+    for (int i = 0; i < shades; ++i) {
+        const auto bytes = bytes_of(member_color(layout.style, static_cast<double>(i) / (shades - 1)));
+        std::copy(bytes.begin(), bytes.end(), colors.at(i, 0));
+    }
+    layout.words.push_back(Image{panel.left + width[0] + gap, base - 0.6f * size, panel.right - width[1] - gap, base,
+                                 std::make_shared<const Picture>(std::move(colors))});
+}
+
+/// What tells the listed members apart, "120.01°", by member; what is said before them, "θ₁ =".
+std::pair<std::string, std::vector<std::string>> legend_words(const std::vector<std::vector<Quad>>& members) {
+    std::vector<std::size_t> differing;
+    for (std::size_t j = 0; j < members[0].size(); ++j)
+        if (std::ranges::any_of(members, [&](const auto& member) { return member[j] != members[0][j]; }))
+            differing.push_back(j);
+    if (differing.empty()) differing.push_back(0);
+    std::string before;
+    for (const auto j : differing) before += fmt::format("{}θ{}", before.empty() ? "" : ", ", subscript(j + 1));
+    std::vector<std::string> words;
+    for (const auto& member : members) {
+        auto& text = words.emplace_back();
+        for (const auto j : differing) text += fmt::format("{}{}°", text.empty() ? "" : ", ", text_of(member[j]));
+    }
+    return {before + " =", words};
+}
+
+/// The listed members' angles, each after a dot of its colour.
+void add_legend(Layout& layout, const Scene& scene, const Area& panel) {
+    const auto [before, words] = legend_words(scene.preset.video.members.angles_deg);
+    const float t = layout.text, base = panel.top - 14 * t;
+    float size = 0.85f * px(layout.style.font.heading);
+    constexpr float dot = 0.32f, after_dot = 0.85f, after_word = 0.8f;  // em
+    float wide = text_width(before, size) + after_word * size;
+    for (const auto& word : words) wide += text_width(word, size) + (after_dot + after_word) * size;
+    size *= std::min(1.0f, panel.width() / (wide - after_word * size));
+    const auto& theme = layout.style.theme;
+    layout.words.push_back(label(before, {panel.left, base}, size, theme.quiet_text));
+    float x = panel.left + text_width(before, size) + after_word * size;
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        const Point at{x + dot * size, base - 0.36f * size};
+        layout.words.push_back(Capsule{at, at, dot * size, member_color(layout.style, scene, k)});
+        x += after_dot * size;
+        layout.words.push_back(label(words[k], {x, base}, size, theme.text));
+        x += text_width(words[k], size) + after_word * size;
+    }
+}
+
+}  // namespace
+
+Wording wording_of(const Scene& scene) {
+    return scene.preset.video.layout == Arrangement::portrait ? Wording::plain : Wording::exact;
+}
+
+float place_header(Layout& layout, const Scene& scene) {
+    const auto& video = scene.preset.video;
+    const auto& theme = layout.style.theme;
+    const auto& font = layout.style.font;
+    const auto& page = layout.page;
+    const float t = layout.text, gap = 30 * t;
+    const bool tall = is_tall(video), changes = video.speed.changes_over_time(), has_clock = video.shows("clock");
+    if (layout.title.empty() && layout.subtitle.empty() && !has_clock) return page.top;
+    const float first = page.top + 36 * t, second = first + (tall ? 52 : 30) * t;
+    const auto time = clock_text(scene, scene.time(scene.samples));
+    auto below = layout.subtitle;
+    auto speed = has_clock ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
+    if (tall && has_clock && !changes && video.speed.constant != Rational{1, 1})
+        below += (below.empty() ? "" : " · ") + speed;
+    // long text shrinks until it fits beside what stands at the right
+    const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, float beside) {
+        const float size = fitting_size(text, px(wanted), weight, page.width() - (beside > 0 ? beside + gap : 0));
+        layout.words.push_back(label(text, {page.left, y}, size, color, Align::left, weight));
+    };
+    const float clock = has_clock ? text_width(time, px(font.clock)) : 0;
+    const float beside_title = !tall ? clock : changes ? text_width(speed, px(font.subtitle)) : 0;
+    add(layout.title, first, font.title, Weight::bold, theme.text, beside_title);
+    add(below, second, font.subtitle, Weight::regular, theme.quiet_text,
+        tall ? clock : text_width(speed, px(font.subtitle)));
+    if (has_clock) {
+        const auto words =
+            label(speed, {page.right, tall ? first : second}, px(font.subtitle), theme.quiet_text, Align::right);
+        if (changes)
+            layout.speed = words;
+        else if (!tall)
+            layout.words.push_back(words);
+        layout.clock = label("", {page.right, tall ? second : first}, px(font.clock), theme.text, Align::right);
+    }
+    return second + 18 * t;
+}
+
+Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomNeeds needs) {
+    if (needs.panels == 0 || !scene.preset.video.shows("labels")) return shared_out(room, needs);
+    const float t = layout.text;
+    const auto headings = headings_of(scene);
+    if (needs.tall) {
+        auto rooms = shared_out(room, needs);
+        DisplayList words;
+        for (const auto& heading : headings)
+            if (const auto found = in_corner(layout, heading, rooms.panels[heading.panel]);
+                found && headings[0].panel != headings[1].panel)
+                words.push_back(*found);
+        if (words.size() == headings.size()) {
+            layout.words.insert(layout.words.end(), words.begin(), words.end());
+            return rooms;
+        }
+    }
+    needs.heading = 42 * t;
+    auto rooms = shared_out(room, needs);
+    if (!scene.preset.video.members.angles_deg.empty()) {
+        add_legend(layout, scene, rooms.panels[0]);
+        return rooms;
+    }
+    if (!scene.members.empty()) {
+        add_color_bar(layout, {headings[0].said, headings[1].said}, rooms.panels[0]);
+        return rooms;
+    }
+    const float share = headings[0].panel == headings[1].panel ? 0.48f : 1;
+    auto sizes = fitted(headings, layout, share * rooms.panels[0].width());
+    if (sizes.two_lines) {
+        needs.heading = 71 * t;
+        rooms = shared_out(room, needs);
+        sizes = fitted(headings, layout, share * rooms.panels[0].width());
+    }
+    for (const auto& heading : headings) add_above(layout, heading, sizes, rooms.panels[heading.panel]);
+    return rooms;
+}
+
+}  // namespace doppel

@@ -1,0 +1,265 @@
+// The pendulum comes first: its circle is large and in the middle of its panel, and no words get in its way.
+#include "film/parting.hpp"
+#include "film/support.hpp"
+#include "film/words.hpp"
+#include "render/pixels.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace doppel {
+namespace hero_test {
+
+constexpr std::array films{"butterfly",  "calm",        "fan",      "horizon",      "loop",
+                           "mass-ratio", "phase-dance", "raindrop", "slow-parting", "springs",
+                           "triple",     "two-methods", "whip"};
+constexpr std::array sizes{Size{1920, 1080}, Size{480, 270}, Size{3840, 2160}, Size{1080, 1920}};
+
+/// A film with fewer samples and another size; how it is stepped is chosen once.
+Scene at_size(Scene scene, Size size) {
+    scene.preset.video.size = size;
+    scene.samples = std::min(scene.samples, 300L);
+    return scene;
+}
+
+/// Whether words reach into a circle.
+bool meets(const Area& box, Point center, float radius) {
+    const float dx = std::max({0.0f, box.left - center.x, center.x - box.right}),
+                dy = std::max({0.0f, box.top - center.y, center.y - box.bottom});
+    return std::hypot(dx, dy) < radius;
+}
+
+void expect_large_and_central(const Scene& scene, const Layout& layout, const std::string& what) {
+    const auto& video = scene.preset.video;
+    const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
+    for (const auto& panel : layout.panels) {
+        EXPECT_NEAR(panel.center.x, (panel.area.left + panel.area.right) / 2, 1) << what;
+        EXPECT_NEAR(panel.center.y, (panel.area.top + panel.area.bottom) / 2, 1) << what;
+        EXPECT_EQ(panel.px_per_m, layout.panels[0].px_per_m) << what;
+    }
+    if (layout.reach == 0) return;  // of a mechanism that hangs in no circle
+    if (is_tall(video))
+        EXPECT_GE(2 * layout.reach, (video.strips.size() > 1 ? 0.36f : 0.43f) * width) << what;
+    else
+        EXPECT_GE(2 * layout.reach, (video.strips.size() > 2 ? 0.45f : 0.55f) * height) << what;
+    for (const auto& panel : layout.panels) {
+        const float outermost = layout.reach + layout.bob_radius;
+        EXPECT_TRUE(panel.area.holds(Point{panel.center.x - outermost, panel.center.y - outermost})) << what;
+        EXPECT_TRUE(panel.area.holds(Point{panel.center.x + outermost, panel.center.y + outermost})) << what;
+    }
+}
+
+void expect_words_in_place(const Scene& scene, const Layout& layout, const std::string& what) {
+    const auto& size = scene.preset.video.size;
+    const Area picture{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
+    const auto labels = labels_of(scene, std::min(scene.samples, 240L));
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        const auto box = box_of(labels[i]);
+        const auto which = what + ": " + labels[i].text;
+        EXPECT_TRUE(picture.holds(box)) << which;
+        EXPECT_GE(labels[i].size, 0.3f * layout.text * 21) << which;
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_FALSE(box.overlaps(box_of(labels[j]))) << which << " | " << labels[j].text;
+        for (const auto& panel : layout.panels) EXPECT_FALSE(meets(box, panel.center, layout.reach)) << which;
+    }
+}
+
+TEST(Hero, CirclesAreLargeAndCentralAndNoWordsAreInTheirWay) {
+    for (const char* film : films) {
+        const auto scene = scene_of(film);
+        for (const auto& size : sizes) {
+            const auto sized = at_size(scene, size);
+            const auto layout = make_layout(sized);
+            const auto what = fmt::format("{} {}x{}", film, size.width, size.height);
+            expect_large_and_central(sized, layout, what);
+            expect_words_in_place(sized, layout, what);
+        }
+    }
+}
+
+TEST(Hero, AnUprightFilmLeavesRoomForAnAppsButtonsAndHasLargeWords) {
+    const auto scene = at_size(scene_of("pendulum-portrait"), {1080, 1920});
+    const auto layout = make_layout(scene);
+    expect_large_and_central(scene, layout, "portrait");
+    expect_words_in_place(scene, layout, "portrait");
+    for (const auto& label : labels_of(scene, 240)) {
+        EXPECT_GE(box_of(label).top, 110) << label.text;
+        EXPECT_LE(box_of(label).bottom, 1920 - 260) << label.text;
+        EXPECT_GE(label.size, 28) << label.text;  // 1.6 times 20, or a bit less where it must fit
+        EXPECT_EQ(label.text.find("θ"), std::string::npos) << label.text;
+        EXPECT_EQ(label.text.find("tolerance"), std::string::npos) << label.text;
+    }
+}
+
+TEST(Hero, LongHeadingsLeaveTheCircleWhereItIs) {
+    // more words than fit in a line: smaller, or in two lines, but never beside a circle moved aside
+    const std::vector<std::vector<std::string>> all{
+        {"b.angle_deg=[90.0000000000001, 12.3456789]"},
+        {"b.omega_deg_per_s=[1.23456789, 2.3456789]", "b.mass_kg=[3.1415926, 4]", "b.length_m=[0.5, 0.6]"},
+        {"system.links=1", "system.mass_kg=[1]", "system.length_m=[1]", "system.angle_deg=[90]",
+         "system.omega_deg_per_s=[0]", "b.gravity_m_per_s2=9.80665", "a.angle_deg=[90]", "b.angle_deg=[90]"}};
+    for (const auto& arguments : all) {
+        const auto scene = scene_of("butterfly", arguments);
+        for (const auto& size : sizes) {
+            const auto sized = at_size(scene, size);
+            const auto layout = make_layout(sized);
+            const auto what = fmt::format("{} {}x{}", arguments[0], size.width, size.height);
+            expect_large_and_central(sized, layout, what);
+            expect_words_in_place(sized, layout, what);
+        }
+    }
+}
+
+TEST(Hero, StripsAreOfWhatTheRunHas) {
+    // how much of the strip's height the curve takes, and whether it is held at an edge
+    const auto share = [](const Scene& scene) {
+        const auto axis = make_layout(scene).strips.front().value;
+        double low = std::numeric_limits<double>::infinity(), high = 0;
+        for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
+            low = std::min(low, snapshot.pair.distance);
+            high = std::max(high, snapshot.pair.distance);
+        });
+        EXPECT_LE(high, axis.high);
+        EXPECT_GE(low, axis.low);
+        return (std::log(high) - std::log(low)) / (std::log(axis.high) - std::log(axis.low));
+    };
+    EXPECT_GT(share(scene_of("butterfly", {"system.links=1", "system.mass_kg=[1]", "system.length_m=[1]",
+                                           "system.omega_deg_per_s=[0]", "system.angle_deg=[10]", "a.angle_deg=[10]",
+                                           "b.angle_deg=[90]"})),
+              0.5);  // measured 0.59
+    EXPECT_GT(share(scene_of("butterfly")), 0.75);
+    EXPECT_GT(share(scene_of("mass-ratio")), 0.6);
+    EXPECT_GT(share(scene_of("slow-parting")), 0.6);
+}
+
+TEST(Hero, StripsOfErrorsAreOfWhatTheRunHas) {
+    for (const char* film : {"butterfly", "triple", "whip"}) {
+        const auto scene = scene_of(film, {"video.panels=[\"energy\"]", "scene.duration_s=4"});
+        const auto axis = make_layout(scene).strips.front().value;
+        const double unit = std::max(scene.a.energy_unit, scene.b.energy_unit);
+        double most = 0;
+        for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
+            for (const auto* side : {&snapshot.pair.a, &snapshot.pair.b})
+                most = std::max(most, std::abs(side->energy_change) / unit);
+        });
+        EXPECT_LE(most, axis.high) << film;
+        EXPECT_GE(most, axis.high / 11) << film;
+        EXPECT_LE(axis.high / axis.low, 1.01e6) << film;
+    }
+}
+
+TEST(Parting, TakesAStartAsOneAndAWholeSecondApart) {
+    const auto since = [](double start, const std::vector<std::pair<double, double>>& steps) {
+        Parting parting;
+        parting.add(0, start);
+        for (const auto& [time, distance] : steps) parting.add(time, distance);
+        return parting.since();
+    };
+    using Steps = std::vector<std::pair<double, double>>;
+    EXPECT_EQ(since(1e-4, Steps{{1, 0.5}, {2, 1.0}, {2.5, 3}, {3, 1}}), 2);
+    EXPECT_EQ(since(1e-4, Steps{{1, 0.5}, {2, 1.0}, {2.5, 3}, {2.99, 1}}), std::nullopt) << "not yet a second";
+    EXPECT_EQ(since(1e-4, Steps{{2, 1.5}, {2.5, 0.9}, {2.75, 1.5}, {3.5, 2}}), std::nullopt) << "they came back";
+    EXPECT_EQ(since(1e-4, Steps{{2, 1.5}, {2.5, 0.9}, {2.75, 1.5}, {3.75, 2}}), 2.75);
+    EXPECT_EQ(since(1e-4, Steps{{2, 1.5}, {3, 1.5}, {4, 0.1}}), 2) << "once parted, for good";
+    EXPECT_EQ(since(0.1, Steps{{2, 1.5}, {3, 1.5}}), std::nullopt) << "never close";
+    EXPECT_EQ(since(0.0999, Steps{{2, 1.5}, {3, 1.5}}), 2);
+}
+
+TEST(Parting, IsSaidASecondLaterOfWhoStaysApart) {
+    // fan and slow-parting reach 1, and come back, before they part
+    for (const char* film : {"fan", "slow-parting"}) {
+        const auto scene = std::string(film) == "fan" ? scene_of(film, {"video.members=2"}) : scene_of(film);
+        Composer composer(scene);
+        std::optional<double> first_above, said, truth;
+        double above_from = -1;
+        for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
+            composer.add(snapshot);
+            const double time = scene.time(snapshot.pair.sample);
+            if (snapshot.pair.distance >= 1) {
+                if (!first_above) first_above = time;
+                if (above_from < 0) above_from = time;
+                if (!truth && time - above_from >= 1) truth = above_from;
+            } else {
+                above_from = -1;
+            }
+            if (!said && says(composer.frame(), "parted at")) said = time;
+        });
+        ASSERT_TRUE(first_above) << film;
+        EXPECT_EQ(said.has_value(), truth.has_value()) << film;
+        if (truth) {
+            EXPECT_NEAR(*said, *truth + 1, 1e-9) << film;
+            EXPECT_GT(*truth, *first_above + 0.5) << film;
+        }
+    }
+}
+
+TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
+    const auto scene = at_size(scene_of("fan"), {1920, 1080});
+    const auto layout = make_layout(scene);
+    const auto bar = std::find_if(layout.words.begin(), layout.words.end(),
+                                  [](const Item& item) { return std::holds_alternative<Image>(item); });
+    ASSERT_NE(bar, layout.words.end());
+    const auto& image = std::get<Image>(*bar);
+    EXPECT_LT(image.bottom, layout.panels[0].area.top);
+    EXPECT_GT(image.right - image.left, 200);
+    const auto end = bytes_of(member_color(layout.style, 1));
+    EXPECT_TRUE(std::equal(end.begin(), end.end(), image.pixels->at(image.pixels->size.width - 1, 0)));
+    Composer composer(scene);
+    for_each_snapshot(scene, 60, [&](const Snapshot& snapshot) { composer.add(snapshot); });
+    EXPECT_TRUE(says(composer.backdrop(), "first to last"));
+    const auto strokes =
+        std::ranges::count_if(composer.frame(), [](const Item& item) { return std::holds_alternative<Stroke>(item); });
+    EXPECT_GE(strokes, 200) << "a trail each";
+}
+
+TEST(Fan, DrawsManyMembersFinerThanFew) {
+    const auto sizes_of = [](int members) {
+        const auto layout =
+            make_layout(at_size(scene_of("fan", {fmt::format("video.members={}", members)}), {1920, 1080}));
+        return std::pair{layout.bob_radius, layout.rod_radius};
+    };
+    const auto few = sizes_of(5), many = sizes_of(200);
+    EXPECT_NEAR(few.first / many.first, 5, 1e-3);  // √(200/8)
+    EXPECT_GT(few.second / many.second, 3);
+    EXPECT_EQ(few, sizes_of(8));
+}
+
+TEST(Fan, ShowsListedMembersLargeWithALegend) {
+    const std::string list = "video.members=[[120, 120], [120.01, 120], [140, 120], [170.5, 120]]";
+    const auto scene = at_size(scene_of("fan", {list}), {1920, 1080});
+    ASSERT_EQ(scene.members.size(), 4u);
+    const std::array angles{120.0, 120.01, 140.0, 170.5};
+    const auto layout = make_layout(scene);
+    const auto picture = frame_of(scene, 0);
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+        EXPECT_NEAR(static_cast<double>(scene.members[k].chain->angle[0]) * 180 / pi, angles[k], 1e-12);
+        const auto at_legend = std::ranges::any_of(layout.words, [&](const Item& item) {
+            const auto* dot = std::get_if<Capsule>(&item);
+            return dot && dot->color == layout.style.theme.palette[k];
+        });
+        EXPECT_TRUE(at_legend) << k;
+        if (k == 1) continue;  // behind the first
+        const double x = std::sin(radians(angles[k])) + std::sin(radians(120.0)),
+                     y = -std::cos(radians(angles[k])) - std::cos(radians(120.0));
+        const auto at = layout.panels[0].at(x, y);
+        EXPECT_TRUE(is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), layout.style.theme.palette[k]))
+            << k;
+    }
+    // the distance is that of the first and the last
+    EXPECT_EQ(scene.preset.a.angle_deg[0], parse_quad("120"));
+    EXPECT_EQ(scene.preset.b.angle_deg[0], parse_quad("170.5"));
+    for (const auto& size : sizes) {
+        const auto sized = at_size(scene, size);
+        expect_large_and_central(sized, make_layout(sized), "list");
+        expect_words_in_place(sized, make_layout(sized), "list");
+    }
+    for (const auto* words : {"θ₁ =", "120°", "120.01°", "170.5°"}) EXPECT_TRUE(says(layout.words, words)) << words;
+}
+
+}  // namespace hero_test
+}  // namespace doppel

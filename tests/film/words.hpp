@@ -1,0 +1,38 @@
+#pragma once
+
+#include "film/support.hpp"
+#include "render/font.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// What a label covers, px: letters of DejaVu Sans rise 0.73 em above the baseline, tails fall 0.24 em below it.
+inline Area box_of(const Label& label) {
+    const float width = text_width(label.text, label.size, label.weight);
+    const float share = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
+    const float left = label.anchor.x - share * width;
+    return {left, label.anchor.y - 0.73f * label.size, left + width, label.anchor.y + 0.24f * label.size};
+}
+
+/// The words of the picture after the snapshots 0 … last.
+inline std::vector<Label> labels_of(const Scene& scene, long last) {
+    Composer composer(scene);
+    for_each_snapshot(scene, last, [&](const Snapshot& snapshot) { composer.add(snapshot); });
+    std::vector<Label> labels;
+    for (const auto& list : {composer.backdrop(), composer.frame()})
+        for (const auto& item : list)
+            if (const auto* label = std::get_if<Label>(&item); label && !label->text.empty()) labels.push_back(*label);
+    return labels;
+}
+
+inline bool says(const DisplayList& list, const std::string& words) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& item) {
+        const auto* label = std::get_if<Label>(&item);
+        return label && label->text.find(words) != std::string::npos;
+    });
+}
+
+}  // namespace doppel
