@@ -248,12 +248,13 @@ private:
         settings_ += "\n[[film]]\n" + written.text();
         films_.push_back({preset.name, make_scene(preset)});
         const auto& scene = films_.back().scene;
-        if (first_sample(scene) + frames_ * scene.samples_per_frame > scene.samples)
+        if (first_frame(scene) + frames_ > scene.frames.count())
             throw entry.fault("scene", "is too short: from {} s on it has fewer than {} frames", from_s_, frames_);
     }
 
-    long first_sample(const Scene& scene) const {
-        return std::lround(from_s_ * scene.fps.value()) * scene.samples_per_frame;
+    long first_frame(const Scene& scene) const {
+        const auto sample = std::lround(from_s_ * scene.preset.sample_hz.value());
+        return scene.frames.first_from(sample * scene.frames.ticks_per_sample);
     }
 
     const FilmToEncode& film_of(std::size_t trial) const { return films_[trial / tried_.size()]; }
@@ -269,14 +270,16 @@ private:
     }
 
     RecordedFrames record(const Scene& scene, const std::atomic<bool>& stop) const {
-        const long first = first_sample(scene), last = first + frames_ * scene.samples_per_frame;
+        const auto& frames = scene.frames;
+        const long first = first_frame(scene), end = first + frames_;
         Composer composer(scene, stop);
-        Simulation simulation(scene, last, true, stop);
+        Simulation simulation(scene, frames.tick(end - 1) / frames.ticks_per_sample + 2, true, stop);
         Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, stop);
         RecordedFrames recorded{scene.preset.video.size, {}};
-        for (long sample = 0; sample < last; ++sample) {
-            composer.add(simulation.next());
-            if (sample < first || (sample - first) % scene.samples_per_frame != 0) continue;
+        for (long frame = 0; frame < end;) {
+            const auto snapshot = simulation.next();
+            composer.add(snapshot);
+            if (snapshot.pair.tick != frames.tick(frame) || frame++ < first) continue;
             const auto& picture = renderer.draw(composer.frame(), stop);
             convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, recorded.frames.emplace_back());
         }
