@@ -1,5 +1,7 @@
 #include "film/bounds.hpp"
 
+#include "numeric/state.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +24,7 @@ bool is_needed(const Scene& scene) {
     return view || std::any_of(video.strips.begin(), video.strips.end(), fits_itself);
 }
 
-void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
+void add(MotionBounds& seen, const Scene& scene, const PairState& state, const Observation& side) {
     for (const auto& bob : side.bobs) {
         seen.left = std::min(seen.left, bob.x);
         seen.right = std::max(seen.right, bob.x);
@@ -32,6 +34,14 @@ void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
     const auto link = static_cast<std::size_t>(scene.preset.video.phase_link - 1);
     if (link < side.bobs.size()) seen.fastest = std::max(seen.fastest, std::abs(side.bobs[link].omega));
     for (const double force : side.tension) include(seen.rod_force, force);
+    const double kinetic = kinetic_energy(side.bobs);
+    auto& energies = seen.energies[&side == &state.a ? 0 : 1];
+    for (const double energy : {kinetic, side.energy - kinetic, side.energy}) include(energies, energy);
+    if (scene.a.has_angles && scene.b.has_angles)
+        for (const auto k : shown_links(side.bobs.size())) {
+            include(seen.angles, side.bobs[k].theta * 180 / pi);
+            include(seen.rates, side.bobs[k].omega * 180 / pi);
+        }
 }
 
 /// With a margin of a tenth; includes zero.
@@ -55,15 +65,23 @@ double farthest(const Scene& scene, const PairState& start) {
     const std::array available{energy(scene.a, start.a), energy(scene.b, start.b)};
     double squares = std::pow(fastest(scene.a, available[0]) + fastest(scene.b, available[1]), 2);
     std::array<double, 2> below{};  // m, of the bob that hangs
-    for (std::size_t k = 0; k < scene.a.mass.size(); ++k) {
+    const auto add = [&](const std::array<double, 2>& mass) {
         double swing = 0;
         for (std::size_t s = 0; s < 2; ++s) {
-            below[s] += static_cast<double>(sides[s]->motion.chain->length[k]);
-            const double rise = available[s] / (sides[s]->mass[k] * sides[s]->gravity);
+            const double rise = available[s] / (mass[s] * sides[s]->gravity);
             swing += std::sqrt(2 * below[s] * std::min(rise, 2 * below[s]));
         }
         const double apart = std::min(swing + std::abs(below[0] - below[1]), below[0] + below[1]);
-        squares += apart * apart + std::pow(scene.a.mass[k] - scene.b.mass[k], 2);
+        squares += apart * apart + std::pow(mass[0] - mass[1], 2);
+    };
+    if (differ_in_kind(scene.preset.a, scene.preset.b)) {
+        below = {scene.a.reach, scene.b.reach};
+        add({scene.a.mass.back(), scene.b.mass.back()});
+        return std::sqrt(squares);
+    }
+    for (std::size_t k = 0; k < scene.a.mass.size(); ++k) {
+        for (std::size_t s = 0; s < 2; ++s) below[s] += static_cast<double>(sides[s]->motion.chain->length[k]);
+        add({scene.a.mass[k], scene.b.mass[k]});
     }
     return std::sqrt(squares);
 }
@@ -75,7 +93,9 @@ Range fitted_distance(const Scene& scene, const std::optional<MotionBounds>& see
     const bool is_mechanism = scene.a.motion.model == Model::mechanism || scene.b.motion.model == Model::mechanism;
     const double most = is_mechanism && seen ? 1.5 * seen->largest_distance : farthest(scene, start),
                  high = std::isfinite(most) ? std::clamp(most, 1e-12, decades) : decades;
-    const double low = start.distance > 0 ? start.distance / 2 : high * 1e-8;
+    // unlike sides start together or apart, not a hair apart
+    const bool is_hair = start.distance > 0 && !differ_in_kind(scene.preset.a, scene.preset.b);
+    const double low = is_hair ? start.distance / 2 : high * (start.distance > 0 ? 1e-4 : 1e-8);
     const double top = std::pow(10, std::ceil(2 * std::log10(high)) / 2);  // a half or a whole decade
     return {std::clamp(std::pow(10, std::floor(std::log10(low))), top / decades, top / 10), top};
 }
@@ -87,6 +107,14 @@ Range fitted_error(const Scene& scene) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> shown_links(std::size_t count) {
+    constexpr std::size_t most = 3;
+    std::vector<std::size_t> shown;
+    for (std::size_t k = 0; k < count; ++k)
+        if (count <= most || k == 0 || k + 1 == count) shown.push_back(k);
+    return shown;
+}
 
 std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance) {
     if (state.sample == 0 || 20 * state.sample < scene.samples) return std::nullopt;
@@ -103,8 +131,8 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
     const double start_distance = state.distance;
     try {
         for (;;) {
-            add(seen, scene, state.a);
-            add(seen, scene, state.b);
+            add(seen, scene, state, state.a);
+            add(seen, scene, state, state.b);
             seen.largest_distance = std::max(seen.largest_distance, state.distance);
             if (const auto exponent = exponent_so_far(scene, state, start_distance)) include(seen.exponent, *exponent);
             if (state.sample == scene.samples) break;
@@ -145,6 +173,13 @@ Range fitted_range(StripKind kind, const Scene& scene, const std::optional<Motio
             return padded(seen ? seen->exponent : Range{});
         case StripKind::rod_force:
             return padded(seen ? seen->rod_force : Range{});
+        case StripKind::energies_a:
+        case StripKind::energies_b:
+            return padded(seen ? seen->energies[kind == StripKind::energies_a ? 0 : 1] : Range{});
+        case StripKind::angles:
+            return padded(seen ? seen->angles : Range{});
+        case StripKind::rates:
+            return padded(seen ? seen->rates : Range{});
         case StripKind::energy:
         case StripKind::rod_error:
             break;

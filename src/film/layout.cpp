@@ -70,6 +70,10 @@ float share_of(StripKind kind) {
             return 0.24f;
         case StripKind::exponent:
         case StripKind::rod_force:
+        case StripKind::energies_a:
+        case StripKind::energies_b:
+        case StripKind::angles:
+        case StripKind::rates:
             return 0.16f;
         case StripKind::energy:
         case StripKind::rod_error:
@@ -195,7 +199,8 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
     const float radius = px_per_m * static_cast<float>(std::max(view.width, view.height)) / 2;
     layout.reach = view.is_circle ? radius : 0;
     // the bobs of a long chain do not hide its rods; nor do those of an ensemble each other
-    const float link = view.is_circle ? radius / static_cast<float>(scene.a.mass.size()) : radius;
+    const float link =
+        view.is_circle ? radius / static_cast<float>(std::max(scene.a.mass.size(), scene.b.mass.size())) : radius;
     const float size = !view.is_circle || !scene.members.empty() ? 0.6f : 1;  // a mechanism has more to show
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), 0.8f);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
