@@ -36,9 +36,10 @@ std::vector<Override> overrides(const RenderOptions& options) {
     if (!options.format.empty())
         all.push_back({"video.format", fmt::format("\"{}\"", options.format), "--format " + options.format});
     if (!options.quality.empty() && options.quality != "standard") {
-        const bool draft = options.quality == "draft";
-        all.push_back({"video.preset", draft ? "\"ultrafast\"" : "\"slow\"", "--quality " + options.quality});
-        all.push_back({"video.crf", draft ? "26" : "14", "--quality " + options.quality});
+        const auto origin = "--quality " + options.quality;
+        if (options.quality == "draft") return all.push_back({"video.preview", "true", origin}), all;
+        all.push_back({"video.preset", "\"slow\"", origin});
+        all.push_back({"video.crf", "14", origin});
     }
     return all;
 }
@@ -72,7 +73,9 @@ void add_render(CLI::App& app) {
                     "mp4, webm, gif, apng or png (a sequence); the preset's where not given")
         ->type_name("FORMAT")
         ->check(CLI::IsMember({"mp4", "webm", "gif", "apng", "png"}));
-    command.add_option("--quality", options->quality, "draft (fast), standard (what the preset says) or best (slow)")
+    command
+        .add_option("--quality", options->quality,
+                    "draft (a quarter of the pixels, fast), standard (what the preset says) or best (slow)")
         ->type_name("QUALITY")
         ->check(CLI::IsMember({"draft", "standard", "best"}));
     add_gl_option(command, options->gl);

@@ -163,7 +163,7 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
         table.name = fmt::format("[{}]", key);
         return table;
     };
-    const std::vector<FieldTable> pair{scene, named(system, "system"), named(system, "a"), named(system, "b")};
+    std::vector<FieldTable> pair{scene, named(system, "system"), named(system, "a"), named(system, "b")};
     std::vector<FieldTable> all{named(top, "")};
     if (kind == pair_kind) {
         all.insert(all.end(), pair.begin(), pair.end());
@@ -176,6 +176,7 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
     }
     const auto figures = figure_tables();
     all = {named(figures[0], "")};
+    pair[0].fields.pop_back();  // columns of a film's table
     for (const auto& figure : figure_kinds()) {
         if (figure.name != kind) continue;
         if (figure.system == FigureKind::System::pair)

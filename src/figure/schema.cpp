@@ -64,9 +64,9 @@ Json value_schema(const ListedField& field) {
     if (is(type_words<double>())) return number;
     if (is(type_words<Rational>())) return ratio_schema(field.bounds);
     if (is(type_words<Speed>())) {
-        const auto ratio = ratio_schema(field.bounds), time = ratio_schema(not_negative);
-        const Json change{{"type", "array"}, {"items", {time, ratio}}, {"minItems", 2}, {"additionalItems", false}};
-        return {{"anyOf", {ratio, list_schema(change, 1, 0)}}};
+        const Json places{ratio_schema(not_negative), ratio_schema(changing_speeds)};
+        const Json change{{"type", "array"}, {"items", places}, {"minItems", 2}, {"additionalItems", false}};
+        return {{"anyOf", {ratio_schema(field.bounds), list_schema(change, 1, 0)}}};
     }
     if (is(type_words<std::vector<double>>()))
         return field.most > 0 ? list_schema(number, 1, field.most)
@@ -195,9 +195,12 @@ bool is_of_entries(const FieldTable& table) {
 Json kind_schema(std::string_view kind) {
     Json tables = Json::object();
     for (const auto& table : tables_of(kind)) {
-        const auto keys = with_keys(table);
-        const bool differs =
-            table.key() == "scene" || table.key() == "chart" || (table.key() == "system" && table.name == "[system]");
+        auto keys = with_keys(table);
+        const bool is_side = table.key() == "a" || table.key() == "b";
+        for (const auto* entries : {"particle", "constraint", "force"})
+            if (is_side) keys["properties"][entries] = Json::object();
+        const bool differs = is_side || table.key() == "scene" || table.key() == "chart" ||
+                             (table.key() == "system" && table.name == "[system]");
         if (table.key().empty())
             tables.update(keys["properties"]);
         else if (!differs)

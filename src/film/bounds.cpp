@@ -1,5 +1,7 @@
 #include "film/bounds.hpp"
 
+#include "numeric/state.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -30,7 +32,7 @@ bool is_needed(const Scene& scene) {
                                [&](StripKind kind) { return !video.ranges[static_cast<std::size_t>(kind)]; });
 }
 
-void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
+void add(MotionBounds& seen, const Scene& scene, const PairState& state, const Observation& side) {
     for (const auto& bob : side.bobs) {
         seen.left = std::min(seen.left, bob.x);
         seen.right = std::max(seen.right, bob.x);
@@ -40,6 +42,14 @@ void add(MotionBounds& seen, const Scene& scene, const Observation& side) {
     const auto link = static_cast<std::size_t>(scene.preset.video.phase_link - 1);
     if (link < side.bobs.size()) seen.fastest = std::max(seen.fastest, std::abs(side.bobs[link].omega));
     for (const double force : side.tension) include(seen.rod_force, force);
+    const double kinetic = kinetic_energy(side.bobs);
+    auto& energies = seen.energies[&side == &state.a ? 0 : 1];
+    for (const double energy : {kinetic, side.energy - kinetic, side.energy}) include(energies, energy);
+    if (scene.a.has_angles && scene.b.has_angles)
+        for (const auto k : shown_links(side.bobs.size())) {
+            include(seen.angles, side.bobs[k].theta * 180 / pi);
+            include(seen.rates, side.bobs[k].omega * 180 / pi);
+        }
 }
 
 /// With a margin of a tenth; includes zero.
@@ -99,6 +109,14 @@ void Spread::add(double value) {
     ++count;
 }
 
+std::vector<std::size_t> shown_links(std::size_t count) {
+    constexpr std::size_t most = 3;
+    std::vector<std::size_t> shown;
+    for (std::size_t k = 0; k < count; ++k)
+        if (count <= most || k == 0 || k + 1 == count) shown.push_back(k);
+    return shown;
+}
+
 std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance) {
     if (state.sample == 0 || 20 * state.sample < scene.samples) return std::nullopt;
     if (!(state.distance > 0 && start_distance > 0)) return std::nullopt;
@@ -115,8 +133,8 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
     const double energy_unit = std::max(scene.a.energy_unit, scene.b.energy_unit);
     try {
         for (;;) {
-            add(seen, scene, state.a);
-            add(seen, scene, state.b);
+            add(seen, scene, state, state.a);
+            add(seen, scene, state, state.b);
             if (start_distance > 0 || 50 * state.sample >= scene.samples) seen.distance.add(state.distance);
             for (const auto& [side, now] : {std::pair{&scene.a, &state.a}, {&scene.b, &state.b}}) {
                 if (side->conserves_energy) seen.energy_error.add(std::abs(now->energy_change) / energy_unit);
@@ -161,6 +179,13 @@ Range fitted_range(StripKind kind, const std::optional<MotionBounds>& seen) {
             return padded(seen ? seen->exponent : Range{});
         case StripKind::rod_force:
             return padded(seen ? seen->rod_force : Range{});
+        case StripKind::energies_a:
+        case StripKind::energies_b:
+            return padded(seen ? seen->energies[kind == StripKind::energies_a ? 0 : 1] : Range{});
+        case StripKind::angles:
+            return padded(seen ? seen->angles : Range{});
+        case StripKind::rates:
+            return padded(seen ? seen->rates : Range{});
         case StripKind::energy:
             return fitted_error(seen ? seen->energy_error : Spread{});
         case StripKind::rod_error:

@@ -2,9 +2,12 @@
 
 #include "scene/scene.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace doppel {
 
@@ -27,6 +30,8 @@ struct MotionBounds {
     double fastest = 0;               // rad/s, of the link that a phase panel shows
     Range exponent{0, 0};             // 1/s, so far
     Range rod_force{0, 0};            // N, where it was asked for
+    std::array<Range, 2> energies{{{0, 0}, {0, 0}}};  // J, kinetic, potential and total of each side
+    Range angles{0, 0}, rates{0, 0};                  // degrees, degrees/s, of all links that strips show
 };
 
 /// Of the whole motion, whichever frames are drawn: they are the same pixels alone as in the film. Nothing where the
@@ -35,6 +40,9 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
 
 /// ln(d/d0) / t, 1/s: nothing in the first twentieth of the scene, when it says nothing yet, or where a distance is 0.
 std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance);
+
+/// Of `count` links or rods in a strip: all of few, the first and the last of many.
+std::vector<std::size_t> shown_links(std::size_t count);
 
 /// The part of the plane that the pendulums' panels show, m.
 struct View {

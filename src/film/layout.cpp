@@ -153,7 +153,8 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
     const float radius = layout.panels.front().px_per_m * std::max(across, up) / 2;
     layout.reach = view.is_circle ? radius : 0;
     // the bobs of a long chain do not hide its rods
-    const float link = view.is_circle ? radius / static_cast<float>(scene.a.mass.size()) : radius;
+    const float link =
+        view.is_circle ? radius / static_cast<float>(std::max(scene.a.mass.size(), scene.b.mass.size())) : radius;
     // a mechanism has more to show; many members share the room of a few
     const float size = view.is_circle ? member_scale(scene.members.size()) : 0.6f;
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), 0.8f);
@@ -249,13 +250,23 @@ StripWords strip_words(StripKind kind, const Scene& scene) {
     switch (kind) {
         case StripKind::distance:
             return {plain ? "how far apart they are" : "state-space distance",
-                    scene.members.empty() ? "" : "first to last"};
+                    !scene.members.empty()                           ? "first to last"
+                    : differ_in_kind(scene.preset.a, scene.preset.b) ? "of the last masses"
+                                                                     : ""};
         case StripKind::exponent:
             return {"Lyapunov exponent", "so far, 1/s"};
         case StripKind::energy:
             return {"energy error", "of the potential range"};
         case StripKind::rod_error:
             return {"worst rod error, m", ""};
+        case StripKind::energies_a:
+            return {fmt::format("energy of {}, J", scene.preset.a.label.value_or("a")), ""};
+        case StripKind::energies_b:
+            return {fmt::format("energy of {}, J", scene.preset.b.label.value_or("b")), ""};
+        case StripKind::angles:
+            return {"angles, °", ""};
+        case StripKind::rates:
+            return {"angular rates, °/s", ""};
         case StripKind::rod_force:
             break;
     }

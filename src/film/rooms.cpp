@@ -67,6 +67,10 @@ float share_of(StripKind kind) {
             return 0.24f;
         case StripKind::exponent:
         case StripKind::rod_force:
+        case StripKind::energies_a:
+        case StripKind::energies_b:
+        case StripKind::angles:
+        case StripKind::rates:
             return 0.18f;
         case StripKind::energy:
         case StripKind::rod_error:

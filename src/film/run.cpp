@@ -32,6 +32,8 @@ std::vector<std::string> columns(const Scene& scene) {
         for (const char* name : {"energy_J", "energy_error", "length_error_m"}) add(name);
     }
     names.insert(names.end(), {"distance", "log_ratio"});
+    if (scene.preset.energy_columns)
+        names.insert(names.end(), {"a_kinetic_J", "a_potential_J", "b_kinetic_J", "b_potential_J"});
     return names;
 }
 
@@ -59,6 +61,12 @@ void PairTable::add(const PairState& state, double start_distance) {
     add_side(scene_.b, state.b, state.energy_error_b);
     csv_.add(state.distance);
     csv_.add(log_ratio(state.distance, start_distance));
+    for (const auto* seen : {&state.a, &state.b}) {
+        if (!scene_.preset.energy_columns) break;
+        const double kinetic = kinetic_energy(seen->bobs);
+        csv_.add(kinetic);
+        csv_.add(seen->energy - kinetic);
+    }
     csv_.end_row();
 }
 

@@ -1,6 +1,7 @@
 #include "film/bounds.hpp"
 #include "film/layer.hpp"
 #include "film/rooms.hpp"
+#include "numeric/state.hpp"
 #include "render/font.hpp"
 #include "render/stroke.hpp"
 #include "scene/captions.hpp"
@@ -17,15 +18,6 @@ namespace {
 void add_dashed_line(float x, const Area& area, float dash, float width, Color color, DisplayList& list) {
     for (float top = area.top; top < area.bottom; top += 2 * dash)
         list.push_back(vertical_line(x, top, std::min(top + dash, area.bottom), width, color));
-}
-
-/// The rods of a chain whose forces are shown: all of a short one, the first and the last of a long one.
-std::vector<std::size_t> shown_rods(std::size_t rods) {
-    constexpr std::size_t most = 3;
-    std::vector<std::size_t> shown;
-    for (std::size_t k = 0; k < rods; ++k)
-        if (rods <= most || k == 0 || k + 1 == rods) shown.push_back(k);
-    return shown;
 }
 
 /// What goes up in a strip: a line of its own for each.
@@ -61,6 +53,8 @@ private:
     }
     /// px between ticks of the time, at least.
     float time_spacing() const { return (strip_.area.width() < 400 * layout_.text ? 50 : 90) * layout_.text; }
+    template <class Value>
+    void add_links(std::size_t side, std::size_t count, const Value& value, std::vector<StripValue>& values) const;
     void draw_axes(DisplayList& list) const;
     void draw_horizon(DisplayList& list) const;
     void draw_time_labels(DisplayList& list) const;
@@ -98,16 +92,36 @@ std::vector<StripValue> StripLayer::values() const {
             values.push_back(
                 {state_.side(side).conserves_energy ? std::optional(error) : std::nullopt, color, widths[side]});
         }
-        if (strip_.kind != StripKind::rod_force) continue;
-        const auto rods = shown_rods(seen.tension.size());
-        for (const auto rod : rods) {
-            // the inner rods paler
-            const float pale = rods.size() < 2 || rod + 1 == seen.tension.size() ? 0 : 0.6f;
-            values.push_back({seen.tension[rod], mixed(color, theme_.text, pale), 0.8 * width,
-                              fmt::format("{}{}", side == 0 ? "a" : "b", rod + 1)});
+        if (strip_.kind == (side == 0 ? StripKind::energies_a : StripKind::energies_b)) {
+            const double kinetic = kinetic_energy(seen.bobs);
+            values.push_back({kinetic, color, 0.8 * width, "kinetic"});
+            values.push_back({seen.energy - kinetic, mixed(color, theme_.background, 0.45f), 0.8 * width, "potential"});
+            values.push_back({seen.energy, theme_.text, 0.64 * width, "total"});
         }
+        if (strip_.kind == StripKind::rod_force)
+            add_links(
+                side, seen.tension.size(), [&](std::size_t k) { return seen.tension[k]; }, values);
+        constexpr double degree = pi / 180;
+        if (strip_.kind == StripKind::angles)
+            add_links(
+                side, seen.bobs.size(), [&](std::size_t k) { return seen.bobs[k].theta / degree; }, values);
+        if (strip_.kind == StripKind::rates)
+            add_links(
+                side, seen.bobs.size(), [&](std::size_t k) { return seen.bobs[k].omega / degree; }, values);
     }
     return values;
+}
+
+/// A line for each link or rod that is shown, the inner ones paler.
+template <class Value>
+void StripLayer::add_links(std::size_t side, std::size_t count, const Value& value,
+                           std::vector<StripValue>& values) const {
+    const auto links = shown_links(count);
+    for (const auto k : links) {
+        const float pale = links.size() < 2 || k + 1 == count ? 0 : 0.6f;
+        values.push_back({value(k), mixed(theme_.sides[side], theme_.text, pale), 0.8 * style_.width.trace,
+                          fmt::format("{}{}", side == 0 ? "a" : "b", k + 1)});
+    }
 }
 
 void StripLayer::draw_axes(DisplayList& list) const {

@@ -140,22 +140,39 @@ std::vector<Statement> statements(const Scene& scene, bool of_b) {
     return all;
 }
 
-std::string system_words(const SideSpec& side) {
-    if (!side.particles.empty()) return fmt::format("mechanisms of {} masses", side.particles.size());
+/// Of several, or of one.
+std::string system_words(const SideSpec& side, std::string_view plural = "s") {
+    if (!side.particles.empty()) {
+        const auto masses = side.particles.size();
+        return fmt::format("mechanism{} of {}", plural, masses == 1 ? "one mass" : fmt::format("{} masses", masses));
+    }
     switch (side.links()) {
         case 1:
-            return "pendulums";
+            return fmt::format("pendulum{}", plural);
         case 2:
-            return "double pendulums";
+            return fmt::format("double pendulum{}", plural);
         case 3:
-            return "triple pendulums";
+            return fmt::format("triple pendulum{}", plural);
         default:
-            return fmt::format("chains of {} links", side.links());
+            return fmt::format("chain{} of {} links", plural, side.links());
     }
 }
 
 std::string joined(const std::vector<std::string>& parts) {
     return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// Of sides that differ in kind: what each is, and how it starts.
+std::array<SideCaptions, 2> captions_of_kinds(const Scene& scene, const std::array<std::vector<Statement>, 2>& all) {
+    std::array<SideCaptions, 2> words;
+    for (std::size_t side = 0; side < 2; ++side) {
+        const auto& spec = side == 0 ? scene.preset.a : scene.preset.b;
+        std::vector<std::string> start;
+        for (const auto& statement : all[side])
+            if (statement.is_start_angle) start.push_back(statement.text);
+        words[side] = {spec.label.value_or(system_words(spec, "")), spec.note.value_or(joined(start))};
+    }
+    return words;
 }
 
 }  // namespace
@@ -186,6 +203,7 @@ std::string roughly(double value) {
 std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
     const std::array all{statements(scene, false), statements(scene, true)};
     std::array<SideCaptions, 2> words;
+    if (differ_in_kind(scene.preset.a, scene.preset.b)) return captions_of_kinds(scene, all);
     for (std::size_t side = 0; side < 2; ++side) {
         std::vector<std::string> differs, start;
         for (std::size_t i = 0; i < all[side].size(); ++i) {
@@ -231,7 +249,11 @@ std::string scene_caption(const Scene& scene, Wording wording) {
     if (control_words(scene.a) == control_words(scene.b)) common.push_back(control_words(scene.a));
     if (wording == Wording::plain) common.clear();
     const auto number = scene.members.empty() ? std::string("two") : grouped(static_cast<long>(scene.members.size()));
-    return fmt::format("{} {}{}{}{}", number, system_words(scene.preset.a),
+    const auto one = [](const SideSpec& side) { return system_words(side, ""); };
+    const auto systems = differ_in_kind(scene.preset.a, scene.preset.b)
+                             ? fmt::format("a {} and a {}", one(scene.preset.a), one(scene.preset.b))
+                             : fmt::format("{} {}", number, system_words(scene.preset.a));
+    return fmt::format("{}{}{}{}", systems,
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));
 }

@@ -118,6 +118,7 @@ std::vector<FieldTable> film_tables() {
     top(subtitle_field, preset.subtitle);
     scene(kind_field, std::string(pair_kind));
     clock_fields(scene, preset);
+    column_fields(scene, preset);
     chain_fields(system, side);
     FieldTable gravity{"[system]"}, other_gravity = gravity;
     gravity_field(gravity, side);
@@ -132,6 +133,7 @@ std::vector<FieldTable> film_tables() {
         {"name", "text", "", "by which constraints and forces call it", std::string(must_be_given)});
     part_fields(particle, released);
     video(size_field, preset.video.size);
+    video(preview_field, false);
     FieldTable format{"[video]"}, other_format = format;
     format_fields(format, preset.video);
     format_fields(other_format, webm);

@@ -83,10 +83,6 @@ void check_changes(Preset& preset, const TomlReader& video) {
         if (changes[i].at_s.value() <= changes[i - 1].at_s.value() || changes[i].at_s.value() > end)
             throw video.fault("speed", "must change at times that rise, up to {} s; {} s comes after {} s", end,
                               changes[i].at_s.value(), changes[i - 1].at_s.value());
-    constexpr double slowest = 0.001, fastest = 1000;
-    for (const auto& change : changes)
-        if (const double speed = change.speed.value(); speed < slowest || speed > fastest)
-            throw video.fault("speed", "must be from {} to {}; one is {}", slowest, fastest, speed);
     if (!preset.video.fps)
         preset.video.fps = preset.video.format == FilmFormat::gif ? Rational{30, 1} : preset.sample_hz;
     const double fps = preset.video.fps->value();

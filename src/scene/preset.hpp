@@ -138,9 +138,14 @@ struct Preset {
     std::optional<std::string> subtitle;  // in place of what the scene says of itself
     Rational duration_s{30, 1};
     Rational sample_hz{120, 1};
+    bool energy_columns = false;  // of the table: kinetic and potential energies
     SideSpec a, b;
     VideoSpec video;
 };
+
+/// Whether the sides differ in kind, chains of unlike length or a chain beside a mechanism: then only what hangs last can
+/// be compared.
+bool differ_in_kind(const SideSpec& a, const SideSpec& b);
 
 /// A value from the command line that goes on top of a preset: "system.step_s" = "\"1/1000\"", given by `origin`.
 struct Override {

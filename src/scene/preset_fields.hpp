@@ -35,6 +35,12 @@ void clock_fields(Visit& visit, Scene& preset) {
     visit({"sample_hz", "samples a second; divides the steps a second", "Hz", positive}, preset.sample_hz);
 }
 
+/// What the table of a film has besides; of [scene].
+template <class Visit, class Scene>
+void column_fields(Visit& visit, Scene& preset) {
+    visit({"energy_columns", "kinetic and potential energies as last columns of the CSV"}, preset.energy_columns);
+}
+
 /// The links of a chain and their sizes.
 template <class Visit, class Side>
 void link_fields(Visit& visit, Side& side) {
@@ -156,6 +162,10 @@ void part_fields(Visit& visit, Part& part, std::string_view kind) {
 
 inline constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL takes, which says so itself
 inline const Field size_field{"size", "width and height", "px", picture_sizes, "", {}, "width and height"};
+
+inline const Field preview_field{"preview",
+                                 "for trying out: half as wide and high (unless the command line gives a size), fast "
+                                 "and coarse encoding"};
 
 template <class Visit>
 void theme_field(Visit& visit, auto& theme) {

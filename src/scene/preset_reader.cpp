@@ -36,8 +36,16 @@ void check_layout(const Preset& preset, const TomlReader& video) {
     const bool chains = preset.a.particles.empty() && preset.b.particles.empty();
     if (!chains && (layout == Arrangement::ensemble || layout == Arrangement::phase))
         throw video.fault("layout", "\"{}\" is of chains; the sides are mechanisms of particles", name);
+    for (const auto strip : preset.video.strips)
+        if ((strip == StripKind::angles || strip == StripKind::rates) && !chains)
+            throw video.fault("panels", "\"{}\" is of chains; the sides are mechanisms of particles", name_of(strip));
+    if (layout == Arrangement::ensemble && differ_in_kind(preset.a, preset.b))
+        throw video.fault("layout",
+                          "\"ensemble\" goes from one side to the other: both have as many links; they have {} "
+                          "and {}",
+                          preset.a.links(), preset.b.links());
     if (layout == Arrangement::phase) {
-        const long links = static_cast<long>(preset.a.links());
+        const long links = static_cast<long>(std::min(preset.a.links(), preset.b.links()));
         if (preset.video.phase_link > links)
             throw video.fault("phase_link", "must be from 1 to {}, as there are links; it is {}", links,
                               preset.video.phase_link);
@@ -116,7 +124,18 @@ void read_style(TomlReader& table, VideoSpec& video) {
                           *video.glow_px);
 }
 
+/// A quarter of the pixels and the least effort, but what the command line says stays.
+void make_preview(TomlReader& table, VideoSpec& video) {
+    const auto half = [](int pixels) { return std::max(pixels / 4 * 2, static_cast<int>(picture_sizes.low)); };
+    if (!table.from_command_line("size")) video.size = {half(video.size.width), half(video.size.height)};
+    if (!video.is_encoded()) return;
+    if (!table.from_command_line("preset")) video.preset = "ultrafast";
+    if (!table.from_command_line("crf")) video.crf = 26;
+}
+
 void read_video(TomlReader& table, VideoSpec& video) {
+    bool is_preview = false;
+    table(preview_field, is_preview);
     table(size_field, video.size);
     format_fields(table, video);
     check_transparent(table, video);
@@ -125,6 +144,7 @@ void read_video(TomlReader& table, VideoSpec& video) {
     check_layout(table, video);
     check_size(table, video);
     read_style(table, video);
+    if (is_preview) make_preview(table, video);
     table.finish();
 }
 
@@ -168,10 +188,11 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
         auto a = document.table(*level, "a"), b = document.table(*level, "b");
         read_side(a, preset.a, is_film);
         read_side(b, preset.b, is_film);
-        if (preset.a.links() != preset.b.links())
+        if (!is_film && preset.a.links() != preset.b.links())
             throw b.fault("links",
                           "must be that of the other side, so that the two can be compared; they are {} and {}",
                           preset.a.links(), preset.b.links());
+        if (is_film && preset.a.particles.empty() != preset.b.particles.empty()) continue;
         check_particles(preset.a, preset.b, a);
         check_particles(preset.b, preset.a, b);
     }
@@ -209,6 +230,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     if (read_kind(scene) != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     clock_fields(scene, preset);
+    column_fields(scene, preset);
     scene.finish();
     read_sides(document, {&top}, preset, true);
     auto video = document.table(top, "video");

@@ -98,6 +98,7 @@ std::string side_toml(const std::string& name, const SideSpec& side) {
 std::string resolved_pair(const Preset& preset) {
     TomlWriter writer;
     clock_fields(writer, preset);
+    if (preset.energy_columns) column_fields(writer, preset);
     return writer.text() + resolved_sides(preset);
 }
 

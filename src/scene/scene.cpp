@@ -64,6 +64,7 @@ void check_precision(const Scene& scene) {
         if (side->motion.precision == Precision::in_double) check_droplets(scene, *side);
     if (scene.a.motion.precision == Precision::in_quad && scene.b.motion.precision == Precision::in_quad) return;
     const auto &a = scene.preset.a, &b = scene.preset.b;
+    if (differ_in_kind(a, b)) return;
     check_rounding(scene, "mass_kg", a.mass_kg, b.mass_kg);
     check_rounding(scene, "length_m", a.length_m, b.length_m);
     check_rounding(scene, "angle_deg", a.angle_deg, b.angle_deg);
@@ -164,12 +165,6 @@ std::optional<std::string> not_finite(const Observation& seen, bool has_angles) 
     return std::nullopt;
 }
 
-double kinetic_energy(const Bobs<double>& bobs) {
-    double sum = 0;
-    for (const auto& bob : bobs) sum += 0.5 * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
-    return sum;
-}
-
 /// Errors say whose they are.
 std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
     try {
@@ -180,6 +175,12 @@ std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char nam
 }
 
 }  // namespace
+
+double kinetic_energy(const Bobs<double>& bobs) {
+    double sum = 0;
+    for (const auto& bob : bobs) sum += 0.5 * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
+    return sum;
+}
 
 SideRun::SideRun(const Scene& scene, const Side& side, char name)
     : scene_(scene), side_(side), name_(name), motion_(motion_of(scene, side, name)) {
@@ -247,8 +248,11 @@ PairState PairRun::advance_to(long tick, const std::atomic<bool>& stop) {
     now.energy_error_a = a_.energy_error(now.a);
     now.energy_error_b = b_.energy_error(now.b);
     const bool exact = !now.a.exact.empty() && !now.b.exact.empty();
-    now.distance = exact ? static_cast<double>(state_space_distance(now.a.exact, now.b.exact))
-                         : state_space_distance(now.a.bobs, now.b.bobs);
+    const auto distance = [&](const auto& a, const auto& b) {
+        if (!differ_in_kind(scene_.preset.a, scene_.preset.b)) return static_cast<double>(state_space_distance(a, b));
+        return static_cast<double>(state_space_distance(compared_bobs(scene_, a), compared_bobs(scene_, b)));
+    };
+    now.distance = exact ? distance(now.a.exact, now.b.exact) : distance(now.a.bobs, now.b.bobs);
     return now;
 }
 
@@ -258,8 +262,9 @@ void check_distance(const Scene& scene, const PairState& state) {
         std::string what;
         double a = 0, b = 0;
     } worst;
-    for (std::size_t i = 0; i < state.a.bobs.size(); ++i) {
-        const auto &a = state.a.bobs[i], &b = state.b.bobs[i];
+    const auto all_a = compared_bobs(scene, state.a.bobs), all_b = compared_bobs(scene, state.b.bobs);
+    for (std::size_t i = 0; i < all_a.size(); ++i) {
+        const auto &a = all_a[i], &b = all_b[i];
         const auto look = [&](const char* what, double of_a, double of_b) {
             if (std::abs(of_a - of_b) > std::abs(worst.a - worst.b))
                 worst = {fmt::format("{} of mass {}", what, i + 1), of_a, of_b};

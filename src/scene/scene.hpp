@@ -103,6 +103,9 @@ struct BreakDown : Error {
     long sample;  // the first that is wrong
 };
 
+/// ½ Σ m v², J.
+double kinetic_energy(const Bobs<double>& bobs);
+
 /// Steps one side from sample to sample, and watches it.
 class SideRun {
 public:
@@ -132,6 +135,12 @@ private:
     long tick_ = -1;
 };
 
+/// What of a side's masses is compared with the other's: all, or the last one where the sides differ in kind.
+template <class Scalar>
+Bobs<Scalar> compared_bobs(const Scene& scene, const Bobs<Scalar>& bobs) {
+    return differ_in_kind(scene.preset.a, scene.preset.b) ? Bobs<Scalar>{bobs.back()} : bobs;
+}
+
 /// Throws Error where the sides are so far apart that their distance is out of the range of a double; it names the
 /// number that makes it so. Exit 2 at the start, exit 3 later.
 void check_distance(const Scene& scene, const PairState& state);
@@ -140,7 +149,10 @@ void check_distance(const Scene& scene, const PairState& state);
 class PairRun {
 public:
     explicit PairRun(const Scene& scene)
-        : ticks_per_sample_(scene.frames.ticks_per_sample), a_(scene, scene.a, 'a'), b_(scene, scene.b, 'b') {}
+        : scene_(scene),
+          ticks_per_sample_(scene.frames.ticks_per_sample),
+          a_(scene, scene.a, 'a'),
+          b_(scene, scene.b, 'b') {}
 
     /// Sample 0, then 1, 2, … Throws as SideRun does.
     PairState next(const std::atomic<bool>& stop);
@@ -150,6 +162,7 @@ public:
     Effort effort_b() const { return b_.effort(); }
 
 private:
+    const Scene& scene_;
     long ticks_per_sample_;
     SideRun a_, b_;
     long tick_ = -1;

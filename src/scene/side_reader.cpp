@@ -149,6 +149,11 @@ void SideSpec::set_links(std::size_t links) {
     omega_deg_per_s.assign(links, 0);
 }
 
+bool differ_in_kind(const SideSpec& a, const SideSpec& b) {
+    if (a.particles.empty() != b.particles.empty()) return true;
+    return a.particles.empty() ? a.links() != b.links() : a.particles.size() != b.particles.size();
+}
+
 void read_release(TomlReader& table, SideSpec& side) {
     chain_fields(table, side);
     gravity_field(table, side);

@@ -16,15 +16,22 @@ constexpr std::string_view command_line = "--";
 
 /// What keeps a text from being drawn; nothing where the font has all of its letters.
 std::optional<std::string> not_drawable(std::string_view text) {
-    const auto lacking = missing_character(text);
-    if (lacking.empty()) return std::nullopt;
-    auto rest = lacking;
-    const auto character = next_character(rest);
-    const auto number = fmt::format("U+{:04X}", static_cast<unsigned>(character));
-    if (is_control(character)) return fmt::format("holds the control character {}, which cannot be drawn", number);
+    std::vector<std::string> letters;
+    constexpr std::size_t most = 8;  // that are named
+    for (auto lacking = missing_character(text); !lacking.empty() && letters.size() <= most;
+         lacking = missing_character(text)) {
+        auto after = lacking;
+        const auto character = next_character(after);
+        const auto number = fmt::format("U+{:04X}", static_cast<unsigned>(character));
+        if (is_control(character)) return fmt::format("holds the control character {}, which cannot be drawn", number);
+        auto letter = letters.size() == most ? "…" : fmt::format("\"{}\" ({})", lacking, number);
+        if (std::find(letters.begin(), letters.end(), letter) == letters.end()) letters.push_back(std::move(letter));
+        text.remove_prefix(static_cast<std::size_t>(lacking.data() + lacking.size() - text.data()));
+    }
+    if (letters.empty()) return std::nullopt;
     return fmt::format(
-        "holds \"{}\" ({}), which the built-in font lacks; it has Latin and Greek letters and signs of mathematics",
-        lacking, number);
+        "holds {}, which the built-in font lacks; it has Latin and Greek letters and signs of mathematics",
+        fmt::join(letters, ", "));
 }
 
 }  // namespace

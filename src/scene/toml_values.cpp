@@ -266,7 +266,7 @@ void TomlReader::read(const Field& field, const toml::node& node, Speed& into) {
         if (!pair || pair->size() != 2) throw fault(field.key, "{}; {} is none", form, shown(element));
         auto& [at_s, speed] = into.changes.emplace_back();
         read({.key = field.key, .bounds = not_negative}, *pair->get(0), at_s);
-        read(field, *pair->get(1), speed);
+        read({.key = field.key, .bounds = changing_speeds}, *pair->get(1), speed);
     }
 }
 

@@ -30,17 +30,20 @@ inline constexpr auto names_of<Arrangement> = std::to_array<std::string_view>({"
                                                                                "phase", "portrait"});
 
 /// What a strip below the pendulums shows over time.
-enum class StripKind { distance, exponent, energy, rod_error, rod_force };
-inline constexpr std::size_t strip_kinds = 5;
+/// "energy" is the error of the energy; "energies" are kinetic, potential and total.
+enum class StripKind { distance, exponent, energy, rod_error, rod_force, energies_a, energies_b, angles, rates };
+inline constexpr std::size_t strip_kinds = 9;
 template <>
 inline constexpr auto names_of<StripKind> = std::to_array<std::string_view>({"distance", "exponent", "energy",
-                                                                             "rod-error", "rod-force"});
+                                                                             "rod-error", "rod-force", "energies-a",
+                                                                             "energies-b", "angles", "rates"});
 /// The keys of their axes.
 inline constexpr std::array<std::string_view, strip_kinds> range_keys{
-    "distance_range", "exponent_range", "energy_range", "rod_error_range", "rod_force_range"};
+    "distance_range",   "exponent_range",   "energy_range", "rod_error_range", "rod_force_range",
+    "energies_a_range", "energies_b_range", "angles_range", "rates_range"};
 /// Those whose axis goes by powers of ten.
 constexpr bool is_logarithmic(StripKind kind) {
-    return kind != StripKind::exponent && kind != StripKind::rod_force;
+    return kind == StripKind::distance || kind == StripKind::energy || kind == StripKind::rod_error;
 }
 
 /// What a phase panel shows: rates over angles as a path, or the points of a Poincaré section (θ1 passing the downward
@@ -111,6 +114,9 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
 
 /// What a film's picture says around its pendulums; "credit": Doppel's name on the end card.
 inline constexpr auto shown_parts = std::to_array<std::string_view>({"title", "subtitle", "clock", "labels", "credit"});
+
+/// The speeds that a film may change to.
+inline constexpr auto changing_speeds = from_to(0.001, 1000);
 
 /// Seconds of motion a second of film: one speed; or from each of some times on another, eased (scene/frame_times.hpp).
 struct Speed {

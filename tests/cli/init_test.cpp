@@ -49,7 +49,7 @@ TEST(Init, EachKeyCanBeTakenIntoUse) {
     }
     EXPECT_GT(keys, 50u);
     // those that are for other values of other keys
-    EXPECT_EQ(refused, (std::set<std::string>{"codec", "members", "phase", "phase_link", "tolerance"}));
+    EXPECT_EQ(refused, (std::set<std::string>{"codec", "members", "phase", "phase_link", "speed_ease_s", "tolerance"}));
 }
 
 TEST(Init, LeavesWhatIsThere) {

@@ -42,6 +42,13 @@ private:
         if (keyword == "pattern")
             return !value.is_string() ||
                    std::regex_search(value.get<std::string>(), std::regex(wanted.get<std::string>()));
+        if (keyword == "items" && wanted.is_array()) {  // of each place
+            for (std::size_t i = 0; value.is_array() && i < std::min(wanted.size(), value.size()); ++i)
+                if (!accepts(wanted[i], value[i])) return false;
+            return true;
+        }
+        if (keyword == "additionalItems" && wanted == false)
+            return !value.is_array() || value.size() <= schema["items"].size();
         if (keyword == "items")
             return !value.is_array() ||
                    std::all_of(value.begin(), value.end(), [&](const Json& one) { return accepts(wanted, one); });

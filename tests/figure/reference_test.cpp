@@ -47,6 +47,7 @@ TEST(Reference, ListsEveryKeyOfThePresets) {
             const auto part = table.substr(table.find('.') + 1);
             const bool is_side = part == "a" || part == "b" || part == "system";
             auto keys = listed_keys(tables, is_side ? "[system], [a], [b]" : "[" + table + "]");
+            if (part == "a" || part == "b") keys.merge(listed_keys(tables, "[a], [b]"));
             keys.merge(listed_keys(tables, "[[system." + part + "]]"));
             keys.merge(listed_keys(tables, "[[" + table + "]]"));
             EXPECT_TRUE(keys.contains(match[1]) || match[1] == "kind" || match[1] == "name")

@@ -21,6 +21,8 @@ inline void PrintTo(const RefusedFigure& c, std::ostream* out) {
 
 inline const std::vector<RefusedFigure> refused_figures_sweep{
     RefusedFigure{"sweep", "[sweep]\nstep = 0", ":4:1: [sweep] step", {"must be > 0; it is 0"}},
+    RefusedFigure{"sweep", "[b]\nlinks = 3", ":4:1: [b] links", {"must be that of the other side", "they are 2 and 3"}},
+    RefusedFigure{"sweep", "[b]\nlabel = \"x\"", ":4:1: [b] has no \"label\"", {}},
     RefusedFigure{"sweep", "[sweep]\nstep = -0.5", ":4:1: [sweep] step", {"must be > 0; it is -0.5"}},
     RefusedFigure{"sweep", "[sweep]\nfrom = 10\nto = 5", ":5:1: [sweep] to", {"it is 5"}},
     RefusedFigure{"sweep", "[sweep]\nto = 1e12", ":4:1: [sweep] to", {"it is 1000000000000"}},

@@ -5,6 +5,7 @@
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
 #include "output/written.hpp"
+#include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -100,6 +101,30 @@ TEST(Run, TableHasTheColumnsOfTheContract) {
     EXPECT_EQ(first.back(), "0");  // ln(d0/d0)
     EXPECT_EQ(last[0], "60");
     EXPECT_EQ(last[1], "0.5");
+}
+
+TEST(Run, TableHasTheEnergiesLastWhereTheyAreAskedFor) {
+    const auto out = fresh_folder();
+    render(small({"scene.energy_columns=true"}), {.out = out, .pictures = false});
+    render(small(), {.out = out / "plain", .pictures = false});
+    const auto lines = lines_of(out / "butterfly/butterfly.csv"),
+               plain = lines_of(out / "plain/butterfly/butterfly.csv");
+    ASSERT_EQ(lines.size(), plain.size());
+    EXPECT_EQ(lines[0], plain[0] + ",a_kinetic_J,a_potential_J,b_kinetic_J,b_potential_J");
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+        EXPECT_TRUE(lines[k].starts_with(plain[k] + ",")) << k;  // old columns as they were
+        const auto cells = cells_of(lines[k]);
+        const auto at = [&](std::size_t from_end) { return std::stod(cells[cells.size() - from_end]); };
+        // m g (y1 + y2) of side a, and ½ m v²
+        const auto cell = [&](std::size_t column) { return std::stod(cells[column]); };
+        EXPECT_NEAR(at(3), 9.8 * (cell(7) + cell(11)), 1e-12) << k;  // measured 4e-15
+        EXPECT_NEAR(at(4), 0.5 * (cell(8) * cell(8) + cell(9) * cell(9) + cell(12) * cell(12) + cell(13) * cell(13)),
+                    1e-12)
+            << k;
+    }
+    const auto again =
+        read_preset({"x", "x.toml", resolved_toml(small({"scene.energy_columns=true"}).preset), "x.toml"});
+    EXPECT_TRUE(again.energy_columns);
 }
 
 TEST(Run, TableLeavesTheLogRatioEmptyWhereThePairStartsAsOne) {

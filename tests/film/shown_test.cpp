@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 namespace doppel {
 namespace shown_test {
 
@@ -39,6 +42,54 @@ TEST(Shown, WithoutLabelsOrHeaderPendulumsGetTheirRoom) {
         EXPECT_LT(none.panels[0].area.top, all.panels[0].area.top) << preset;
         EXPECT_GE(none.panels[0].px_per_m, all.panels[0].px_per_m) << preset;
     }
+}
+
+TEST(Shown, StripsOfEnergiesAnglesAndRatesHoldTheMotion) {
+    const auto scene = scene_of("butterfly", {"video.panels=[\"energies-a\", \"energies-b\", \"angles\", \"rates\"]",
+                                              "scene.duration_s=12", "a.label=\"left\""});
+    Composer composer(scene);
+    const auto layout = make_layout(scene);
+    ASSERT_EQ(layout.strips.size(), 4u);
+    std::array<Range, 4> seen{{{0, 0}, {0, 0}, {0, 0}, {0, 0}}};
+    const auto see = [&](std::size_t strip, double value) {
+        seen[strip] = {std::min(seen[strip].low, value), std::max(seen[strip].high, value)};
+    };
+    for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
+        composer.add(snapshot);
+        for (const std::size_t side : {0, 1}) {
+            const auto& bobs = (side == 0 ? snapshot.pair.a : snapshot.pair.b).bobs;
+            double kinetic = 0, potential = 0;
+            for (const auto& bob : bobs) {
+                kinetic += 0.5 * (bob.vx * bob.vx + bob.vy * bob.vy);
+                potential += 9.8 * bob.y;
+                see(2, bob.theta * 180 / pi);
+                see(3, bob.omega * 180 / pi);
+            }
+            see(side, kinetic);
+            see(side, potential);
+        }
+    });
+    for (std::size_t k = 0; k < 4; ++k) {
+        // the axis is a tenth longer at each end
+        const double width = seen[k].high - seen[k].low;
+        EXPECT_NEAR(layout.strips[k].value.low, seen[k].low - width / 10, 1e-6 * width) << k;
+        EXPECT_NEAR(layout.strips[k].value.high, seen[k].high + width / 10, 1e-6 * width) << k;
+    }
+    std::vector<std::string> words;
+    std::size_t curves = 0;
+    for (const auto& list : {composer.backdrop(), composer.frame()})
+        for (const auto& item : list) {
+            if (const auto* label = std::get_if<Label>(&item)) words.push_back(label->text);
+            curves += std::holds_alternative<Stroke>(item) ? 1 : 0;
+        }
+    EXPECT_EQ(curves, 3u + 3 + 4 + 4);
+    for (const char* word : {"energy of left, J", "energy of b, J", "kinetic", "potential", "total", "angles, °",
+                             "angular rates, °/s", "a1", "b2"})
+        EXPECT_NE(std::find(words.begin(), words.end(), word), words.end()) << word;
+    EXPECT_NE(error_of([] {
+                  scene_of("springs", {"video.panels=[\"rates\"]"});
+              }).second.find("[video] panels \"rates\" is of chains"),
+              std::string::npos);
 }
 
 }  // namespace shown_test

@@ -188,6 +188,9 @@ TEST(PresetText, WhatIsDrawnHasLettersOfTheFont) {
     const std::string lacks =
         "holds \"双\" (U+53CC), which the built-in font lacks; it has Latin and Greek letters and signs of mathematics";
     EXPECT_EQ(refusal("\ntitle = \"a 双\""), "x.toml:2:1: title " + lacks);
+    EXPECT_EQ(refusal("title = \"双摆 🎉双\""),
+              "x.toml:1:1: title holds \"双\" (U+53CC), \"摆\" (U+6446), \"🎉\" (U+1F389), which the built-in font "
+              "lacks; it has Latin and Greek letters and signs of mathematics");
     EXPECT_EQ(refusal("title = \"a\\u007fb\""),
               "x.toml:1:1: title holds the control character U+007F, which cannot be drawn");
     EXPECT_EQ(refusal("[[system.particle]]\nname = \"双\""), "x.toml:2:1: [[system.particle]] 1 name " + lacks);

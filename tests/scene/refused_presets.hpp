@@ -22,8 +22,9 @@ inline const std::vector<RefusedPreset> refused_keys{
                   R"(presets/x.toml:2:1: [system] has no "lenght_m"; did you mean "length_m"?)"},
     RefusedPreset{"titel = \"x\"", R"(presets/x.toml:1:1: a preset has no "titel"; did you mean "title"?)"},
     RefusedPreset{"[vidoe]\nfps = 3", R"(presets/x.toml:1:2: a preset has no "vidoe"; did you mean "video"?)"},
-    RefusedPreset{"[scene]\nzzzzzzzz = 1",
-                  R"(presets/x.toml:2:1: [scene] has no "zzzzzzzz"; it has duration_s, kind, sample_hz)"},
+    RefusedPreset{
+        "[scene]\nzzzzzzzz = 1",
+        R"(presets/x.toml:2:1: [scene] has no "zzzzzzzz"; it has duration_s, energy_columns, kind, sample_hz)"},
     RefusedPreset{"scene = 3", "presets/x.toml:1:1: scene must be a table; it is a whole number (3)"},
     RefusedPreset{"[scene", "presets/x.toml:1:7: Error while parsing table header: encountered end-of-file"}};
 
@@ -45,10 +46,6 @@ inline const std::vector<RefusedPreset> refused_system{
                   "presets/x.toml:2:1: [system] gravity_m_per_s2 must be > 0; it is 0"},
     RefusedPreset{"[system]\ngravity_m_per_s2 = true",
                   "presets/x.toml:2:1: [system] gravity_m_per_s2 must be a number; it is a boolean (true)"},
-    RefusedPreset{
-        "[b]\nlinks = 3",
-        "presets/x.toml:2:1: [b] links must be that of the other side, so that the two can be compared; they are 2 "
-        "and 3"},
     RefusedPreset{"[system]\nlinks = 2.0",
                   "presets/x.toml:2:1: [system] links must be a whole number; it is a decimal number (2)"},
     RefusedPreset{"[system]\nlinks = 0", "presets/x.toml:2:1: [system] links must be from 1 to 10000; it is 0"},
@@ -143,10 +140,10 @@ inline const std::vector<RefusedPreset> refused_video{
                   "presets/x.toml:2:1: [video] side_colors must be an array of strings; 1 is a whole number"},
     RefusedPreset{
         "[video]\npanels = []",
-        R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force")"},
+        R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates")"},
     RefusedPreset{
         "[video]\npanels = [\"phase\"]",
-        R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force"; "phase" is none of them)"},
+        R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates"; "phase" is none of them)"},
     RefusedPreset{"[video]\npanels = \"energy\"",
                   "presets/x.toml:2:1: [video] panels must be an array of strings; it is a string (\"energy\")"},
     RefusedPreset{"[video]\ntrail_s = -1",
@@ -166,7 +163,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   "[video] phase_link must be from 1 to 2, as there are links; it is 3"},
     RefusedPreset{
         "panels = [\"distnce\"]",
-        R"([video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force"; "distnce" is none of them)"},
+        R"([video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates"; "distnce" is none of them)"},
     RefusedPreset{"panels = [\"distance\"]\nlayout = \"overlay\"",
                   R"([video] panels must hold "pendulums" for the layout "overlay")"},
     RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must rise; it is [1, 1]"},
@@ -222,11 +219,11 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{"speed = [[0, 1, 2]]",
                   "[video] speed must be a speed, or times, s, with speeds such as [[0, 1], [6.8, 0.25]]; [0, 1, 2] is "
                   "none"},
-    RefusedPreset{"speed = [[0, 0]]", "[video] speed must be > 0; it is 0"},
+    RefusedPreset{"speed = [[0, 0]]", "[video] speed must be from 0.001 to 1000; it is 0"},
     RefusedPreset{"speed = [[1, 1]]", "[video] speed must begin at 0 s; it begins at 1 s"},
     RefusedPreset{"speed = [[0, 1], [40, 2]]",
                   "[video] speed must change at times that rise, up to 30 s; 40 s comes after 0 s"},
-    RefusedPreset{"speed = [[0, 1], [5, 1e-9]]", "[video] speed must be from 0.001 to 1000; one is 1e-09"},
+    RefusedPreset{"speed = [[0, 1], [5, 1e-9]]", "[video] speed must be from 0.001 to 1000; it is 1e-09"},
     RefusedPreset{"speed_ease_s = 1", "[video] speed_ease_s is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]"},
     RefusedPreset{"widths_px.trail = 1000", "[video.widths_px] trail must be from 0 to 200 px; it is 1000"},
     RefusedPreset{"fonts_px.title = 1", "[video.fonts_px] title must be from 4 to 400 px; it is 1"}};

@@ -1,4 +1,5 @@
 #include "scene/refused_presets.hpp"
+#include "scene/resolved.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>
@@ -65,6 +66,28 @@ TEST(VideoErrors, TheUsualRatesOfFilmsComeFromSampleRatesThatTheirRemedyNames) {
         EXPECT_EQ(scene.fps.text(), fps);
         EXPECT_EQ(scene.samples % scene.frames.stride, 0);
     }
+}
+
+TEST(VideoErrors, APreviewIsAQuarterOfThePixelsUnlessTheCommandLineSaysOtherwise) {
+    const auto read = [](const std::vector<std::string>& arguments) {
+        const char* text = "[video]\nsize = [1366, 768]\ncrf = 12\npreset = \"slow\"\npreview = true";
+        return read_preset({"x", "x.toml", text}, sets(arguments)).video;
+    };
+    const auto video = read({});
+    EXPECT_EQ(video.size, (Size{682, 384}));  // even
+    EXPECT_EQ(video.preset, "ultrafast");
+    EXPECT_EQ(video.crf, 26);
+    EXPECT_EQ(read({"video.size=[320, 180]"}).size, (Size{320, 180}));
+    EXPECT_EQ(read({"video.preset=\"fast\""}).preset, "fast");
+    EXPECT_EQ(read({"video.crf=30"}).crf, 30);
+    EXPECT_EQ(read({"video.preview=false"}).size, (Size{1366, 768}));
+    EXPECT_EQ(read({"video.size=[100, 100]", "video.preview=false"}).crf, 12);
+    // the resolved preset has what came of it, and is not halved again
+    const auto preset = read_preset({"x", "x.toml", "[video]\npreview = true"});
+    EXPECT_EQ(read_preset({"x", "x.toml", resolved_toml(preset)}).video.size, (Size{960, 540}));
+    EXPECT_EQ(read_preset({"x", "x.toml", "[video]\npreview = true\nlayout = \"portrait\""}).video.size,
+              (Size{540, 960}));
+    EXPECT_EQ(read_preset({"x", "x.toml", "[video]\npreview = true\nformat = \"png\""}).video.size, (Size{960, 540}));
 }
 
 TEST(VideoErrors, GifsGetARateThatTheyCanShow) {

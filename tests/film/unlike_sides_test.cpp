@@ -1,0 +1,111 @@
+#include "film/bounds.hpp"
+#include "film/run.hpp"
+#include "film/support.hpp"
+#include "output/fixtures.hpp"
+#include "scene/captions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace unlike_sides_test {
+
+const std::atomic<bool> never = false;
+
+/// A rod of 2 m beside a spring of 1 m.
+const std::string chain_and_spring =
+    "[a]\nlinks = 1\nlength_m = 2\n[[b.particle]]\nname = \"bob\"\nposition_m = [1, 0]\n[[b.force]]\nkind = "
+    "\"spring\"\n"
+    "from = [0, 0]\nto = \"bob\"\nstiffness_N_per_m = 60\n[system]\nintegrator = \"dop853\"\n[scene]\nduration_s = 2\n";
+
+Scene scene_of_text(const std::string& text) {
+    return make_scene(read_preset({"x", "x.toml", text, "x.toml"}));
+}
+
+TEST(UnlikeSides, TheSingleOneComesBackAfterTheExactPeriodAndTheDoubleOneDoesNot) {
+    // Gauss 1799: T = 2π √(l/g) / agm(1, cos(A/2))
+    double a = 1, b = std::cos(radians(60.0));
+    for (int i = 0; i < 10; ++i) {
+        const double mean = (a + b) / 2;
+        b = std::sqrt(a * b);
+        a = mean;
+    }
+    const double period = 2 * pi * std::sqrt(2 / 9.8) / a;
+    const auto scene = scene_of("single-and-double", {"scene.sample_hz=1000"});
+    PairRun pair(scene);
+    auto state = pair.next(never);
+    const auto start_a = state.a.bobs.back(), start_b = state.b.bobs.back();
+    EXPECT_NEAR(state.distance, 0, 1e-15);  // they start at one place, at rest
+    double back_a = 1e9, back_b = 1e9;      // m, how near they come to the start within 2 ms of the period
+    for (long n = 1; n <= std::lround(1000 * period) + 2; ++n) {
+        state = pair.next(never);
+        if (std::abs(scene.time(n) - period) > 2e-3) continue;
+        back_a = std::min(back_a, std::hypot(state.a.bobs.back().x - start_a.x, state.a.bobs.back().y - start_a.y));
+        back_b = std::min(back_b, std::hypot(state.b.bobs.back().x - start_b.x, state.b.bobs.back().y - start_b.y));
+    }
+    EXPECT_LT(back_a, 2e-6);  // m; at most ½ (g sin A) (0.5 ms)²
+    EXPECT_GT(back_b, 0.1);
+}
+
+TEST(UnlikeSides, AreComparedByTheirLastMasses) {
+    for (const auto& scene : {scene_of("single-and-double"), scene_of_text(chain_and_spring)}) {
+        PairRun pair(scene);
+        PairState state;
+        for (int n = 0; n < 100; ++n) state = pair.next(never);
+        const auto &a = state.a.bobs.back(), &b = state.b.bobs.back();
+        const double squares = std::pow(a.mass - b.mass, 2) + std::pow(a.x - b.x, 2) + std::pow(a.y - b.y, 2) +
+                               std::pow(a.vx - b.vx, 2) + std::pow(a.vy - b.vy, 2);
+        EXPECT_NEAR(state.distance, std::sqrt(squares), 1e-14 * state.distance);
+        EXPECT_GT(state.distance, 0.1);
+    }
+}
+
+TEST(UnlikeSides, StayWithinTheirDistanceAxis) {
+    const auto scene = scene_of("single-and-double");
+    const auto axis = fitted_range(StripKind::distance, scene, std::nullopt);
+    double largest = 0;
+    for_each_snapshot(scene, scene.samples,
+                      [&](const Snapshot& snapshot) { largest = std::max(largest, snapshot.pair.distance); });
+    EXPECT_LT(largest, axis.high);  // measured 14.6 of 31.6
+}
+
+TEST(UnlikeSides, AreCalledWhatTheyAre) {
+    const auto single = scene_of("single-and-double");
+    EXPECT_EQ(side_captions(single)[0].heading, "pendulum");
+    EXPECT_EQ(side_captions(single)[1].heading, "double pendulum");
+    EXPECT_EQ(side_captions(single)[1].note, "θ₁ = 120°, θ₂ = 120°");
+    EXPECT_TRUE(scene_caption(single).starts_with("a pendulum and a double pendulum, released at rest"));
+    EXPECT_EQ(side_captions(scene_of_text(chain_and_spring))[1].heading, "mechanism of one mass");
+}
+
+TEST(UnlikeSides, HaveTheColumnsOfTheirMasses) {
+    const auto out = test::fresh_folder();
+    run(scene_of("single-and-double", {"scene.duration_s=0.1"}), {.out = out, .pictures = false}, never,
+        [](const Progress&) {});
+    const auto table = test::bytes_of(out / "single-and-double/single-and-double.csv");
+    EXPECT_TRUE(table.starts_with(
+        "sample,time_s,a_theta1_rad,a_omega1_rad_per_s,a_x1_m,a_y1_m,a_vx1_m_per_s,a_vy1_m_per_s,a_energy_J,"
+        "a_energy_error,a_length_error_m,b_theta1_rad,b_theta2_rad,b_omega1_rad_per_s,b_omega2_rad_per_s,b_x1_m,"));
+}
+
+TEST(UnlikeSides, AreDrawnInEveryLayoutThatTakesThem) {
+    for (const char* layout : {"side-by-side", "overlay", "portrait"})
+        for (const std::string& text : {std::string("[a]\nlinks = 1\n[scene]\nduration_s = 0.2\n"), chain_and_spring}) {
+            const auto scene = scene_of_text(text + fmt::format("[video]\nlayout = \"{}\"\nsize = [180, 320]", layout));
+            EXPECT_EQ(frame_of(scene, 20).size, (Size{180, 320})) << layout;
+        }
+    EXPECT_NE(
+        error_of([] { scene_of("single-and-double", {"video.layout=\"ensemble\""}); })
+            .second.find(
+                "[video] layout \"ensemble\" goes from one side to the other: both have as many links; they have 1 "
+                "and 2"),
+        std::string::npos);
+    EXPECT_NE(error_of([] {
+                  scene_of("single-and-double", {"video.layout=\"phase\""});
+              }).second.find("phase_link must be from 1 to 1"),
+              std::string::npos);
+}
+
+}  // namespace unlike_sides_test
+}  // namespace doppel
