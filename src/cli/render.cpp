@@ -1,6 +1,7 @@
 #include "base/error.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
+#include "cli/terminal.hpp"
 #include "film/film.hpp"
 
 #include <CLI/CLI.hpp>

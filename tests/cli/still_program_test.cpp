@@ -1,0 +1,44 @@
+#include "cli/sandbox.hpp"
+#include "output/png.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace still_program_test {
+
+namespace fs = std::filesystem;
+using test::fresh_folder;
+
+TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
+    const auto folder = fresh_folder();
+    const auto result = test::doppel(folder, {"still", "calm", "--at", "0.5", "--size", "64x64", "-o", "pictures"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(test::listing(folder / "pictures"), (std::set<std::string>{"calm", "calm/calm.0.5s.png"}));
+    EXPECT_NE(result.out.find("pictures/calm/calm.0.5s.png"), std::string::npos);
+    for (const auto& [arguments, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+             {{"still", "calm"}, "--at is required"},
+             {{"still", "calm", "--at", "soon"}, "--at wants seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
+             {{"still", "calm", "--at", "31"}, "--at 31: calm ends at 30 s"},
+             {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""}, "and still, which draws PNG"},
+             {{"render", "calm", "--from", "-1"}, "--from wants seconds ≥ 0"},
+             {{"render", "calm", "--from", "1", "--frames", "0:3"},
+              "--frames counts samples, --from and --to seconds; give one"},
+             {{"render", "calm", "--from", "3", "--to", "2"},
+              "--from 3 --to 2: the end must not be before the start"}}) {
+        const auto refused = test::doppel(folder, arguments);
+        EXPECT_EQ(refused.code, 2) << message;
+        EXPECT_NE(refused.err.find(message), std::string::npos) << refused.err;
+    }
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(Draft, HasAQuarterOfThePixels) {
+    const auto folder = fresh_folder();
+    const auto result =
+        test::doppel(folder, {"render", "calm", "--quality", "draft", "--format", "png", "--frames", "0:1"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(read_png(folder / "out/calm/frames/000000.png").size, (Size{960, 540}));
+}
+
+}  // namespace still_program_test
+}  // namespace doppel
