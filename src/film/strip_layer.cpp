@@ -149,14 +149,15 @@ void StripLayer::draw_axes(DisplayList& list) const {
 void StripLayer::draw_time_labels(DisplayList& list) const {
     const float t = layout_.text, size = px(style_.font.axis);
     const auto ticks = axis_ticks(strip_.time, size, time_spacing(), true);
-    for (const auto& tick : ticks) {
-        const bool last = &tick == &ticks.back();
-        const float x = strip_.time.at(tick.value);
+    float free_to = layout_.page.right + 20 * t;  // labels keep apart from the one right of them
+    for (auto tick = ticks.rbegin(); tick != ticks.rend(); ++tick) {
         // the last one carries the unit, and stays on the page
-        const bool at_edge = x > layout_.page.right - 30 * t;
-        list.push_back(label(last ? tick.text + " s" : tick.text,
-                             {at_edge ? layout_.page.right : x, layout_.time_labels}, size, theme_.quiet_text,
-                             at_edge ? Align::right : Align::center));
+        const auto text = tick == ticks.rbegin() ? tick->text + " s" : tick->text;
+        const float width = text_width(text, size);
+        const float right = std::min(strip_.time.at(tick->value) + width / 2, layout_.page.right);
+        if (right + 10 * t > free_to) continue;
+        list.push_back(label(text, {right, layout_.time_labels}, size, theme_.quiet_text, Align::right));
+        free_to = right - width;
     }
 }
 

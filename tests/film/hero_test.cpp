@@ -1,7 +1,9 @@
 // The pendulum comes first: its circle is large and in the middle of its panel, and no words get in its way.
 #include "film/parting.hpp"
+#include "film/run.hpp"
 #include "film/support.hpp"
 #include "film/words.hpp"
+#include "output/fixtures.hpp"
 #include "render/pixels.hpp"
 
 #include <fmt/format.h>
@@ -153,6 +155,23 @@ TEST(Hero, StripsOfErrorsAreOfWhatTheRunHas) {
     }
 }
 
+TEST(Hero, LabelsOfTheTimeKeepApart) {
+    for (const char* panels :
+         {"[\"pendulums\", \"distance\"]", "[\"pendulums\", \"distance\", \"exponent\", \"energy\"]"})
+        for (const auto& size : sizes) {
+            auto scene = scene_of("butterfly", {std::string("video.panels=") + panels});
+            scene.preset.video.size = size;
+            const auto layout = make_layout(scene);
+            std::vector<Area> boxes;
+            for (const auto& label : labels_of(scene, 0))
+                if (label.anchor.y == layout.time_labels) boxes.push_back(box_of(label));
+            std::ranges::sort(boxes, {}, &Area::left);
+            ASSERT_GE(boxes.size(), 2u);
+            for (std::size_t i = 1; i < boxes.size(); ++i)
+                EXPECT_GE(boxes[i].left - boxes[i - 1].right, 9 * layout.text) << size.width << ' ' << i;
+        }
+}
+
 TEST(Parting, TakesAStartAsOneAndAWholeSecondApart) {
     const auto since = [](double start, const std::vector<std::pair<double, double>>& steps) {
         Parting parting;
@@ -196,6 +215,17 @@ TEST(Parting, IsSaidASecondLaterOfWhoStaysApart) {
             EXPECT_GT(*truth, *first_above + 0.5) << film;
         }
     }
+}
+
+TEST(Parting, IsInTheManifest) {
+    const auto manifest_of = [](const char* film) {
+        const auto out = test::fresh_folder();
+        run(scene_of(film), {.out = out, .pictures = false}, std::atomic<bool>(false), [](const Progress&) {});
+        const auto bytes = test::bytes_of(out / film / (std::string(film) + ".json"));
+        return std::string(bytes.begin(), bytes.end());
+    };
+    EXPECT_NE(manifest_of("butterfly").find("\"parted_s\": 14.2"), std::string::npos);
+    EXPECT_NE(manifest_of("calm").find("\"parted_s\": null"), std::string::npos);
 }
 
 TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
