@@ -1,3 +1,4 @@
+#include "figure/encoder_settings.hpp"
 #include "figure/kinds.hpp"
 #include "film/film.hpp"
 #include "output/encoding_trial.hpp"
@@ -11,47 +12,6 @@
 
 namespace doppel {
 namespace {
-
-using namespace std::string_view_literals;
-
-/// What an encoder is told, beside the quality: a preset, and what is changed of it.
-struct EncoderSetting {
-    std::string_view codec, name, preset;
-    std::string_view changes = {};  // "key=value key=value", of libav; {} stands for crf
-};
-
-// The first of a codec is what the others are compared with.
-constexpr std::array settings{
-    EncoderSetting{"h264", "veryfast", "veryfast"},
-    EncoderSetting{"h264", "doppel", "doppel"},
-    EncoderSetting{"h264", "ultrafast", "ultrafast"},
-    EncoderSetting{"h264", "superfast", "superfast"},
-    EncoderSetting{"h264", "faster", "faster"},
-    EncoderSetting{"h264", "medium", "medium"},
-    EncoderSetting{"h264", "doppel: no B-frames", "doppel", "x264-params=bframes=0"},
-    EncoderSetting{"h264", "doppel: one B-frame", "doppel", "x264-params=bframes=1"},
-    EncoderSetting{"h264", "doppel: B-frames as references", "doppel", "x264-params=b-pyramid=normal"},
-    EncoderSetting{"h264", "doppel: spatial direct motion", "doppel", "x264-params=direct=spatial"},
-    EncoderSetting{"h264", "doppel: frames in threads", "doppel", "threads=8 x264-params=sliced-threads=0"},
-    EncoderSetting{"h264", "doppel: motion to whole pixels", "doppel", "x264-params=subme=0"},
-    EncoderSetting{"h264", "doppel: motion finer", "doppel", "x264-params=subme=4"},
-    EncoderSetting{"h264", "doppel: no deblocking", "doppel", "x264-params=no-deblock=1"},
-    EncoderSetting{"h264", "doppel: adaptive quantizers", "doppel", "x264-params=crf={}:aq-mode=1"},
-    EncoderSetting{"vp9", "veryfast", "veryfast"},
-    EncoderSetting{"vp9", "doppel", "doppel"},
-    EncoderSetting{"vp9", "ultrafast", "ultrafast"},
-    EncoderSetting{"vp9", "doppel: slower", "doppel", "cpu-used=4"},
-    EncoderSetting{"vp9", "doppel: faster", "doppel", "cpu-used=8"},
-    EncoderSetting{"vp9", "doppel: not for screens", "doppel", "tune-content=default"},
-    EncoderSetting{"vp9", "doppel: no look ahead", "doppel", "lag-in-frames=0"},
-    EncoderSetting{"av1", "veryfast", "veryfast"},
-    EncoderSetting{"av1", "doppel", "doppel"},
-    EncoderSetting{"av1", "ultrafast", "ultrafast"},
-    EncoderSetting{"av1", "faster", "faster"},
-    EncoderSetting{"av1", "for screens", "veryfast", "svtav1-params=lp=8:scm=1"},
-    EncoderSetting{"av1", "low delay", "veryfast", "svtav1-params=lp=8:pred-struct=1"},
-};
-constexpr std::array codecs{"h264"sv, "vp9"sv, "av1"sv};
 
 /// crf at which each is tried: the one compared with in the middle.
 constexpr std::array qualities{15, 18, 21};
@@ -123,7 +83,7 @@ public:
     explicit Encoders(FigureReader& reader) {
         auto table = reader.settings(*this);
         settings_ = table.finish();
-        for (const auto& setting : settings)
+        for (const auto& setting : encoder_settings)
             if (setting.codec == codec_) tried_.push_back(&setting);
         const auto tables = reader.top.read_tables("film");
         if (tables.empty()) throw reader.top.fault("film", "is missing: a [[film]] each names what is encoded");
@@ -136,7 +96,7 @@ public:
 
     template <class Visit>
     void fields(Visit& visit) {
-        visit({.key = "codec", .help = "of the encoder", .names = codecs}, codec_);
+        visit({.key = "codec", .help = "of the encoder", .names = encoder_codecs}, codec_);
         visit({"from_s", "of the film, where the frames begin", "s", not_negative}, from_s_);
         visit({"frames", "of each film", "", from_to(2, 100'000)}, frames_);
     }

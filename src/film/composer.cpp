@@ -1,5 +1,7 @@
 #include "film/composer.hpp"
 
+#include "film/headings.hpp"
+
 #include <algorithm>
 #include <string>
 #include <utility>

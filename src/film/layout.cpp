@@ -7,12 +7,10 @@
 #include "numeric/state.hpp"
 #include "render/font.hpp"
 #include "scene/captions.hpp"
-#include "scene/frame_times.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -243,60 +241,6 @@ std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool a
     auto ticks = chart_ticks(axis, labels);
     for (auto& tick : ticks) tick.text = fmt::format("{:.6g}", tick.value);
     return ticks;
-}
-
-StripWords strip_words(StripKind kind, const Scene& scene) {
-    const bool plain = wording_of(scene) == Wording::plain;
-    switch (kind) {
-        case StripKind::distance:
-            return {plain ? "how far apart they are" : "state-space distance",
-                    !scene.members.empty()                           ? "first to last"
-                    : differ_in_kind(scene.preset.a, scene.preset.b) ? "of the last masses"
-                                                                     : ""};
-        case StripKind::exponent:
-            return {"Lyapunov exponent", "so far, 1/s"};
-        case StripKind::energy:
-            return {"energy error", "of the potential range"};
-        case StripKind::rod_error:
-            return {"worst rod error, m", ""};
-        case StripKind::energies_a:
-            return {fmt::format("energy of {}, J", scene.preset.a.label.value_or("a")), ""};
-        case StripKind::energies_b:
-            return {fmt::format("energy of {}, J", scene.preset.b.label.value_or("b")), ""};
-        case StripKind::angles:
-            return {"angles, °", ""};
-        case StripKind::rates:
-            return {"angular rates, °/s", ""};
-        case StripKind::rod_force:
-            break;
-    }
-    return {"force in the rods, N", ""};
-}
-
-std::string clock_text(const Scene& scene, double time) {
-    const auto& speed = scene.preset.video.speed;
-    double slowest = speed.constant.value();
-    if (speed.changes_over_time()) slowest = speed.changes.front().speed.value();
-    for (const auto& change : speed.changes) slowest = std::min(slowest, change.speed.value());
-    const double frame = 1 / (scene.fps.value() / slowest);
-    return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
-}
-
-std::string speed_text(const Scene& scene, double time) {
-    const bool changes = scene.preset.video.speed.changes_over_time();
-    const auto speed = changes ? speed_at(scene.preset.video, time) : scene.preset.video.speed.constant;
-    if (speed == Rational{1, 1}) return "real time";
-    constexpr std::array<std::pair<Rational, std::string_view>, 8> fractions{{{{1, 2}, "½"},
-                                                                              {{1, 3}, "⅓"},
-                                                                              {{2, 3}, "⅔"},
-                                                                              {{1, 4}, "¼"},
-                                                                              {{3, 4}, "¾"},
-                                                                              {{1, 5}, "⅕"},
-                                                                              {{1, 6}, "⅙"},
-                                                                              {{1, 8}, "⅛"}}};
-    for (const auto& [fraction, sign] : fractions)
-        if (changes && speed == fraction) return fmt::format("{} speed", sign);
-    return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
 }
 
 Layout make_layout(const Scene& scene, const std::atomic<bool>& stop, Dress dress) {

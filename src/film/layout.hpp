@@ -62,12 +62,6 @@ struct StripLayout {
     int lines = 1;  // of the caption
 };
 
-/// What the words above a strip say: what it shows, and of what or how.
-struct StripWords {
-    std::string what, how;
-};
-StripWords strip_words(StripKind kind, const Scene& scene);
-
 /// Upright: for a telephone.
 inline bool is_tall(const VideoSpec& video) {
     return video.size.height > video.size.width;
@@ -75,11 +69,6 @@ inline bool is_tall(const VideoSpec& video) {
 
 /// Ticks `spacing` px apart or more, labels of `size` px an em; whole numbers and the fewest decimals.
 std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
-
-/// The time as the clock shows it, with as many decimals as tell one frame from the next.
-std::string clock_text(const Scene& scene, double time);
-/// What the film says of its speed: "slow motion ×0.25"; where it changes, "¼ speed".
-std::string speed_text(const Scene& scene, double time);
 
 /// Where everything of a film's picture goes: a function of the scene alone.
 struct Layout {

@@ -1,4 +1,5 @@
 #include "film/bounds.hpp"
+#include "film/headings.hpp"
 #include "film/layer.hpp"
 #include "film/rooms.hpp"
 #include "numeric/state.hpp"

@@ -187,4 +187,30 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
 /// The key=value of --set. Throws Error (exit 2) where it is not of that form.
 Override parse_set(const std::string& argument);
 
+class TomlDocument;
+class TomlReader;
+
+// Readers of the tables that films and figures share. Each leaves alone what the table does not say, and throws Error
+// (exit 2) as TomlReader does.
+
+/// One of scene_kinds.
+std::string read_kind(TomlReader& scene);
+
+/// [system], [a] or [b]; `has_text` = with side_text_fields().
+void read_side(TomlReader& table, SideSpec& side, bool has_text = false);
+
+/// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say.
+void read_release(TomlReader& table, SideSpec& side);
+
+/// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier. Those
+/// of a film have texts of their own.
+void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset,
+                bool is_film = false);
+
+/// Steps and samples must fall on each other exactly.
+void check_clock(const Preset& preset, const TomlReader& scene);
+
+/// Frames must fall on samples exactly, the poster on a frame; a GIF that names no rate gets one.
+void check_frames(Preset& preset, const TomlReader& video);
+
 }  // namespace doppel

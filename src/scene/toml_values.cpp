@@ -254,22 +254,6 @@ void TomlReader::read(const Field& field, const toml::node& node, Rational& into
     into = *value;
 }
 
-/// One speed, or times with speeds.
-void TomlReader::read(const Field& field, const toml::node& node, Speed& into) {
-    const auto* array = node.as_array();
-    into.changes.clear();
-    if (!array) return read(field, node, into.constant);
-    constexpr std::string_view form = "must be a speed, or times, s, with speeds such as [[0, 1], [6.8, 0.25]]";
-    if (array->empty()) throw fault(field.key, "{}; it is []", form);
-    for (const auto& element : *array) {
-        const auto* pair = element.as_array();
-        if (!pair || pair->size() != 2) throw fault(field.key, "{}; {} is none", form, shown(element));
-        auto& [at_s, speed] = into.changes.emplace_back();
-        read({.key = field.key, .bounds = not_negative}, *pair->get(0), at_s);
-        read({.key = field.key, .bounds = changing_speeds}, *pair->get(1), speed);
-    }
-}
-
 void TomlReader::read(const Field& field, const toml::node& node, Color& into) {
     const auto* text = node.as_string();
     const auto color = text ? parse_color(text->get()) : std::nullopt;
