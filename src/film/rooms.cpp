@@ -10,6 +10,8 @@ namespace {
 constexpr float least_circle = 0.555f, usual_circle = 0.6f, most_strips = 0.3f;
 // of the width
 constexpr float least_column = 0.23f;
+// px of a 1920×1080 picture: heights of a strip's curves
+constexpr float least_curve = 60, enough_curve = 110;
 
 /// Panels side by side, or one above the other, each below its heading.
 std::vector<Area> panel_areas(const Area& room, const RoomNeeds& needs) {
@@ -43,9 +45,11 @@ Rooms with_strips_below(const Area& room, const RoomNeeds& needs) {
         const float least = std::min(words + 85 * count * needs.text, 0.55f * room.height());
         strips = std::max(least, room.height() - squares);
     } else {
-        const float wanted = (count > 1 ? least_circle : usual_circle) * needs.height * around_circle;
+        // the panels get more than the least as soon as the curves have enough
+        const float least = least_circle * needs.height * around_circle, most = usual_circle / least_circle * least;
+        const float left = room.height() - needs.heading - words - enough_curve * count * needs.text;
         const float square = (room.width() - needs.gap) / 2;
-        strips = room.height() - std::min(wanted, square) - needs.heading;
+        strips = room.height() - std::min(std::clamp(left, least, most), square) - needs.heading;
     }
     strips = std::min(strips, words + most_strips * needs.height);
     const float split = std::round(room.bottom - strips);
@@ -91,7 +95,7 @@ Rooms shared_out(const Area& room, const RoomNeeds& needs) {
     const auto count = static_cast<float>(needs.strips.size());
     const float panels = least_circle * needs.height * around_circle + needs.heading;
     const float curves = room.height() - panels - words_of(needs);
-    if (count <= 2 && curves >= 48 * needs.text * count) return with_strips_below(room, needs);
+    if (count <= 2 && curves >= least_curve * needs.text * count) return with_strips_below(room, needs);
     return with_strips_beside(room, needs, least_column * room.width());
 }
 
