@@ -4,7 +4,6 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "embedded/cli.hpp"
-#include "output/data_url.hpp"
 #include "output/png.hpp"
 
 #include <fmt/format.h>

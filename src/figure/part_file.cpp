@@ -3,7 +3,7 @@
 #include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "output/written.hpp"
-#include "scene/manifest_json.hpp"
+#include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
 

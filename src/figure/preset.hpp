@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/external_method.hpp"
+#include "analysis/work_ladder.hpp"
 #include "figure/experiment.hpp"
 #include "scene/field_table.hpp"
 #include "scene/preset.hpp"

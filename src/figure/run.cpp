@@ -9,7 +9,7 @@
 #include "output/transaction.hpp"
 #include "output/workers.hpp"
 #include "render/renderer.hpp"
-#include "scene/manifest_json.hpp"
+#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <cmath>

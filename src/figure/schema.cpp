@@ -1,6 +1,6 @@
 #include "figure/kinds.hpp"
 #include "figure/preset.hpp"
-#include "scene/manifest_json.hpp"
+#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <array>

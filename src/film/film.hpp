@@ -1,14 +1,14 @@
 #pragma once
 
 #include "film/composer.hpp"
-#include "film/contact_sheet.hpp"
-#include "film/manifest.hpp"
+#include "film/layer.hpp"
 #include "film/run.hpp"
 #include "integrate/motion_batch.hpp"
 #include "output/sink.hpp"
 #include "output/transaction.hpp"
 #include "output/workers.hpp"
 #include "render/renderer.hpp"
+#include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
 #include <atomic>
@@ -16,11 +16,61 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 namespace doppel {
+
+/// A side's largest errors, and its cost.
+struct SideRecord {
+    double energy_error = 0;  // relative
+    double length_error = 0;  // m
+    Effort effort;
+};
+
+/// What the manifest says of a run besides the scene.
+struct RunRecord {
+    long first_sample = 0, last_sample = 0;  // in the table, both included
+    long frames = 0;
+    std::string gl, libav;                                       // empty where no pictures were made
+    double simulate_cpu_s = 0, draw_cpu_s = 0, write_cpu_s = 0;  // by the threads' clocks; write = convert, hand over
+    double encode_cpu_s = 0;  // the rest of the process: encoder or compressor threads
+    double wall_s = 0, cpu_s = 0;
+    SideRecord a, b;
+    double largest_distance = 0;
+    Parting parting;
+    std::string failure;  // what ended the run, where something did
+};
+
+/// Writes the manifest `name`; hashes the files that are finished. Throws Error (exit 4).
+void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record);
+
+/// Many moments of a film in one picture: pendulums and time alone, in rows, and one title above.
+class ContactSheet {
+public:
+    /// `ticks` in ascending order, one a tile. Throws as Composer and Renderer do.
+    ContactSheet(const Scene& scene, std::vector<long> ticks, Gl gl, const std::atomic<bool>& stop);
+    ContactSheet(const ContactSheet&) = delete;
+    ContactSheet& operator=(const ContactSheet&) = delete;
+
+    /// Every snapshot, in order from sample 0.
+    void add(const Snapshot& snapshot);
+
+    /// Of the tiles so far, one at least.
+    Picture picture() const;
+
+private:
+    const Scene scene_;  // of a tile
+    Composer composer_;
+    Renderer renderer_;
+    std::vector<long> ticks_;
+    std::vector<Picture> tiles_;
+    int columns_;
+    Gl gl_;
+    const std::atomic<bool>& stop_;
+};
 
 /// How many frames a film has of each kind, in their order; those of the motion show what FrameTimes says
 struct Schedule {

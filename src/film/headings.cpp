@@ -1,7 +1,6 @@
-#include "film/headings.hpp"
-
+#include "film/layout.hpp"
 #include "render/font.hpp"
-#include "scene/frame_times.hpp"
+#include "scene/scene.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,6 @@
 #include "film/layout.hpp"
 
 #include "film/bounds.hpp"
-#include "film/headings.hpp"
-#include "film/rooms.hpp"
 #include "image/color.hpp"
 #include "numeric/state.hpp"
 #include "render/font.hpp"

@@ -3,7 +3,9 @@
 #include "image/color.hpp"
 #include "plot/axis.hpp"
 #include "render/display_list.hpp"
+#include "scene/captions.hpp"
 #include "scene/scene.hpp"
+#include "scene/video_spec.hpp"
 
 #include <array>
 #include <cstddef>
@@ -97,5 +99,56 @@ Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false, Dr
 
 /// The size of a tile of that width, px.
 Size tile_size(const Scene& scene, int width);
+
+/// What decides how a picture is shared out; lengths in px.
+struct RoomNeeds {
+    std::size_t panels = 2;  // 0 = none
+    bool tall = false;       // panels and strips one above the other
+    float heading = 0;       // height of the words above each panel
+    float gap = 0;           // between panels, and between them and a column of strips
+    float text = 1;          // px of the words to those of a 1920×1080 picture
+    float height = 0;        // of the whole picture
+    std::vector<StripKind> strips;
+};
+
+/// A picture's room below the header, shared out.
+struct Rooms {
+    std::vector<Area> panels;  // without their headings
+    Area strips;               // with captions and the labels of the time; empty where there are none
+};
+
+/// A panel's size to that of the circle in it: a bob at the circle's rim stays inside.
+inline constexpr float around_circle = 1.08f;
+
+/// px of a 1920×1080 picture: a line of a strip's caption, what is around its lines, the labels of the time below.
+inline constexpr float caption_line = 27, caption_edge = 16, time_labels_height = 36;
+
+/// The panels first. Two beside each other get circles of 55 to 60 % of the picture's height, with the strips below
+/// or, where that leaves too little for these, in a column at the right. A panel alone is a square beside its strips.
+Rooms shared_out(const Area& room, const RoomNeeds& needs);
+
+/// How much of a height that strips share goes to one.
+float share_of(StripKind kind);
+
+/// How a film's words put it: upright ones are for a telephone.
+Wording wording_of(const Scene& scene);
+
+/// What the words above a strip say: what it shows, and of what or how.
+struct StripWords {
+    std::string what, how;
+};
+StripWords strip_words(StripKind kind, const Scene& scene);
+
+/// The time as the clock shows it, with as many decimals as tell one frame from the next.
+std::string clock_text(const Scene& scene, double time);
+/// What the film says of its speed: "slow motion ×0.25"; where it changes, "¼ speed".
+std::string speed_text(const Scene& scene, double time);
+
+/// Adds the title, the line below it, the speed, and the clock's place. Returns where they end, px from the top.
+float place_header(Layout& layout, const Scene& scene);
+
+/// Shares the room below the header out, and adds what sets the sides apart: above the panels in a line, in two where
+/// it is long; in a corner of an upright film's panel where the circle leaves it free.
+Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomNeeds needs);
 
 }  // namespace doppel

@@ -1,6 +1,4 @@
-#include "film/manifest.hpp"
-
-#include "scene/manifest_json.hpp"
+#include "film/film.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 #include "film/layer.hpp"
-#include "film/trail.hpp"
 #include "render/stroke.hpp"
 
 #include <algorithm>

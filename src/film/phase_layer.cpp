@@ -1,5 +1,4 @@
 #include "film/layer.hpp"
-#include "film/trail.hpp"
 #include "numeric/state.hpp"
 #include "render/font.hpp"
 #include "scene/captions.hpp"

@@ -1,4 +1,4 @@
-#include "film/rooms.hpp"
+#include "film/layout.hpp"
 
 #include <algorithm>
 #include <cmath>

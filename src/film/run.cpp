@@ -4,7 +4,6 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "film/film.hpp"
-#include "film/manifest.hpp"
 #include "output/csv.hpp"
 #include "output/transaction.hpp"
 #include "scene/scene.hpp"

@@ -1,7 +1,6 @@
 #include "film/bounds.hpp"
-#include "film/headings.hpp"
 #include "film/layer.hpp"
-#include "film/rooms.hpp"
+#include "film/layout.hpp"
 #include "numeric/state.hpp"
 #include "render/font.hpp"
 #include "render/stroke.hpp"

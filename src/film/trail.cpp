@@ -1,5 +1,4 @@
-#include "film/trail.hpp"
-
+#include "film/layer.hpp"
 #include "render/stroke.hpp"
 
 #include <algorithm>

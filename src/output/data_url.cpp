@@ -1,7 +1,6 @@
-#include "output/data_url.hpp"
+#include "output/png.hpp"
 
 #include "base/error.hpp"
-#include "output/png.hpp"
 
 extern "C" {
 #include <libavutil/base64.h>

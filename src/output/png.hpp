@@ -1,5 +1,6 @@
 #pragma once
 
+#include "image/picture.hpp"
 #include "output/folder.hpp"
 #include "output/sink.hpp"
 
@@ -38,5 +39,12 @@ std::string png_text_chunks(const Metadata& metadata);
 
 /// `jobs` threads, or one a core where it is 0; fewer where pictures of this size would take too much memory.
 int png_threads(int jobs, Size size);
+
+/// "data:image/png;base64,…" of a PNG file as it is: what a page needs to show it without the file. Throws Error
+/// (exit 4) where it cannot be read.
+std::string data_url(const FilePlace& png);
+
+/// The same of a picture, opaque.
+std::string data_url(const Picture& picture);
 
 }  // namespace doppel

@@ -1,6 +1,6 @@
 #include "plot/axis.hpp"
 #include "plot/chart_parts.hpp"
-#include "plot/text.hpp"
+#include "plot/labels.hpp"
 #include "render/font.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "image/color.hpp"
 #include "plot/axis.hpp"
 #include "plot/chart_parts.hpp"
-#include "plot/text.hpp"
+#include "plot/labels.hpp"
 #include "render/font.hpp"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 #include "plot/labels.hpp"
-#include "plot/text.hpp"
 #include "render/font.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
-#include "plot/text.hpp"
 #include "render/font.hpp"
 
 #include <algorithm>

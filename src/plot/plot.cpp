@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "plot/chart_parts.hpp"
-#include "plot/text.hpp"
+#include "plot/labels.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "plot/text.hpp"
-
 #include "base/text.hpp"
+
+#include "plot/labels.hpp"
 #include "render/font.hpp"
 
 #include <algorithm>

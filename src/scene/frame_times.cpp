@@ -1,9 +1,8 @@
-#include "scene/frame_times.hpp"
-
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "scene/preset_fields.hpp"
 #include "scene/resolved.hpp"
+#include "scene/scene.hpp"
 
 #include <fmt/ranges.h>
 

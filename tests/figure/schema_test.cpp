@@ -4,8 +4,8 @@
 #include "figure/refused_figures.hpp"
 #include "figure/support.hpp"
 #include "fuzz/mutation.hpp"
-#include "scene/manifest_json.hpp"
 #include "scene/refused_presets.hpp"
+#include "scene/resolved.hpp"
 
 #include <gtest/gtest.h>
 

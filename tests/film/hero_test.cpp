@@ -1,5 +1,5 @@
 // The pendulum comes first: its circle is large and in the middle of its panel, and no words get in its way.
-#include "film/parting.hpp"
+#include "film/layer.hpp"
 #include "film/run.hpp"
 #include "film/support.hpp"
 #include "film/words.hpp"

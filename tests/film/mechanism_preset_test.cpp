@@ -1,4 +1,4 @@
-#include "film/manifest.hpp"
+#include "film/film.hpp"
 #include "film/support.hpp"
 
 #include <gtest/gtest.h>

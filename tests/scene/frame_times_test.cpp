@@ -1,4 +1,4 @@
-#include "scene/frame_times.hpp"
+#include "scene/scene.hpp"
 
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"

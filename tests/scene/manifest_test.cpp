@@ -1,5 +1,5 @@
 #include "output/fixtures.hpp"
-#include "scene/manifest_json.hpp"
+#include "scene/resolved.hpp"
 
 #include <gtest/gtest.h>
 

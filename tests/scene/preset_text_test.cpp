@@ -1,7 +1,6 @@
 // What a preset is made of before it means anything: its file, its name, its bytes.
 #include "base/clock.hpp"
 #include "output/fixtures.hpp"
-#include "scene/manifest_json.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 
