@@ -161,9 +161,8 @@ public:
         }
         figure.captions.push_back(fmt::format(
             "What each setting takes to look as good as {} at crf {}: peak signal to noise and structural similarity "
-            "of "
-            "the whole picture and of the macroblocks that move are at least as high, by interpolation between three "
-            "qualities. Lower left is better.",
+            "of the whole picture and of the macroblocks that move are at least as high, by interpolation between "
+            "three qualities. Lower left is better.",
             tried_[0]->name, qualities[1]));
     }
 
@@ -205,7 +204,7 @@ private:
         preset.video.codec = codec_ == "h264" ? "" : codec_;
         TomlWriter written;
         film_fields(written, name, video);
-        settings_ += "\n[[film]]\n" + written.text();
+        settings_ += "\n[[film]]\n" + written.text() + commented(resolved_toml(preset));
         films_.push_back({preset.name, make_scene(preset)});
         const auto& scene = films_.back().scene;
         if (first_frame(scene) + frames_ > scene.frames.count())

@@ -49,6 +49,12 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
             throw table.fault(key, "must differ; \"{}\" is named more than once", name);
 }
 
+std::string commented(std::string_view text) {
+    std::string lines = "#";
+    for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
+    return lines + "\n";
+}
+
 Preset film_named(const std::string& name, const TomlReader& table) {
     const auto source = [&] {
         try {

@@ -70,6 +70,9 @@ const MethodEntry& method_named(const TomlReader& table, const std::string& name
 /// The film of that name or path, `scene` of the table. Throws Error (exit 2).
 Preset film_named(const std::string& name, const TomlReader& table);
 
+/// As lines of a comment in TOML: what numbers depend on and no key says, such as what is in a film's file.
+std::string commented(std::string_view text);
+
 /// What sweeps and maps vary in a release.
 struct ReleaseParameter {
     std::string_view name, label;  // the column's, the axis's

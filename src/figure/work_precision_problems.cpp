@@ -103,9 +103,7 @@ WorkProblems problem_of(Preset film) {
     problems.all.push_back(make_problem(film.name, film.a, film.duration_s));
     problems.subtitle = system_words(problems.all.back());
     film.b = film.a;
-    problems.comment = "#";
-    for (const char c : resolved_sides(film)) problems.comment += c == '\n' ? std::string("\n# ") : std::string(1, c);
-    problems.comment += "\n";
+    problems.comment = commented(resolved_sides(film));
     return problems;
 }
 
