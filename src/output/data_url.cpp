@@ -1,6 +1,5 @@
-#include "output/png.hpp"
-
 #include "base/error.hpp"
+#include "output/png.hpp"
 
 extern "C" {
 #include <libavutil/base64.h>

@@ -1,6 +1,5 @@
-#include "scene/scene.hpp"
-
 #include "scene/resolved.hpp"
+#include "scene/scene.hpp"
 #include "scene/support.hpp"
 
 #include <fmt/format.h>
