@@ -205,11 +205,18 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
 void print_figure(const FigurePreset& figure, const std::atomic<bool>& stop) {
     double units = 0;
     for (std::size_t trial = 0; trial < figure.experiment->trials(); ++trial) units += figure.experiment->units(trial);
-    const auto size = figure.picture_size();
+    const auto layout = layout_of(figure.chart);
+    constexpr double cm_per_pt = 2.54 / 72;
     print_line("{}: {}", figure.name, figure.title);
     print_line("  kind   {}: {} {} in {} trials", figure.kind, grouped(std::lround(units)), figure.experiment->unit(),
                grouped(static_cast<long>(figure.experiment->trials())));
-    print_line("  chart  {}×{} px, {}", size.width, size.height, figure.chart.theme);
+    const auto format = name_of(figure.chart.format);
+    if (figure.chart.width_cm || figure.chart.format != PictureFormat::png)
+        print_line("  chart  {:.3g}×{:.3g} cm, {}, {}", cm_per_pt * layout.width_pt,
+                   cm_per_pt * layout.width_pt * layout.picture.height / layout.picture.width, format,
+                   figure.chart.theme);
+    else
+        print_line("  chart  {}×{} px, {}", layout.picture.width, layout.picture.height, figure.chart.theme);
     const int threads = figure.experiment->measures_time() ? 1 : cores();
     const auto estimate = estimated_computation(figure, threads, stop);
     print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",

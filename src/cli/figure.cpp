@@ -15,7 +15,7 @@ namespace doppel {
 namespace {
 
 struct FigureCommandOptions : RunCommandOptions {
-    std::string size, shard, gl = "auto";
+    std::string size, format, shard, gl = "auto";
     double scale = 0;
     bool merge = false;
 };
@@ -23,6 +23,8 @@ struct FigureCommandOptions : RunCommandOptions {
 std::vector<Override> overrides(const FigureCommandOptions& options) {
     auto all = overrides_of(options);
     if (!options.size.empty()) all.push_back(size_override("chart.size", options.size));
+    if (!options.format.empty())
+        all.push_back({"chart.format", toml_text(options.format), "--format " + options.format});
     if (options.scale != 0)
         all.push_back({"chart.scale", fmt::format("{}", options.scale), fmt::format("--scale {}", options.scale)});
     return all;
@@ -104,18 +106,22 @@ void make_figures(const FigureCommandOptions& options) {
 
 void add_figure(CLI::App& app) {
     auto options = std::make_shared<FigureCommandOptions>();
-    auto& command =
-        *app.add_subcommand("figure", "Draws figure presets: PNG, CSV and manifest; \"all\" draws every one");
+    auto& command = *app.add_subcommand(
+        "figure", "Draws figure presets: PNG, PDF or SVG, CSV and manifest; \"all\" draws every one");
     command.footer(
         "Examples:\n"
         "  doppel figure fig2-right --set sweep.exponent=true\n"
         "  doppel figure all --out figures --scale 2\n"
+        "  doppel figure fig2-right --format pdf --set chart.width_cm=8.6\n"
         "  doppel figure flip-map --shard 3/8        # a part, on one of eight machines\n"
         "  doppel figure flip-map --merge            # all parts in DIR/flip-map/ together\n"
         "A long figure that was interrupted goes on where it was when the same command is given again.");
     add_run_options(command, *options, "Threads that compute; one a core where not given. The numbers stay the same");
     command.add_option("--size", options->size, "Size of the layout, px; the preset's where not given")
         ->type_name("WxH");
+    command.add_option("--format", options->format, "What the picture is written as; the preset's where not given")
+        ->type_name("FORMAT")
+        ->check(CLI::IsMember({"png", "pdf", "svg"}));
     command.add_option("--scale", options->scale, "Pixels of the picture to one of the layout: 2 for print")
         ->type_name("N")
         ->check(CLI::Range(0.25, 8.0));

@@ -16,7 +16,7 @@ struct RenderOptions : RunCommandOptions {
 };
 
 struct StillOptions : PresetOptions {
-    std::string at, size, out = "out", progress = "auto", gl = "auto";
+    std::string at, size, format = "png", out = "out", progress = "auto", gl = "auto";
 };
 
 /// The samples of --frames, or the times of --from and --to.
@@ -93,11 +93,12 @@ void add_render(CLI::App& app) {
 
 void add_still(CLI::App& app) {
     auto options = std::make_shared<StillOptions>();
-    auto& command = *app.add_subcommand("still", "Draws one picture of a film: DIR/NAME/NAME.14s.png");
+    auto& command = *app.add_subcommand("still", "Draws one picture of a film: DIR/NAME/NAME.14s.png, or PDF, or SVG");
     command.footer(
         "Examples:\n"
         "  doppel still butterfly --at 14 --size 3840x2160\n"
-        "  doppel still butterfly --at 14 --set video.transparent=true");
+        "  doppel still butterfly --at 14 --set video.transparent=true\n"
+        "  doppel still butterfly --at 14 --format pdf");
     add_preset_options(command, *options);
     command.add_option("--at", options->at, "The time of the picture, s; there must be a sample")
         ->type_name("SECONDS")
@@ -105,17 +106,23 @@ void add_still(CLI::App& app) {
     add_out_options(command, options->out, options->progress);
     command.add_option("--size", options->size, "Size of the picture, px; the preset's where not given")
         ->type_name("WxH");
+    command.add_option("--format", options->format, "What the picture is written as")
+        ->type_name("FORMAT")
+        ->check(CLI::IsMember({"png", "pdf", "svg"}))
+        ->capture_default_str();
     add_gl_option(command, options->gl);
     command.callback([options] {
         const auto at = seconds_of_option("--at", options->at);
         std::vector<Override> more{{"video.format", "\"png\"", "still, which draws PNG"}};
         if (!options->size.empty()) more.push_back(size_override("video.size", options->size));
         const RunOptions run{.out = options->out, .gl = gl_named(options->gl)};
+        const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
         for (const auto& scene : scenes) still_sample(scene, at);
         const auto& stop = watch_interrupts();
-        work_on_all(scenes, options->progress, "samples",
-                    [&](const Scene& scene, const auto& report) { return draw_still(scene, at, run, stop, report); });
+        work_on_all(scenes, options->progress, "samples", [&](const Scene& scene, const auto& report) {
+            return draw_still(scene, at, format, run, stop, report);
+        });
     });
 }
 

@@ -63,15 +63,6 @@ void top_fields(Visit& visit, FigurePreset& figure) {
     visit({.key = "captions", .help = "below the picture", .is_drawn = true}, figure.captions);
 }
 
-/// [chart]
-template <class Visit, class Chart>
-void chart_fields(Visit& visit, Chart& chart) {
-    visit(size_field, chart.size);
-    theme_field(visit, chart.theme);
-    visit({"scale", "picture pixels to a pixel of `size`: 2 for print", "", {.low = 0, .high = 8, .is_open = true}},
-          chart.scale);
-}
-
 /// [system] of figures that step a chain themselves.
 FieldTable release_table() {
     const SideSpec side;
@@ -81,22 +72,7 @@ FieldTable release_table() {
     return release;
 }
 
-void read_chart(TomlReader& table, ChartSpec& chart) {
-    chart_fields(table, chart);
-    constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL takes, which says so itself
-    const double width = chart.scale * chart.size.width, height = chart.scale * chart.size.height;
-    if (std::min(width, height) < smallest || std::max(width, height) > largest)
-        throw table.fault("scale", "must leave a picture of {} to {} px a side; {:g} times {}×{} px is {:g}×{:g}",
-                          smallest, largest, chart.scale, chart.size.width, chart.size.height, width, height);
-    table.finish();
-}
-
 }  // namespace
-
-Size FigurePreset::picture_size() const {
-    const auto scaled = [&](int pixels) { return static_cast<int>(std::lround(pixels * chart.scale)); };
-    return {scaled(chart.size.width), scaled(chart.size.height)};
-}
 
 std::string FigurePreset::resolved_work() const {
     return fmt::format("[scene]\nkind = {}\n{}\n[chart]\n{}", toml_text(kind), experiment->resolved(),

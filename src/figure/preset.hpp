@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/work_ladder.hpp"
+#include "figure/chart.hpp"
 #include "figure/experiment.hpp"
 #include "scene/field_table.hpp"
 #include "scene/preset.hpp"
@@ -8,13 +9,6 @@
 #include <memory>
 
 namespace doppel {
-
-/// How a figure is drawn.
-struct ChartSpec {
-    Size size{1600, 900};
-    std::string theme = "light";
-    double scale = 1;  // picture pixels to a layout pixel: 2 for print
-};
 
 /// A figure as a preset file describes it: read, complete and checked, nothing computed yet.
 struct FigurePreset {
@@ -26,8 +20,6 @@ struct FigurePreset {
     ChartSpec chart;
     std::shared_ptr<const Experiment> experiment;
 
-    /// The picture's size, px.
-    Size picture_size() const;
     /// What its numbers depend on: TOML.
     std::string resolved_work() const;
     /// That and everything else: TOML that read_figure() reads back to the same figure.

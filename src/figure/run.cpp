@@ -10,6 +10,9 @@
 #include "output/workers.hpp"
 #include "render/renderer.hpp"
 #include "scene/resolved.hpp"
+#include "vector/page.hpp"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +30,10 @@ Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
     figure.experiment->draw(trials, page);
     page.captions.insert(page.captions.begin(), figure.captions.begin(), figure.captions.end());
     if (!figure.erratum.empty()) page.captions.push_back("Erratum: " + figure.erratum);
+    const auto& [title, captions] = std::tie(figure.chart.title, figure.chart.captions);
+    if (!title.shown || title.own)
+        page.title = title.own ? fmt::format("{}", fmt::join(*title.own, " ")) : "", page.subtitle = "";
+    if (!captions.shown || captions.own) page.captions = captions.own.value_or(std::vector<std::string>());
     return page;
 }
 
@@ -37,8 +44,8 @@ const Theme& theme_named(const std::string& name) {
 }  // namespace
 
 DisplayList compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
-    return compose(page_of(figure, trials), figure.picture_size(), theme_named(figure.chart.theme),
-                   static_cast<float>(figure.chart.scale));
+    const auto layout = layout_of(figure.chart);
+    return compose(page_of(figure, trials), layout.picture, theme_named(figure.chart.theme), layout.scale, layout.unit);
 }
 
 KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atomic<bool>& stop) {
@@ -93,8 +100,9 @@ public:
 
     /// Makes the renderer for the first picture while the numbers are computed.
     void prepare(const FigurePreset& figure) {
-        if (!options_.shard)
-            renderer_for(figure.picture_size()).draw(compose({.title = "0"}, figure.picture_size(), themes[0]), stop_);
+        const auto size = layout_of(figure.chart).picture;
+        if (!options_.shard && figure.chart.format == PictureFormat::png)
+            renderer_for(size).draw(compose({.title = "0"}, size, themes[0]), stop_);
     }
 
     RunResult write(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials,
@@ -104,16 +112,10 @@ public:
             return {.files = files.publish()};
         }
         record.jobs = jobs_;
-        const auto png = figure.name + ".png", csv = figure.name + ".csv";
+        const auto csv = figure.name + ".csv";
         const auto finish = [&] {
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-            auto& renderer = renderer_for(figure.picture_size());
-            const auto list = compose_figure(figure, trials);
-            const auto picture = renderer.draw(list, stop_);
-            check_stop();
-            write_png(files.file(png), picture, {}, stop_);
-            files.finished(png);
-            record.gl = renderer.description();
+            write_picture(figure, compose_figure(figure, trials), record, files);
             check_stop();
             Csv table(files.file(csv), figure.experiment->columns());
             figure.experiment->write_rows(trials, table);
@@ -129,6 +131,25 @@ public:
     }
 
 private:
+    void write_picture(const FigurePreset& figure, const DisplayList& list, FigureRecord& record, Transaction& files) {
+        const auto format = figure.chart.format;
+        const auto layout = layout_of(figure.chart);
+        const auto name = fmt::format("{}.{}", figure.name, name_of(format));
+        const auto metadata =
+            metadata_of(figure.title, figure.name, fmt::format("how it was made is in {}.json", figure.name));
+        if (format == PictureFormat::png) {
+            auto& renderer = renderer_for(layout.picture);
+            const auto picture = renderer.draw(list, stop_);
+            check_stop();
+            write_png(files.file(name), picture,
+                      {.metadata = metadata, .dpi = 72 * layout.picture.width / layout.width_pt}, stop_);
+            record.gl = renderer.description();
+        } else {
+            write_page(files.file(name), list, {layout.picture, layout.width_pt, metadata}, format);
+        }
+        files.finished(name);
+    }
+
     void check_stop() const { throw_if_set(stop_); }
     Renderer& renderer_for(Size size) {
         if (!renderer_ || size_ != size) renderer_.emplace(size, DisplayList{}, options_.gl, stop_);

@@ -73,6 +73,8 @@ Json value_schema(const ListedField& field) {
                               : Json{{"anyOf", {number, list_schema(number, 1, 0)}}};
     if (field.is_list()) return list_schema(text_schema(field), is(type_words<Panels>()) ? 1 : 0, 0);
     if (is(type_words<QuadPair>()) || is(type_words<Range>())) return pair;
+    if (is(type_words<ChosenText>()))
+        return {{"anyOf", {{{"type", "boolean"}}, text_schema(field), list_schema(text_schema(field), 0, 0)}}};
     if (is(type_words<EndSpec>())) return {{"anyOf", {text_schema(field), pair}}};
     if (is(type_words<Size>())) return list_schema(whole, 2, 2);
     if (is(type_words<Color>())) return color;

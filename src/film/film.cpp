@@ -25,8 +25,8 @@ private:
     double start_;
 };
 
-Metadata metadata_of(const Preset& preset) {
-    return metadata_of(preset, fmt::format("how it was made is in {}.json", preset.name));
+Metadata film_metadata(const Preset& preset) {
+    return metadata_of(preset.title, preset.name, fmt::format("how it was made is in {}.json", preset.name));
 }
 
 DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
@@ -53,14 +53,6 @@ std::size_t most_ahead(bool with_members) {
 }
 
 }  // namespace
-
-Metadata metadata_of(const Preset& preset, const std::string& record) {
-    const auto program = fmt::format("Doppel {} ({})", version(), revision());
-    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
-    return {{"title", preset.title},
-            {"comment", fmt::format("{}, preset {}; {}", program, preset.name, record)},
-            {"encoder", program}};
-}
 
 Canvas::Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop) : stop_(stop) {
     const auto& video = scene.preset.video;
@@ -125,7 +117,7 @@ VideoOptions video_options(const Scene& scene) {
             .preset = video.preset,
             .crf = video.crf,
             .transparent = video.transparent,
-            .metadata = metadata_of(scene.preset)};
+            .metadata = film_metadata(scene.preset)};
 }
 
 Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, RunRecord& record,
@@ -139,7 +131,7 @@ Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, Ru
             return FilePlace(folder, fmt::format("{:06}.png", first_number_ + k));
         };
         sink_ = make_png_sink(place_of, png_threads(options.jobs, video.size),
-                              {.with_alpha = video.transparent, .metadata = metadata_of(scene.preset)}, stop);
+                              {.with_alpha = video.transparent, .metadata = film_metadata(scene.preset)}, stop);
     } else {
         const auto file = video_options(scene);
         film_name_ = scene.preset.name + extension(file.format);
@@ -203,8 +195,8 @@ void Film::finish() {
     const auto& preset = scene_.preset;
     const auto write = [&](const std::string& ending, const Picture& picture) {
         const auto name = preset.name + ending;
-        write_png(parts_.file(name), picture, {.with_alpha = preset.video.transparent, .metadata = metadata_of(preset)},
-                  stop_);
+        write_png(parts_.file(name), picture,
+                  {.with_alpha = preset.video.transparent, .metadata = film_metadata(preset)}, stop_);
         parts_.finished(name);
     };
     if (poster_) write(".poster.png", *poster_);

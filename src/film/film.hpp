@@ -85,9 +85,6 @@ Schedule schedule_of(const Scene& scene);
 /// never more than half of the card.
 double card_opacity(long k, long count, double fps, bool fades_in);
 
-/// By which a picture or a film can be traced to how it was made; `record` says where that is written.
-Metadata metadata_of(const Preset& preset, const std::string& record);
-
 /// Draws a composer's frames; with the opacity of each pixel where the film is transparent.
 class Canvas {
 public:

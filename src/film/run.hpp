@@ -36,10 +36,10 @@ struct RunResult {
     double wall_s = 0;
 };
 
-/// One picture, OUT/NAME/NAME.14s.png: that of the sample at `time`, s. `options` say where to, and what draws. Throws
-/// Error as run(), and exit 2 where there is no sample at that time.
-RunResult draw_still(const Scene& scene, const Rational& time, const RunOptions& options, const std::atomic<bool>& stop,
-                     const std::function<void(const Progress&)>& report);
+/// One picture, OUT/NAME/NAME.14s.png (or .pdf, .svg): that of the sample at `time`, s. `options` say where to, and what
+/// draws. Throws Error as run(), and exit 2 where there is no sample at that time.
+RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
+                     const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
 /// The sample at that time. Throws Error (exit 2) where there is none.
 long still_sample(const Scene& scene, const Rational& time);
 

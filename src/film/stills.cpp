@@ -7,11 +7,14 @@
 #include "output/transaction.hpp"
 #include "render/font.hpp"
 #include "scene/captions.hpp"
+#include "scene/resolved.hpp"
+#include "vector/page.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace doppel {
@@ -40,16 +43,17 @@ long still_sample(const Scene& scene, const Rational& time) {
                     seconds_text(scene.time(before + 1)));
 }
 
-RunResult draw_still(const Scene& scene, const Rational& time, const RunOptions& options, const std::atomic<bool>& stop,
-                     const std::function<void(const Progress&)>& report) {
+RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
+                     const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
     const double start = seconds_of(CLOCK_MONOTONIC);
     const long last = still_sample(scene, time);
     const auto text = seconds_text(scene.time(last));
-    const auto name = fmt::format("{}.{}s.png", scene.preset.name, text);
+    const auto name = fmt::format("{}.{}s.{}", scene.preset.name, text, name_of(format));
     Transaction parts(options.out / scene.preset.name, "still");
     const auto place = parts.file(name);
     Composer composer(scene, stop);
-    Canvas canvas(scene, composer, options.gl, stop);  // what cannot draw says so at once
+    std::optional<Canvas> canvas;  // now: what cannot draw says so at once
+    if (format == PictureFormat::png) canvas.emplace(scene, composer, options.gl, stop);
     Simulation simulation(scene, last + 1, true, stop);
     const long end = last * scene.frames.ticks_per_sample;
     for (long tick = -1; tick < end;) {
@@ -60,11 +64,17 @@ RunResult draw_still(const Scene& scene, const Rational& time, const RunOptions&
         tick = snapshot.pair.tick;
         report({snapshot.pair.sample + 1, last + 1});
     }
-    write_png(
-        place, canvas.draw(composer.frame()),
-        {.with_alpha = scene.preset.video.transparent,
-         .metadata = metadata_of(scene.preset, fmt::format("at {} s of {}", text, scene.preset.duration_s.text()))},
-        stop);
+    const auto& video = scene.preset.video;
+    const auto metadata = metadata_of(scene.preset.title, scene.preset.name,
+                                      fmt::format("at {} s of {}", text, scene.preset.duration_s.text()));
+    if (canvas) {
+        write_png(place, canvas->draw(composer.frame()), {.with_alpha = video.transparent, .metadata = metadata}, stop);
+    } else {
+        auto list = composer.backdrop();
+        const auto frame = composer.frame();
+        list.insert(list.end(), frame.begin(), frame.end());
+        write_page(place, list, {video.size, pt_per_px * video.size.width, metadata}, format);
+    }
     parts.finished(name);
     auto files = parts.keeping_finished([&] {
         throw_if_set(stop);

@@ -22,6 +22,12 @@ Rect intersection(const Rect& a, const Rect& b) {
     return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
+bool Picture::is_opaque() const {
+    for (std::size_t i = 3; i < rgba.size(); i += 4)
+        if (rgba[i] != 255) return false;
+    return true;
+}
+
 void matte(const Picture& black, const Picture& white, const Rect& within, Picture& into) {
     for (int y = within.top; y < within.bottom; ++y)
         for (int x = within.left; x < within.right; ++x) {

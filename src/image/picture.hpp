@@ -40,6 +40,9 @@ struct Picture {
 
     const std::uint8_t* at(int x, int y) const { return &rgba[(std::size_t(y) * size.width + x) * 4]; }
     std::uint8_t* at(int x, int y) { return &rgba[(std::size_t(y) * size.width + x) * 4]; }
+
+    /// Whether nothing shines through.
+    bool is_opaque() const;
 };
 
 /// Undoes a background: from the same picture on black and on white, within the rectangle, the colours with their

@@ -5,6 +5,8 @@ extern "C" {
 #include <libavutil/base64.h>
 }
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -14,8 +16,11 @@ extern "C" {
 namespace doppel {
 namespace {
 
-constexpr std::string_view start = "data:image/png;base64,";
 constexpr std::size_t block_bytes = std::size_t{3} << 14;  // a multiple of three: padding only after the last block
+
+std::string start_of_url(std::string_view type) {
+    return fmt::format("data:{};base64,", type);
+}
 
 void add_block(std::string& url, const char* bytes, std::size_t count) {
     std::array<char, AV_BASE64_SIZE(block_bytes)> digits;
@@ -27,7 +32,7 @@ void add_block(std::string& url, const char* bytes, std::size_t count) {
 
 std::string data_url(const FilePlace& png) {
     const Stream file = stream_of(open_file(png), "rb", png.path, "read");
-    std::string url(start);
+    auto url = start_of_url("image/png");
     std::array<char, block_bytes> block;
     while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get()))
         add_block(url, block.data(), count);
@@ -35,11 +40,14 @@ std::string data_url(const FilePlace& png) {
     return url;
 }
 
-std::string data_url(const Picture& picture) {
-    const std::string png = png_bytes(picture);
-    std::string url(start);
-    for (std::size_t at = 0; at < png.size(); at += block_bytes)
-        add_block(url, &png[at], std::min(block_bytes, png.size() - at));
+std::string data_url(const Picture& picture, const PngOptions& options) {
+    return data_url("image/png", png_bytes(picture, options));
+}
+
+std::string data_url(std::string_view type, std::string_view bytes) {
+    auto url = start_of_url(type);
+    for (std::size_t at = 0; at < bytes.size(); at += block_bytes)
+        add_block(url, &bytes[at], std::min(block_bytes, bytes.size() - at));
     return url;
 }
 

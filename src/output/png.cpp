@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -223,13 +224,23 @@ std::string png_text_chunks(const Metadata& metadata) {
     return chunks;
 }
 
+/// Text chunks and, 11.3.5.3, the size of a pixel.
+static std::string chunks_of(const PngOptions& options) {
+    auto chunks = png_text_chunks(options.metadata);
+    if (options.dpi > 0) {
+        const auto per_m = big_endian(static_cast<std::uint32_t>(std::lround(options.dpi / 0.0254)));
+        chunks += chunk("pHYs", per_m + per_m + '\1');  // the unit is the metre
+    }
+    return chunks;
+}
+
 void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options,
                const std::atomic<bool>& stop) {
     const Rect all = all_of(picture.size);
     Buffer bytes;
     const AVPixelFormat format = pixels_of(options);
     convert(picture, all, format, bytes.make_room(byte_count(format, all)));
-    write_samples(place, picture.size, bytes.data(), options, png_text_chunks(options.metadata), stop);
+    write_samples(place, picture.size, bytes.data(), options, chunks_of(options), stop);
 }
 
 std::string png_bytes(const Picture& picture, const PngOptions& options) {
@@ -239,7 +250,7 @@ std::string png_bytes(const Picture& picture, const PngOptions& options) {
     convert(picture, all, format, samples.make_room(byte_count(format, all)));
     std::string png;
     encode_samples([&](std::string_view part) { png += part; }, "a PNG", picture.size, samples.data(), options,
-                   png_text_chunks(options.metadata));
+                   chunks_of(options));
     return png;
 }
 

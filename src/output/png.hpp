@@ -15,6 +15,7 @@ struct PngOptions {
     bool with_alpha = false;  // RGBA, not premultiplied; else RGB, and alpha is left out
     /// Text chunks "Title", "Comment", …; the encoder as "Software", by which Doppel recognises its files.
     Metadata metadata = {{"encoder", "Doppel"}};
+    double dpi = 0;  // pixels an inch on paper; 0 = not said
 };
 
 /// Compressed by libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the picture was compressed.
@@ -44,7 +45,10 @@ int png_threads(int jobs, Size size);
 /// (exit 4) where it cannot be read.
 std::string data_url(const FilePlace& png);
 
-/// The same of a picture, opaque.
-std::string data_url(const Picture& picture);
+/// The same of a picture.
+std::string data_url(const Picture& picture, const PngOptions& options = {});
+
+/// "data:TYPE;base64,…" of a file's bytes.
+std::string data_url(std::string_view type, std::string_view bytes);
 
 }  // namespace doppel

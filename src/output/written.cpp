@@ -43,11 +43,12 @@ private:
     Owned<AVSHA, av_free> sha_;
 };
 
-/// The first bytes of a file, at most `most`; none where it cannot be read.
-std::string head_of(const Folder& folder, const std::string& name, std::size_t most) {
+/// The bytes of a file from `begin` on, at most `most`; none where it cannot be read.
+std::string bytes_of(const Folder& folder, const std::string& name, std::size_t most, std::size_t begin = 0) {
     try {
         const FilePlace place{folder, name};
         const Stream file = stream_of(open_file(place), "rb", place.path, "read");
+        if (std::fseek(file.get(), static_cast<long>(begin), SEEK_SET) != 0) return {};
         std::string bytes(std::min<std::size_t>(most, folder.entry(name).bytes), '\0');
         bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
         return bytes;
@@ -61,7 +62,7 @@ Json manifest_of(const Folder& folder, const std::string& name) {
     constexpr std::size_t most_bytes = 64 << 20;  // some 400 000 frames
     if (!name.ends_with(".json") || folder.entry(name).kind != Entry::Kind::file) return nullptr;
     if (folder.entry(name).bytes > most_bytes) return nullptr;
-    auto json = Json::parse(head_of(folder, name, most_bytes), nullptr, false);
+    auto json = Json::parse(bytes_of(folder, name, most_bytes), nullptr, false);
     const auto has = [&](const char* key) { return json.is_object() && json.contains(key) && json[key].is_object(); };
     if (!has("doppel") || !has("files")) return nullptr;
     return json;
@@ -92,7 +93,7 @@ WrittenFiles written_files(const Folder& folder) {
 
 std::string maker_of_picture(const Folder& folder, const std::string& name) {
     constexpr std::string_view png = "\x89PNG\r\n\x1a\n", key{"tEXtSoftware\0", 13};
-    const auto head = head_of(folder, name, 4096);
+    const auto head = bytes_of(folder, name, 4096);
     const auto at = head.find(key);
     if (!head.starts_with(png) || at == std::string::npos || at < 4) return {};
     // the chunk's length, big-endian, is before its type
@@ -106,10 +107,14 @@ bool is_written(const Folder& folder, const std::string& name, const WrittenFile
     if (written.contains(within + name)) return true;
     if (name.ends_with(".json")) return !manifest_of(folder, name).is_null();
     if (maker_of_picture(folder, name).starts_with("Doppel")) return true;
-    const auto head = head_of(folder, name, 64);
+    const auto head = bytes_of(folder, name, 64);
     for (const std::string_view start : {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", "<!DOCTYPE html>\n"})
         if (head.starts_with(start) && std::string_view(head).substr(start.size()).starts_with("<!-- Doppel "))
             return true;
+    if (head.starts_with("%PDF-")) {
+        const std::size_t bytes = folder.entry(name).bytes, most = pdf_mark.size() + 64;
+        return bytes_of(folder, name, most, bytes - std::min(bytes, most)).find(pdf_mark) != std::string::npos;
+    }
     return head.starts_with("sample,time_s,") || head.starts_with(R"({"file":"doppel trials")");
 }
 

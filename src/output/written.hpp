@@ -22,9 +22,12 @@ WrittenFiles written_files(const Folder& folder);
 /// The "Software" of a PNG in the folder; empty where it has none, or is no PNG.
 std::string maker_of_picture(const Folder& folder, const std::string& name);
 
+/// What follows the end of a PDF of Doppel's, a comment: the program that made it.
+inline constexpr std::string_view pdf_mark = "%%EOF\n% Doppel";
+
 /// Whether Doppel made the regular file `name` there: a manifest lists it (as `within` + name), or its contents show it
-/// (a PNG of Doppel's, a manifest, the table of a film, the trials of a figure, a report with a first comment
-/// "<!-- Doppel …").
+/// (a PNG of Doppel's, a manifest, the table of a film, the trials of a figure, a report or an SVG with a first comment
+/// "<!-- Doppel …", a PDF with a last one).
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written,
                 const std::string& within = {});
 

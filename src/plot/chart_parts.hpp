@@ -54,7 +54,7 @@ float axis_labels_height(const Plot& plot, float width, const PlotStyle& style);
 void draw_headings(const Plot& plot, const Area& held, float title, float labels, const PlotStyle& style,
                    DisplayList& list);
 
-/// The map's cells in `area` as seen through the axes: crisp where they are larger than pixels, else averaged, the
+/// The map's cells in `area` as seen through the axes, a pixel a cell where all are shown: crisp where they are larger than pixels, else averaged, the
 /// logarithm where the scale is logarithmic. Below zero on such a scale is as good as no value.
 Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
                 Color none, float scale);

@@ -68,7 +68,8 @@ struct Span {
     double from, to;
 };
 
-std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, double low, double high,
+/// Of pixels `step` px long.
+std::vector<Span> spans(const Axis& axis, float first, int pixels, float step, double low, double high,
                         std::size_t cells) {
     std::vector<Span> made;
     const auto cell_at = [&](float px) {
@@ -80,11 +81,11 @@ std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, 
     };
     const auto count = static_cast<double>(cells);
     for (int i = 0; i < pixels; ++i) {
-        const float begin = first + static_cast<float>(i) / scale, end = first + static_cast<float>(i + 1) / scale;
+        const float begin = first + static_cast<float>(i) * step, end = first + static_cast<float>(i + 1) * step;
         const double a = cell_at(begin), b = cell_at(end), middle = cell_at((begin + end) / 2);
         if (!(middle >= 0 && middle < count)) {
             made.push_back({0, 0});
-        } else if (std::abs(b - a) <= 1) {
+        } else if (std::abs(b - a) < 1.001) {
             // a cell as large as the pixel or larger: the one below its centre
             made.push_back({std::floor(middle), std::floor(middle) + 1});
         } else {
@@ -94,20 +95,30 @@ std::vector<Span> spans(const Axis& axis, float first, int pixels, float scale, 
     return made;
 }
 
+/// How many pixels an image has along the axis, `px` long: a cell each where all cells are shown, no less than a pixel
+/// long; else one each.
+int image_pixels(const Axis& axis, double low, double high, std::size_t cells, float px) {
+    const bool shows_all = std::min(axis.low, axis.high) == low && std::max(axis.low, axis.high) == high;
+    const int pixels = std::max(1, static_cast<int>(std::lround(px)));
+    return shows_all ? std::min(pixels, static_cast<int>(cells)) : pixels;
+}
+
 }  // namespace
 
 Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
                 Color none, float scale) {
-    const Size size{std::max(1, static_cast<int>(std::lround(area.width() * scale))),
-                    std::max(1, static_cast<int>(std::lround(area.height() * scale)))};
+    const Size size{image_pixels(x, map.x_low, map.x_high, map.columns, area.width() * scale),
+                    image_pixels(y, map.y_low, map.y_high, map.rows, area.height() * scale)};
     // what is averaged
     std::vector<float> values = map.values;
     if (map.logarithmic)
         for (float& value : values) value = std::log(value);
     const Axis shares{.low = map.logarithmic ? std::log(scale_of_colors.low) : scale_of_colors.low,
                       .high = map.logarithmic ? std::log(scale_of_colors.high) : scale_of_colors.high};
-    const auto across = spans(x, area.left, size.width, scale, map.x_low, map.x_high, map.columns);
-    const auto down = spans(y, area.top, size.height, scale, map.y_low, map.y_high, map.rows);
+    const auto across = spans(x, area.left, size.width, area.width() / static_cast<float>(size.width), map.x_low,
+                              map.x_high, map.columns);
+    const auto down = spans(y, area.top, size.height, area.height() / static_cast<float>(size.height), map.y_low,
+                            map.y_high, map.rows);
     auto pixels = std::make_shared<Picture>(size);
     for (int row = 0; row < size.height; ++row) {
         for (int column = 0; column < size.width; ++column) {

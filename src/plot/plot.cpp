@@ -147,19 +147,21 @@ struct Enlarge {
 
 }  // namespace
 
-DisplayList compose(const Figure& figure, Size size, const Theme& theme, float scale) {
+DisplayList compose(const Figure& figure, Size size, const Theme& theme, float scale, std::optional<float> unit) {
     if (!(scale > 0 && std::isfinite(scale)))
         throw bad_input("the scale of a figure must be more than 0; it is {}", scale);
     check(figure);
     const float width = static_cast<float>(size.width) / scale, height = static_cast<float>(size.height) / scale;
     // smaller text than that of 800 × 450 cannot be read
-    const PlotStyle style{.theme = theme, .unit = std::max(std::min(width / 1600, height / 900), 0.5f), .scale = scale};
+    const float by_size = std::max(std::min(width / 1600, height / 900), 0.5f);
+    const PlotStyle style{.theme = theme, .unit = unit.value_or(by_size), .scale = scale};
     const float across = std::round(34 * style.unit), down = std::round(28 * style.unit);
     const Area sheet{across, down, width - across, height - down};
     const Page page = laid_out(figure, sheet, style);
     // many panels in a small picture: smaller text rather than no room for panels
     constexpr float least_scale = 0.1f;
-    if (!has_room(figure, page.body, style) && scale > least_scale) return compose(figure, size, theme, 0.8f * scale);
+    if (!has_room(figure, page.body, style) && scale > least_scale)
+        return compose(figure, size, theme, 0.8f * scale, unit);
 
     DisplayList list{Box{0, 0, width, height, 0, theme.background}};
     page.title.draw({sheet.left, sheet.top}, list);

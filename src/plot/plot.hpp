@@ -92,8 +92,10 @@ struct Figure {
 };
 
 /// Composes a figure for a picture of `size` px. `scale` = 2 gives every length twice as many pixels: the same layout
-/// as a picture of half the size, for print. Text never overlaps: what does not fit is shrunk, moved to the legend or
-/// left out (tick labels).
-DisplayList compose(const Figure& figure, Size size, const Theme& theme, float scale = 1);
+/// as a picture of half the size, for print. Text of labels is 20 px times `unit` and scale, the rest in proportion; by the
+/// size where it is not given. Text never overlaps: what does not fit is shrunk, moved to the legend or left out (tick
+/// labels).
+DisplayList compose(const Figure& figure, Size size, const Theme& theme, float scale = 1,
+                    std::optional<float> unit = {});
 
 }  // namespace doppel

@@ -26,17 +26,12 @@ struct Coverage {
 // how far bold moves the outline to either side, em: vertical stems grow more than horizontal bars
 constexpr float bold_across = 0.0215f;
 constexpr float bold_along = 0.0130f;
-constexpr float bold_spacing = 0.0300f;
 
 const stbtt_fontinfo& font() {
     static const stbtt_fontinfo loaded = [] {
-        for (const EmbeddedFile& file : render_files()) {
-            if (file.name != "DejaVuSans.ttf") continue;
-            const auto* bytes = reinterpret_cast<const unsigned char*>(file.contents.data());
-            stbtt_fontinfo info;
-            if (stbtt_InitFont(&info, bytes, 0) != 0) return info;
-        }
-        throw io_failed("the built-in font DejaVuSans.ttf cannot be read");
+        stbtt_fontinfo info;
+        if (stbtt_InitFont(&info, reinterpret_cast<const unsigned char*>(font_file().data()), 0) != 0) return info;
+        throw io_failed("the built-in font cannot be read");
     }();
     return loaded;
 }
@@ -178,12 +173,26 @@ Coverage rasterised(int glyph, float size, Weight weight, float shift) {
 TextLine lay_out(std::string_view text, float size, Weight weight) {
     TextLine line;
     line.glyphs.reserve(text.size());
+    const std::size_t bytes = text.size();
     while (!text.empty()) {
+        const std::size_t byte = bytes - text.size();
         const int number = number_of(next_character(text));
-        line.glyphs.push_back({number, line.width});
+        line.glyphs.push_back({number, line.width, byte});
         line.width += advance(number, size, weight);
     }
     return line;
+}
+
+std::string_view font_file() {
+    const auto files = render_files();
+    const auto found = std::ranges::find(files, "DejaVuSans.ttf", &EmbeddedFile::name);
+    if (found == files.end()) throw io_failed("the font DejaVuSans.ttf was not built in");
+    return found->contents;
+}
+
+Point start_of(const Label& label, const TextLine& line) {
+    const float before = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
+    return {label.anchor.x - before * line.width, std::round(label.anchor.y)};
 }
 
 float fitting_size(std::string_view text, float size, Weight weight, float width) {

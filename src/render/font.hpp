@@ -20,15 +20,26 @@ float fitting_size(std::string_view text, float size, Weight weight, float width
 /// A line of positioned glyphs.
 struct TextLine {
     struct Glyph {
-        int number = 0;  // in the font
-        float pen = 0;   // px right of the start of the line
+        int number = 0;        // in the font
+        float pen = 0;         // px right of the start of the line
+        std::size_t byte = 0;  // where its character begins in the text
     };
     std::vector<Glyph> glyphs;
     float width = 0;  // px
 };
 
+/// The built-in font has one weight. Bold: how much wider the pen is, which draws on either side of the outline, and
+/// how much further the next letter is; em.
+inline constexpr float bold_pen = 0.0345f, bold_spacing = 0.0300f;
+
+/// The built-in font: a TrueType file.
+std::string_view font_file();
+
 /// Text is UTF-8; each byte that is not becomes U+FFFD.
 TextLine lay_out(std::string_view text, float size, Weight weight);
+
+/// Where the pen begins, px.
+Point start_of(const Label& label, const TextLine& line);
 
 /// The first character of `text` that the font lacks, or that is a control character. Empty where there is none.
 std::string_view missing_character(std::string_view text);

@@ -89,9 +89,7 @@ public:
     void operator()(const Label& label) {
         begin(Kind::glyph);
         const TextLine line = lay_out(label.text, label.size, label.weight);
-        const float before = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
-        const float start = label.anchor.x - before * line.width;
-        const float baseline = std::round(label.anchor.y);
+        const auto [start, baseline] = start_of(label, line);
         // the whole pixels aside, so that moving by whole pixels changes nothing
         const float whole = std::floor(start);
         for (const TextLine::Glyph& glyph : line.glyphs) {

@@ -30,6 +30,12 @@ inline constexpr auto names_of<Precision> = std::to_array<std::string_view>({"do
 template <>
 inline constexpr auto names_of<Stabilise> = std::to_array<std::string_view>({"none", "baumgarte", "projection"});
 
+/// What stands where a picture has words of its own: these, others, or none.
+struct ChosenText {
+    bool shown = true;
+    std::optional<std::vector<std::string>> own;  // paragraphs
+};
+
 using QuadPair = std::array<Quad, 2>;  // x and y
 
 /// An end of a rod or a spring: the name of a particle, or a fixed place, m.

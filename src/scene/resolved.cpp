@@ -50,6 +50,10 @@ std::string toml_value(const Speed& speed) {
     return fmt::format("[{}]", fmt::join(changes, ", "));
 }
 
+std::string toml_value(const ChosenText& text) {
+    return text.own ? toml_value(*text.own) : toml_value(text.shown);
+}
+
 std::string toml_value(const Members& members) {
     return members.angles_deg.empty() ? toml_value(members.count) : toml_value(members.angles_deg);
 }
@@ -157,6 +161,13 @@ Json json_of_toml(const std::string& toml) {
 
 Json program_json() {
     return {{"version", version()}, {"revision", revision()}};
+}
+
+Metadata metadata_of(const std::string& title, const std::string& name, const std::string& record) {
+    const auto program = fmt::format("Doppel {} ({})", version(), revision());
+    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
+    return {
+        {"title", title}, {"comment", fmt::format("{}, preset {}; {}", program, name, record)}, {"encoder", program}};
 }
 
 void write_manifest(Transaction& parts, const std::string& name, Json manifest) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "output/sink.hpp"
 #include "output/transaction.hpp"
 #include "scene/preset.hpp"
 
@@ -22,6 +23,7 @@ std::string toml_value(const Color& color);
 std::string toml_value(const Panels& panels);
 std::string toml_value(const Speed& speed);
 std::string toml_value(const Members& members);
+std::string toml_value(const ChosenText& text);
 template <class T>
 std::string toml_value(const T& value) {
     if constexpr (std::is_same_v<T, std::string>) {
@@ -99,6 +101,9 @@ Json json_of_toml(const std::string& toml);
 
 /// Version and revision.
 Json program_json();
+
+/// By which a picture or a film can be traced to how it was made: its title, the preset's name, and where that is written.
+Metadata metadata_of(const std::string& title, const std::string& name, const std::string& record);
 
 /// Adds the files of the run, those that are finished, and those of earlier runs that stay, with size and SHA-256; then
 /// writes the manifest as the last of them, "NAME.json". Throws Error (exit 4).

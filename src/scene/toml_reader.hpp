@@ -148,6 +148,7 @@ private:
     void read(const Field& field, const toml::node& node, Panels& into);
     void read(const Field& field, const toml::node& node, Speed& into);
     void read(const Field& field, const toml::node& node, Members& into);
+    void read(const Field& field, const toml::node& node, ChosenText& into);
     void read(const Field& field, const toml::node& node, Color& into);  // "#rrggbb"
     void read(const Field& field, const toml::node& node, std::array<Color, 2>& into);
     std::vector<std::string> texts_in(const Field& field, const toml::node& node) const;

@@ -184,6 +184,14 @@ void TomlReader::read(const Field& field, const toml::node& node, std::vector<st
     into = std::move(texts);
 }
 
+void TomlReader::read(const Field& field, const toml::node& node, ChosenText& into) {
+    into = {};
+    if (node.is_boolean()) return read(field, node, into.shown);
+    if (node.is_string()) return read(field, node, into.own.emplace().emplace_back());
+    if (!node.is_array()) throw fault(field.key, "must be true, false, text or a list of text; {}", found(node));
+    read(field, node, into.own.emplace());
+}
+
 void TomlReader::read(const Field& field, const toml::node& node, std::span<Quad> into) {
     if (node.is_array()) return read_array(field, node, into);
     if (!node.is_number())

@@ -6,6 +6,7 @@
 #include "numeric/rational.hpp"
 #include "output/sink.hpp"
 #include "scene/field.hpp"
+#include "vector/page.hpp"
 
 #include <algorithm>
 #include <array>
@@ -56,6 +57,8 @@ inline constexpr auto names_of<PhaseKind> = std::to_array<std::string_view>({"ra
 enum class FilmFormat { mp4, webm, gif, apng, png };
 template <>
 inline constexpr auto names_of<FilmFormat> = std::to_array<std::string_view>({"mp4", "webm", "gif", "apng", "png"});
+template <>
+inline constexpr auto names_of<PictureFormat> = std::to_array<std::string_view>({"png", "pdf", "svg"});
 template <>
 inline constexpr auto names_of<PixelFormat> = std::to_array<std::string_view>({"yuv420p", "yuv444p", "yuv420p10"});
 

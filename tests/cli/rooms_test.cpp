@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 // Who may include whom: dependencies run one way.
 //     base ← numeric ← physics ← integrate ← analysis ┐
 //     base ← image ← render ← plot ←──────────────────┼─ scene ← film ← figure ← cli ← main
-//     base ← image ← output ←─────────────────────────┘
+//     base ← image ← output ← vector (and render) ←───┘
 const std::map<std::string, std::set<std::string>> needs{
     {"base", {}},
     {"numeric", {"base"}},
@@ -26,13 +26,16 @@ const std::map<std::string, std::set<std::string>> needs{
     {"render", {"image", "base"}},
     {"plot", {"render", "image", "base"}},
     {"output", {"image", "base"}},
-    {"scene", {"analysis", "integrate", "physics", "numeric", "output", "plot", "render", "image", "base"}},
-    {"film", {"scene", "analysis", "integrate", "physics", "numeric", "output", "plot", "render", "image", "base"}},
+    {"vector", {"output", "render", "image", "base"}},
+    {"scene", {"analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image", "base"}},
+    {"film",
+     {"scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image", "base"}},
     {"figure",
-     {"film", "scene", "analysis", "integrate", "physics", "numeric", "output", "plot", "render", "image", "base"}},
-    {"cli",
-     {"figure", "film", "scene", "analysis", "integrate", "physics", "numeric", "output", "plot", "render", "image",
+     {"film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image",
       "base"}},
+    {"cli",
+     {"figure", "film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render",
+      "image", "base"}},
 };
 
 /// Calls visit(file, room or system header) for every include in src.

@@ -27,7 +27,7 @@ TEST_P(GoldenFigure, IsAsItWas) {
     auto arguments = GetParam().sets;
     arguments.insert(arguments.end(), {"chart.size=[960, 540]", "chart.scale=0.5"});
     const auto figure = figure_of(GetParam().preset, arguments);
-    Renderer renderer(figure.picture_size());
+    Renderer renderer(layout_of(figure.chart).picture);
     test::expect_golden(GetParam().name, renderer.draw(compose_figure(figure, computed(figure))));
 }
 

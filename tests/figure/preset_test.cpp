@@ -59,7 +59,7 @@ TEST(FigurePreset, ResolvedReadsBackToTheSame) {
         EXPECT_EQ(again.resolved(), figure.resolved()) << preset.name;
         EXPECT_EQ(header_of(again), header_of(figure)) << preset.name;
         EXPECT_EQ(again.experiment->columns(), figure.experiment->columns()) << preset.name;
-        EXPECT_EQ(again.picture_size(), figure.picture_size()) << preset.name;
+        EXPECT_EQ(layout_of(again.chart).picture, layout_of(figure.chart).picture) << preset.name;
         EXPECT_EQ(again.title, figure.title);
         EXPECT_EQ(again.subtitle, figure.subtitle);
         EXPECT_EQ(again.captions, figure.captions);
@@ -80,8 +80,8 @@ TEST(FigurePreset, ResolvedKeepsEveryDigitAndCharacter) {
 }
 
 TEST(FigurePreset, ScaleIsOfThePicture) {
-    EXPECT_EQ(figure_of("fig6").picture_size(), (Size{1600, 900}));
-    EXPECT_EQ(figure_of("fig6", {"chart.scale=2", "chart.size=[480, 270]"}).picture_size(), (Size{960, 540}));
+    EXPECT_EQ(layout_of(figure_of("fig6").chart).picture, (Size{1600, 900}));
+    EXPECT_EQ(layout_of(figure_of("fig6", {"chart.scale=2", "chart.size=[480, 270]"}).chart).picture, (Size{960, 540}));
 }
 
 TEST(FigurePreset, IsNoFilm) {

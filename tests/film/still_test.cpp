@@ -21,7 +21,7 @@ Scene small(const std::vector<std::string>& more = {}) {
 }
 
 fs::path still(const Scene& scene, const Rational& time, const fs::path& out = test::fresh_folder()) {
-    return draw_still(scene, time, {.out = out}, never, no_report).files.at(0);
+    return draw_still(scene, time, PictureFormat::png, {.out = out}, never, no_report).files.at(0);
 }
 
 TEST(Still, IsTheFrameOfTheFilm) {
@@ -52,6 +52,23 @@ TEST(Still, IsWrittenBesideAFilmAndOtherStills) {
     for (const auto& entry : fs::directory_iterator(out / "butterfly")) names.insert(entry.path().filename());
     EXPECT_EQ(names,
               (std::set<std::string>{"butterfly.csv", "butterfly.json", "butterfly.0.5s.png", "butterfly.1s.png"}));
+}
+
+TEST(Still, IsAlsoAPageOfPathsAndText) {
+    const auto out = test::fresh_folder();
+    for (int time = 0; time < 2; ++time) {  // the second in place of the first
+        const auto svg = draw_still(small(), {1, 1}, PictureFormat::svg, {.out = out}, never, no_report).files.at(0);
+        EXPECT_EQ(svg.filename(), "butterfly.1s.svg");
+        EXPECT_NE(test::bytes_of(svg).find("Three thousandths of a degree</text>"), std::string::npos);
+        const auto pdf = draw_still(small(), {1, 1}, PictureFormat::pdf, {.out = out}, never, no_report).files.at(0);
+        EXPECT_TRUE(test::bytes_of(pdf).starts_with("%PDF-"));
+    }
+    // somebody else's is not replaced
+    test::write_bytes(out / "butterfly/butterfly.0.5s.pdf", "%PDF-1.5 of mine");
+    EXPECT_EQ(error_of([&] {
+                  draw_still(small(), {1, 2}, PictureFormat::pdf, {.out = out}, never, no_report);
+              }).first,
+              ExitCode::io_failed);
 }
 
 TEST(Still, SaysWhichTimesThereAre) {

@@ -14,8 +14,9 @@ HeatMap strip(std::vector<float> values) {
     return {.columns = values.size(), .rows = 1, .values = values, .label = "an error", .low = 0, .high = 1};
 }
 
-Color pixel(const Image& image, int x, int y = 0) {
-    const auto* rgba = image.pixels->at(x, y);
+/// The colour of a pixel of the picture in the map's uppermost row, `x` px from its left edge.
+Color pixel(const Image& image, int x) {
+    const auto* rgba = image.pixels->at(x * image.pixels->size.width / static_cast<int>(image.right - image.left), 0);
     return {static_cast<float>(rgba[0]) / 255, static_cast<float>(rgba[1]) / 255, static_cast<float>(rgba[2]) / 255, 1};
 }
 
@@ -25,7 +26,7 @@ void expect_near(const Color& a, const Color& b) {
     EXPECT_NEAR(a.b, b.b, 0.003);
 }
 
-/// 90 px wide, over an axis of 1 to 1000.
+/// 90 px wide, over an axis of 1 to 1000. A map of all of it has a pixel a cell.
 Image drawn(const HeatMap& map, bool logarithmic) {
     const Axis x{.low = 1, .high = 1000, .from = 0, .to = 90, .logarithmic = logarithmic};
     const Axis y{.low = 0, .high = 1, .from = 10, .to = 0};
@@ -66,7 +67,7 @@ TEST(HeatMap, ShowsWhatIsBadInItsColor) {
         if (const auto* box = std::get_if<Box>(&item)) swatches += box->color == themes[1].bad;
         if (const auto* image = std::get_if<Image>(&item))
             if (image->right - image->left > 100) {
-                expect_near(pixel(*image, image->pixels->size.width - 2), themes[1].bad);
+                expect_near(pixel(*image, static_cast<int>(image->right - image->left) - 2), themes[1].bad);
                 ++cells;
             }
     }

@@ -1,0 +1,48 @@
+#include "figure/chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+constexpr double pt_per_cm = 72 / 2.54, cm_per_inch = 2.54;
+constexpr double label_px = 20;    // text of labels where the unit is 1 (plot/chart_parts.hpp), layout px
+constexpr double paths_scale = 4;  // of what is made of paths
+constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL takes, which says so itself
+
+Size scaled(double width, double height, double scale) {
+    return {static_cast<int>(std::lround(width * scale)), static_cast<int>(std::lround(height * scale))};
+}
+
+}  // namespace
+
+ChartLayout layout_of(const ChartSpec& chart) {
+    double width = chart.size.width, height = chart.size.height, pt = pt_per_px, scale = chart.scale;
+    if (chart.width_cm) {
+        const double high = chart.height_cm.value_or(*chart.width_cm * height / width);
+        pt = chart.font_pt / label_px;
+        width = *chart.width_cm * pt_per_cm / pt, height = high * pt_per_cm / pt;
+        scale = chart.dpi / cm_per_inch * *chart.width_cm / width;
+    }
+    if (chart.format != PictureFormat::png) scale = paths_scale;
+    ChartLayout layout{
+        .picture = scaled(width, height, scale), .scale = static_cast<float>(scale), .width_pt = width * pt};
+    if (chart.width_cm) layout.unit = 1;
+    return layout;
+}
+
+void read_chart(TomlReader& table, ChartSpec& chart) {
+    // which keys count depends on this one
+    table.read({.key = "width_cm"}, chart.width_cm.emplace(0));
+    if (!table.has("width_cm")) chart.width_cm.reset();
+    chart_fields(table, chart);
+    const auto key = chart.width_cm ? "width_cm" : "scale";
+    const auto [width, height] = layout_of(chart).picture;
+    if (std::min(width, height) < smallest || std::max(width, height) > largest)
+        throw table.fault(key, "must leave a picture of {} to {} px a side; it is {}×{} px", smallest, largest, width,
+                          height);
+    table.finish();
+}
+
+}  // namespace doppel

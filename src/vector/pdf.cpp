@@ -1,0 +1,185 @@
+#include "base/error.hpp"
+#include "output/folder.hpp"
+#include "render/font.hpp"
+#include "vector/cairo_drawing.hpp"
+#include "vector/page.hpp"
+#include "vector/paths.hpp"
+
+#include <cairo-ft.h>
+#include <cairo-pdf.h>
+#include <fmt/format.h>
+
+#include <memory>
+#include <new>
+#include <type_traits>
+
+namespace doppel {
+namespace {
+
+using Surface = Owned<cairo_surface_t, cairo_surface_destroy>;
+using Context = Owned<cairo_t, cairo_destroy>;
+using FontFace = Owned<cairo_font_face_t, cairo_font_face_destroy>;
+
+void check(cairo_status_t status) {
+    if (status != CAIRO_STATUS_SUCCESS) throw io_failed("a PDF cannot be made: {}", cairo_status_to_string(status));
+}
+
+/// The built-in font, which has one weight: FreeType makes the other. It keeps FreeType until Cairo has let go of it.
+FontFace load_font(Weight weight) {
+    struct Loaded {
+        FT_Library library = nullptr;
+        FT_Face face = nullptr;
+        ~Loaded() {
+            FT_Done_Face(face);
+            FT_Done_FreeType(library);
+        }
+    };
+    auto loaded = std::make_unique<Loaded>();
+    const auto file = font_file();
+    if (FT_Init_FreeType(&loaded->library) != 0 ||
+        FT_New_Memory_Face(loaded->library, reinterpret_cast<const FT_Byte*>(file.data()),
+                           static_cast<FT_Long>(file.size()), 0, &loaded->face) != 0)
+        throw io_failed("FreeType cannot read the built-in font");
+    FontFace face(cairo_ft_font_face_create_for_ft_face(loaded->face, FT_LOAD_NO_HINTING));
+    static const cairo_user_data_key_t key{};
+    check(cairo_font_face_set_user_data(face.get(), &key, loaded.get(),
+                                        [](void* kept) { delete static_cast<Loaded*>(kept); }));
+    loaded.release();
+    if (weight == Weight::bold) cairo_ft_font_face_set_synthesize(face.get(), CAIRO_FT_SYNTHESIZE_BOLD);
+    return face;
+}
+
+void set_color(cairo_t* to, const Color& color) {
+    cairo_set_source_rgba(to, color.r, color.g, color.b, color.a);
+}
+
+/// Draws items of a page.
+class Painter {
+public:
+    explicit Painter(cairo_t* to) : to_(to) {}
+
+    void operator()(const Path& path) const {
+        for (const auto& step : path.steps) {
+            switch (step.kind) {
+                case Path::Step::Kind::move:
+                    cairo_move_to(to_, step.to.x, step.to.y);
+                    break;
+                case Path::Step::Kind::line:
+                    cairo_line_to(to_, step.to.x, step.to.y);
+                    break;
+                case Path::Step::Kind::curve:
+                    cairo_curve_to(to_, step.leave.x, step.leave.y, step.arrive.x, step.arrive.y, step.to.x, step.to.y);
+                    break;
+                case Path::Step::Kind::close:
+                    cairo_close_path(to_);
+            }
+        }
+        set_color(to_, path.color);
+        if (path.pen == 0) return cairo_fill(to_);
+        cairo_set_line_width(to_, path.pen);
+        cairo_set_line_join(to_, CAIRO_LINE_JOIN_ROUND);
+        cairo_set_line_cap(to_, path.has_round_ends ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+        cairo_stroke(to_);
+    }
+
+    void operator()(const Label& label) const {
+        const TextLine line = lay_out(label.text, label.size, label.weight);
+        const Point start = start_of(label, line);
+        std::vector<cairo_glyph_t> glyphs;
+        std::vector<cairo_text_cluster_t> letters;  // a glyph each
+        for (std::size_t i = 0; i < line.glyphs.size(); ++i) {
+            const auto& glyph = line.glyphs[i];
+            const std::size_t end = i + 1 < line.glyphs.size() ? line.glyphs[i + 1].byte : label.text.size();
+            glyphs.push_back({static_cast<unsigned long>(glyph.number), start.x + glyph.pen, start.y});
+            letters.push_back({static_cast<int>(end - glyph.byte), 1});
+        }
+        cairo_set_font_face(to_, (label.weight == Weight::bold ? bold_ : regular_).get());
+        cairo_set_font_size(to_, label.size);
+        set_color(to_, label.color);
+        cairo_show_text_glyphs(to_, label.text.data(), static_cast<int>(label.text.size()), glyphs.data(),
+                               static_cast<int>(glyphs.size()), letters.data(), static_cast<int>(letters.size()), {});
+    }
+
+    void operator()(const Image& image) const {
+        const auto& pixels = *image.pixels;
+        const bool is_opaque = pixels.is_opaque();
+        const Surface surface(cairo_image_surface_create(is_opaque ? CAIRO_FORMAT_RGB24 : CAIRO_FORMAT_ARGB32,
+                                                         pixels.size.width, pixels.size.height));
+        check(cairo_surface_status(surface.get()));
+        cairo_surface_flush(surface.get());
+        auto* bytes = cairo_image_surface_get_data(surface.get());
+        const int stride = cairo_image_surface_get_stride(surface.get());
+        for (int y = 0; y < pixels.size.height; ++y) {
+            auto* row = reinterpret_cast<std::uint32_t*>(bytes + std::ptrdiff_t{y} * stride);
+            for (int x = 0; x < pixels.size.width; ++x) {
+                const auto* p = pixels.at(x, y);
+                const std::uint32_t a = p[3];
+                const auto times = [&](std::uint32_t v) { return (v * a + 127) / 255; };
+                row[x] = a << 24 | times(p[0]) << 16 | times(p[1]) << 8 | times(p[2]);
+            }
+        }
+        cairo_surface_mark_dirty(surface.get());
+        cairo_save(to_);
+        cairo_translate(to_, image.left, image.top);
+        cairo_scale(to_, (image.right - image.left) / static_cast<float>(pixels.size.width),
+                    (image.bottom - image.top) / static_cast<float>(pixels.size.height));
+        cairo_set_source_surface(to_, surface.get(), 0, 0);
+        cairo_pattern_set_filter(cairo_get_source(to_), CAIRO_FILTER_NEAREST);
+        cairo_paint(to_);
+        cairo_restore(to_);
+    }
+
+private:
+    cairo_t* to_;
+    FontFace regular_ = load_font(Weight::regular), bold_ = load_font(Weight::bold);
+};
+
+cairo_status_t append(void* file, const unsigned char* bytes, unsigned count) try {
+    static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+} catch (const std::bad_alloc&) {
+    return CAIRO_STATUS_NO_MEMORY;
+}
+
+void describe(cairo_surface_t* surface, const Metadata& metadata) {
+    for (const auto& [key, text] : metadata) {
+        const auto set = [&](cairo_pdf_metadata_t entry) {
+            cairo_pdf_surface_set_metadata(surface, entry, text.c_str());
+        };
+        if (key == "title") set(CAIRO_PDF_METADATA_TITLE);
+        if (key == "artist") set(CAIRO_PDF_METADATA_AUTHOR);
+        if (key == "comment") set(CAIRO_PDF_METADATA_SUBJECT);
+        if (key == "encoder") set(CAIRO_PDF_METADATA_CREATOR);
+    }
+}
+
+}  // namespace
+
+void draw(const DisplayList& list, cairo_t* to) {
+    const Painter painter(to);
+    for (const auto& item : page_items(list)) std::visit(painter, item);
+    check(cairo_status(to));
+}
+
+std::string pdf_page(const DisplayList& list, const Page& page) {
+    std::string file;
+    const double scale = page.width_pt / page.size.width;
+    const Surface surface(cairo_pdf_surface_create_for_stream(append, &file, page.width_pt, scale * page.size.height));
+    check(cairo_surface_status(surface.get()));
+    describe(surface.get(), page.metadata);
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
+    {
+        const Context context(cairo_create(surface.get()));
+        cairo_scale(context.get(), scale, scale);
+        draw(list, context.get());
+        cairo_show_page(context.get());
+        check(cairo_status(context.get()));
+    }
+    cairo_surface_finish(surface.get());
+    check(cairo_surface_status(surface.get()));
+    // what a PDF holds may be compressed; what follows it is free
+    file.resize(file.rfind("%%EOF"));
+    return file + fmt::format("%%EOF\n% {}\n", maker_of(page.metadata));
+}
+
+}  // namespace doppel

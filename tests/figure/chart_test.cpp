@@ -1,0 +1,107 @@
+#include "figure/chart.hpp"
+
+#include "figure/run.hpp"
+#include "figure/support.hpp"
+#include "output/png.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace chart_test {
+
+using test::bytes_of;
+using test::expect_error;
+using test::fresh_folder;
+
+std::string picture_of(const FigurePreset& figure, const std::string& ending) {
+    const auto out = fresh_folder();
+    const auto result = run_figure(figure, {.out = out});
+    EXPECT_EQ(names_in(out / "fig2-right"),
+              (std::vector<std::string>{"fig2-right.csv", "fig2-right.json", "fig2-right" + ending}));
+    return bytes_of(result.files.at(0));
+}
+
+TEST(Chart, APdfIsAsWideAsThePaperAsksFor) {
+    const auto pdf =
+        picture_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6", "chart.height_cm=6"}), ".pdf");
+    EXPECT_TRUE(pdf.starts_with("%PDF-"));
+    const auto layout = layout_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6"}).chart);
+    EXPECT_NEAR(layout.width_pt, 8.6 / 2.54 * 72, 1e-9);
+    EXPECT_EQ(layout.unit, 1.0f);  // labels are 20 px: 8 pt, as the key says where it is not given
+    EXPECT_NEAR(20 * layout.scale * layout.width_pt / layout.picture.width, 8, 0.01);
+}
+
+TEST(Chart, AnSvgIsWrittenWithoutOpenGl) {
+    const auto svg = picture_of(small_sweep({"chart.format=\"svg\""}), ".svg");
+    EXPECT_NE(svg.find("How far twins part"), std::string::npos);
+    EXPECT_NE(svg.find("width=\"240pt\" height=\"135pt\""), std::string::npos);  // 320 × 180 px of 3/4 pt
+}
+
+TEST(Chart, APngOnPaperHasItsDotsAnInch) {
+    const auto figure = small_sweep({"chart.width_cm=8.6", "chart.dpi=600"});
+    const auto png = picture_of(figure, ".png");
+    const auto at = png.find("pHYs");
+    ASSERT_NE(at, std::string::npos);
+    const auto number = [&](std::size_t from) {
+        std::uint32_t all = 0;
+        for (std::size_t i = 0; i < 4; ++i) all = all << 8 | static_cast<unsigned char>(png[from + i]);
+        return all;
+    };
+    EXPECT_NEAR(number(at + 4) * 0.0254, 600, 0.2);  // a pixel is the least that the width can differ by
+    EXPECT_EQ(number(at + 8), number(at + 4));
+    EXPECT_EQ(png[at + 12], 1);
+    EXPECT_NEAR(layout_of(figure.chart).picture.width, 8.6 / 2.54 * 600, 0.5);
+    EXPECT_NE(png.find("fig2-right.json"), std::string::npos) << "its metadata is a film's";
+    EXPECT_LT(at, png.find("IDAT"));
+}
+
+std::vector<std::string> labels_of(const FigurePreset& figure) {
+    std::vector<std::string> labels;
+    for (const auto& item : compose_figure(figure, computed(figure)))
+        if (const auto* text = std::get_if<Label>(&item)) labels.push_back(text->text);
+    return labels;
+}
+
+TEST(Chart, WordsMayGoOrBeOnesOwn) {
+    const auto has = [](const std::vector<std::string>& all, std::string_view start) {
+        return std::any_of(all.begin(), all.end(), [&](const auto& text) { return text.starts_with(start); });
+    };
+    const auto as_is = labels_of(figure_of("fig2-right", {"sweep.to=9", "scene.duration_s=0.5"}));
+    EXPECT_TRUE(has(as_is, "How far twins part"));
+    EXPECT_TRUE(has(as_is, "two links"));
+    EXPECT_TRUE(has(as_is, "Erratum"));
+    const auto bare = labels_of(
+        figure_of("fig2-right", {"sweep.to=9", "scene.duration_s=0.5", "chart.title=false", "chart.captions=false"}));
+    EXPECT_FALSE(has(bare, "How far twins part") || has(bare, "two links") || has(bare, "Erratum"));
+    EXPECT_EQ(bare.size(), as_is.size() - 3);
+    const auto own = labels_of(figure_of("fig2-right", {"sweep.to=9", "scene.duration_s=0.5", "chart.title=\"Mine\"",
+                                                        "chart.captions=[\"One\", \"Two\"]"}));
+    EXPECT_TRUE(has(own, "Mine") && has(own, "One") && has(own, "Two"));
+    EXPECT_FALSE(has(own, "two links") || has(own, "Erratum"));
+}
+
+TEST(Chart, KeysOfPaperNeedItsWidth) {
+    for (const auto* key : {"height_cm=5", "font_pt=9", "dpi=600"})
+        expect_error(ExitCode::bad_input, {"it needs width_cm"}, [&] { small_sweep({fmt::format("chart.{}", key)}); });
+    expect_error(ExitCode::bad_input, {"with width_cm dpi says it"}, [] {
+        small_sweep({"chart.width_cm=8.6", "chart.scale=2"});
+    });
+    expect_error(ExitCode::bad_input, {"must leave a picture of 16 to 16384 px a side"}, [] {
+        small_sweep({"chart.width_cm=200", "chart.dpi=1200"});
+    });
+    expect_error(ExitCode::bad_input, {"must be true, false, text or a list of text"},
+                 [] { small_sweep({"chart.title=3"}); });
+    expect_error(ExitCode::bad_input, {"\"png\", \"pdf\" or \"svg\""}, [] { small_sweep({"chart.format=\"eps\""}); });
+}
+
+TEST(Chart, WhatWasUnderstoodIsReadBackTheSame) {
+    const auto figure = small_sweep({"chart.width_cm=8.6", "chart.height_cm=5", "chart.font_pt=7", "chart.dpi=200",
+                                     "chart.title=false", "chart.captions=[\"One\"]", "chart.format=\"svg\""});
+    const PresetText source{"fig2-right", "again.toml", figure.resolved(), "again.toml"};
+    EXPECT_EQ(read_figure(source).resolved(), figure.resolved());
+}
+
+}  // namespace chart_test
+}  // namespace doppel
