@@ -37,11 +37,15 @@ void read_chart(TomlReader& table, ChartSpec& chart) {
     table.read({.key = "width_cm"}, chart.width_cm.emplace(0));
     if (!table.has("width_cm")) chart.width_cm.reset();
     chart_fields(table, chart);
-    const auto key = chart.width_cm ? "width_cm" : "scale";
     const auto [width, height] = layout_of(chart).picture;
-    if (std::min(width, height) < smallest || std::max(width, height) > largest)
-        throw table.fault(key, "must leave a picture of {} to {} px a side; it is {}×{} px", smallest, largest, width,
+    if (std::min(width, height) < smallest || std::max(width, height) > largest) {
+        const auto what = chart.width_cm
+                              ? fmt::format("{:g} cm at {} dpi", *chart.width_cm, chart.dpi)
+                              : fmt::format("{:g} times {}×{} px", chart.scale, chart.size.width, chart.size.height);
+        throw table.fault(chart.width_cm ? "width_cm" : "scale",
+                          "must leave a picture of {} to {} px a side; {} is {}×{} px", smallest, largest, what, width,
                           height);
+    }
     table.finish();
 }
 

@@ -25,8 +25,9 @@ namespace doppel {
 
 /// A side's largest errors, and its cost.
 struct SideRecord {
-    double energy_error = 0;  // relative
-    double length_error = 0;  // m
+    double energy_error = 0;   // relative to the energy at the start, however close to zero that is
+    double energy_change = 0;  // J
+    double length_error = 0;   // m
     Effort effort;
 };
 

@@ -29,7 +29,13 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     json["evaluations"] = record.effort.evaluations;
     json["smallest_step_s"] = record.effort.smallest_step;
     json["conserves_energy"] = side.conserves_energy;
-    json["worst_energy_error"] = side.conserves_energy ? Json(record.energy_error) : Json(nullptr);
+    const auto of_energy = [&](double worst) { return side.conserves_energy ? Json(worst) : Json(nullptr); };
+    json["worst_energy_error"] = of_energy(record.energy_error);
+    json["worst_energy_change_J"] = of_energy(record.energy_change);
+    // as in the strip
+    const double range = std::max(scene.a.energy_unit, scene.b.energy_unit);
+    json["energy_range_J"] = range;
+    json["worst_energy_error_of_range"] = of_energy(record.energy_change / range);
     json["worst_length_error_m"] = record.length_error;
     return json;
 }
@@ -52,6 +58,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"b", side_json(scene, scene.b, record.b)},
         {"largest_distance", record.largest_distance},
         {"parted_s", record.parting.since() ? Json(*record.parting.since()) : Json(nullptr)},
+        {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",
          {{"wall_s", record.wall_s},

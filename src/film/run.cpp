@@ -84,6 +84,7 @@ void PairTable::add_side(const Side& side, const Observation& seen, std::optiona
 /// Keeps the largest errors.
 void watch(SideRecord& record, const Observation& seen, std::optional<double> energy_error) {
     record.energy_error = std::max(record.energy_error, std::abs(energy_error.value_or(0)));
+    if (energy_error) record.energy_change = std::max(record.energy_change, std::abs(seen.energy_change));
     record.length_error = std::max(record.length_error, seen.length_error);
 }
 

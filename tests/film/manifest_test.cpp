@@ -1,0 +1,42 @@
+#include "film/run.hpp"
+#include "film/support.hpp"
+#include "output/fixtures.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace doppel {
+namespace manifest_test {
+
+const std::atomic<bool> never = false;
+
+nlohmann::json manifest_of(const std::string& preset, const std::vector<std::string>& more) {
+    const auto out = test::fresh_folder();
+    run(scene_of(preset, more), {.out = out, .pictures = false}, never, [](const Progress&) {});
+    return nlohmann::json::parse(test::bytes_of(out / preset / (preset + ".json")));
+}
+
+// Released level, side b has next to no energy: relative to that, explicit Euler's error says nothing.
+TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
+    const auto side = manifest_of("butterfly", {"scene.duration_s=5"})["b"];
+    const double range = 2 * 9.81 * (1 * 1 + 1 * 2);  // J: 2 g Σ m · height, 1 kg 1 m and 1 kg 2 m above and below
+    EXPECT_NEAR(side["energy_range_J"].get<double>(), range, 0.01 * range);
+    const double change = side["worst_energy_change_J"], of_range = side["worst_energy_error_of_range"];
+    EXPECT_NEAR(of_range, change / side["energy_range_J"].get<double>(), 1e-15);
+    EXPECT_GT(of_range, 1e-6);
+    EXPECT_LT(of_range, 0.05);  // measured 0.002
+    EXPECT_GT(side["worst_energy_error"].get<double>(), 100 * of_range);
+}
+
+TEST(Manifest, SaysHowFarARunCanBePredicted) {
+    EXPECT_TRUE(
+        manifest_of("butterfly", {"scene.duration_s=1"})["horizon_s"].is_null());  // its steps were chosen by hand
+    const auto chosen = manifest_of("horizon", {});
+    EXPECT_EQ(chosen["horizon_s"],
+              std::min(chosen["a"]["accuracy"]["horizon_s"], chosen["b"]["accuracy"]["horizon_s"]));
+    EXPECT_GT(chosen["horizon_s"], 25);  // measured 32.3, of 40
+    EXPECT_LT(chosen["horizon_s"], 40);
+}
+
+}  // namespace manifest_test
+}  // namespace doppel
