@@ -153,8 +153,8 @@ struct Font::Tables {
     bool is_complete = false;    // has an outline for all that it has a number for
 };
 
-Font::Font(std::string owned, std::string_view bytes, int index)
-    : owned_(std::move(owned)), tables_(std::make_unique<Tables>()) {
+Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index)
+    : file_(std::move(file)), owned_(std::move(owned)), tables_(std::make_unique<Tables>()) {
     if (!owned_.empty()) bytes = owned_;
     const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
     constexpr std::size_t least = 16;  // up to the first font's place in a collection
@@ -171,14 +171,14 @@ Font::~Font() = default;
 const Font& Font::built_in() {
     static const Font font = [] {
         for (const EmbeddedFile& file : render_files())
-            if (file.name == "DejaVuSans.ttf") return Font({}, file.contents, 0);
+            if (file.name == "DejaVuSans.ttf") return Font({}, {}, file.contents, 0);
         throw io_failed("there is no built-in font DejaVuSans.ttf");
     }();
     return font;
 }
 
 std::shared_ptr<const Font> Font::from_file(const std::filesystem::path& path, int index) {
-    return std::shared_ptr<const Font>(new Font(contents_of(path), {}, index));
+    return std::shared_ptr<const Font>(new Font(path, contents_of(path), {}, index));
 }
 
 int Font::number_of(char32_t character) const {

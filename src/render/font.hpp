@@ -31,6 +31,8 @@ public:
     Font(const Font&) = delete;
     Font& operator=(const Font&) = delete;
 
+    /// The file's path; empty of the built-in one.
+    const std::filesystem::path& file() const { return file_; }
     /// The number of a character's glyph; 0 where there is none, or one without an outline, as of coloured letters.
     int number_of(char32_t character) const;
     /// How far the pen moves past a glyph, px.
@@ -41,8 +43,9 @@ public:
 
 private:
     struct Tables;  // as stb_truetype has them
-    Font(std::string owned, std::string_view bytes, int index);
+    Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index);
 
+    std::filesystem::path file_;
     std::string owned_;  // a file's bytes
     std::unique_ptr<Tables> tables_;
 };

@@ -74,4 +74,11 @@ bool Typeface::has_own(std::string_view text) const {
     return true;
 }
 
+std::set<std::filesystem::path> Typeface::files_of(std::string_view text) const {
+    std::set<std::filesystem::path> files;
+    for (const auto& glyph : lay_out(text, 1, Weight::regular).glyphs)
+        if (const auto& file = glyph.font->file(); !file.empty()) files.insert(file);
+    return files;
+}
+
 }  // namespace doppel

@@ -2,9 +2,9 @@
 
 #include "render/font.hpp"
 
+#include <filesystem>
 #include <memory>
-#include <optional>
-#include <string>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -44,6 +44,9 @@ public:
     std::string_view missing_character(std::string_view text) const;
     /// Whether all of `text` is in the user's font or the built-in one: a system's fonts may differ from another's.
     bool has_own(std::string_view text) const;
+
+    /// The files of the fonts that the letters of `text` are of, but for the built-in one.
+    std::set<std::filesystem::path> files_of(std::string_view text) const;
 
     bool uses_system_fonts() const { return system_; }
 

@@ -157,7 +157,7 @@ void read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     constexpr std::string_view key = "text";
     std::string given;
     fonts.read({.key = key}, given);
-    if (!fonts.has(key)) return;
+    if (given.empty()) return;
     namespace fs = std::filesystem;
     std::error_code ignored;
     const auto beside = fs::path(document.path).parent_path() / given;

@@ -1,11 +1,14 @@
+#include "film/run.hpp"
 #include "film/support.hpp"
 #include "film/words.hpp"
 #include "output/fixtures.hpp"
+#include "output/written.hpp"
 #include "render/font_files.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace doppel {
 namespace font_test {
@@ -61,6 +64,7 @@ TEST(Fonts, AResolvedPresetFindsItsFontAgain) {
     const auto again = read_preset({"x", "elsewhere/x.toml", resolved_toml(scene.preset), "x.toml"});
     EXPECT_EQ(again.video.text_font, scene.preset.video.text_font);
     EXPECT_EQ(again.video.typeface.width("Two", 20), scene.preset.video.typeface.width("Two", 20));
+    EXPECT_FALSE(scene_of("butterfly", {"video.fonts.text=\"\""}).preset.video.text_font);
     EXPECT_EQ(resolved_toml(read_preset(find_preset("butterfly"))).find("video.fonts]"), std::string::npos);
 }
 
@@ -79,6 +83,18 @@ TEST(Fonts, AFileThatIsNoneIsNamedWithItsKey) {
                           (folder / "film.toml").string()));
     EXPECT_EQ(error_of([] { scene_of("butterfly", {"video.fonts.text=\"no.ttf\""}); }).second,
               "--set video.fonts.text: [video.fonts] text no.ttf: there is no such file");
+}
+
+TEST(Fonts, AreInTheManifest) {
+    const auto folder = folder_with_font();
+    const auto manifest_of = [&](const Scene& scene, const char* name) {
+        run(scene, {.out = folder / "out", .pictures = false}, false, [](const Progress&) {});
+        return nlohmann::json::parse(test::bytes_of(folder / "out" / name / (std::string(name) + ".json")));
+    };
+    const auto font = folder / "wide.ttf";
+    EXPECT_EQ(manifest_of(scene_of(folder / "film.toml"), "film")["fonts"],
+              (nlohmann::json{{font.string(), sha256_of_file(font)}}));
+    EXPECT_FALSE(manifest_of(scene_of("calm", {"scene.duration_s=0.1"}), "calm").contains("fonts"));
 }
 
 TEST(Fonts, PresetsOfDoppelLookTheSameEverywhere) {
