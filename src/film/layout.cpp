@@ -19,9 +19,11 @@ namespace {
 Theme themed(const VideoSpec& video) {
     auto theme = *std::find_if(themes.begin(), themes.end(), [&](const auto& t) { return t.name == video.theme; });
     if (video.transparent) {  // the page may be bright or dark
-        theme.grid = theme.quiet_text.with_alpha(0.35f);
-        theme.frame = theme.quiet_text.with_alpha(0.6f);
-        theme.panel = theme.quiet_text.with_alpha(0.12f);
+        theme.quiet_text = theme.text.with_alpha(0.7f);
+        theme.cursor = theme.text.with_alpha(0.6f);
+        theme.frame = theme.text.with_alpha(0.45f);
+        theme.grid = theme.text.with_alpha(0.25f);
+        theme.panel = theme.text.with_alpha(0.1f);
     }
     for (std::size_t i = 0; i < color_names.size(); ++i)
         if (video.colors[i]) theme.*color_names[i].member = *video.colors[i];
