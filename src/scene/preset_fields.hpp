@@ -266,19 +266,6 @@ void layout_fields(Visit& visit, Video& video) {
     }
 }
 
-/// [video.fonts]
-template <class Visit>
-void font_field(Visit& visit, auto& path) {
-    visit.table("fonts", [&](auto& table) {
-        table({"text",
-               "file of a TrueType or OpenType font for all words, from the preset's folder or the one here",
-               "",
-               {},
-               "the built-in one"},
-              path);
-    });
-}
-
 /// Colours, widths, fonts, sizes of words, and trails.
 template <class Visit, class Video>
 void style_fields(Visit& visit, Video& video) {
@@ -293,7 +280,14 @@ void style_fields(Visit& visit, Video& video) {
         for (const auto& [key, member, help] : width_names)
             table({key, help, "px", from_to(0, 200)}, video.widths.*member);
     });
-    font_field(visit, video.text_font);
+    visit.table("fonts", [&](auto& table) {
+        table({"text",
+               "font file for all words (TrueType, OpenType), beside the preset or from here",
+               "",
+               {},
+               "built in"},
+              video.text_font);
+    });
     visit.table("fonts_px", [&](auto& table) {
         for (const auto& [key, member, help] : font_size_names)
             table({key, help, "px", from_to(4, 400)}, video.fonts.*member);
