@@ -281,11 +281,7 @@ void style_fields(Visit& visit, Video& video) {
             table({key, help, "px", from_to(0, 200)}, video.widths.*member);
     });
     visit.table("fonts", [&](auto& table) {
-        table({"text",
-               "font file for all words (TrueType, OpenType), beside the preset or from here",
-               "",
-               {},
-               "built in"},
+        table({"text", "font file (TrueType, OpenType), beside the preset or from here", "", {}, "built in"},
               video.text_font);
     });
     visit.table("fonts_px", [&](auto& table) {
