@@ -233,7 +233,8 @@ private:
         const long first = first_frame(scene), end = first + frames_;
         Composer composer(scene, stop);
         Simulation simulation(scene, frames.tick(end - 1) / frames.ticks_per_sample + 2, true, stop);
-        Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, stop);
+        Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, stop,
+                          scene.preset.video.typeface);
         RecordedFrames recorded{scene.preset.video.size, {}};
         for (long frame = 0; frame < end;) {
             const auto snapshot = simulation.next();

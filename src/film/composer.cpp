@@ -2,7 +2,7 @@
 
 #include "base/embedded.hpp"
 #include "film/layout.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 #include "scene/captions.hpp"
 
 #include <fmt/format.h>
@@ -78,7 +78,8 @@ DisplayList Cards::card(const std::vector<Line>& above, const std::vector<Line>&
     const auto write = [&](const std::vector<Line>& lines, float y) {
         for (const auto& line : lines) {
             y += leading * px(line.size);
-            const float fits = fitting_size(line.text, px(line.size), line.weight, 0.94f * page.width());
+            const float fits =
+                state_.layout.style.type.fitting_size(line.text, px(line.size), line.weight, 0.94f * page.width());
             list.push_back(
                 label(line.text, {middle, y - 0.35f * px(line.size)}, fits, line.color, Align::center, line.weight));
         }

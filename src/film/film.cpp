@@ -58,11 +58,11 @@ Canvas::Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::a
     const auto& video = scene.preset.video;
     auto backdrop = composer.backdrop();
     if (video.transparent) {
-        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), gl, stop);
+        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), gl, stop, video.typeface);
         backdrop = on_page(backdrop, video.size, rgb(0x000000));
         matted_ = Picture(video.size);
     }
-    renderer_.emplace(video.size, backdrop, gl, stop);
+    renderer_.emplace(video.size, backdrop, gl, stop, video.typeface);
 }
 
 const Picture& Canvas::draw(const DisplayList& list) {

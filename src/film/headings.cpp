@@ -1,5 +1,5 @@
 #include "film/layout.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 #include "scene/scene.hpp"
 
 #include <fmt/format.h>
@@ -41,8 +41,8 @@ HeadingSizes fitted(const std::vector<Heading>& headings, const Layout& layout, 
     const auto& font = layout.style.font;
     float one = 1, heading = 1, note = 1;
     for (const auto& words : headings) {
-        const float head = text_width(words.said.heading, px(font.heading), Weight::bold),
-                    tail = text_width(words.said.note, px(font.note));
+        const float head = layout.style.type.width(words.said.heading, px(font.heading), Weight::bold),
+                    tail = layout.style.type.width(words.said.note, px(font.note));
         const float gap = words.said.note.empty() ? 0 : note_gap * layout.text;
         one = std::min(one, width / std::max(head + gap + tail, 1.0f));
         heading = std::min(heading, width / std::max(head, 1.0f));
@@ -58,8 +58,8 @@ HeadingSizes fitted(const std::vector<Heading>& headings, const Layout& layout, 
 void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, const Area& panel) {
     const auto& theme = layout.style.theme;
     const float t = layout.text, gap = note_gap * t;
-    const float head = text_width(words.said.heading, sizes.heading, Weight::bold),
-                tail = text_width(words.said.note, sizes.note);
+    const float head = layout.style.type.width(words.said.heading, sizes.heading, Weight::bold),
+                tail = layout.style.type.width(words.said.note, sizes.note);
     const bool right = words.align == Align::right;
     const float base = panel.top - 12 * t, edge = right ? panel.right : panel.left;
     const auto color = theme.sides[words.side];
@@ -81,7 +81,8 @@ std::optional<Label> in_corner(const Layout& layout, const Heading& words, const
     if (!words.said.note.empty()) return std::nullopt;
     const float size = px(layout.style.font.heading), edge = 24 * layout.unit;
     const Point base{panel.left + edge, panel.top + edge + 0.73f * size};
-    const float right = base.x + text_width(words.said.heading, size, Weight::bold), bottom = base.y + 0.24f * size;
+    const float right = base.x + layout.style.type.width(words.said.heading, size, Weight::bold),
+                bottom = base.y + 0.24f * size;
     const float radius = std::min(panel.width(), panel.height()) / around_circle / 2;
     const Point away{std::max(0.0f, (panel.left + panel.right) / 2 - right),
                      std::max(0.0f, (panel.top + panel.bottom) / 2 - bottom)};
@@ -95,9 +96,10 @@ void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, cons
     std::array<float, 2> width{};
     const float most = 0.36f * panel.width();
     float size = px(layout.style.font.note);
-    for (const auto& side : said) size = std::min(size, fitting_size(side.heading, size, Weight::bold, most));
+    for (const auto& side : said)
+        size = std::min(size, layout.style.type.fitting_size(side.heading, size, Weight::bold, most));
     for (std::size_t side = 0; side < 2; ++side) {
-        width[side] = text_width(said[side].heading, size, Weight::bold);
+        width[side] = layout.style.type.width(said[side].heading, size, Weight::bold);
         layout.words.push_back(label(said[side].heading, {side == 0 ? panel.left : panel.right, base}, size,
                                      layout.style.theme.text, side == 0 ? Align::left : Align::right, Weight::bold));
     }
@@ -134,50 +136,22 @@ void add_legend(Layout& layout, const Scene& scene, const Area& panel) {
     const float t = layout.text, base = panel.top - 14 * t;
     float size = 0.85f * px(layout.style.font.heading);
     constexpr float dot = 0.32f, after_dot = 0.85f, after_word = 0.8f;  // em
-    float wide = text_width(before, size) + after_word * size;
-    for (const auto& word : words) wide += text_width(word, size) + (after_dot + after_word) * size;
+    float wide = layout.style.type.width(before, size) + after_word * size;
+    for (const auto& word : words) wide += layout.style.type.width(word, size) + (after_dot + after_word) * size;
     size *= std::min(1.0f, panel.width() / (wide - after_word * size));
     const auto& theme = layout.style.theme;
     layout.words.push_back(label(before, {panel.left, base}, size, theme.quiet_text));
-    float x = panel.left + text_width(before, size) + after_word * size;
+    float x = panel.left + layout.style.type.width(before, size) + after_word * size;
     for (std::size_t k = 0; k < words.size(); ++k) {
         const Point at{x + dot * size, base - 0.36f * size};
         layout.words.push_back(Capsule{at, at, dot * size, member_color(layout.style, scene, k)});
         x += after_dot * size;
         layout.words.push_back(label(words[k], {x, base}, size, theme.text));
-        x += text_width(words[k], size) + after_word * size;
+        x += layout.style.type.width(words[k], size) + after_word * size;
     }
 }
 
 }  // namespace
-
-StripWords strip_words(StripKind kind, const Scene& scene) {
-    const bool plain = wording_of(scene) == Wording::plain;
-    switch (kind) {
-        case StripKind::distance:
-            return {plain ? "how far apart they are" : "state-space distance",
-                    !scene.members.empty()                           ? "first to last"
-                    : differ_in_kind(scene.preset.a, scene.preset.b) ? "of the last masses"
-                                                                     : ""};
-        case StripKind::exponent:
-            return {"Lyapunov exponent", "so far, 1/s"};
-        case StripKind::energy:
-            return {"energy error", "of the potential range"};
-        case StripKind::rod_error:
-            return {"worst rod error, m", ""};
-        case StripKind::energies_a:
-            return {fmt::format("energy of {}, J", scene.preset.a.label.value_or("a")), ""};
-        case StripKind::energies_b:
-            return {fmt::format("energy of {}, J", scene.preset.b.label.value_or("b")), ""};
-        case StripKind::angles:
-            return {"angles, °", ""};
-        case StripKind::rates:
-            return {"angular rates, °/s", ""};
-        case StripKind::rod_force:
-            break;
-    }
-    return {"force in the rods, N", ""};
-}
 
 std::string clock_text(const Scene& scene, double time) {
     const auto& speed = scene.preset.video.speed;
@@ -220,19 +194,24 @@ float place_header(Layout& layout, const Scene& scene) {
     const float first = page.top + 36 * t, second = first + (tall ? 52 : 30) * t;
     const auto time = clock_text(scene, scene.time(scene.samples));
     auto below = layout.subtitle;
+    // a little picture says what moves, in words that can be read, and not how it is stepped
+    constexpr float least = 0.8f;
+    if (!scene.preset.subtitle && layout.style.type.width(below, least * px(font.subtitle)) > 0.85f * page.width())
+        below = scene_caption(scene, Wording::plain);
     auto speed = has_clock ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
     if (tall && has_clock && !changes && video.speed.constant != Rational{1, 1})
         below += (below.empty() ? "" : " · ") + speed;
     // long text shrinks until it fits beside what stands at the right
     const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, float beside) {
-        const float size = fitting_size(text, px(wanted), weight, page.width() - (beside > 0 ? beside + gap : 0));
+        const float size =
+            layout.style.type.fitting_size(text, px(wanted), weight, page.width() - (beside > 0 ? beside + gap : 0));
         layout.words.push_back(label(text, {page.left, y}, size, color, Align::left, weight));
     };
-    const float clock = has_clock ? text_width(time, px(font.clock)) : 0;
-    const float beside_title = !tall ? clock : changes ? text_width(speed, px(font.subtitle)) : 0;
+    const float clock = has_clock ? layout.style.type.width(time, px(font.clock)) : 0;
+    const float beside_title = !tall ? clock : changes ? layout.style.type.width(speed, px(font.subtitle)) : 0;
     add(layout.title, first, font.title, Weight::bold, theme.text, beside_title);
     add(below, second, font.subtitle, Weight::regular, theme.quiet_text,
-        tall ? clock : text_width(speed, px(font.subtitle)));
+        tall ? clock : layout.style.type.width(speed, px(font.subtitle)));
     if (has_clock) {
         const auto words =
             label(speed, {page.right, tall ? first : second}, px(font.subtitle), theme.quiet_text, Align::right);
@@ -272,11 +251,12 @@ Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomN
         return rooms;
     }
     const float share = headings[0].panel == headings[1].panel ? 0.48f : 1;
-    auto sizes = fitted(headings, layout, share * rooms.panels[0].width());
+    const auto width = [&] { return share * rooms.panels[0].width() - 14 * t; };  // apart from the words beside it
+    auto sizes = fitted(headings, layout, width());
     if (sizes.two_lines) {
         needs.heading = 71 * t;
         rooms = shared_out(room, needs);
-        sizes = fitted(headings, layout, share * rooms.panels[0].width());
+        sizes = fitted(headings, layout, width());
     }
     for (const auto& heading : headings) add_above(layout, heading, sizes, rooms.panels[heading.panel]);
     return rooms;

@@ -3,7 +3,7 @@
 #include "film/bounds.hpp"
 #include "image/color.hpp"
 #include "numeric/state.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 #include "scene/captions.hpp"
 
 #include <fmt/format.h>
@@ -18,6 +18,13 @@ namespace {
 
 Theme themed(const VideoSpec& video) {
     auto theme = *std::find_if(themes.begin(), themes.end(), [&](const auto& t) { return t.name == video.theme; });
+    if (video.transparent) {  // the page may be bright or dark
+        theme.quiet_text = theme.text.with_alpha(0.7f);
+        theme.cursor = theme.text.with_alpha(0.6f);
+        theme.frame = theme.text.with_alpha(0.45f);
+        theme.grid = theme.text.with_alpha(0.25f);
+        theme.panel = theme.text.with_alpha(0.1f);
+    }
     for (std::size_t i = 0; i < color_names.size(); ++i)
         if (video.colors[i]) theme.*color_names[i].member = *video.colors[i];
     if (video.side_colors) theme.sides = *video.side_colors;
@@ -29,60 +36,29 @@ bool is_dark(const Theme& theme) {
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
 }
 
-/// A sample of what stands beside a strip's words: as wide as it gets.
-std::string widest_value(StripKind kind, const Scene& scene) {
-    if (kind == StripKind::distance) return "8.8 × 10⁻⁸⁸";
-    if (kind == StripKind::exponent) return "none: both start alike";
-    if (kind == StripKind::rod_force) return scene.a.mass.size() == 1 ? "a1 b1" : "a32 a32 a32 b32 b32 b32";
-    return "";
-}
-
-/// In how many lines a strip's words go above it: its name and its value; in the first strip, when they parted.
-int caption_lines(const Layout& layout, const Scene& scene, StripKind kind, bool is_first, float width) {
-    const float size = px(layout.style.font.strip), gap = 18 * layout.text;
-    const auto words = strip_words(kind, scene);
-    const float how = words.how.empty() ? 0 : text_width(", " + words.how, size);
-    const float value = text_width(widest_value(kind, scene), size) + gap;
-    const float parted = is_first ? text_width("parted at 00.0 s", size) + gap : 0;
-    if (text_width(words.what, size) + how + value + parted <= width) return 1;
-    return value + how + parted <= width ? 2 : 3;
-}
-
 /// From the bottom up: labels of the time axis, then the strips, each with its words above it.
 void place_strips(Layout& layout, const Scene& scene, const Area& room, const std::optional<MotionBounds>& seen) {
     const auto& strips = scene.preset.video.strips;
     if (strips.empty()) return;
     const float t = layout.text;
     layout.time_labels = room.bottom - 4 * t;
-    const auto words_height = [&](int count) { return (caption_line * static_cast<float>(count) + caption_edge) * t; };
-    float captions = 0, shares = 0;
-    std::vector<int> lines;
-    for (const auto kind : strips) {
-        lines.push_back(caption_lines(layout, scene, kind, lines.empty(), room.width()));
-        captions += words_height(lines.back());
-        shares += share_of(kind);
-    }
-    // where many strips share a little room, curves come before words
-    const float least = 26 * t * static_cast<float>(strips.size());
-    for (auto most = std::ranges::max_element(lines);
-         *most > 1 && room.height() - time_labels_height * t - captions < least;
-         most = std::ranges::max_element(lines)) {
-        captions -= words_height(*most) - words_height(*most - 1);
-        --*most;
+    const float labels = std::round((room.width() < 0.5f * layout.page.width() ? 72 : 84) * t);
+    const auto captions = plan_captions(layout, scene, room, labels);
+    float shares = 0, words_sum = 0;
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        shares += share_of(strips[i]);
+        words_sum += captions.height(i);
     }
     float bottom = room.bottom - time_labels_height * t;
-    const float unit = (bottom - room.top - captions) / shares;
-    const float labels = std::round((room.width() < 0.5f * layout.page.width() ? 72 : 84) * t);
+    const float unit = (bottom - room.top - words_sum) / shares;
     for (std::size_t i = strips.size(); i-- > 0;) {
         const auto kind = strips[i];
         const float top = bottom - std::max(share_of(kind) * unit, 8 * t);
         const Area area{room.left + labels, std::round(top), room.right, std::round(bottom)};
         const auto& asked = scene.preset.video.ranges[static_cast<std::size_t>(kind)];
         const auto range = asked ? *asked : fitted_range(kind, seen);
-        const float words = words_height(lines[i]);
-        // in a narrow column words have all its width
-        const bool narrow = lines[i] > 1 || room.width() < 0.3f * layout.page.width();
-        const float left = narrow ? room.left : area.left;
+        const float words = captions.height(i);
+        const float left = captions.from_edge ? room.left : area.left;
         layout.strips.push_back({kind,
                                  area,
                                  {.low = 0, .high = scene.time(scene.samples), .from = area.left, .to = area.right},
@@ -92,7 +68,8 @@ void place_strips(Layout& layout, const Scene& scene, const Area& room, const st
                                   .to = area.top,
                                   .logarithmic = is_logarithmic(kind)},
                                  {left, area.top - words, area.right, area.top},
-                                 lines[i]});
+                                 area.top - captions.apart,
+                                 captions.lines[i]});
         bottom = top - words;
     }
     std::reverse(layout.strips.begin(), layout.strips.end());
@@ -153,7 +130,9 @@ void place_pendulums(Layout& layout, const Scene& scene, const std::optional<Mot
         view.is_circle ? radius / static_cast<float>(std::max(scene.a.mass.size(), scene.b.mass.size())) : radius;
     // a mechanism has more to show; many members share the room of a few
     const float size = view.is_circle ? member_scale(scene.members.size()) : 0.6f;
-    layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), 0.8f);
+    // many fine rods stay apart where a few are as wide as lines
+    const float thinnest = scene.members.size() > most_full_members ? 0.5f : 0.8f;
+    layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), thinnest);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
     if (style.width.rod > 0) layout.rod_radius = static_cast<float>(style.width.rod / 2);
@@ -201,7 +180,7 @@ Size tile_size(const Scene& scene, int width) {
 }
 
 Style make_style(const VideoSpec& video, float unit, float text) {
-    Style style{themed(video), video.widths, video.fonts, 0};
+    Style style{themed(video), video.widths, video.fonts, 0, video.typeface};
     for (const auto& width : width_names) style.width.*width.member *= unit;
     for (const auto& size : font_size_names) style.font.*size.member *= text;
     // small pictures keep lines that can be seen
@@ -230,6 +209,10 @@ Point PendulumPanel::at(double x_m, double y_m) const {
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
 }
 
+std::string axis_number(double value) {
+    return fmt::format("{}{:.6g}", value < 0 ? "−" : "", std::abs(value));
+}
+
 std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across) {
     const TickLabels labels{.size = size, .gap = 0, .spacing = spacing, .across = across};
     if (axis.logarithmic) {
@@ -237,7 +220,7 @@ std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool a
         return chart_ticks(axis, labels, std::max(1.0f, std::ceil(spacing / decade)));
     }
     auto ticks = chart_ticks(axis, labels);
-    for (auto& tick : ticks) tick.text = fmt::format("{:.6g}", tick.value);
+    for (auto& tick : ticks) tick.text = axis_number(tick.value);
     return ticks;
 }
 

@@ -3,6 +3,7 @@
 #include "image/color.hpp"
 #include "plot/axis.hpp"
 #include "render/display_list.hpp"
+#include "render/typeface.hpp"
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
 #include "scene/video_spec.hpp"
@@ -26,6 +27,7 @@ struct Style {
     Widths width;
     FontSizes font;
     float glow = 0;
+    Typeface type;
 };
 
 /// `unit` = px of the picture to one of 1920×1080; `text` = the same for text.
@@ -60,14 +62,18 @@ struct StripLayout {
     StripKind kind;
     Area area;
     Axis time, value;
-    Area caption;   // the words above it
-    int lines = 1;  // of the caption
+    Area caption;    // the words above it
+    float base = 0;  // of their last line, px
+    int lines = 1;   // of them
 };
 
 /// Upright: for a telephone.
 inline bool is_tall(const VideoSpec& video) {
     return video.size.height > video.size.width;
 }
+
+/// "−1.5": with a true minus sign, and no more decimals than it has.
+std::string axis_number(double value);
 
 /// Ticks `spacing` px apart or more, labels of `size` px an em; whole numbers and the fewest decimals.
 std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
@@ -133,11 +139,26 @@ float share_of(StripKind kind);
 /// How a film's words put it: upright ones are for a telephone.
 Wording wording_of(const Scene& scene);
 
-/// What the words above a strip say: what it shows, and of what or how.
+/// What the words above a strip say: what it shows, and of what or how; in one where there is little room.
 struct StripWords {
-    std::string what, how;
+    std::string what, how, brief{};
 };
 StripWords strip_words(StripKind kind, const Scene& scene);
+
+/// px of a 1920×1080 picture that a number above a strip has, so that what comes after it stays in place.
+inline constexpr float value_room = 110, brief_value_room = 50;
+
+/// The words above each strip.
+struct CaptionPlan {
+    std::vector<int> lines;               // the name; the value; when they parted
+    bool from_edge = false;               // of the strips' room: over the labels of the axes, too
+    float line = 0, apart = 0, edge = 0;  // px: from line to line, from the last to the curves, above the first
+
+    float height(std::size_t strip) const { return edge + line * static_cast<float>(lines[strip]) + apart; }
+};
+
+/// For strips in `room`, whose axes have labels that wide, px.
+CaptionPlan plan_captions(const Layout& layout, const Scene& scene, const Area& room, float labels);
 
 /// The time as the clock shows it, with as many decimals as tell one frame from the next.
 std::string clock_text(const Scene& scene, double time);

@@ -1,4 +1,5 @@
 #include "film/film.hpp"
+#include "output/written.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/format.h>
@@ -40,6 +41,18 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     return json;
 }
 
+/// The fonts of the film's words with their hashes, but for the built-in one: another machine may have others.
+Json fonts_json(const Preset& preset) {
+    std::string words = "0 " + preset.title + preset.subtitle.value_or("");  // digits are in every film
+    for (const auto* side : {&preset.a, &preset.b}) {
+        words += side->label.value_or("") + side->note.value_or("");
+        for (const auto& particle : side->particles) words += particle.name;
+    }
+    Json fonts = Json::object();
+    for (const auto& file : preset.video.typeface.files_of(words)) fonts[file.string()] = sha256_of_file(file);
+    return fonts;
+}
+
 }  // namespace
 
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
@@ -69,6 +82,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
             {"convert", record.write_cpu_s},
             {"encode_and_rest", record.encode_cpu_s}}}}},
     };
+    if (auto fonts = fonts_json(scene.preset); !fonts.empty()) manifest["fonts"] = std::move(fonts);
     if (!record.failure.empty()) manifest["failed"] = record.failure;
     write_manifest(parts, name, std::move(manifest));
 }

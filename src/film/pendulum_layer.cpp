@@ -110,7 +110,9 @@ void PendulumLayer::frame(DisplayList& list) const {
     // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
     if (alone && !swing_as_one()) {
         const std::size_t other = 1 - panel_.sides.front();
-        const Color ghost = mixed(theme_.panel, theme_.sides[other], 0.26f);
+        const Color hue = theme_.sides[other];
+        const Color ghost =
+            state_.scene.preset.video.transparent ? hue.with_alpha(0.4f) : mixed(theme_.panel, hue, 0.26f);
         draw_lines(other, state_.seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
         for (const auto& bob : state_.seen(other).bobs) draw_disc(at(bob), bob_radius(bob), ghost, list);
     }

@@ -1,6 +1,6 @@
 #include "film/layer.hpp"
 #include "numeric/state.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 #include "scene/captions.hpp"
 
 #include <fmt/format.h>
@@ -64,13 +64,13 @@ void PhaseLayer::backdrop(DisplayList& list) const {
     const Area &area = panel_.area, around = panel_.panel;
     if (!video_.transparent)
         list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
-    const bool narrow = area.width() < 5 * text_width("−180°", size) + 40 * t;
+    const bool narrow = area.width() < 5 * style_.type.width("−180°", size) + 40 * t;
     for (const double angle : {-180.0, -90.0, 0.0, 90.0, 180.0}) {
         if (narrow && std::remainder(angle, 180) != 0) continue;
         const float x = panel_.angle.at(angle);
         list.push_back(Capsule{{x, area.top}, {x, area.bottom}, line / 2, theme_.grid});
         list.push_back(
-            label(fmt::format("{:g}°", angle), {x, area.bottom + 1.5f * size}, size, theme_.quiet_text, Align::center));
+            label(axis_number(angle) + "°", {x, area.bottom + 1.5f * size}, size, theme_.quiet_text, Align::center));
     }
     for (const auto& tick : axis_ticks(panel_.rate, size, 3 * size, false)) {
         const float y = panel_.rate.at(tick.value);
@@ -79,7 +79,7 @@ void PhaseLayer::backdrop(DisplayList& list) const {
     }
     const auto heading = fmt::format("ω{0} over θ{0}, °/s{1}", subscript(link_ + 1),
                                      video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
-    const float fits = fitting_size(heading, px(style_.font.strip), Weight::regular, around.width());
+    const float fits = style_.type.fitting_size(heading, px(style_.font.strip), Weight::regular, around.width());
     list.push_back(label(heading, {around.left, around.top - 12 * t}, fits, theme_.text));
 }
 

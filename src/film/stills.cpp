@@ -5,7 +5,7 @@
 #include "image/picture.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 #include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 #include "vector/page.hpp"
@@ -73,7 +73,7 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
         auto list = composer.backdrop();
         const auto frame = composer.frame();
         list.insert(list.end(), frame.begin(), frame.end());
-        write_page(place, list, {video.size, pt_per_px * video.size.width, metadata}, format);
+        write_page(place, list, {video.size, pt_per_px * video.size.width, metadata, video.typeface}, format);
     }
     parts.finished(name);
     auto files = parts.keeping_finished([&] {
@@ -109,7 +109,7 @@ DisplayList title_of(const Scene& scene, const Style& style, Size size, float un
     const auto said = side_captions(scene);
     DisplayList list{filled(size, theme.background)};
     const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, bool at_right) {
-        const float fits = fitting_size(text, px(wanted), weight, at_right ? right : left);
+        const float fits = style.type.fitting_size(text, px(wanted), weight, at_right ? right : left);
         list.push_back(label(text, {at_right ? width - edge : edge, y}, fits, color,
                              at_right ? Align::right : Align::left, weight));
     };
@@ -126,7 +126,7 @@ DisplayList title_of(const Scene& scene, const Style& style, Size size, float un
 ContactSheet::ContactSheet(const Scene& scene, std::vector<long> ticks, Gl gl, const std::atomic<bool>& stop)
     : scene_(tile_scene(scene)),
       composer_(scene_, stop, Dress::tile),
-      renderer_(scene_.preset.video.size, composer_.backdrop(), gl, stop),
+      renderer_(scene_.preset.video.size, composer_.backdrop(), gl, stop, scene_.preset.video.typeface),
       ticks_(std::move(ticks)),
       columns_((*scene.preset.video.contact_sheet)[0]),
       gl_(gl),
@@ -145,7 +145,7 @@ Picture ContactSheet::picture() const {
     const float unit = static_cast<float>(below.size.width) / 1920;
     const Size title{below.size.width, static_cast<int>(110 * unit) + 1};
     const auto style = make_style(scene_.preset.video, unit, unit);
-    Renderer renderer(title, title_of(scene_, style, title, unit), gl_, stop_);
+    Renderer renderer(title, title_of(scene_, style, title, unit), gl_, stop_, style.type);
     Picture sheet = renderer.draw({}, stop_);
     sheet.size.height += below.size.height;
     sheet.rgba.insert(sheet.rgba.end(), below.rgba.begin(), below.rgba.end());

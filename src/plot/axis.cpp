@@ -1,6 +1,6 @@
 #include "plot/axis.hpp"
 
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "plot/axis.hpp"
 #include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "plot/labels.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <algorithm>
 #include <cmath>

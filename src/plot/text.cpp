@@ -1,7 +1,7 @@
 #include "base/text.hpp"
 
 #include "plot/labels.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,16 @@
 #include "render/font.hpp"
 
 #include "base/error.hpp"
-#include "base/text.hpp"
 #include "embedded/render.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
-#include <memory>
+#include <fstream>
+#include <iterator>
 #include <span>
+#include <system_error>
+#include <utility>
 
 #define STB_TRUETYPE_IMPLEMENTATION
 #define STBTT_STATIC
@@ -16,29 +19,9 @@
 namespace doppel {
 namespace {
 
-/// How much of each pixel a glyph covers, 0…255. Rows from the top down.
-struct Coverage {
-    int left = 0, top = 0;  // of the first pixel, px from the pen's whole pixel on the baseline
-    Size size;
-    std::vector<std::uint8_t> values;
-};
-
 // how far bold moves the outline to either side, em: vertical stems grow more than horizontal bars
 constexpr float bold_across = 0.0215f;
 constexpr float bold_along = 0.0130f;
-
-const stbtt_fontinfo& font() {
-    static const stbtt_fontinfo loaded = [] {
-        stbtt_fontinfo info;
-        if (stbtt_InitFont(&info, reinterpret_cast<const unsigned char*>(font_file().data()), 0) != 0) return info;
-        throw io_failed("the built-in font cannot be read");
-    }();
-    return loaded;
-}
-
-float em_to_pixels(float size) {
-    return stbtt_ScaleForMappingEmToPixels(&font(), size);
-}
 
 /// A point of an outline, on the curve or off it.
 struct ControlPoint {
@@ -46,7 +29,7 @@ struct ControlPoint {
     Point at, moved;
 };
 
-/// Moves one closed contour to its left, which is outward in TrueType, where ink lies on the right of the pen.
+/// Moves one closed contour to its left, which is outward where ink lies on the right of the pen.
 void embolden(std::span<ControlPoint> contour, Point strength) {
     const std::size_t n = contour.size();
     // the unit vector from a point to the next one elsewhere, walking in steps of +1 or −1
@@ -82,10 +65,26 @@ void embolden_all(std::span<stbtt_vertex> outline, Point strength) {
             embolden(contour, strength);
             contour.clear();
         }
-        if (v.type == STBTT_vcurve) add(v.cx, v.cy);
+        if (v.type == STBTT_vcurve || v.type == STBTT_vcubic) add(v.cx, v.cy);
+        if (v.type == STBTT_vcubic) add(v.cx1, v.cy1);
         add(v.x, v.y);
     }
     embolden(contour, strength);
+}
+
+/// The rectangle that holds an outline, px right of the pen's pixel and below the baseline.
+Area extent_of(std::span<const stbtt_vertex> outline, float scale, float shift) {
+    Area extent{1e9f, 1e9f, -1e9f, -1e9f};
+    const auto include = [&](float x, float y) {
+        extent = {std::min(extent.left, x), std::min(extent.top, y), std::max(extent.right, x),
+                  std::max(extent.bottom, y)};
+    };
+    for (const stbtt_vertex& v : outline) {
+        include(v.x * scale + shift, -v.y * scale);
+        if (v.type == STBTT_vcurve || v.type == STBTT_vcubic) include(v.cx * scale + shift, -v.cy * scale);
+        if (v.type == STBTT_vcubic) include(v.cx1 * scale + shift, -v.cy1 * scale);
+    }
+    return extent;
 }
 
 /// How much of the pixel i…i + 1 lies between `from` and `to`, 0…1.
@@ -112,47 +111,113 @@ Coverage missing_box(float size, Weight weight, float shift) {
     return coverage;
 }
 
-/// The number of a character's glyph; 0, a hollow box, for what the font lacks.
-int number_of(char32_t character) {
-    return stbtt_FindGlyphIndex(&font(), static_cast<int>(character));
+unsigned number_at(std::string_view bytes, std::size_t at, int count) {
+    unsigned value = 0;
+    for (int i = 0; i < count; ++i)
+        value = value << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)]);
+    return value;
 }
 
-/// How far the pen moves past a glyph, px.
-float advance(int glyph, float size, Weight weight) {
+/// Whether all tables of the font that begins at `start` lie in the file: stb_truetype reads them unchecked.
+bool is_whole(std::string_view bytes, std::size_t start) {
+    constexpr std::size_t header = 12, entry = 16;
+    if (start + header > bytes.size()) return false;
+    const std::size_t tables = number_at(bytes, start + 4, 2);
+    if (start + header + tables * entry > bytes.size()) return false;
+    for (std::size_t i = 0; i < tables; ++i) {
+        const std::size_t at = start + header + i * entry;
+        if (std::size_t{number_at(bytes, at + 8, 4)} + number_at(bytes, at + 12, 4) > bytes.size()) return false;
+    }
+    return true;
+}
+
+std::string contents_of(const std::filesystem::path& path) {
+    constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
+    std::error_code fault;
+    const auto status = std::filesystem::status(path, fault);
+    if (!std::filesystem::exists(status)) throw bad_input("there is no such file");
+    if (!std::filesystem::is_regular_file(status)) throw bad_input("is not a file");
+    if (std::filesystem::file_size(path, fault) > most_bytes) throw bad_input("has more than {} MB", most_bytes >> 20);
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    if (!file) throw io_failed("cannot be read: {}", std::generic_category().message(errno));
+    return bytes;
+}
+
+}  // namespace
+
+struct Font::Tables {
+    stbtt_fontinfo info{};
+    bool is_postscript = false;  // its outlines have their ink on the left of the pen
+    bool is_complete = false;    // has an outline for all that it has a number for
+};
+
+Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index)
+    : file_(std::move(file)),
+      owned_(std::move(owned)),
+      bytes_(owned_.empty() ? bytes : owned_),
+      index_(index),
+      tables_(std::make_unique<Tables>()) {
+    bytes = bytes_;
+    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+    constexpr std::size_t least = 16;  // up to the first font's place in a collection
+    const int start = bytes.size() < least ? -1 : stbtt_GetFontOffsetForIndex(data, index);
+    if (start < 0) throw bad_input("is no TrueType or OpenType font");
+    if (!is_whole(bytes, static_cast<std::size_t>(start))) throw bad_input("is cut short");
+    if (stbtt_InitFont(&tables_->info, data, start) == 0) throw bad_input("is a font without outlines");
+    tables_->is_postscript = tables_->info.cff.size > 0;
+    tables_->is_complete = owned_.empty();
+}
+
+Font::~Font() = default;
+
+const Font& Font::built_in() {
+    static const Font font = [] {
+        for (const EmbeddedFile& file : render_files())
+            if (file.name == "DejaVuSans.ttf") return Font({}, {}, file.contents, 0);
+        throw io_failed("there is no built-in font DejaVuSans.ttf");
+    }();
+    return font;
+}
+
+std::shared_ptr<const Font> Font::from_file(const std::filesystem::path& path, int index) {
+    return std::shared_ptr<const Font>(new Font(path, contents_of(path), {}, index));
+}
+
+int Font::number_of(char32_t character) const {
+    const int number = stbtt_FindGlyphIndex(&tables_->info, static_cast<int>(character));
+    if (number == 0 || tables_->is_complete) return number;
+    const bool is_space = character == U' ' || character == U'\u00a0' || character == U'\u3000' ||
+                          (character >= U'\u2000' && character <= U'\u200a') || character == U'\u202f';
+    return !is_space && stbtt_IsGlyphEmpty(&tables_->info, number) != 0 ? 0 : number;
+}
+
+float Font::advance(int glyph, float size, Weight weight) const {
     int units = 0, bearing = 0;
-    stbtt_GetGlyphHMetrics(&font(), glyph, &units, &bearing);
+    stbtt_GetGlyphHMetrics(&tables_->info, glyph, &units, &bearing);
     // letters move apart by less than they grow: heavier text is set tighter
     const float extra = weight == Weight::bold && units > 0 ? bold_spacing * size : 0;
-    return static_cast<float>(units) * em_to_pixels(size) + extra;
+    return static_cast<float>(units) * stbtt_ScaleForMappingEmToPixels(&tables_->info, size) + extra;
 }
 
-/// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge. The font has one weight: bold moves the
-/// outline outward.
-Coverage rasterised(int glyph, float size, Weight weight, float shift) {
+Coverage Font::rasterised(int glyph, float size, Weight weight, float shift) const {
     if (glyph == 0) return missing_box(size, weight, shift);
+    const stbtt_fontinfo& font = tables_->info;
     stbtt_vertex* vertices = nullptr;
-    const int count = stbtt_GetGlyphShape(&font(), glyph, &vertices);
-    const auto give_back = [](stbtt_vertex* v) { stbtt_FreeShape(&font(), v); };
+    const int count = stbtt_GetGlyphShape(&font, glyph, &vertices);
+    const auto give_back = [&](stbtt_vertex* v) { stbtt_FreeShape(&font, v); };
     const std::unique_ptr<stbtt_vertex, decltype(give_back)> owner(vertices, give_back);
     if (count == 0) return {};
     const std::span outline(vertices, static_cast<std::size_t>(count));
 
     // the outline at its final weight; the bold one sits in the middle of its wider advance
-    const float scale = em_to_pixels(size);
+    const float scale = stbtt_ScaleForMappingEmToPixels(&font, size);
     if (weight == Weight::bold) {
-        const float units_per_em = size / scale;
+        const float units_per_em = (tables_->is_postscript ? -size : size) / scale;
         embolden_all(outline, {bold_across * units_per_em, bold_along * units_per_em});
         shift += bold_spacing / 2 * size;
     }
-    Area extent{1e9f, 1e9f, -1e9f, -1e9f};
-    const auto include = [&](float x, float y) {
-        extent = {std::min(extent.left, x), std::min(extent.top, y), std::max(extent.right, x),
-                  std::max(extent.bottom, y)};
-    };
-    for (const stbtt_vertex& v : outline) {
-        include(v.x * scale + shift, -v.y * scale);
-        if (v.type == STBTT_vcurve) include(v.cx * scale + shift, -v.cy * scale);
-    }
+    const Area extent = extent_of(outline, scale, shift);
 
     Coverage coverage;
     coverage.left = static_cast<int>(std::floor(extent.left));
@@ -166,80 +231,6 @@ Coverage rasterised(int glyph, float size, Weight weight, float shift) {
     stbtt_Rasterize(&target, flatness, vertices, count, scale, scale, shift, 0, coverage.left, coverage.top, 1,
                     nullptr);
     return coverage;
-}
-
-}  // namespace
-
-TextLine lay_out(std::string_view text, float size, Weight weight) {
-    TextLine line;
-    line.glyphs.reserve(text.size());
-    const std::size_t bytes = text.size();
-    while (!text.empty()) {
-        const std::size_t byte = bytes - text.size();
-        const int number = number_of(next_character(text));
-        line.glyphs.push_back({number, line.width, byte});
-        line.width += advance(number, size, weight);
-    }
-    return line;
-}
-
-std::string_view font_file() {
-    const auto files = render_files();
-    const auto found = std::ranges::find(files, "DejaVuSans.ttf", &EmbeddedFile::name);
-    if (found == files.end()) throw io_failed("the font DejaVuSans.ttf was not built in");
-    return found->contents;
-}
-
-Point start_of(const Label& label, const TextLine& line) {
-    const float before = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
-    return {label.anchor.x - before * line.width, std::round(label.anchor.y)};
-}
-
-float fitting_size(std::string_view text, float size, Weight weight, float width) {
-    const float wanted = text_width(text, size, weight);
-    return wanted > width ? size * std::max(width, 0.0f) / wanted : size;
-}
-
-float text_width(std::string_view text, float size, Weight weight) {
-    return lay_out(text, size, weight).width;
-}
-
-std::string_view missing_character(std::string_view text) {
-    while (!text.empty()) {
-        const auto from = text;
-        const auto character = next_character(text);
-        if (is_control(character) || number_of(character) == 0) return from.substr(0, from.size() - text.size());
-    }
-    return {};
-}
-
-const GlyphAtlas::Slot& GlyphAtlas::slot(int glyph, float size, Weight weight, int subpixel) {
-    const Key key{glyph, size, weight, subpixel};
-    if (const auto found = slots_.find(key); found != slots_.end()) return found->second;
-
-    const Coverage drawn = rasterised(glyph, size, weight, static_cast<float>(subpixel) / subpixels);
-    if (pen_ + drawn.size.width > width) {
-        pen_ = 0;
-        shelf_ += shelf_height_;
-        shelf_height_ = 0;
-    }
-    shelf_height_ = std::max(shelf_height_, drawn.size.height);
-    if (drawn.size.width > width || shelf_ + shelf_height_ > max_height_) {
-        throw io_failed("no room for a glyph of {} × {} px: the text is too large or has too many sizes",
-                        drawn.size.width, drawn.size.height);
-    }
-    if (shelf_ + shelf_height_ > height()) {
-        const int enough = std::min(std::max(2 * height(), shelf_ + shelf_height_ + 255), max_height_);
-        values_.resize(static_cast<std::size_t>(width) * enough);
-    }
-
-    const Slot slot{drawn.left, drawn.top, drawn.size, pen_, shelf_};
-    for (int row = 0; row < drawn.size.height; ++row) {
-        std::copy_n(&drawn.values[static_cast<std::size_t>(row) * drawn.size.width], drawn.size.width,
-                    &values_[static_cast<std::size_t>(shelf_ + row) * width + pen_]);
-    }
-    pen_ += drawn.size.width;
-    return slots_.emplace(key, slot).first->second;
 }
 
 }  // namespace doppel

@@ -4,75 +4,59 @@
 #include "render/display_list.hpp"
 
 #include <cstdint>
-#include <map>
+#include <filesystem>
+#include <memory>
+#include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 namespace doppel {
 
-/// The advance width of `text`, px, exactly as it is drawn.
-float text_width(std::string_view text, float size, Weight weight = Weight::regular);
-
-/// `size`, or as much less as makes `text` no wider than `width` px.
-float fitting_size(std::string_view text, float size, Weight weight, float width);
-
-/// A line of positioned glyphs.
-struct TextLine {
-    struct Glyph {
-        int number = 0;        // in the font
-        float pen = 0;         // px right of the start of the line
-        std::size_t byte = 0;  // where its character begins in the text
-    };
-    std::vector<Glyph> glyphs;
-    float width = 0;  // px
+/// How much of each pixel a glyph covers, 0…255. Rows from the top down.
+struct Coverage {
+    int left = 0, top = 0;  // of the first pixel, px from the pen's whole pixel on the baseline
+    Size size;
+    std::vector<std::uint8_t> values;
 };
 
-/// The built-in font has one weight. Bold: how much wider the pen is, which draws on either side of the outline, and
-/// how much further the next letter is; em.
+/// A font has one weight. Bold: how much wider the pen is, which draws on either side of the outline, and how much further
+/// the next letter is; em.
 inline constexpr float bold_pen = 0.0345f, bold_spacing = 0.0300f;
 
-/// The built-in font: a TrueType file.
-std::string_view font_file();
-
-/// Text is UTF-8; each byte that is not becomes U+FFFD.
-TextLine lay_out(std::string_view text, float size, Weight weight);
-
-/// Where the pen begins, px.
-Point start_of(const Label& label, const TextLine& line);
-
-/// The first character of `text` that the font lacks, or that is a control character. Empty where there is none.
-std::string_view missing_character(std::string_view text);
-
-/// Coverage of the glyphs drawn so far, in one image. It fills shelf by shelf and grows downward: slots never move.
-class GlyphAtlas {
+/// One font, of a TrueType or OpenType file with outlines. It never changes: threads may share it. Such files are
+/// trusted: that no table leaves the file is checked, what the tables say is not.
+class Font {
 public:
-    /// Subpixel positions of the pen.
-    static constexpr int subpixels = 4;
-    static constexpr int width = 1024;  // px
+    /// The built-in one.
+    static const Font& built_in();
+    /// Font `index` of a file. Throws Error: exit 2 where it is no such font, exit 4 where it cannot be read.
+    static std::shared_ptr<const Font> from_file(const std::filesystem::path& path, int index = 0);
+    ~Font();
+    Font(const Font&) = delete;
+    Font& operator=(const Font&) = delete;
 
-    struct Slot {
-        int left = 0, top = 0;  // of the first pixel, px from the pen's whole pixel on the baseline
-        Size size;              // empty for a space
-        int x = 0, y = 0;       // in the atlas
-    };
-
-    /// `max_height`, px: OpenGL's limit for textures.
-    explicit GlyphAtlas(int max_height) : max_height_(max_height) {}
-
-    /// Rasterises the glyph if it is new. Throws Error where the atlas is full.
-    const Slot& slot(int glyph, float size, Weight weight, int subpixel);
-
-    const std::vector<std::uint8_t>& values() const { return values_; }
-    int height() const { return static_cast<int>(values_.size()) / width; }
-    std::size_t count() const { return slots_.size(); }
+    /// The file's path; empty of the built-in one.
+    const std::filesystem::path& file() const { return file_; }
+    /// The file's contents, and which of its fonts this is.
+    std::string_view bytes() const { return bytes_; }
+    int index() const { return index_; }
+    /// The number of a character's glyph; 0 where there is none, or one without an outline, as of coloured letters.
+    int number_of(char32_t character) const;
+    /// How far the pen moves past a glyph, px.
+    float advance(int glyph, float size, Weight weight) const;
+    /// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge; a hollow box for number 0. The font has
+    /// one weight: bold moves the outline outward.
+    Coverage rasterised(int glyph, float size, Weight weight, float shift) const;
 
 private:
-    using Key = std::tuple<int, float, Weight, int>;
-    std::map<Key, Slot> slots_;
-    std::vector<std::uint8_t> values_;
-    int max_height_;
-    int pen_ = 0, shelf_ = 0, shelf_height_ = 0;  // px
+    struct Tables;  // as stb_truetype has them
+    Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index);
+
+    std::filesystem::path file_;
+    std::string owned_;       // a file's bytes
+    std::string_view bytes_;  // those, or the built-in ones
+    int index_;
+    std::unique_ptr<Tables> tables_;
 };
 
 }  // namespace doppel

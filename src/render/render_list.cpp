@@ -1,6 +1,6 @@
 #include "render/render_list.hpp"
 
-#include "render/font.hpp"
+#include "render/glyph_atlas.hpp"
 #include "render/stroke.hpp"
 
 #include <algorithm>
@@ -88,14 +88,14 @@ public:
 
     void operator()(const Label& label) {
         begin(Kind::glyph);
-        const TextLine line = lay_out(label.text, label.size, label.weight);
+        const TextLine line = atlas_.typeface().lay_out(label.text, label.size, label.weight);
         const auto [start, baseline] = start_of(label, line);
         // the whole pixels aside, so that moving by whole pixels changes nothing
         const float whole = std::floor(start);
         for (const TextLine::Glyph& glyph : line.glyphs) {
             const int subpixel = static_cast<int>(std::lround((start - whole + glyph.pen) * GlyphAtlas::subpixels));
             const GlyphAtlas::Slot& slot =
-                atlas_.slot(glyph.number, label.size, label.weight, subpixel % GlyphAtlas::subpixels);
+                atlas_.slot(glyph, label.size, label.weight, subpixel % GlyphAtlas::subpixels);
             if (slot.size.width == 0) continue;
             const Point corner{whole + static_cast<float>(subpixel / GlyphAtlas::subpixels + slot.left),
                                baseline + static_cast<float>(slot.top)};

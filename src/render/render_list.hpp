@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/display_list.hpp"
-#include "render/font.hpp"
+#include "render/glyph_atlas.hpp"
 
 #include <array>
 #include <cstdint>

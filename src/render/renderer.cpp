@@ -14,10 +14,10 @@ namespace doppel {
 
 class Renderer::State {
 public:
-    State(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop)
+    State(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop, const Typeface& typeface)
         : size_(size), context_(make_context(gl)) {
         check_size();
-        atlas_.emplace(limit(GL_MAX_TEXTURE_SIZE));
+        atlas_.emplace(limit(GL_MAX_TEXTURE_SIZE), typeface);
         canvas_.emplace(size);
         painter_.emplace(size);
         picture_ = Picture(size);
@@ -115,8 +115,9 @@ private:
     std::vector<Rect> changed_;
 };
 
-Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop) try
-    : state_(std::make_unique<State>(size, backdrop, gl, stop)) {
+Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl, const std::atomic<bool>& stop,
+                   const Typeface& typeface) try
+    : state_(std::make_unique<State>(size, backdrop, gl, stop, typeface)) {
 } catch (const std::bad_alloc&) {
     throw io_failed("there is no memory for a picture of {} × {} px", size.width, size.height);
 }

@@ -2,6 +2,7 @@
 
 #include "image/picture.hpp"
 #include "render/display_list.hpp"
+#include "render/typeface.hpp"
 
 #include <atomic>
 #include <memory>
@@ -29,10 +30,10 @@ Gl gl_named(const std::string& name);
 /// are drawn and read back; the pixels are the same as if everything had been drawn.
 class Renderer {
 public:
-    /// Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size is to be had, 130 as
+    /// Text is drawn in `typeface`. Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size is to be had, 130 as
     /// draw().
     explicit Renderer(Size size, const DisplayList& backdrop = {}, Gl gl = Gl::automatic,
-                      const std::atomic<bool>& stop = false);
+                      const std::atomic<bool>& stop = false, const Typeface& typeface = {});
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;

@@ -126,7 +126,9 @@ std::vector<Statement> statements(const Scene& scene, bool of_b) {
     const auto droplet = std::find_if(spec.forces.begin(), spec.forces.end(), is_droplet);
     if (droplet != spec.forces.end()) {
         const auto& body = std::get<DropletSpec>(droplet->part);
-        all.push_back({fmt::format("a droplet of {} kg at {} m", text_of(body.mass_kg), place(*body.position_m))});
+        const auto kg = static_cast<double>(body.mass_kg);
+        const auto mass = kg < 0.001 ? scientific(kg) : text_of(body.mass_kg);
+        all.push_back({fmt::format("a droplet of {} kg at {} m", mass, place(*body.position_m))});
     } else if (std::any_of(other.forces.begin(), other.forces.end(), is_droplet)) {
         all.push_back({"no droplet"});
     }

@@ -104,6 +104,17 @@ double ease_before(const VideoSpec& video, std::size_t change) {
     return std::min(video.speed_ease_s, changes[change].at_s.value() - changes[change - 1].at_s.value());
 }
 
+/// What a film that needs `ticks` a sample may change whose steps give `have`; `per_tick` = its largest fps · s a tick.
+std::string finer_steps(const Preset& preset, long have, double ticks, double per_tick) {
+    const double times = std::ceil(ticks / static_cast<double>(have));
+    const auto rate = product(preset.sample_hz, {have * std::lround(std::min(times, 1e6)), 1});
+    const auto step = rate ? quotient({1, 1}, *rate) : std::nullopt;
+    const bool chosen = preset.a.accuracy || preset.b.accuracy;
+    const auto finer = chosen || !step ? "a smaller accuracy" : fmt::format("step_s = \"{}\"", step->text());
+    const double fps = std::floor(static_cast<double>(have) * preset.sample_hz.value() * per_tick);
+    return fps < 1 ? finer : fmt::format("{}, or fps up to {:g},", finer, fps);
+}
+
 /// The ticks of a sample: fine enough that rounding to them moves no frame by more than 1/64 of its way to the next, and
 /// such that frames at each speed fall on them, where the steps can be divided so.
 long ticks_of_sample(const Preset& preset, const Rational& fps, long common_steps) {
@@ -132,10 +143,10 @@ long ticks_of_sample(const Preset& preset, const Rational& fps, long common_step
     if (enough > 0) return enough;
     if (static_cast<double>(finest) * least >= coarse) return finest;
     throw bad_input(
-        "{}: [video] speed {} at {} frames/s needs moments that are {:.3g} s apart; a step is {:.3g} s: a "
-        "smaller step_s, or fewer fps, would do",
+        "{}: [video] speed {} at {} frames/s needs moments that are {:.3g} s apart; a step is {:.3g} s: {} would do",
         preset.name, slowest.value(), fps.value(), slowest.value() / fps.value() / coarse,
-        1 / (preset.sample_hz.value() * static_cast<double>(finest)));
+        1 / (preset.sample_hz.value() * static_cast<double>(finest)),
+        finer_steps(preset, finest, coarse / least, slowest.value() / coarse));
 }
 
 }  // namespace

@@ -266,7 +266,7 @@ void layout_fields(Visit& visit, Video& video) {
     }
 }
 
-/// Colours, widths, sizes of words, and trails.
+/// Colours, widths, fonts, sizes of words, and trails.
 template <class Visit, class Video>
 void style_fields(Visit& visit, Video& video) {
     theme_field(visit, video.theme);
@@ -279,6 +279,10 @@ void style_fields(Visit& visit, Video& video) {
     visit.table("widths_px", [&](auto& table) {
         for (const auto& [key, member, help] : width_names)
             table({key, help, "px", from_to(0, 200)}, video.widths.*member);
+    });
+    visit.table("fonts", [&](auto& table) {
+        table({"text", "font file (TrueType, OpenType), beside the preset or from here", "", {}, "built in"},
+              video.text_font);
     });
     visit.table("fonts_px", [&](auto& table) {
         for (const auto& [key, member, help] : font_size_names)

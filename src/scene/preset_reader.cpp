@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace doppel {
 namespace {
@@ -148,6 +149,27 @@ void read_video(TomlReader& table, VideoSpec& video) {
     table.finish();
 }
 
+/// The font of the film's words, before the words: it decides which letters they may have. Beside the preset, or from
+/// here; from the command line always from here.
+void read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) {
+    auto table = document.table(top, "video");
+    auto fonts = table.inner(table.read_table("fonts"), "[video.fonts]");
+    constexpr std::string_view key = "text";
+    std::string given;
+    fonts.read({.key = key}, given);
+    if (given.empty()) return;
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const auto beside = fs::path(document.path).parent_path() / given;
+    video.text_font = !fonts.from_command_line(key) && fs::exists(beside, ignored) ? beside.string() : given;
+    try {
+        video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font));
+    } catch (const Error& error) {
+        throw Error(error.code(),
+                    fmt::format("{}: [video.fonts] text {}: {}", fonts.place(key), *video.text_font, error.what()));
+    }
+}
+
 /// The pair of an ensemble whose members are listed is its first and its last. Throws where the file gives a side
 /// other angles, or a member too many or too few of them.
 void place_members(const TomlDocument& document, TomlReader& top, TomlReader& video, Preset& preset) {
@@ -221,7 +243,10 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     const auto document = parse_document(source, overrides);
     Preset preset;
     preset.name = preset.title = source.name;
-    TomlReader top(&document.root, "", document.path, document.texts);
+    TomlReader first(&document.root, "", document.path, document.texts);
+    read_font(first, document, preset.video);
+    const auto font = preset.video.text_font;
+    TomlReader top(&document.root, "", document.path, document.texts, preset.video.typeface);
     top.demand_title(preset.name);
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
@@ -235,6 +260,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     read_sides(document, {&top}, preset, true);
     auto video = document.table(top, "video");
     read_video(video, preset.video);
+    preset.video.text_font = font;  // as it was found
     place_members(document, top, video, preset);
     top.finish();
     check_clock(preset, scene);

@@ -1,7 +1,7 @@
 #include "scene/toml_reader.hpp"
 
 #include "base/text.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <fmt/ranges.h>
 
@@ -14,30 +14,39 @@ namespace {
 
 constexpr std::string_view command_line = "--";
 
-/// What keeps a text from being drawn; nothing where the font has all of its letters.
-std::optional<std::string> not_drawable(std::string_view text) {
+/// What keeps a text from being drawn; nothing where its fonts have all of its letters.
+std::optional<std::string> not_drawable(std::string_view text, const Typeface& typeface) {
     std::vector<std::string> letters;
     constexpr std::size_t most = 8;  // that are named
-    for (auto lacking = missing_character(text); !lacking.empty() && letters.size() <= most;
-         lacking = missing_character(text)) {
+    for (auto lacking = typeface.missing_character(text); !lacking.empty() && letters.size() <= most;
+         lacking = typeface.missing_character(text)) {
         auto after = lacking;
         const auto character = next_character(after);
         const auto number = fmt::format("U+{:04X}", static_cast<unsigned>(character));
         if (is_control(character)) return fmt::format("holds the control character {}, which cannot be drawn", number);
+        if (needs_shaping(character))
+            return fmt::format(
+                "holds \"{}\" ({}) of a script whose letters join or run to the left, which Doppel does "
+                "not write",
+                lacking, number);
         auto letter = letters.size() == most ? "…" : fmt::format("\"{}\" ({})", lacking, number);
         if (std::find(letters.begin(), letters.end(), letter) == letters.end()) letters.push_back(std::move(letter));
         text.remove_prefix(static_cast<std::size_t>(lacking.data() + lacking.size() - text.data()));
     }
     if (letters.empty()) return std::nullopt;
+    const auto rest = typeface.uses_system_fonts() ? "; no font of this system has outlines of them either; "
+                                                     "[video.fonts] text takes a font file of your own"
+                                                   : "";
     return fmt::format(
-        "holds {}, which the built-in font lacks; it has Latin and Greek letters and signs of mathematics",
-        fmt::join(letters, ", "));
+        "holds {}, which the built-in font lacks; it has Latin and Greek letters and signs of mathematics{}",
+        fmt::join(letters, ", "), rest);
 }
 
 }  // namespace
 
-TomlReader::TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts)
-    : table_(table), name_(std::move(name)), path_(std::move(path)), texts_(&texts) {}
+TomlReader::TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts,
+                       const Typeface& typeface)
+    : table_(table), name_(std::move(name)), path_(std::move(path)), texts_(&texts), typeface_(&typeface) {}
 
 std::string TomlReader::place(std::string_view key) const {
     if (!table_) return path_;
@@ -69,12 +78,12 @@ bool TomlReader::from_command_line(std::string_view key) {
 }
 
 void TomlReader::demand_drawable(std::string_view key, std::string_view text) const {
-    if (const auto fault = not_drawable(text)) throw this->fault(key, "{}", *fault);
+    if (const auto fault = not_drawable(text, *typeface_)) throw this->fault(key, "{}", *fault);
 }
 
 void TomlReader::demand_title(const std::string& name) {
     if (has("title")) return;
-    if (const auto fault = not_drawable(name))
+    if (const auto fault = not_drawable(name, *typeface_))
         throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
 }
 

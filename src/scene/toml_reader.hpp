@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "render/typeface.hpp"
 #include "scene/preset.hpp"
 
 #include <toml++/toml.h>
@@ -45,6 +46,9 @@ private:
 /// the text still has.
 using TomlTexts = std::map<std::string, TomlText>;
 
+/// That of figures.
+inline const Typeface built_in_typeface;
+
 // Words for errors.
 
 std::string kind_of(const toml::node& node);  // "a whole number"
@@ -57,7 +61,9 @@ std::string found(const toml::node& node);    // "it is a whole number (3)"
 class TomlReader {
 public:
     /// `name` = how errors call it, "[video]"; `table` may be null: then all keys are absent.
-    TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts);
+    /// `typeface` = what texts are drawn in; it stays where it is.
+    TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts,
+               const Typeface& typeface = built_in_typeface);
 
     bool has(std::string_view key);
     /// Whether the key was given on the command line, and not in the preset's file.
@@ -95,9 +101,9 @@ public:
         if (const auto* node = find(field.key)) read(field, *node, into);
     }
 
-    /// Throws where `name`, which is shown where there is no title, has a letter that the font lacks.
+    /// Throws where `name`, which is shown where there is no title, has a letter that no font has.
     void demand_title(const std::string& name);
-    /// Throws where the font lacks a letter of `text`, the value of `key`.
+    /// Throws where no font has a letter of `text`, the value of `key`.
     void demand_drawable(std::string_view key, std::string_view text) const;
     const toml::table* read_table(std::string_view key);
     /// The tables of [[key]]; none where it is absent.
@@ -109,7 +115,7 @@ public:
     }
     /// A reader of a table inside this one, for errors called `name`.
     TomlReader inner(const toml::table* table, std::string name) const {
-        return {table, std::move(name), path_, *texts_};
+        return {table, std::move(name), path_, *texts_, *typeface_};
     }
 
     /// Throws if the table has a key that was not asked for, and names the nearest that was.
@@ -166,6 +172,7 @@ private:
     const toml::table* table_;
     std::string name_, path_;
     const TomlTexts* texts_;
+    const Typeface* typeface_;
     std::set<std::string, std::less<>> known_;
 };
 
@@ -177,7 +184,7 @@ struct TomlDocument {
 
     /// A reader of the table [key], which may be absent.
     TomlReader table(TomlReader& above, std::string_view key) const {
-        return {above.read_table(key), fmt::format("[{}]", key), path, texts};
+        return above.inner(above.read_table(key), fmt::format("[{}]", key));
     }
 };
 

@@ -5,6 +5,7 @@
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 #include "output/sink.hpp"
+#include "render/typeface.hpp"
 #include "scene/field.hpp"
 #include "vector/page.hpp"
 
@@ -178,6 +179,8 @@ struct VideoSpec : Panels {
     std::optional<std::array<Color, 2>> side_colors;
     Widths widths;
     FontSizes fonts;
+    std::optional<std::string> text_font;               // path of the font file for all words
+    Typeface typeface = Typeface::with_system_fonts();  // with that file, read
     std::optional<double> glow_px;  // how far the light of trails and bobs reaches; the theme's where not given
     double trail_s = 2.5;           // s; 0 = none
 

@@ -3,6 +3,7 @@
 #include "output/folder.hpp"
 #include "output/sink.hpp"
 #include "render/display_list.hpp"
+#include "render/typeface.hpp"
 
 #include <string>
 #include <string_view>
@@ -17,10 +18,11 @@ struct Page {
     Size size;            // of the list, px
     double width_pt = 0;  // on paper, 1/72 inch; its height follows
     Metadata metadata = {};
+    Typeface typeface = {};  // of its text
 };
 
 /// One page as a file: paths as paths, images pixel by pixel as they are, text as text. PDF 1.5 holds those
-/// letters of the font that it needs, SVG 1.1 all of the font. Glows are rings. Throws Error (exit 4) where there is no
+/// letters of the fonts that it needs; SVG 1.1 all of the built-in font and the user's, not the system's. Glows are rings. Throws Error (exit 4) where there is no
 /// memory.
 std::string pdf_page(const DisplayList& list, const Page& page);
 std::string svg_page(const DisplayList& list, const Page& page);

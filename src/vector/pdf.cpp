@@ -1,6 +1,5 @@
 #include "base/error.hpp"
 #include "output/folder.hpp"
-#include "render/font.hpp"
 #include "vector/cairo_drawing.hpp"
 #include "vector/page.hpp"
 #include "vector/paths.hpp"
@@ -9,9 +8,12 @@
 #include <cairo-pdf.h>
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <new>
-#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
 
 namespace doppel {
 namespace {
@@ -24,8 +26,8 @@ void check(cairo_status_t status) {
     if (status != CAIRO_STATUS_SUCCESS) throw io_failed("a PDF cannot be made: {}", cairo_status_to_string(status));
 }
 
-/// The built-in font, which has one weight: FreeType makes the other. It keeps FreeType until Cairo has let go of it.
-FontFace load_font(Weight weight) {
+/// The font, which has one weight: FreeType makes the other. It keeps FreeType until Cairo has let go of it.
+FontFace load_font(const Font& font, Weight weight) {
     struct Loaded {
         FT_Library library = nullptr;
         FT_Face face = nullptr;
@@ -35,11 +37,11 @@ FontFace load_font(Weight weight) {
         }
     };
     auto loaded = std::make_unique<Loaded>();
-    const auto file = font_file();
+    const auto file = font.bytes();
     if (FT_Init_FreeType(&loaded->library) != 0 ||
         FT_New_Memory_Face(loaded->library, reinterpret_cast<const FT_Byte*>(file.data()),
-                           static_cast<FT_Long>(file.size()), 0, &loaded->face) != 0)
-        throw io_failed("FreeType cannot read the built-in font");
+                           static_cast<FT_Long>(file.size()), font.index(), &loaded->face) != 0)
+        throw io_failed("FreeType cannot read the font {}", font.file().string());
     FontFace face(cairo_ft_font_face_create_for_ft_face(loaded->face, FT_LOAD_NO_HINTING));
     static const cairo_user_data_key_t key{};
     check(cairo_font_face_set_user_data(face.get(), &key, loaded.get(),
@@ -56,7 +58,7 @@ void set_color(cairo_t* to, const Color& color) {
 /// Draws items of a page.
 class Painter {
 public:
-    explicit Painter(cairo_t* to) : to_(to) {}
+    Painter(cairo_t* to, const Typeface& typeface) : to_(to), typeface_(typeface) {}
 
     void operator()(const Path& path) const {
         for (const auto& step : path.steps) {
@@ -82,22 +84,29 @@ public:
         cairo_stroke(to_);
     }
 
-    void operator()(const Label& label) const {
-        const TextLine line = lay_out(label.text, label.size, label.weight);
+    void operator()(const Label& label) {
+        const TextLine line = typeface_.lay_out(label.text, label.size, label.weight);
         const Point start = start_of(label, line);
-        std::vector<cairo_glyph_t> glyphs;
-        std::vector<cairo_text_cluster_t> letters;  // a glyph each
-        for (std::size_t i = 0; i < line.glyphs.size(); ++i) {
-            const auto& glyph = line.glyphs[i];
-            const std::size_t end = i + 1 < line.glyphs.size() ? line.glyphs[i + 1].byte : label.text.size();
-            glyphs.push_back({static_cast<unsigned long>(glyph.number), start.x + glyph.pen, start.y});
-            letters.push_back({static_cast<int>(end - glyph.byte), 1});
-        }
-        cairo_set_font_face(to_, (label.weight == Weight::bold ? bold_ : regular_).get());
         cairo_set_font_size(to_, label.size);
         set_color(to_, label.color);
-        cairo_show_text_glyphs(to_, label.text.data(), static_cast<int>(label.text.size()), glyphs.data(),
-                               static_cast<int>(glyphs.size()), letters.data(), static_cast<int>(letters.size()), {});
+        for (std::size_t i = 0; i < line.glyphs.size();) {
+            // as far as one font has the letters
+            const auto* font = line.glyphs[i].font;
+            const std::size_t begin = line.glyphs[i].byte;
+            std::size_t end = begin;
+            std::vector<cairo_glyph_t> glyphs;
+            std::vector<cairo_text_cluster_t> letters;  // a glyph each
+            for (; i < line.glyphs.size() && line.glyphs[i].font == font; ++i) {
+                const auto& glyph = line.glyphs[i];
+                glyphs.push_back({static_cast<unsigned long>(glyph.number), start.x + glyph.pen, start.y});
+                end = i + 1 < line.glyphs.size() ? line.glyphs[i + 1].byte : label.text.size();
+                letters.push_back({static_cast<int>(end - glyph.byte), 1});
+            }
+            cairo_set_font_face(to_, face_of(*font, label.weight));
+            cairo_show_text_glyphs(to_, &label.text[begin], static_cast<int>(end - begin), glyphs.data(),
+                                   static_cast<int>(glyphs.size()), letters.data(), static_cast<int>(letters.size()),
+                                   {});
+        }
     }
 
     void operator()(const Image& image) const {
@@ -130,8 +139,15 @@ public:
     }
 
 private:
+    cairo_font_face_t* face_of(const Font& font, Weight weight) {
+        auto& face = faces_[{&font, weight}];
+        if (!face) face = load_font(font, weight);
+        return face.get();
+    }
+
     cairo_t* to_;
-    FontFace regular_ = load_font(Weight::regular), bold_ = load_font(Weight::bold);
+    const Typeface& typeface_;
+    std::map<std::pair<const Font*, Weight>, FontFace> faces_;
 };
 
 cairo_status_t append(void* file, const unsigned char* bytes, unsigned count) try {
@@ -155,8 +171,8 @@ void describe(cairo_surface_t* surface, const Metadata& metadata) {
 
 }  // namespace
 
-void draw(const DisplayList& list, cairo_t* to) {
-    const Painter painter(to);
+void draw(const DisplayList& list, const Typeface& typeface, cairo_t* to) {
+    Painter painter(to, typeface);
     for (const auto& item : page_items(list)) std::visit(painter, item);
     check(cairo_status(to));
 }
@@ -171,7 +187,7 @@ std::string pdf_page(const DisplayList& list, const Page& page) {
     {
         const Context context(cairo_create(surface.get()));
         cairo_scale(context.get(), scale, scale);
-        draw(list, context.get());
+        draw(list, page.typeface, context.get());
         cairo_show_page(context.get());
         check(cairo_status(context.get()));
     }

@@ -1,5 +1,4 @@
 #include "output/png.hpp"
-#include "render/font.hpp"
 #include "vector/page.hpp"
 #include "vector/paths.hpp"
 
@@ -112,6 +111,13 @@ private:
 
 std::string svg_page(const DisplayList& list, const Page& page) {
     const auto [width, height] = page.size;
+    std::string faces;
+    const auto embed = [&](std::string_view name, const Font& font) {
+        faces += fmt::format("@font-face {{ font-family: \"{}\"; src: url({}) }}\n", name,
+                             data_url("font/ttf", font.bytes()));
+    };
+    if (const auto* own = page.typeface.own()) embed("Own", *own);
+    embed("Doppel", Font::built_in());
     auto file = fmt::format(
         R"(<?xml version="1.0" encoding="UTF-8"?>
 <!-- {} -->
@@ -119,16 +125,14 @@ std::string svg_page(const DisplayList& list, const Page& page) {
 <title>{}</title>
 <desc>{}</desc>
 <style>
-@font-face {{ font-family: "Doppel"; src: url({}) }}
-text {{ font-family: Doppel, "DejaVu Sans", sans-serif; font-kerning: none; white-space: pre }}
+{}text {{ font-family: Own, Doppel, "DejaVu Sans", sans-serif; font-kerning: none; white-space: pre }}
 path {{ stroke-linecap: round; stroke-linejoin: round }}
 path[stroke-linecap] {{ stroke-linecap: butt }}
 image {{ image-rendering: pixelated }}
 </style>
 )",
         maker_of(page.metadata), number(page.width_pt), number(page.width_pt * height / width), width, height,
-        escaped(text_of(page.metadata, "title")), escaped(text_of(page.metadata, "comment")),
-        data_url("font/ttf", font_file()));
+        escaped(text_of(page.metadata, "title")), escaped(text_of(page.metadata, "comment")), faces);
     const Writer writer(file);
     for (const auto& item : page_items(list)) std::visit(writer, item);
     return file + "</svg>\n";

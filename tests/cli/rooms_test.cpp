@@ -86,12 +86,19 @@ struct Library {
     std::string_view header, room, file;
 };
 constexpr Library libraries[]{
-    {"GL/", "render", "gl_"},           {"EGL/", "render", "gl_"},
-    {"stb_truetype", "render", "font"}, {"libavformat/", "output", "libav"},
-    {"libavcodec/", "output", "libav"}, {"libswscale/", "output", "libav"},
-    {"libavutil/", "output", ""},       {"libdeflate", "output", ""},
-    {"libimagequant", "output", ""},    {"stb_image", "output", ""},
-    {"toml++/", "scene", ""},           {"CLI/", "cli", ""},
+    {"GL/", "render", "gl_"},
+    {"EGL/", "render", "gl_"},
+    {"stb_truetype", "render", "font"},
+    {"libavformat/", "output", "libav"},
+    {"libavcodec/", "output", "libav"},
+    {"libswscale/", "output", "libav"},
+    {"fontconfig/", "render", "system_fonts"},
+    {"libavutil/", "output", ""},
+    {"libdeflate", "output", ""},
+    {"libimagequant", "output", ""},
+    {"stb_image", "output", ""},
+    {"toml++/", "scene", ""},
+    {"CLI/", "cli", ""},
 };
 
 TEST(Rooms, KeepTheirLibrariesToThemselves) {

@@ -42,6 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"phase-dance-3s", "phase-dance", 360, {}},
                     Golden{"section-3s", "butterfly", 360, {"video.layout=\"phase\"", "video.phase=\"section\""}},
                     Golden{"slow-parting-2s", "slow-parting", 480, {}},
+                    Golden{"single-and-double-3s", "single-and-double", 360, {}},
                     Golden{"overlay-3s", "calm", 360, {"video.layout=\"overlay\"", "video.theme=\"high-contrast\""}}),
     [](const auto& parameter) {
         std::string name = parameter.param.name;

@@ -64,7 +64,7 @@ void expect_words_in_place(const Scene& scene, const Layout& layout, const std::
         const auto box = box_of(labels[i]);
         const auto which = what + ": " + labels[i].text;
         EXPECT_TRUE(picture.holds(box)) << which;
-        EXPECT_GE(labels[i].size, 0.3f * layout.text * 21) << which;
+        EXPECT_GE(labels[i].size, 0.6f * layout.text * 21) << which;
         for (std::size_t j = 0; j < i; ++j)
             EXPECT_FALSE(box.overlaps(box_of(labels[j]))) << which << " | " << labels[j].text;
         for (const auto& panel : layout.panels) EXPECT_FALSE(meets(box, panel.center, layout.reach)) << which;

@@ -26,7 +26,7 @@ void for_each_snapshot(const Scene& scene, long last, Visit&& visit) {
 inline Picture frame_of(const Scene& scene, long sample) {
     Composer composer(scene);
     for_each_snapshot(scene, sample, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-    Renderer renderer(scene.preset.video.size, composer.backdrop());
+    Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, false, scene.preset.video.typeface);
     return renderer.draw(composer.frame());
 }
 

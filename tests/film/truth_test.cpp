@@ -1,7 +1,7 @@
 #include "film/support.hpp"
 #include "image/color.hpp"
-#include "render/font.hpp"
 #include "render/pixels.hpp"
+#include "render/typeface.hpp"
 
 #include <gtest/gtest.h>
 

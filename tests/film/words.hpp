@@ -1,7 +1,7 @@
 #pragma once
 
 #include "film/support.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <algorithm>
 #include <string>
@@ -10,8 +10,8 @@
 namespace doppel {
 
 /// What a label covers, px: letters of DejaVu Sans rise 0.73 em above the baseline, tails fall 0.24 em below it.
-inline Area box_of(const Label& label) {
-    const float width = text_width(label.text, label.size, label.weight);
+inline Area box_of(const Label& label, const Typeface& type = {}) {
+    const float width = type.width(label.text, label.size, label.weight);
     const float share = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
     const float left = label.anchor.x - share * width;
     return {left, label.anchor.y - 0.73f * label.size, left + width, label.anchor.y + 0.24f * label.size};

@@ -1,6 +1,6 @@
-#include "render/font.hpp"
 #include "render/pixels.hpp"
 #include "render/renderer.hpp"
+#include "render/typeface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -81,8 +81,8 @@ TEST_F(LabelTest, IsTransparentAsItsColour) {
 }
 
 TEST(Text, IsReadAsUtf8) {
-    EXPECT_EQ(lay_out("aΔ—", 10, Weight::regular).glyphs.size(), 3u);
-    const int box = lay_out("\xf0\x9f\xa6\x9c\xef\xbf\xbd", 10, Weight::regular).glyphs.back().number;
+    EXPECT_EQ(Typeface().lay_out("aΔ—", 10, Weight::regular).glyphs.size(), 3u);
+    const int box = Typeface().lay_out("\xf0\x9f\xa6\x9c\xef\xbf\xbd", 10, Weight::regular).glyphs.back().number;
     // a byte that stands alone, too long a form, half a pair, beyond Unicode, cut short: a sign for each bad byte
     for (const auto& [text, count] : {std::pair{"\x80", 1},
                                       {"\xc0\xaf", 2},
@@ -90,7 +90,7 @@ TEST(Text, IsReadAsUtf8) {
                                       {"\xf4\x90\x80\x80", 4},
                                       {"\xe2\x82", 2},
                                       {"\xff", 1}}) {
-        const TextLine line = lay_out(text, 10, Weight::regular);
+        const TextLine line = Typeface().lay_out(text, 10, Weight::regular);
         EXPECT_EQ(line.glyphs.size(), static_cast<std::size_t>(count));
         for (const TextLine::Glyph& glyph : line.glyphs) EXPECT_EQ(glyph.number, box);
     }

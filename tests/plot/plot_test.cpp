@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "plot/plot_figures.hpp"
-#include "render/font.hpp"
+#include "render/typeface.hpp"
 
 #include <gtest/gtest.h>
 

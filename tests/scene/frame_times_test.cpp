@@ -93,7 +93,15 @@ TEST(FrameTimes, StepsThatAreTooCoarseForASpeedAreRefused) {
     EXPECT_EQ(code, ExitCode::bad_input);
     EXPECT_EQ(message,
               "butterfly: [video] speed 0.25 at 120 frames/s needs moments that are 0.00026 s apart; a step is 0.00417 "
-              "s: a smaller step_s, or fewer fps, would do");
+              "s: step_s = \"1/3840\", or fps up to 7, would do");
+    // what it says is so, and no more than is needed
+    const auto fan = [](const char* more) { scene_of("fan", {"video.speed=[[0, 1], [5, 0.25]]", more}); };
+    EXPECT_EQ(error_of([&] { fan("video.fps=120"); }).second,
+              "fan: [video] speed 0.25 at 120 frames/s needs moments that are 0.00026 s apart; a step is 0.000417 s: "
+              "step_s = \"1/4800\", or fps up to 75, would do");
+    EXPECT_NO_THROW(fan("system.step_s=\"1/4800\""));
+    EXPECT_NO_THROW(fan("video.fps=75"));
+    EXPECT_THROW(fan("video.fps=76"), Error);
 }
 
 }  // namespace frame_times_test

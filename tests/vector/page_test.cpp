@@ -1,6 +1,5 @@
 #include "vector/page.hpp"
 
-#include "render/font.hpp"
 #include "render/renderer.hpp"
 #include "vector/cairo_drawing.hpp"
 #include "vector/paths.hpp"
@@ -26,7 +25,7 @@ DisplayList on_white(Item item) {
 Picture drawn_by_cairo(const DisplayList& list) {
     auto* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, size.width, size.height);
     auto* context = cairo_create(surface);
-    draw(list, context);
+    draw(list, {}, context);
     cairo_surface_flush(surface);
     Picture picture(size);
     for (int y = 0; y < size.height; ++y)

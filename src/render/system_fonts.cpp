@@ -1,0 +1,96 @@
+#include "base/error.hpp"
+#include "render/typeface.hpp"
+
+#include <fontconfig/fontconfig.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+template <class T, void (*give_back)(T*)>
+struct GiveBack {
+    void operator()(T* object) const { give_back(object); }
+};
+using Config = std::unique_ptr<FcConfig, GiveBack<FcConfig, FcConfigDestroy>>;
+using Pattern = std::unique_ptr<FcPattern, GiveBack<FcPattern, FcPatternDestroy>>;
+using Letters = std::unique_ptr<FcCharSet, GiveBack<FcCharSet, FcCharSetDestroy>>;
+using Fonts = std::unique_ptr<FcFontSet, GiveBack<FcFontSet, FcFontSetDestroy>>;
+
+/// The system's fonts with outlines, those first that suit a letter best.
+Fonts fonts_for(FcConfig* config, char32_t letter) {
+    const Pattern wanted(FcPatternCreate());
+    const Letters letters(FcCharSetCreate());
+    FcCharSetAddChar(letters.get(), letter);
+    FcPatternAddCharSet(wanted.get(), FC_CHARSET, letters.get());
+    FcPatternAddString(wanted.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans-serif"));
+    FcPatternAddBool(wanted.get(), FC_OUTLINE, FcTrue);
+    FcPatternAddBool(wanted.get(), FC_COLOR, FcFalse);
+    FcConfigSubstitute(config, wanted.get(), FcMatchPattern);
+    FcDefaultSubstitute(wanted.get());
+    FcResult result = FcResultNoMatch;
+    return Fonts(FcFontSort(config, wanted.get(), FcFalse, nullptr, &result));
+}
+
+/// What fontconfig has found for letters, kept: fonts stay for the rest of the process, as all may be drawn in them.
+class SystemFonts {
+public:
+    const Font* font_for(char32_t letter) {
+        const std::lock_guard lock(mutex_);
+        const auto [place, is_new] = by_letter_.try_emplace(letter, nullptr);
+        if (is_new) place->second = find(letter);
+        return place->second;
+    }
+
+private:
+    const Font* find(char32_t letter) {
+        if (!config_) config_.reset(FcInitLoadConfigAndFonts());
+        if (!config_) return nullptr;
+        const auto fonts = fonts_for(config_.get(), letter);
+        for (int i = 0; fonts && i < fonts->nfont; ++i) {
+            FcPattern* const found = fonts->fonts[i];
+            FcCharSet* letters = nullptr;
+            FcChar8* file = nullptr;
+            int index = 0;
+            if (FcPatternGetCharSet(found, FC_CHARSET, 0, &letters) != FcResultMatch ||
+                FcCharSetHasChar(letters, letter) == FcFalse ||
+                FcPatternGetString(found, FC_FILE, 0, &file) != FcResultMatch)
+                continue;
+            FcPatternGetInteger(found, FC_INDEX, 0, &index);
+            // the upper half names an instance of a variable font: its default is taken
+            const auto* font = opened(reinterpret_cast<const char*>(file), index & 0xffff);
+            if (font && font->number_of(letter) != 0) return font;
+        }
+        return nullptr;
+    }
+
+    /// Null where it is no font with outlines.
+    const Font* opened(const std::string& file, int index) {
+        const auto [place, is_new] = by_file_.try_emplace({file, index});
+        if (is_new) {
+            try {
+                place->second = Font::from_file(file, index);
+            } catch (const Error&) {  // of a kind that Doppel does not read: the next may do
+            }
+        }
+        return place->second.get();
+    }
+
+    std::mutex mutex_;
+    Config config_;
+    std::map<char32_t, const Font*> by_letter_;
+    std::map<std::pair<std::string, int>, std::shared_ptr<const Font>> by_file_;
+};
+
+}  // namespace
+
+const Font* system_font_for(char32_t character) {
+    static SystemFonts fonts;
+    return fonts.font_for(character);
+}
+
+}  // namespace doppel

@@ -1,0 +1,125 @@
+#include "film/run.hpp"
+#include "film/support.hpp"
+#include "film/words.hpp"
+#include "output/fixtures.hpp"
+#include "output/written.hpp"
+#include "render/font_files.hpp"
+#include "scene/resolved.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace doppel {
+namespace font_test {
+
+namespace fs = std::filesystem;
+
+/// A film's preset beside a font that is twice as wide.
+fs::path folder_with_font() {
+    const auto folder = test::fresh_folder();
+    test::write_bytes(folder / "wide.ttf", test::font_of_half_the_units());
+    test::write_bytes(folder / "film.toml",
+                      "title = \"Two\"\n[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]\n"
+                      "[video]\nsize = [480, 270]\n[video.fonts]\ntext = \"wide.ttf\"\n");
+    return folder;
+}
+
+TEST(Fonts, AFilmsWordsAreInTheUsersFontAndFindTheirRoom) {
+    const auto folder = folder_with_font();
+    const auto scene = scene_of(folder / "film.toml"), usual = scene_of("butterfly", {"video.size=[480, 270]"});
+    const auto& type = scene.preset.video.typeface;
+    EXPECT_EQ(*scene.preset.video.text_font, (folder / "wide.ttf").string());
+    const auto size_of = [](const std::vector<Label>& labels, const std::string& text) {
+        return std::find_if(labels.begin(), labels.end(), [&](const auto& label) { return label.text == text; })->size;
+    };
+    const auto labels = labels_of(scene, 60);
+    // what leaves no room shrinks: the subtitle, not the short title
+    EXPECT_LT(size_of(labels, "real time"), 10);
+    EXPECT_EQ(size_of(labels, "Two"), 18);
+    const Area picture{0, 0, 480, 270};
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        EXPECT_TRUE(picture.holds(box_of(labels[i], type))) << labels[i].text;
+        // large letters: twice the height that box_of() takes
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_FALSE(box_of(labels[i], type).overlaps(box_of(labels[j], type)))
+                << labels[i].text << " | " << labels[j].text;
+    }
+    EXPECT_NE(frame_of(scene, 0).rgba,
+              frame_of(scene_of(folder / "film.toml",
+                                {"video.fonts.text=\"" + std::string(DOPPEL_SOURCE_DIR) + "/fonts/DejaVuSans.ttf\""}),
+                       0)
+                  .rgba);
+}
+
+TEST(Fonts, TheBuiltInFontByItsPathIsTheBuiltInFont) {
+    const auto own = fmt::format("video.fonts.text=\"{}/fonts/DejaVuSans.ttf\"", DOPPEL_SOURCE_DIR);
+    const std::string size = "video.size=[320, 180]";
+    EXPECT_EQ(frame_of(scene_of("butterfly", {size, own}), 0).rgba, frame_of(scene_of("butterfly", {size}), 0).rgba);
+}
+
+TEST(Fonts, AResolvedPresetFindsItsFontAgain) {
+    const auto folder = folder_with_font();
+    const auto scene = scene_of(folder / "film.toml");
+    const auto again = read_preset({"x", "elsewhere/x.toml", resolved_toml(scene.preset), "x.toml"});
+    EXPECT_EQ(again.video.text_font, scene.preset.video.text_font);
+    EXPECT_EQ(again.video.typeface.width("Two", 20), scene.preset.video.typeface.width("Two", 20));
+    EXPECT_FALSE(scene_of("butterfly", {"video.fonts.text=\"\""}).preset.video.text_font);
+    EXPECT_EQ(resolved_toml(read_preset(find_preset("butterfly"))).find("video.fonts]"), std::string::npos);
+}
+
+TEST(Fonts, AFileThatIsNoneIsNamedWithItsKey) {
+    const auto folder = folder_with_font();
+    const auto message = [&](const std::string& file) {
+        const auto [code, text] = error_of([&] {
+            read_preset({"film", "p/film.toml", "[video.fonts]\ntext = \"" + file + "\"\n", "film"});
+        });
+        EXPECT_EQ(code, ExitCode::bad_input);
+        return text;
+    };
+    EXPECT_EQ(message("none.ttf"), "p/film.toml:2:1: [video.fonts] text none.ttf: there is no such file");
+    EXPECT_EQ(message((folder / "film.toml").string()),
+              fmt::format("p/film.toml:2:1: [video.fonts] text {}: is no TrueType or OpenType font",
+                          (folder / "film.toml").string()));
+    EXPECT_EQ(error_of([] { scene_of("butterfly", {"video.fonts.text=\"no.ttf\""}); }).second,
+              "--set video.fonts.text: [video.fonts] text no.ttf: there is no such file");
+}
+
+TEST(Fonts, AreInTheManifest) {
+    const auto folder = folder_with_font();
+    const auto manifest_of = [&](const Scene& scene, const char* name) {
+        run(scene, {.out = folder / "out", .pictures = false}, false, [](const Progress&) {});
+        return nlohmann::json::parse(test::bytes_of(folder / "out" / name / (std::string(name) + ".json")));
+    };
+    const auto font = folder / "wide.ttf";
+    EXPECT_EQ(manifest_of(scene_of(folder / "film.toml"), "film")["fonts"],
+              (nlohmann::json{{font.string(), sha256_of_file(font)}}));
+    EXPECT_FALSE(manifest_of(scene_of("calm", {"scene.duration_s=0.1"}), "calm").contains("fonts"));
+}
+
+TEST(Fonts, PresetsOfDoppelLookTheSameEverywhere) {
+    for (const auto& source : builtin_presets()) {
+        if (is_figure(source)) continue;
+        const auto preset = read_preset(source);
+        for (const auto& text : {preset.title, preset.subtitle.value_or(""), preset.a.label.value_or(""),
+                                 preset.a.note.value_or(""), preset.b.label.value_or(""), preset.b.note.value_or("")})
+            EXPECT_TRUE(Typeface().has_own(text)) << preset.name << ": " << text;
+        EXPECT_FALSE(preset.video.text_font) << preset.name;
+    }
+}
+
+TEST(Fonts, LettersOfTheSystemAreDrawnAndNoBoxes) {
+    const std::string title = "title=\"双摆\"";
+    if (!system_font_for(U'双') || !system_font_for(U'摆')) {
+        EXPECT_NE(error_of([&] { scene_of("butterfly", {title}); }).second.find("\"双\" (U+53CC)"), std::string::npos);
+        GTEST_SKIP() << "fontconfig knows no font with 双摆 here";
+    }
+    const auto scene = scene_of("butterfly", {title, "video.size=[480, 270]"});
+    const auto& type = scene.preset.video.typeface;
+    for (const auto& glyph : type.lay_out("双摆", 18, Weight::bold).glyphs) EXPECT_NE(glyph.number, 0);
+    EXPECT_NE(frame_of(scene, 0).rgba,
+              frame_of(scene_of("butterfly", {"title=\"θθ\"", "video.size=[480, 270]"}), 0).rgba);
+}
+
+}  // namespace font_test
+}  // namespace doppel

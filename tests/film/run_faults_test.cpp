@@ -1,0 +1,133 @@
+#include "film/runs.hpp"
+#include "output/fixtures.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <fstream>
+#include <set>
+#include <thread>
+
+namespace doppel {
+namespace run_faults_test {
+
+namespace fs = std::filesystem;
+using test::fresh_folder;
+
+TEST(RunFaults, LeavesNothingWhenItIsInterrupted) {
+    for (const char* format : {"mp4", "png"}) {
+        const auto out = fresh_folder();
+        std::atomic<bool> stop = false;
+        const auto [code, message] = error_of([&] {
+            run(small_scene({fmt::format("video.format=\"{}\"", format)}), {.out = out}, stop,
+                [&](const Progress& p) { stop = p.done == 20; });
+        });
+        EXPECT_EQ(code, ExitCode::interrupted);
+        EXPECT_TRUE(fs::is_empty(out)) << format;
+    }
+}
+
+TEST(RunFaults, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
+    const auto out = fresh_folder();
+    const auto scene = scene_of("butterfly", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000",
+                                              "video.size=[64, 64]", "system.model=\"constraints\""});
+    const auto [code, message] = error_of([&] { render(scene, {.out = out}); });
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("butterfly.failed.csv"), std::string::npos) << message;
+
+    // two files, no video and nothing that looks whole
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(out / "butterfly")) names.insert(entry.path().filename());
+    EXPECT_EQ(names, (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
+    const auto manifest = nlohmann::json::parse(std::ifstream(out / "butterfly" / "butterfly.failed.json"));
+    const std::string failure = manifest["failed"];
+    EXPECT_EQ(message.rfind(failure, 0), 0u);
+    std::ifstream table(out / "butterfly" / "butterfly.failed.csv");
+    long rows = -1;  // the header
+    for (std::string line; std::getline(table, line);) ++rows;
+    EXPECT_EQ(rows, manifest["samples"]["last"].get<long>() + 1);
+    EXPECT_GT(rows, 1);
+
+    // a whole run takes them away
+    render(scene_of("butterfly", {"scene.duration_s=0.1", "video.size=[64, 64]"}), {.out = out});
+    EXPECT_FALSE(fs::exists(out / "butterfly" / "butterfly.failed.csv"));
+    EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
+}
+
+TEST(RunFaults, OfAnAdaptiveMethodSaysWhichStepHeld) {
+    const auto failure = [](const std::vector<std::string>& arguments) {
+        auto all = arguments;
+        all.emplace_back("scene.duration_s=2");
+        const auto scene = scene_of("butterfly", all);
+        return error_of([&] { render(scene, {.out = fresh_folder(), .pictures = false}); });
+    };
+    const auto [code, message] = failure({"system.integrator=\"taylor\"", "system.tolerance=1000"});
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("the smallest step that held was 0.9"), std::string::npos) << message;
+    const auto hopeless = failure({"system.integrator=\"dop853\"", "system.length_m=[1e-200, 1]"});
+    EXPECT_EQ(hopeless.first, ExitCode::method_failed);
+    EXPECT_NE(hopeless.second.find("not even a first step held"), std::string::npos) << hopeless.second;
+}
+
+TEST(RunFaults, RefusesFramesThatAreNotThere) {
+    const auto [code, message] =
+        error_of([&] { render(small_scene(), {.out = fresh_folder(), .first = 60, .last = 62}); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_EQ(message, "--frames 60:62: butterfly has the samples 0 to 60; A:B must have 0 ≤ A < B ≤ 61");
+}
+
+TEST(RunFaults, StopsBeforeItsFirstFrameWhileItLooksHowFarThePairGets) {
+    // 100 million samples of a mechanism, whose view depends on all of them
+    const auto scene = scene_of("springs", {"scene.duration_s=800000", "video.size=[64, 64]"});
+    const auto out = fresh_folder();
+    std::atomic<bool> stop = false;
+    const std::jthread later([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        stop = true;
+    });
+    const auto start = std::chrono::steady_clock::now();
+    const auto [code, message] =
+        error_of([&] { run(scene, {.out = out, .first = 0, .last = 1}, stop, [](const Progress&) {}); });
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(code, ExitCode::interrupted) << message;
+    EXPECT_LT(taken.count(), 2);  // s; measured 0.06, and half an hour where the survey does not look
+    EXPECT_TRUE(fs::is_empty(out));
+}
+
+TEST(RunFaults, LooksAheadOnlyWhereAPictureDependsOnIt) {
+    const std::vector<std::string> arguments{"scene.duration_s=800000", "video.size=[64, 64]",
+                                             "video.panels=[\"distance\"]", "video.distance_range=[1e-5, 10]"};
+    EXPECT_EQ(render(scene_of("springs", arguments), {.out = fresh_folder(), .first = 0, .last = 1}).frames, 1);
+}
+
+TEST(RunFaults, LeavesNoFrameOfASequenceThatBrokeDown) {
+    // many threads still write large pictures when the method fails, and nothing better is looked for
+    const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1000",
+                                              "scene.duration_s=2", "video.size=[1280, 720]", "video.format=\"png\""});
+    for (int round = 0; round < 4; ++round) {
+        const auto out = fresh_folder();
+        EXPECT_EQ(error_of([&] { render(scene, {.out = out, .jobs = 32}); }).first, ExitCode::method_failed);
+        std::set<std::string> names;
+        for (const auto& entry : fs::recursive_directory_iterator(out / "butterfly"))
+            names.insert(entry.path().filename());
+        EXPECT_EQ(names, (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
+    }
+}
+
+TEST(RunFaults, RefusesAPosterOutsideItsFrames) {
+    const auto out = fresh_folder();
+    const auto scene = small_scene({"video.poster_s=0.25"});
+    const auto [code, message] = error_of([&] { render(scene, {.out = out, .first = 0, .last = 30}); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_EQ(message,
+              "--frames 0:30: the poster of butterfly, poster_s = 1/4, is sample 30; --frames 0:31 would have it");
+    EXPECT_TRUE(fs::is_empty(out));
+    EXPECT_EQ(error_of([&] { render(scene, {.out = out, .first = 31, .last = 40}); }).first, ExitCode::bad_input);
+    render(scene, {.out = out, .first = 30, .last = 31});
+    EXPECT_TRUE(fs::exists(out / "butterfly/butterfly.poster.png"));
+    render(scene, {.out = out, .pictures = false, .first = 0, .last = 30});  // no picture, no poster to miss
+}
+
+}  // namespace run_faults_test
+}  // namespace doppel

@@ -1,0 +1,115 @@
+#include "film/runs.hpp"
+#include "output/fixtures.hpp"
+#include "output/written.hpp"
+#include "scene/resolved.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <set>
+
+namespace doppel {
+namespace run_table_test {
+
+using test::bytes_of;
+using test::fresh_folder;
+
+TEST(RunTable, HasTheColumnsOfTheContract) {
+    const auto out = fresh_folder();
+    render(small_scene(), {.out = out, .pictures = false});
+    const auto lines = lines_of(out / "butterfly/butterfly.csv");
+    EXPECT_EQ(lines.front(),
+              "sample,time_s,"
+              "a_theta1_rad,a_theta2_rad,a_omega1_rad_per_s,a_omega2_rad_per_s,"
+              "a_x1_m,a_y1_m,a_vx1_m_per_s,a_vy1_m_per_s,a_x2_m,a_y2_m,a_vx2_m_per_s,a_vy2_m_per_s,"
+              "a_energy_J,a_energy_error,a_length_error_m,"
+              "b_theta1_rad,b_theta2_rad,b_omega1_rad_per_s,b_omega2_rad_per_s,"
+              "b_x1_m,b_y1_m,b_vx1_m_per_s,b_vy1_m_per_s,b_x2_m,b_y2_m,b_vx2_m_per_s,b_vy2_m_per_s,"
+              "b_energy_J,b_energy_error,b_length_error_m,"
+              "distance,log_ratio");
+    ASSERT_EQ(lines.size(), 62u);
+    const auto first = cells_of(lines[1]), last = cells_of(lines.back());
+    EXPECT_EQ(first[0], "0");
+    EXPECT_EQ(first[2], fmt::format("{}", pi / 2));
+    EXPECT_EQ(first.back(), "0");  // ln(d0/d0)
+    EXPECT_EQ(last[0], "60");
+    EXPECT_EQ(last[1], "0.5");
+}
+
+TEST(RunTable, HasTheEnergiesLastWhereTheyAreAskedFor) {
+    const auto out = fresh_folder();
+    render(small_scene({"scene.energy_columns=true"}), {.out = out, .pictures = false});
+    render(small_scene(), {.out = out / "plain", .pictures = false});
+    const auto lines = lines_of(out / "butterfly/butterfly.csv"),
+               plain = lines_of(out / "plain/butterfly/butterfly.csv");
+    ASSERT_EQ(lines.size(), plain.size());
+    EXPECT_EQ(lines[0], plain[0] + ",a_kinetic_J,a_potential_J,b_kinetic_J,b_potential_J");
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+        EXPECT_TRUE(lines[k].starts_with(plain[k] + ",")) << k;  // old columns as they were
+        const auto cells = cells_of(lines[k]);
+        const auto at = [&](std::size_t from_end) { return std::stod(cells[cells.size() - from_end]); };
+        // m g (y1 + y2) of side a, and ½ m v²
+        const auto cell = [&](std::size_t column) { return std::stod(cells[column]); };
+        EXPECT_NEAR(at(3), 9.8 * (cell(7) + cell(11)), 1e-12) << k;  // measured 4e-15
+        EXPECT_NEAR(at(4), 0.5 * (cell(8) * cell(8) + cell(9) * cell(9) + cell(12) * cell(12) + cell(13) * cell(13)),
+                    1e-12)
+            << k;
+    }
+    const auto again =
+        read_preset({"x", "x.toml", resolved_toml(small_scene({"scene.energy_columns=true"}).preset), "x.toml"});
+    EXPECT_TRUE(again.energy_columns);
+}
+
+TEST(RunTable, LeavesTheLogRatioEmptyWhereThePairStartsAsOne) {
+    const auto out = fresh_folder();
+    render(scene_of("two-methods", {"scene.duration_s=0.1"}), {.out = out, .pictures = false});
+    for (const auto& line : lines_of(out / "two-methods/two-methods.csv"))
+        EXPECT_TRUE(line.ends_with("log_ratio") || line.ends_with(","));
+}
+
+TEST(RunTable, IsTheSameForAnyJobsAndWithOrWithoutPictures) {
+    const auto out = fresh_folder();
+    std::set<std::string> tables;
+    for (const int jobs : {1, 2, 5}) {
+        render(small_scene(), {.out = out, .pictures = jobs != 2, .jobs = jobs});
+        tables.insert(sha256_of_file(out / "butterfly/butterfly.csv"));
+    }
+    EXPECT_EQ(tables.size(), 1u);
+}
+
+TEST(RunTable, LeavesTheEnergyErrorOpenWhereDampingTakesEnergy) {
+    const auto out = fresh_folder();
+    const auto scene = make_scene(read_preset({"damped", "damped.toml", R"(
+[scene]
+duration_s = 0.1
+[system]
+integrator = "rk4"
+step_s = "1/1200"
+[[b.force]]
+kind = "spring"
+from = "bob2"
+to = [0, -3]
+damping_N_s_per_m = 2
+)"}));
+    render(scene, {.out = out, .pictures = false});
+    const auto lines = lines_of(out / "damped/damped.csv");
+    const auto header = cells_of(lines[0]), last = cells_of(lines.back());
+    const auto cell = [&](const char* name) {
+        return last[static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin())];
+    };
+    EXPECT_EQ(header.size(), last.size());
+    EXPECT_NE(cell("a_energy_error"), "");
+    EXPECT_EQ(cell("b_energy_error"), "");
+    EXPECT_NE(cell("b_energy_J"), "");
+    EXPECT_NE(cell("b_length_error_m"), "");
+    const auto manifest = nlohmann::json::parse(bytes_of(out / "damped/damped.json"));
+    EXPECT_TRUE(manifest["a"]["worst_energy_error"].is_number());
+    EXPECT_EQ(manifest["a"]["conserves_energy"], true);
+    EXPECT_TRUE(manifest["b"]["worst_energy_error"].is_null());
+    EXPECT_EQ(manifest["b"]["conserves_energy"], false);
+}
+
+}  // namespace run_table_test
+}  // namespace doppel

@@ -1,0 +1,120 @@
+#include "render/typeface.hpp"
+
+#include "base/error.hpp"
+#include "render/font_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+namespace doppel {
+namespace typeface_test {
+
+namespace fs = std::filesystem;
+/// A file of these bytes.
+fs::path file_of(const std::string& bytes) {
+    const auto folder = fs::path(DOPPEL_TEST_OUTPUT) / testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::create_directories(folder);
+    std::ofstream(folder / "x.ttf", std::ios::binary) << bytes;
+    return folder / "x.ttf";
+}
+
+Typeface with(const std::string& bytes) {
+    return Typeface::with_system_fonts(Font::from_file(file_of(bytes)));
+}
+
+using Fault = std::pair<ExitCode, std::string>;
+Fault fault_of(const fs::path& path) {
+    try {
+        Font::from_file(path);
+    } catch (const Error& error) {
+        return {error.code(), error.what()};
+    }
+    return {ExitCode::done, "is a font"};
+}
+
+TEST(Typefaces, TheUsersFontComesFirst) {
+    const auto wide = with(test::font_of_half_the_units());
+    for (const auto weight : {Weight::regular, Weight::bold}) {
+        const float usual = Typeface().width("Runge–Kutta 4", 20, weight);
+        EXPECT_GT(wide.width("Runge–Kutta 4", 20, weight), 1.9f * usual);  // measured 2, of bold 1.95
+        EXPECT_EQ(text_width("Runge–Kutta 4", 20, weight), usual);         // and no one else's
+    }
+    EXPECT_EQ(wide.lay_out("a", 20, Weight::regular).width, 2 * Typeface().lay_out("a", 20, Weight::regular).width);
+}
+
+TEST(Typefaces, ALetterWithoutAnOutlineIsOfTheNextFont) {
+    // as fonts of coloured emoji have them; a space has none either
+    const auto without_q = with(test::font_without("Q"));
+    const auto line = without_q.lay_out("PQ ", 20, Weight::regular);
+    EXPECT_NE(line.glyphs[0].font, &Font::built_in());
+    EXPECT_EQ(line.glyphs[1].font, &Font::built_in());
+    EXPECT_NE(line.glyphs[1].number, 0);
+    EXPECT_EQ(line.glyphs[2].font, line.glyphs[0].font);
+    EXPECT_EQ(without_q.missing_character("PQ "), "");
+}
+
+TEST(Typefaces, LettersOfNoFontAreMissing) {
+    const std::string unassigned = "\xcd\xb8";  // U+0378
+    for (const auto& typeface : {Typeface(), Typeface::with_system_fonts()}) {
+        EXPECT_EQ(typeface.missing_character("a" + unassigned + "b"), unassigned);
+        EXPECT_EQ(typeface.lay_out(unassigned, 20, Weight::regular).glyphs[0].number, 0);
+        EXPECT_EQ(typeface.missing_character("Ärger, θ₁ = 90°"), "");
+        // letters that join, or run to the left, would be set wrongly
+        for (const std::string letter : {"א", "م", "क", "က", "ﷺ"})
+            EXPECT_EQ(typeface.missing_character("a" + letter), letter);
+    }
+}
+
+TEST(Typefaces, SignsThatChooseALettersFormTakeNoRoom) {
+    EXPECT_EQ(text_width("⊕\xef\xb8\x8e", 20), text_width("⊕", 20));  // U+FE0E: as text
+    EXPECT_EQ(Typeface().missing_character("⊕\xef\xb8\x8e"), "");
+}
+
+TEST(Typefaces, FilesThatAreNoFontAreRefused) {
+    const auto font = test::embedded_font();
+    const Fault none{ExitCode::bad_input, "is no TrueType or OpenType font"}, cut{ExitCode::bad_input, "is cut short"};
+    for (const auto* bytes : {"", "true", "A text of some length, and no font."})
+        EXPECT_EQ(fault_of(file_of(bytes)), none) << bytes;
+    for (const std::size_t bytes : {20u, 200u, 20000u, 80000u})
+        EXPECT_EQ(fault_of(file_of(font.substr(0, bytes))), cut) << bytes;
+    EXPECT_EQ(fault_of(file_of(test::font_without_table("glyf"))),
+              (Fault{ExitCode::bad_input, "is a font without outlines"}));
+    EXPECT_EQ(fault_of(file_of(font)).first, ExitCode::done);
+    EXPECT_EQ(fault_of("/none.ttf").second, "there is no such file");
+    EXPECT_EQ(fault_of("/").second, "is not a file");
+}
+
+TEST(Typefaces, SystemFontsHaveWhatTheOthersLack) {
+    const std::string letter = "双";
+    const auto typeface = Typeface::with_system_fonts();
+    EXPECT_EQ(Typeface().missing_character(letter), letter);  // which would differ from machine to machine
+    EXPECT_FALSE(typeface.has_own(letter));
+    EXPECT_TRUE(typeface.has_own("Ärger"));
+    const Font* const font = system_font_for(U'双');
+    if (!font) GTEST_SKIP() << "fontconfig knows no font with 双 here";
+    EXPECT_EQ(typeface.missing_character(letter), "");
+    const auto glyph = typeface.lay_out(letter, 40, Weight::regular).glyphs[0];
+    EXPECT_EQ(glyph.font, font);
+    EXPECT_GT(font->advance(glyph.number, 40, Weight::regular), 20);
+    EXPECT_EQ(system_font_for(U'双'), font);  // found once
+}
+
+TEST(Typefaces, PostScriptOutlinesGrowBolderToo) {
+    // whose contours run the other way round
+    const fs::path path = "/usr/share/fonts/opentype/urw-base35/NimbusSans-Regular.otf";
+    if (!fs::exists(path)) GTEST_SKIP() << "there is no " << path;
+    const auto font = Font::from_file(path);
+    const auto ink = [&](Weight weight) {
+        const auto values = font->rasterised(font->number_of(U'R'), 40, weight, 0).values;
+        return std::accumulate(values.begin(), values.end(), 0.0) / 255;
+    };
+    EXPECT_GT(ink(Weight::regular), 200);
+    EXPECT_GT(ink(Weight::bold), 1.2 * ink(Weight::regular));  // measured 1.37
+    EXPECT_LT(ink(Weight::bold), 1.6 * ink(Weight::regular));
+}
+
+}  // namespace typeface_test
+}  // namespace doppel
