@@ -22,18 +22,6 @@ struct FilmToEncode {
     Scene scene;
 };
 
-Metadata changes_of(const EncoderSetting& setting, int crf) {
-    Metadata all;
-    const auto text = fmt::format(fmt::runtime(setting.changes), crf);
-    for (std::string_view rest = text; !rest.empty();) {
-        const auto one = rest.substr(0, rest.find(' '));
-        rest.remove_prefix(std::min(one.size() + 1, rest.size()));
-        const auto equals = one.find('=');
-        all.emplace_back(one.substr(0, equals), one.substr(equals + 1));
-    }
-    return all;
-}
-
 /// How often a frame is whole: as in "doppel" and nearly so in x264's presets, s.
 constexpr double key_interval_s = 5;
 
@@ -42,6 +30,14 @@ double bytes_per_frame(const EncodingCost& cost, std::size_t frames, double fps)
     const double whole = 1 / (key_interval_s * fps);
     const auto first = static_cast<double>(cost.first_bytes), others = static_cast<double>(cost.bytes) - first;
     return whole * first + (1 - whole) * others / static_cast<double>(frames - 1);
+}
+
+/// Makes room for a value and a margin on an axis that is logarithmic.
+void widen(PlotAxis& axis, double value) {
+    constexpr double margin = 1.4;
+    if (!std::isfinite(value)) return;
+    axis.low = std::min(axis.low.value_or(value), value / margin);
+    axis.high = std::max(axis.high.value_or(value), value * margin);
 }
 
 /// Of what differs nowhere: a number yet, more than any difference has.
@@ -125,15 +121,17 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        PlotAxis x{.label = fmt::format("bytes, {} = 1", tried_[0]->name), .logarithmic = true};
+        PlotAxis y{.label = fmt::format("CPU time, {} = 1", tried_[0]->name), .logarithmic = true};
         for (std::size_t f = 0; f < films_.size(); ++f) {
             const auto& video = films_[f].scene.preset.video;
             Plot plot;
             plot.title = fmt::format("{}, {}×{}, {}", films_[f].name, video.size.width, video.size.height, video.theme);
-            plot.x = {.label = fmt::format("bytes, {} = 1", tried_[0]->name), .logarithmic = true};
-            plot.y = {.label = fmt::format("CPU time, {} = 1", tried_[0]->name), .logarithmic = true};
-            Curve variations{.label = "doppel, one thing changed", .mark = Mark::points, .quiet = true};
+            Curve variations{.mark = Mark::points, .quiet = true};
             for (std::size_t s = 0; s < tried_.size(); ++s) {
                 const auto [bytes, cpu] = equal(numbers, f, s);
+                widen(x, bytes);
+                widen(y, cpu);
                 if (is_variation(*tried_[s])) {
                     add_point(variations, bytes, cpu);
                     continue;
@@ -146,10 +144,15 @@ public:
             plot.curves.push_back(std::move(variations));
             figure.panels.push_back(std::move(plot));
         }
+        for (auto& plot : figure.panels) {  // comparable
+            plot.x = x;
+            plot.y = y;
+        }
         figure.captions.push_back(fmt::format(
             "What each setting takes to look as good as {} at crf {}: peak signal to noise and structural similarity "
             "of the whole picture and of the macroblocks that move are at least as high, by interpolation between "
-            "three qualities. Bytes are those of a film in which a frame is whole every {:g} s. Lower left is better.",
+            "three qualities. Grey: the default with one thing changed. Bytes are those of a film in which a frame is "
+            "whole every {:g} s. Lower left is better.",
             tried_[0]->name, qualities[1], key_interval_s));
     }
 
