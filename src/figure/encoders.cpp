@@ -1,3 +1,4 @@
+#include "figure/encoder_quality.hpp"
 #include "figure/encoder_settings.hpp"
 #include "figure/kinds.hpp"
 #include "film/film.hpp"
@@ -6,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -16,66 +16,37 @@ namespace {
 /// crf at which each is tried: the one compared with in the middle.
 constexpr std::array qualities{15, 18, 21};
 
-/// What came of a setting at one quality, a frame.
-struct EncodedRow {
-    double crf, cpu_ms, bytes, psnr_db, moving_psnr_db, ssim, moving_ssim;
-};
-
-/// What a setting takes to look as good as the first at its middle quality, in units of what that takes.
-struct EqualQuality {
-    double bytes, cpu;
-};
-
 /// A film to be encoded.
 struct FilmToEncode {
     std::string name;
     Scene scene;
 };
 
-Metadata changes_of(const EncoderSetting& setting, int crf) {
-    Metadata all;
-    const auto text = fmt::format(fmt::runtime(setting.changes), crf);
-    for (std::string_view rest = text; !rest.empty();) {
-        const auto one = rest.substr(0, rest.find(' '));
-        rest.remove_prefix(std::min(one.size() + 1, rest.size()));
-        const auto equals = one.find('=');
-        all.emplace_back(one.substr(0, equals), one.substr(equals + 1));
-    }
-    return all;
+/// How often a frame is whole: as in "doppel" and nearly so in x264's presets, s.
+constexpr double key_interval_s = 5;
+
+/// Bytes a frame of a long film: of what was encoded only the first frame is whole.
+double bytes_per_frame(const EncodingCost& cost, std::size_t frames, double fps) {
+    const double whole = 1 / (key_interval_s * fps);
+    const auto first = static_cast<double>(cost.first_bytes), others = static_cast<double>(cost.bytes) - first;
+    return whole * first + (1 - whole) * others / static_cast<double>(frames - 1);
 }
 
-/// The four measures of quality, each so that it goes about evenly with the logarithm of the bytes.
-std::array<double, 4> measures_of(const EncodedRow& row) {
-    const auto decibels = [](double ssim) { return -10 * std::log10(1 - ssim); };
-    return {row.psnr_db, row.moving_psnr_db, decibels(row.ssim), decibels(row.moving_ssim)};
+/// Makes room for a value and a margin on an axis that is logarithmic.
+void widen(PlotAxis& axis, double value) {
+    constexpr double margin = 1.4;
+    if (!std::isfinite(value)) return;
+    axis.low = std::min(axis.low.value_or(value), value / margin);
+    axis.high = std::max(axis.high.value_or(value), value * margin);
 }
 
-/// y at x of the straight line through the two of the points (x falling) that are nearest to x; NaN if they are one.
-double along(double x, std::span<const double> xs, std::span<const double> ys) {
-    std::size_t k = 0;
-    while (k + 2 < xs.size() && x < xs[k + 1]) ++k;
-    if (xs[k + 1] == xs[k]) return std::numeric_limits<double>::quiet_NaN();
-    return ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k]);
+/// Of what differs nowhere: a number yet, more than any difference has.
+double finite(double psnr_db) {
+    return std::min(psnr_db, 100.0);
 }
 
-/// By interpolation between the qualities that were tried; the worst of the measures counts.
-EqualQuality equal_quality(std::span<const EncodedRow> rows, std::span<const EncodedRow> reference) {
-    const auto& wanted = reference[reference.size() / 2];
-    std::vector<double> log_bytes, cpu;
-    for (const auto& row : rows) {
-        log_bytes.push_back(std::log(row.bytes));
-        cpu.push_back(row.cpu_ms);
-    }
-    double needed = -std::numeric_limits<double>::infinity();
-    for (std::size_t m = 0; m < 4; ++m) {
-        std::vector<double> measure;
-        for (const auto& row : rows) measure.push_back(measures_of(row)[m]);
-        needed = std::max(needed, along(measures_of(wanted)[m], measure, log_bytes));
-    }
-    return {.bytes = std::exp(needed) / wanted.bytes, .cpu = along(needed, log_bytes, cpu) / wanted.cpu_ms};
-}
-
-/// What encoders take for films at the same quality. A trial is a setting on a film.
+/// What encoders take for films at the same quality. A trial is a setting on a film: the first time with what comes of
+/// it, then, in turn with the others, `repeats` − 1 times for its CPU time alone.
 class Encoders final : public Experiment {
 public:
     static constexpr std::string_view table_key = "encoders";
@@ -99,6 +70,8 @@ public:
         visit({.key = "codec", .help = "of the encoder", .names = encoder_codecs}, codec_);
         visit({"from_s", "of the film, where the frames begin", "s", not_negative}, from_s_);
         visit({"frames", "of each film", "", from_to(2, 100'000)}, frames_);
+        visit({"repeats", "of each encoding, in turn with the others; the least CPU time counts", "", from_to(1, 100)},
+              repeats_);
     }
     static FieldTable other_table() {
         FieldTable film{"[[film]]", "A film each.\n"};
@@ -108,12 +81,13 @@ public:
         return film;
     }
 
-    std::size_t trials() const override { return films_.size() * tried_.size(); }
+    std::size_t trials() const override { return films_.size() * trials_of_film(); }
     bool measures_time() const override { return true; }
     std::string unit() const override { return "settings"; }
 
-    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        return numbers.size() == qualities.size() * numbers_in<EncodedRow> && all_finite(numbers);
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        return is_first(trial) ? numbers.size() == qualities.size() * numbers_in<EncodedRow> && finite_or_none(numbers)
+                               : numbers.size() == qualities.size() && all_finite(numbers);
     }
 
     std::vector<std::string> columns() const override {
@@ -134,47 +108,63 @@ public:
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (std::size_t trial = 0; trial < numbers.size(); ++trial) {
-            const auto& video = film_of(trial).scene.preset.video;
-            const auto [bytes, cpu] = equal(numbers, trial);
-            for (const auto& row : rows_of<EncodedRow>(numbers[trial]))
-                add_row(table, film_of(trial).name, video.size.width, video.size.height, video.theme,
-                        setting_of(trial).name, static_cast<int>(row.crf), row.cpu_ms, row.bytes, row.psnr_db,
-                        row.moving_psnr_db, row.ssim, row.moving_ssim, cpu, bytes);
+        for (std::size_t f = 0; f < films_.size(); ++f) {
+            const auto& video = films_[f].scene.preset.video;
+            for (std::size_t s = 0; s < tried_.size(); ++s) {
+                const auto [bytes, cpu] = equal(numbers, f, s);
+                for (const auto& row : rows(numbers, f, s))
+                    add_row(table, films_[f].name, video.size.width, video.size.height, video.theme, tried_[s]->name,
+                            static_cast<int>(row.crf), row.cpu_ms, row.bytes, row.psnr_db, row.moving_psnr_db, row.ssim,
+                            row.moving_ssim, cpu, bytes);
+            }
         }
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        PlotAxis x{.label = fmt::format("bytes, {} = 1", tried_[0]->name), .logarithmic = true};
+        PlotAxis y{.label = fmt::format("CPU time, {} = 1", tried_[0]->name), .logarithmic = true};
         for (std::size_t f = 0; f < films_.size(); ++f) {
             const auto& video = films_[f].scene.preset.video;
             Plot plot;
             plot.title = fmt::format("{}, {}×{}, {}", films_[f].name, video.size.width, video.size.height, video.theme);
-            plot.x = {.label = fmt::format("bytes, {} = 1", tried_[0]->name), .logarithmic = true};
-            plot.y = {.label = fmt::format("CPU time, {} = 1", tried_[0]->name), .logarithmic = true};
+            Curve variations{.mark = Mark::points, .quiet = true};
             for (std::size_t s = 0; s < tried_.size(); ++s) {
-                Curve point{.label = std::string(tried_[s]->name), .mark = Mark::points, .hue = static_cast<int>(s)};
-                const auto [bytes, cpu] = equal(numbers, f * tried_.size() + s);
+                const auto [bytes, cpu] = equal(numbers, f, s);
+                widen(x, bytes);
+                widen(y, cpu);
+                if (is_variation(*tried_[s])) {
+                    add_point(variations, bytes, cpu);
+                    continue;
+                }
+                auto& point = plot.curves.emplace_back(Curve{.label = std::string(tried_[s]->name),
+                                                             .mark = Mark::points,
+                                                             .hue = static_cast<int>(plot.curves.size())});
                 add_point(point, bytes, cpu);
-                plot.curves.push_back(std::move(point));
             }
+            plot.curves.push_back(std::move(variations));
             figure.panels.push_back(std::move(plot));
+        }
+        for (auto& plot : figure.panels) {  // comparable
+            plot.x = x;
+            plot.y = y;
         }
         figure.captions.push_back(fmt::format(
             "What each setting takes to look as good as {} at crf {}: peak signal to noise and structural similarity "
             "of the whole picture and of the macroblocks that move are at least as high, by interpolation between "
-            "three qualities. Lower left is better.",
-            tried_[0]->name, qualities[1]));
+            "three qualities. Grey: the default with one thing changed. Bytes are those of a film in which a frame is "
+            "whole every {:g} s. Lower left is better.",
+            tried_[0]->name, qualities[1], key_interval_s));
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        for (std::size_t trial = 0; trial < numbers.size(); ++trial) {
-            if (setting_of(trial).name != "doppel") continue;
-            const auto [bytes, cpu] = equal(numbers, trial);
-            const auto key = fmt::format("film_{}_", trial / tried_.size() + 1);
-            all.push_back({key + "cpu", cpu});
-            all.push_back({key + "bytes", bytes});
-        }
+        for (std::size_t f = 0; f < films_.size(); ++f)
+            for (std::size_t s = 0; s < tried_.size(); ++s) {
+                if (tried_[s]->name != "doppel") continue;
+                const auto [bytes, cpu] = equal(numbers, f, s);
+                all.push_back({fmt::format("film_{}_cpu", f + 1), cpu});
+                all.push_back({fmt::format("film_{}_bytes", f + 1), bytes});
+            }
         return all;
     }
 
@@ -189,7 +179,9 @@ private:
     static void film_fields(Visit& visit, std::string& name, VideoSpec& video) {
         visit({"scene", "a film, by name or path", "", {}, must_be_given}, name);
         visit(size_field, video.size);
+        visit({"fps", "frames a second", "1/s", positive, "the film's own"}, video.fps);
         theme_field(visit, video.theme);
+        visit({"transparent", "no background; of vp9", "", {}, "", {.holds = video.transparent}}, video.transparent);
     }
 
     void add_film(TomlReader& entry) {
@@ -197,9 +189,13 @@ private:
         VideoSpec video;
         film_fields(entry, name, video);
         entry.finish();
+        if (video.transparent && codec_ != "vp9")
+            throw entry.fault("transparent", "is for vp9; the codec is {}", codec_);
         auto preset = film_named(name, entry);
         preset.video.size = video.size;
+        if (video.fps) preset.video.fps = video.fps;
         preset.video.theme = video.theme;
+        preset.video.transparent = video.transparent;
         preset.video.format = codec_ == "h264" ? FilmFormat::mp4 : FilmFormat::webm;
         preset.video.codec = codec_ == "h264" ? "" : codec_;
         TomlWriter written;
@@ -216,15 +212,20 @@ private:
         return scene.frames.first_from(sample * scene.frames.ticks_per_sample);
     }
 
-    const FilmToEncode& film_of(std::size_t trial) const { return films_[trial / tried_.size()]; }
+    std::size_t trials_of_film() const { return static_cast<std::size_t>(repeats_) * tried_.size(); }
+    const FilmToEncode& film_of(std::size_t trial) const { return films_[trial / trials_of_film()]; }
     const EncoderSetting& setting_of(std::size_t trial) const { return *tried_[trial % tried_.size()]; }
+    bool is_first(std::size_t trial) const { return trial % trials_of_film() < tried_.size(); }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        auto& recording = recordings_[trial / tried_.size()];
-        std::call_once(recording.once, [&] { recording.frames = record(film_of(trial).scene, stop); });
+        auto& recording = recordings_[trial / trials_of_film()];
+        std::call_once(recording.once, [&] {
+            recording.frames = record(film_of(trial).scene, stop);
+            time_encoding(recording.frames, options_of(trial, qualities[1]), {}, stop);  // to warm up
+        });
         TrialNumbers numbers;
-        for (const int crf : qualities) append(numbers, encode(trial, recording.frames, crf, stop));
-        if (trial % tried_.size() + 1 == tried_.size()) recording.frames = {};  // no more asked for: hundreds of MB
+        for (const int crf : qualities) add_encoding(trial, recording.frames, crf, numbers, stop);
+        if ((trial + 1) % trials_of_film() == 0) recording.frames = {};  // no more asked for: hundreds of MB
         return numbers;
     }
 
@@ -236,39 +237,58 @@ private:
         Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, stop,
                           scene.preset.video.typeface);
         RecordedFrames recorded{scene.preset.video.size, {}};
+        const auto pixels = scene.preset.video.transparent ? AV_PIX_FMT_YUVA420P : AV_PIX_FMT_YUV420P;
         for (long frame = 0; frame < end;) {
             const auto snapshot = simulation.next();
             composer.add(snapshot);
             if (snapshot.pair.tick != frames.tick(frame) || frame++ < first) continue;
             const auto& picture = renderer.draw(composer.frame(), stop);
-            convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, recorded.frames.emplace_back());
+            convert(picture, renderer.changed(), pixels, recorded.frames.emplace_back());
         }
         return recorded;
     }
 
-    EncodedRow encode(std::size_t trial, const RecordedFrames& recorded, int crf, const std::atomic<bool>& stop) const {
+    VideoOptions options_of(std::size_t trial, int crf) const {
         auto options = video_options(film_of(trial).scene);
         options.preset = setting_of(trial).preset;
         options.crf = codec_ == "h264" ? crf : 2 * crf;  // of VP9 and AV1 up to 63
-        const auto encoded = try_encoding(recorded, options, changes_of(setting_of(trial), options.crf), stop);
-        const auto frames = static_cast<double>(recorded.frames.size());
-        return {static_cast<double>(options.crf),
-                1e3 * encoded.cpu_s / frames,
-                static_cast<double>(encoded.bytes) / frames,
-                encoded.whole.psnr_db,
-                encoded.moving.psnr_db,
-                encoded.whole.ssim,
-                encoded.moving.ssim};
+        return options;
     }
 
-    EqualQuality equal(std::span<const TrialNumbers> numbers, std::size_t trial) const {
-        const auto reference = trial - trial % tried_.size();
-        return equal_quality(rows_of<EncodedRow>(numbers[trial]), rows_of<EncodedRow>(numbers[reference]));
+    /// An EncodedRow, or for a repeat its CPU time alone.
+    void add_encoding(std::size_t trial, const RecordedFrames& recorded, int crf, TrialNumbers& numbers,
+                      const std::atomic<bool>& stop) const {
+        const auto options = options_of(trial, crf);
+        const auto changes = changes_of(setting_of(trial), options.crf);
+        const auto frames = static_cast<double>(recorded.frames.size());
+        const double rate = static_cast<double>(options.fps_numerator) / options.fps_denominator;
+        if (!is_first(trial)) {
+            numbers.push_back(1e3 * time_encoding(recorded, options, changes, stop).cpu_s / frames);
+            return;
+        }
+        const auto encoded = try_encoding(recorded, options, changes, stop);
+        append(numbers,
+               EncodedRow{static_cast<double>(options.crf), 1e3 * encoded.cpu_s / frames,
+                          bytes_per_frame(encoded, recorded.frames.size(), rate), finite(encoded.whole.psnr_db),
+                          finite(encoded.moving.psnr_db), encoded.whole.ssim, encoded.moving.ssim});
+    }
+
+    /// Of a setting on a film, at each quality.
+    std::vector<EncodedRow> rows(std::span<const TrialNumbers> numbers, std::size_t film, std::size_t setting) const {
+        const auto trial = film * trials_of_film() + setting;
+        auto all = rows_of<EncodedRow>(numbers[trial]);
+        for (auto other = trial + tried_.size(); other < (film + 1) * trials_of_film(); other += tried_.size())
+            for (std::size_t q = 0; q < all.size(); ++q) all[q].cpu_ms = std::min(all[q].cpu_ms, numbers[other][q]);
+        return all;
+    }
+
+    EqualQuality equal(std::span<const TrialNumbers> numbers, std::size_t film, std::size_t setting) const {
+        return equal_quality(rows(numbers, film, setting), rows(numbers, film, 0));
     }
 
     std::string codec_ = "h264";
     double from_s_ = 5;
-    int frames_ = 240;
+    int frames_ = 240, repeats_ = 3;
     std::vector<FilmToEncode> films_;
     std::vector<const EncoderSetting*> tried_;
     std::unique_ptr<Recording[]> recordings_;

@@ -165,7 +165,7 @@ Libav<AVCodecContext> open_decoder(const AVCodecContext& encoder) {
 /// Decodes the packets and compares frame by frame.
 Comparison decode(const Packets& packets, const AVCodecContext& encoder, const RecordedFrames& recorded,
                   const std::atomic<bool>& stop) {
-    constexpr std::size_t ssim_every = 8;  // frames
+    constexpr std::size_t ssim_every = 7;  // frames: in turn of every place between two that B-frames lie between
     const auto decoder = open_decoder(encoder);
     const auto blocks = moving_blocks(recorded);
     const auto shown = make_frame(recorded.size, encoder.pix_fmt);
@@ -201,25 +201,50 @@ void replace(Metadata& options, const Metadata& replaced) {
     }
 }
 
-}  // namespace
+/// What comes of encoding, to be decoded.
+struct Encoded {
+    EncodingCost cost;
+    Libav<AVCodecContext> encoder;
+    Packets packets;
+};
 
-EncodedFrames try_encoding(const RecordedFrames& recorded, const VideoOptions& options, const Metadata& replaced,
-                           const std::atomic<bool>& stop) {
+/// With the second stream in which VP9 has opacity.
+std::size_t bytes_of(const AVPacket& packet) {
+    std::size_t opacity = 0;
+    av_packet_get_side_data(&packet, AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL, &opacity);
+    return static_cast<std::size_t>(packet.size) + opacity;
+}
+
+Encoded encoded(const RecordedFrames& recorded, const VideoOptions& options, const Metadata& replaced,
+                const std::atomic<bool>& stop) {
     check_options(options);
     auto encoding = encoding_of(options);
     replace(encoding.encoder_options, replaced);
     capture_libav_log();
-    EncodedFrames result;
+    Encoded result;
     const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID), wall_start = seconds_of(CLOCK_MONOTONIC);
-    const auto encoder = open_encoder(encoding, "a trial");
-    const auto packets = encode(recorded, *encoder, stop);
-    result.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
-    result.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
-    for (const auto& packet : packets) result.bytes += static_cast<std::size_t>(packet->size);
-    const auto comparison = decode(packets, *encoder, recorded, stop);
-    result.whole = quality(comparison.whole_error, comparison.whole_ssim);
-    result.moving = quality(comparison.moving_error, comparison.moving_ssim);
+    result.encoder = open_encoder(encoding, "a trial");
+    result.packets = encode(recorded, *result.encoder, stop);
+    result.cost.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
+    result.cost.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+    for (const auto& packet : result.packets) result.cost.bytes += bytes_of(*packet);
+    if (!result.packets.empty()) result.cost.first_bytes = bytes_of(*result.packets.front());
     return result;
+}
+
+}  // namespace
+
+EncodedFrames try_encoding(const RecordedFrames& recorded, const VideoOptions& options, const Metadata& replaced,
+                           const std::atomic<bool>& stop) {
+    const auto [cost, encoder, packets] = encoded(recorded, options, replaced, stop);
+    const auto comparison = decode(packets, *encoder, recorded, stop);
+    return {cost, quality(comparison.whole_error, comparison.whole_ssim),
+            quality(comparison.moving_error, comparison.moving_ssim)};
+}
+
+EncodingCost time_encoding(const RecordedFrames& recorded, const VideoOptions& options, const Metadata& replaced,
+                           const std::atomic<bool>& stop) {
+    return encoded(recorded, options, replaced, stop).cost;
 }
 
 }  // namespace doppel

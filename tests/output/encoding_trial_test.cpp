@@ -44,6 +44,9 @@ TEST(EncodingTrial, FindsTheNoiseOfAFileThatHoldsTheSame) {
         EXPECT_LT(trial.bytes, std::filesystem::file_size(path)) << preset;  // which has a container, too
         EXPECT_GT(trial.bytes, std::filesystem::file_size(path) / 2) << preset;
         EXPECT_GT(trial.cpu_s, 0);
+        EXPECT_EQ(time_encoding(frames, options).bytes, trial.bytes);
+        EXPECT_GT(trial.first_bytes, trial.bytes / static_cast<std::size_t>(count)) << "a whole frame";
+        EXPECT_LT(trial.first_bytes, trial.bytes);
     }
 }
 

@@ -1,0 +1,87 @@
+// docs/encoders.csv, as `figure encoders` measured it: the default of H.264 is worth its place.
+#include "figure/encoder_settings.hpp"
+#include "figure/support.hpp"
+
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace doppel {
+namespace kept_encoders_test {
+
+/// A setting on a film, at the quality of the setting that the others are compared with.
+struct Point {
+    double cpu, bytes;
+};
+/// By film ("butterfly 1920x1080 dark") and setting.
+using Points = std::map<std::string, std::map<std::string, Point>>;
+
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream rest(line);
+    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell.substr(0, cell.find('\r')));
+    return cells;
+}
+
+Points kept_points() {
+    std::ifstream file(DOPPEL_SOURCE_DIR "/docs/encoders.csv");
+    std::string line;
+    std::getline(file, line);
+    const auto columns = cells_of(line);
+    Points points;
+    while (std::getline(file, line)) {
+        const auto cells = cells_of(line);
+        std::map<std::string, std::string> row;
+        for (std::size_t k = 0; k < cells.size(); ++k) row[columns.at(k)] = cells[k];
+        points[row["film"] + " " + row["width_px"] + "x" + row["height_px"] + " " + row["theme"]][row["setting"]] = {
+            std::stod(row["cpu_at_equal_quality"]), std::stod(row["bytes_at_equal_quality"])};
+    }
+    return points;
+}
+
+/// The settings that take less of both than the default does: 1 % of the bytes, and more of the CPU time than repeats
+/// differ by on a machine that does other things, too.
+std::set<std::string> better_than_default(const std::map<std::string, Point>& settings) {
+    constexpr double cpu_slack = 0.1, bytes_slack = 0.01;
+    const auto [cpu, bytes] = settings.at("doppel");
+    std::set<std::string> better;
+    for (const auto& [name, point] : settings)
+        if (point.cpu < cpu * (1 - cpu_slack) && point.bytes < bytes * (1 - bytes_slack)) better.insert(name);
+    return better;
+}
+
+TEST(KeptEncoders, HoldEverySettingOnEveryKindOfFilm) {
+    const auto points = kept_points();
+    std::set<std::string> names;
+    for (const auto& setting : encoder_settings)
+        if (setting.codec == "h264") names.emplace(setting.name);
+    for (const char* film : {"butterfly 1920x1080 dark", "butterfly 3840x2160 dark", "fan 1280x720 dark",
+                             "phase-dance 1280x720 dark", "whip 1280x720 dark", "two-methods 1280x720 light"}) {
+        ASSERT_TRUE(points.contains(film)) << film;
+        std::set<std::string> measured;
+        for (const auto& [name, point] : points.at(film)) {
+            measured.insert(name);
+            EXPECT_GT(point.cpu, 0) << film << ", " << name;
+            EXPECT_GT(point.bytes, 0) << film << ", " << name;
+        }
+        EXPECT_EQ(measured, names) << film << ": after a change of settings, measure anew";
+    }
+}
+
+TEST(KeptEncoders, NoSettingTakesLessOfBothThanTheDefault) {
+    for (const auto& [film, settings] : kept_points()) {
+        EXPECT_EQ(better_than_default(settings), std::set<std::string>()) << film;
+        EXPECT_LT(settings.at("doppel").cpu, 0.6) << film << ", of veryfast";
+    }
+}
+
+TEST(KeptEncoders, ASettingThatTookLessWouldBeFound) {
+    auto settings = kept_points().at("butterfly 1920x1080 dark");
+    const auto [cpu, bytes] = settings.at("doppel");
+    settings["less of both"] = {0.88 * cpu, 0.98 * bytes};
+    settings["less of one"] = {0.5 * cpu, 1.01 * bytes};
+    EXPECT_EQ(better_than_default(settings), std::set<std::string>{"less of both"});
+}
+
+}  // namespace kept_encoders_test
+}  // namespace doppel
