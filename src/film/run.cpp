@@ -48,6 +48,12 @@ public:
 
 private:
     void add_side(const Side& side, const Observation& seen, std::optional<double> energy_error);
+    void add(double value) { csv_.add(value); }
+    /// With all digits.
+    void add(const Quad& value) {
+        if (const auto near = static_cast<double>(value); !std::isfinite(near)) return csv_.add(near);
+        csv_.add(text_of(value));
+    }
 
     const Scene& scene_;
     Csv csv_;
@@ -70,12 +76,13 @@ void PairTable::add(const PairState& state, double start_distance) {
 }
 
 void PairTable::add_side(const Side& side, const Observation& seen, std::optional<double> energy_error) {
-    if (side.has_angles) {
-        for (const auto& bob : seen.bobs) csv_.add(bob.theta);
-        for (const auto& bob : seen.bobs) csv_.add(bob.omega);
-    }
-    for (const auto& bob : seen.bobs)
-        for (const double value : {bob.x, bob.y, bob.vx, bob.vy}) csv_.add(value);
+    const auto add_all = [&](const auto& bobs) {
+        for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].theta);
+        for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].omega);
+        for (const auto& bob : bobs)
+            for (const auto& value : {bob.x, bob.y, bob.vx, bob.vy}) add(value);
+    };
+    seen.exact.empty() ? add_all(seen.bobs) : add_all(seen.exact);
     csv_.add(seen.energy);
     csv_.add(energy_error);
     csv_.add(seen.length_error);

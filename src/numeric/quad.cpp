@@ -19,9 +19,12 @@ Quad parse_quad(std::string_view decimal) {
 std::string text_of(const Quad& value) {
     auto text = fmt::format("{}", static_cast<double>(value));
     if (parse_quad(text) == value) return text;
-    std::ostringstream digits;
-    digits << std::setprecision(34) << value;
-    return digits.str();
+    for (int digits = 34;; ++digits) {
+        std::ostringstream stream;
+        stream << std::setprecision(digits) << value;
+        constexpr int always_enough = 36;
+        if (digits == always_enough || parse_quad(stream.str()) == value) return stream.str();
+    }
 }
 
 }  // namespace doppel

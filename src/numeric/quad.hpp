@@ -42,7 +42,7 @@ namespace doppel {
 Quad parse_quad(std::string_view decimal);
 
 /// The fewest digits that mean this number: those of the double where its shortest decimal is the same quad ("9.8"),
-/// else 34.
+/// else 34 to 36.
 std::string text_of(const Quad& value);
 
 }  // namespace doppel

@@ -38,6 +38,34 @@ TEST(RunTable, HasTheColumnsOfTheContract) {
     EXPECT_EQ(last[1], "0.5");
 }
 
+TEST(RunTable, GivesEveryQuadBack) {
+    const auto out = fresh_folder();
+    const auto scene = small_scene({"system.precision=\"quad\"", "system.step_s=\"1/480\""});
+    render(scene, {.out = out, .pictures = false});
+    const auto lines = lines_of(out / "butterfly/butterfly.csv");
+    const std::atomic<bool> never = false;
+    PairRun pair(scene);
+    std::size_t longest = 0;
+    for (std::size_t row = 1; row < lines.size(); ++row) {
+        const auto state = pair.next(never);
+        const auto cells = cells_of(lines[row]);
+        std::size_t column = 2;
+        const auto expect = [&](const Quad& value) {
+            EXPECT_EQ(parse_quad(cells[column]), value) << row << " " << column;
+            longest = std::max(longest, cells[column++].size());
+        };
+        for (const auto* side : {&state.a, &state.b}) {
+            for (const auto& bob : side->exact) expect(bob.theta);
+            for (const auto& bob : side->exact) expect(bob.omega);
+            for (const auto& bob : side->exact)
+                for (const auto& value : {bob.x, bob.y, bob.vx, bob.vy}) expect(value);
+            EXPECT_EQ(std::stod(cells[column]), side->energy);
+            column += 3;
+        }
+    }
+    EXPECT_GE(longest, 36u);
+}
+
 TEST(RunTable, HasTheEnergiesLastWhereTheyAreAskedFor) {
     const auto out = fresh_folder();
     render(small_scene({"scene.energy_columns=true"}), {.out = out, .pictures = false});
