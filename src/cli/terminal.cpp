@@ -147,6 +147,7 @@ void ProgressReport::clear() {
 
 void ProgressReport::done(const RunResult& result) {
     clear();
+    for (const auto& warning : result.warnings) note(warning);
     const long count = result.frames > 0 ? result.frames : result.samples;
     if (style_ == ProgressStyle::json) {
         nlohmann::ordered_json line = {

@@ -45,6 +45,10 @@ struct RunRecord {
     std::string failure;  // what ended the run, where something did
 };
 
+/// What the one who reads the results should know: a side whose energy changed by more than 1 % of the potential range
+/// though its mechanics keep it. Sentences.
+std::vector<std::string> warnings_of(const Scene& scene, const RunRecord& record);
+
 /// Writes the manifest `name`; hashes the files that are finished. Throws Error (exit 4).
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record);
 

@@ -12,6 +12,11 @@
 namespace doppel {
 namespace {
 
+/// J, as in the strip of energy errors.
+double energy_range(const Scene& scene) {
+    return std::max(scene.a.energy_unit, scene.b.energy_unit);
+}
+
 Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
     if (side.method.adaptive) {
@@ -33,10 +38,8 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     const auto of_energy = [&](double worst) { return side.conserves_energy ? Json(worst) : Json(nullptr); };
     json["worst_energy_error"] = of_energy(record.energy_error);
     json["worst_energy_change_J"] = of_energy(record.energy_change);
-    // as in the strip
-    const double range = std::max(scene.a.energy_unit, scene.b.energy_unit);
-    json["energy_range_J"] = range;
-    json["worst_energy_error_of_range"] = of_energy(record.energy_change / range);
+    json["energy_range_J"] = energy_range(scene);
+    json["worst_energy_error_of_range"] = of_energy(record.energy_change / energy_range(scene));
     json["worst_length_error_m"] = record.length_error;
     return json;
 }
@@ -55,6 +58,20 @@ Json fonts_json(const Preset& preset) {
 
 }  // namespace
 
+std::vector<std::string> warnings_of(const Scene& scene, const RunRecord& record) {
+    constexpr double most = 0.01;
+    std::vector<std::string> warnings;
+    for (const auto& [name, side, seen] : {std::tuple('a', &scene.a, &record.a), {'b', &scene.b, &record.b}}) {
+        const double error = seen->energy_change / energy_range(scene);
+        if (side->conserves_energy && error > most)
+            warnings.push_back(fmt::format(
+                "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse "
+                "for these {:g} s; accuracy = 1e-3 chooses what is not",
+                name, 100 * error, side->method.title, step_control_text(*side), scene.time(record.last_sample)));
+    }
+    return warnings;
+}
+
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
     Json manifest = {
         {"doppel", program_json()},
@@ -72,6 +89,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"largest_distance", record.largest_distance},
         {"parted_s", record.parting.since() ? Json(*record.parting.since()) : Json(nullptr)},
         {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},
+        {"warnings", warnings_of(scene, record)},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",
          {{"wall_s", record.wall_s},

@@ -271,7 +271,11 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         return parts.publish();
     };
     auto files = parts.keeping_finished(finish);
-    return {.files = std::move(files), .frames = record.frames, .samples = last - first, .wall_s = record.wall_s};
+    return {.files = std::move(files),
+            .frames = record.frames,
+            .samples = last - first,
+            .wall_s = record.wall_s,
+            .warnings = warnings_of(scene, record)};
 }
 
 }  // namespace doppel

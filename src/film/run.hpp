@@ -34,6 +34,7 @@ struct RunResult {
     long frames = 0;   // pictures written
     long samples = 0;  // rows of the table
     double wall_s = 0;
+    std::vector<std::string> warnings = {};  // sentences; the manifest has them, too
 };
 
 /// One picture, OUT/NAME/NAME.14s.png (or .pdf, .svg): that of the sample at `time`, s. `options` say where to, and what

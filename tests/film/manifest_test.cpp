@@ -28,6 +28,20 @@ TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
     EXPECT_GT(side["worst_energy_error"].get<double>(), 100 * of_range);
 }
 
+// Runge–Kutta 4 loses energy at steps of 1/10 s, the more the faster the swing.
+TEST(Manifest, WarnsWhereEnergyIsNotKept) {
+    const std::vector<std::string> coarse{"system.integrator=\"rk4\"", "system.step_s=\"1/10\"", "scene.sample_hz=10",
+                                          "video.fps=10", "scene.duration_s=20"};
+    const auto warnings = manifest_of("butterfly", coarse)["warnings"];
+    ASSERT_EQ(warnings.size(), 2u);
+    const std::string first = warnings[0];
+    EXPECT_NE(first.find("the energy of side a changed by "), std::string::npos) << first;
+    EXPECT_NE(first.find("1/10 s is too coarse for these 20 s"), std::string::npos) << first;
+    EXPECT_TRUE(manifest_of("butterfly", {"scene.duration_s=5"})["warnings"].empty());
+    // friction takes energy: no error
+    EXPECT_TRUE(manifest_of("springs", {"scene.duration_s=2"})["warnings"].empty());
+}
+
 TEST(Manifest, SaysHowFarARunCanBePredicted) {
     EXPECT_TRUE(
         manifest_of("butterfly", {"scene.duration_s=1"})["horizon_s"].is_null());  // its steps were chosen by hand
