@@ -37,7 +37,16 @@ void read_chart(TomlReader& table, ChartSpec& chart) {
     table.read({.key = "width_cm"}, chart.width_cm.emplace(0));
     if (!table.has("width_cm")) chart.width_cm.reset();
     chart_fields(table, chart);
-    const auto [width, height] = layout_of(chart).picture;
+    const auto layout = layout_of(chart);
+    const auto [width, height] = layout.picture;
+    const double height_pt = layout.width_pt * height / width;
+    // as letters are high: the least in which axes, their labels and a curve have room
+    constexpr double least_width = 12, least_height = 10;
+    if (const double most = std::min(layout.width_pt / least_width, height_pt / least_height);
+        chart.width_cm && chart.font_pt > most)
+        throw table.fault("font_pt",
+                          "leaves no room for a chart on {:.3g}×{:.3g} cm; at most {:.2g} pt would, it is {:g}",
+                          layout.width_pt / pt_per_cm, height_pt / pt_per_cm, most, chart.font_pt);
     if (std::min(width, height) < smallest || std::max(width, height) > largest) {
         const auto what = chart.width_cm
                               ? fmt::format("{:g} cm at {} dpi", *chart.width_cm, chart.dpi)
