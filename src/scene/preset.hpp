@@ -193,7 +193,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
 /// The key=value of --set. Throws Error (exit 2) where it is not of that form.
 Override parse_set(const std::string& argument);
 
-class TomlDocument;
+struct TomlDocument;
 class TomlReader;
 
 // Readers of the tables that films and figures share. Each leaves alone what the table does not say, and throws Error

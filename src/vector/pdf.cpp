@@ -46,7 +46,7 @@ FontFace load_font(const Font& font, Weight weight) {
     static const cairo_user_data_key_t key{};
     check(cairo_font_face_set_user_data(face.get(), &key, loaded.get(),
                                         [](void* kept) { delete static_cast<Loaded*>(kept); }));
-    loaded.release();
+    static_cast<void>(loaded.release());
     if (weight == Weight::bold) cairo_ft_font_face_set_synthesize(face.get(), CAIRO_FT_SYNTHESIZE_BOLD);
     return face;
 }
@@ -158,15 +158,13 @@ cairo_status_t append(void* file, const unsigned char* bytes, unsigned count) tr
 }
 
 void describe(cairo_surface_t* surface, const Metadata& metadata) {
-    for (const auto& [key, text] : metadata) {
-        const auto set = [&](cairo_pdf_metadata_t entry) {
-            cairo_pdf_surface_set_metadata(surface, entry, text.c_str());
-        };
-        if (key == "title") set(CAIRO_PDF_METADATA_TITLE);
-        if (key == "artist") set(CAIRO_PDF_METADATA_AUTHOR);
-        if (key == "comment") set(CAIRO_PDF_METADATA_SUBJECT);
-        if (key == "encoder") set(CAIRO_PDF_METADATA_CREATOR);
-    }
+    const auto set = [&](std::string_view key, cairo_pdf_metadata_t entry) {
+        cairo_pdf_surface_set_metadata(surface, entry, text_of(metadata, key).c_str());
+    };
+    set("title", CAIRO_PDF_METADATA_TITLE);
+    set("artist", CAIRO_PDF_METADATA_AUTHOR);
+    set("comment", CAIRO_PDF_METADATA_SUBJECT);
+    set("encoder", CAIRO_PDF_METADATA_CREATOR);
 }
 
 }  // namespace
