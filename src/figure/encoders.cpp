@@ -193,7 +193,7 @@ private:
             throw entry.fault("transparent", "is for vp9; the codec is {}", codec_);
         auto preset = film_named(name, entry);
         preset.video.size = video.size;
-        if (video.fps) preset.video.fps = video.fps;
+        if (video.fps) preset.video.fps = video.fps, check_frames(preset, entry);
         preset.video.theme = video.theme;
         preset.video.transparent = video.transparent;
         preset.video.format = codec_ == "h264" ? FilmFormat::mp4 : FilmFormat::webm;

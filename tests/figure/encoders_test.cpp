@@ -118,6 +118,7 @@ TEST(Encoders, NamesWhatIsWrong) {
     refused("[[film]]\nscene = \"fig2-left\"\n", {"must name a film"});
     refused("[encoders]\nframes = 100000\n[[film]]\nscene = \"calm\"\n", {"too short"});
     refused("[[film]]\nscene = \"calm\"\ntransparent = true\n", {"transparent", "vp9"});
+    refused("[[film]]\nscene = \"calm\"\nfps = 1000\n", {"fps must divide sample_hz", "it is 1000"});
     refused("[encoders]\ncodec = \"h265\"\n[[film]]\nscene = \"calm\"\n", {"codec", "h264"});
 }
 
