@@ -82,6 +82,38 @@ std::string on_one_line(std::string_view text) {
     return line;
 }
 
+std::string markup(std::string_view text) {
+    const std::string line = on_one_line(text);
+    std::string result;
+    for (std::string_view rest = line; !rest.empty();) {
+        const auto before = rest;
+        switch (const char32_t character = next_character(rest)) {
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            case '\'':
+                result += "&#39;";
+                break;
+            default:
+                // XML 1.0, 2.2: neither U+FFFE nor U+FFFF
+                if ((character & 0xfffe) == 0xfffe)
+                    result += "\xef\xbf\xbd";
+                else
+                    result += before.substr(0, before.size() - rest.size());
+        }
+    }
+    return result;
+}
+
 std::string shortened(std::string_view text, std::size_t most) {
     if (text.size() <= most) return std::string(text);
     while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;  // not within a character

@@ -24,6 +24,9 @@ bool is_control(char32_t character);
 /// not well-formed.
 std::string on_one_line(std::string_view text);
 
+/// The text as XML 1.0 and HTML take it between tags and in quotes: on one line, without characters that XML forbids.
+std::string markup(std::string_view text);
+
 /// The whole characters of its first `most` bytes, with "…" where there is more.
 std::string shortened(std::string_view text, std::size_t most);
 

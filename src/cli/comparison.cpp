@@ -37,38 +37,6 @@ std::string fault(const ComparedPicture& picture) {
 
 }  // namespace
 
-std::string markup(std::string_view text) {
-    const std::string line = on_one_line(text);
-    std::string result;
-    for (std::string_view rest = line; !rest.empty();) {
-        const auto before = rest;
-        switch (const char32_t character = next_character(rest)) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            case '\'':
-                result += "&#39;";
-                break;
-            default:
-                // XML 1.0, 2.2: neither U+FFFE nor U+FFFF
-                if ((character & 0xfffe) == 0xfffe)
-                    result += "\xef\xbf\xbd";
-                else
-                    result += before.substr(0, before.size() - rest.size());
-        }
-    }
-    return result;
-}
-
 void write_junit(const FilePlace& place, const Comparison& comparison) {
     double seconds = 0;
     for (const auto& picture : comparison.pictures) seconds += picture.seconds;

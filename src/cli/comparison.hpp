@@ -32,9 +32,6 @@ struct Comparison {
     std::string summary() const;
 };
 
-/// The text as XML 1.0 and HTML take it between tags and in quotes: on one line, without characters that XML forbids.
-std::string markup(std::string_view text);
-
 /// JUnit's XML, as test servers read it: a test case a picture; a picture that differs or is missing is a failure, one
 /// that cannot be read an error. Throws Error (exit 4) where it cannot be written.
 void write_junit(const FilePlace& place, const Comparison& comparison);

@@ -30,10 +30,11 @@ Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
     figure.experiment->draw(trials, page);
     page.captions.insert(page.captions.begin(), figure.captions.begin(), figure.captions.end());
     if (!figure.erratum.empty()) page.captions.push_back("Erratum: " + figure.erratum);
-    const auto& [title, captions] = std::tie(figure.chart.title, figure.chart.captions);
-    if (!title.shown || title.own)
-        page.title = title.own ? fmt::format("{}", fmt::join(*title.own, " ")) : "", page.subtitle = "";
-    if (!captions.shown || captions.own) page.captions = captions.own.value_or(std::vector<std::string>());
+    const auto &title = figure.chart.title, &captions = figure.chart.captions;
+    if (!title.shown || title.own) page.title = page.subtitle = "";
+    if (title.own) page.title = fmt::format("{}", fmt::join(*title.own, " "));
+    if (!captions.shown) page.captions.clear();
+    if (captions.own) page.captions = *captions.own;
     return page;
 }
 

@@ -130,14 +130,13 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
     const auto& first = state.a.bobs.front();
     MotionBounds seen{.left = first.x, .right = first.x, .bottom = first.y, .top = first.y};
     const double start_distance = state.distance;
-    const double energy_unit = std::max(scene.a.energy_unit, scene.b.energy_unit);
     try {
         for (;;) {
             add(seen, scene, state, state.a);
             add(seen, scene, state, state.b);
             if (start_distance > 0 || 50 * state.sample >= scene.samples) seen.distance.add(state.distance);
             for (const auto& [side, now] : {std::pair{&scene.a, &state.a}, {&scene.b, &state.b}}) {
-                if (side->conserves_energy) seen.energy_error.add(std::abs(now->energy_change) / energy_unit);
+                if (side->conserves_energy) seen.energy_error.add(std::abs(now->energy_change) / scene.energy_range());
                 seen.rod_error.add(now->length_error);
             }
             if (const auto exponent = exponent_so_far(scene, state, start_distance)) include(seen.exponent, *exponent);

@@ -12,11 +12,6 @@
 namespace doppel {
 namespace {
 
-/// J, as in the strip of energy errors.
-double energy_range(const Scene& scene) {
-    return std::max(scene.a.energy_unit, scene.b.energy_unit);
-}
-
 Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
     if (side.method.adaptive) {
@@ -38,8 +33,8 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     const auto of_energy = [&](double worst) { return side.conserves_energy ? Json(worst) : Json(nullptr); };
     json["worst_energy_error"] = of_energy(record.energy_error);
     json["worst_energy_change_J"] = of_energy(record.energy_change);
-    json["energy_range_J"] = energy_range(scene);
-    json["worst_energy_error_of_range"] = of_energy(record.energy_change / energy_range(scene));
+    json["energy_range_J"] = scene.energy_range();
+    json["worst_energy_error_of_range"] = of_energy(record.energy_change / scene.energy_range());
     json["worst_length_error_m"] = record.length_error;
     return json;
 }
@@ -62,7 +57,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const RunRecord& record
     constexpr double most = 0.01;
     std::vector<std::string> warnings;
     for (const auto& [name, side, seen] : {std::tuple('a', &scene.a, &record.a), {'b', &scene.b, &record.b}}) {
-        const double error = seen->energy_change / energy_range(scene);
+        const double error = seen->energy_change / scene.energy_range();
         if (side->conserves_energy && error > most)
             warnings.push_back(fmt::format(
                 "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse "

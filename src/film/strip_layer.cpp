@@ -75,7 +75,6 @@ private:
     const std::string rest_ = short_ && words_.brief.empty() ? words_.how : "";
     const float size_ = px(style_.font.strip);
     // J: one for both sides, or the side that starts near E = 0 would look far worse
-    const double energy_unit_ = std::max(state_.scene.a.energy_unit, state_.scene.b.energy_unit);
     std::vector<Trace> traces_;  // by value
 };
 
@@ -94,7 +93,7 @@ std::vector<StripValue> StripLayer::values() const {
         if (strip_.kind == StripKind::rod_error) values.push_back({seen.length_error, color, widths[side]});
         if (strip_.kind == StripKind::energy) {
             // where damping takes energy no change of it is an error
-            const double error = std::abs(seen.energy_change) / energy_unit_;
+            const double error = std::abs(seen.energy_change) / state_.scene.energy_range();
             values.push_back(
                 {state_.side(side).conserves_energy ? std::optional(error) : std::nullopt, color, widths[side]});
         }

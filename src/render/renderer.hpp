@@ -30,8 +30,8 @@ Gl gl_named(const std::string& name);
 /// are drawn and read back; the pixels are the same as if everything had been drawn.
 class Renderer {
 public:
-    /// Text is drawn in `typeface`. Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size is to be had, 130 as
-    /// draw().
+    /// Text is drawn in `typeface`. Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size
+    /// is to be had, 130 as draw().
     explicit Renderer(Size size, const DisplayList& backdrop = {}, Gl gl = Gl::automatic,
                       const std::atomic<bool>& stop = false, const Typeface& typeface = {});
     ~Renderer();

@@ -6,6 +6,7 @@
 #include "physics/mechanism_assembly.hpp"
 #include "scene/preset.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -105,6 +106,8 @@ struct Scene {
     double time_of_tick(long tick) const;  // s
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
     std::optional<double> horizon() const;
+    /// By which pictures and manifest measure errors of the energy, J: the larger side's potential range.
+    double energy_range() const { return std::max(a.energy_unit, b.energy_unit); }
 };
 
 /// Throws Error: exit 2 where a system is faulty, the two sides differ by less than their precision can tell, or an

@@ -21,9 +21,9 @@ struct Page {
     Typeface typeface = {};  // of its text
 };
 
-/// One page as a file: paths as paths, images pixel by pixel as they are, text as text. PDF 1.5 holds those
-/// letters of the fonts that it needs; SVG 1.1 all of the built-in font and the user's, not the system's. Glows are rings. Throws Error (exit 4) where there is no
-/// memory.
+/// One page as a file: paths as paths, images pixel by pixel as they are, text as text, glows as rings. PDF 1.5 holds
+/// those letters of the fonts that it needs; SVG 1.1 all of the built-in font and of the user's, none of the system's.
+/// Throws Error (exit 4) where there is no memory.
 std::string pdf_page(const DisplayList& list, const Page& page);
 std::string svg_page(const DisplayList& list, const Page& page);
 

@@ -1,3 +1,4 @@
+#include "base/text.hpp"
 #include "output/png.hpp"
 #include "vector/page.hpp"
 #include "vector/paths.hpp"
@@ -10,33 +11,13 @@
 namespace doppel {
 namespace {
 
-/// "12.5": hundredths of a pixel, without zeros at the end.
+/// "12.5", "6400.25".
 std::string number(double value) {
-    auto text = fmt::format("{:.2f}", value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text == "-0" ? "0" : text;
+    return fmt::format("{:.6g}", value);
 }
 
 std::string pair(Point p) {
     return fmt::format("{} {}", number(p.x), number(p.y));
-}
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '>')
-            result += "&gt;";
-        else if (c == '"')
-            result += "&quot;";
-        else
-            result += c;
-    }
-    return result;
 }
 
 /// fill="#ff0000" fill-opacity="0.5"
@@ -88,7 +69,7 @@ public:
             is_bold ? bold_spacing / 2 * label.size * static_cast<float>(1 - static_cast<int>(label.align)) : 0;
         line(R"(<text x="{}" y="{}" font-size="{}" text-anchor="{}" {}{}>{}</text>)", number(label.anchor.x + shift),
              number(std::round(label.anchor.y)), number(label.size), anchors[static_cast<std::size_t>(label.align)],
-             paint("fill", label.color), bold, escaped(label.text));
+             paint("fill", label.color), bold, markup(label.text));
     }
 
     void operator()(const Image& image) const {
@@ -126,16 +107,15 @@ std::string svg_page(const DisplayList& list, const Page& page) {
 <desc>{}</desc>
 <style>
 {}text {{ font-family: Own, Doppel, "DejaVu Sans", sans-serif; font-kerning: none; white-space: pre }}
-path {{ stroke-linecap: round; stroke-linejoin: round }}
-path[stroke-linecap] {{ stroke-linecap: butt }}
 image {{ image-rendering: pixelated }}
 </style>
+<g stroke-linecap="round" stroke-linejoin="round">
 )",
         maker_of(page.metadata), number(page.width_pt), number(page.width_pt * height / width), width, height,
-        escaped(text_of(page.metadata, "title")), escaped(text_of(page.metadata, "comment")), faces);
+        markup(text_of(page.metadata, "title")), markup(text_of(page.metadata, "comment")), faces);
     const Writer writer(file);
     for (const auto& item : page_items(list)) std::visit(writer, item);
-    return file + "</svg>\n";
+    return file + "</g>\n</svg>\n";
 }
 
 std::string text_of(const Metadata& metadata, std::string_view key) {
