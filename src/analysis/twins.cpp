@@ -1,6 +1,5 @@
 #include "analysis/twins.hpp"
 
-#include "analysis/difference.hpp"
 #include "base/error.hpp"
 #include "integrate/widths.hpp"
 
@@ -62,8 +61,8 @@ std::size_t twins_block(int width) {
     return 2 * static_cast<std::size_t>(width == 0 ? register_widths().back() : width);
 }
 
-void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
-                        const std::atomic<bool>& stop, int width) {
+void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch, const std::atomic<bool>& stop,
+                int width) {
     std::vector<SideBatch> batches;
     batches.emplace_back(run.a);
     if (run.b != run.a) batches.emplace_back(run.b);
@@ -71,26 +70,23 @@ void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::s
     std::vector<std::pair<std::size_t, std::size_t>> members;
     for (const auto& pair : twins) members.emplace_back(batch_a.add(pair.a), batch_b.add(pair.b));
     for (auto& batch : batches) batch.start(run, width);
-
-    const auto distance = [&](std::size_t i) {
-        return state_space_distance(batch_a.seen(members[i].first), batch_b.seen(members[i].second));
-    };
-    std::vector<double> start, sum(twins.size());
-    std::vector<long> counted(twins.size());
-    for (std::size_t i = 0; i < twins.size(); ++i) start.push_back(distance(i));
-    for (long n = 1; n <= run.samples; ++n) {
+    for (long n = 0; n <= run.samples; ++n) {
         throw_if_set(stop);
-        for (auto& batch : batches) batch.advance();
+        if (n > 0)
+            for (auto& batch : batches) batch.advance();
         for (std::size_t i = 0; i < twins.size(); ++i)
-            if (const auto ratio = log_ratio(distance(i), start[i])) {
-                sum[i] += *ratio;
-                ++counted[i];
-            }
+            watch(i, n, batch_a.seen(members[i].first), batch_b.seen(members[i].second));
     }
-    for (std::size_t i = 0; i < twins.size(); ++i) {
-        const double mean = sum[i] / static_cast<double>(counted[i]);
-        averages[i] = std::isfinite(mean) ? mean : NAN;
-    }
+}
+
+void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
+                        const std::atomic<bool>& stop, int width) {
+    std::vector<AverageLogRatio> means(twins.size());
+    const auto watch = [&](std::size_t trial, long, const Bobs<double>& a, const Bobs<double>& b) {
+        means[trial].add(state_space_distance(a, b));
+    };
+    step_twins(twins, run, watch, stop, width);
+    std::transform(means.begin(), means.end(), averages.begin(), [](const auto& mean) { return mean.value(); });
 }
 
 }  // namespace doppel

@@ -98,6 +98,8 @@ struct Finding {
     std::variant<double, std::string, bool> value;
 };
 
+class MapFigure;
+
 /// What a figure computes and shows: independent trials, and the table, picture and findings of their numbers. They may be computed in any
 /// order, by any thread, in several runs on several machines; the numbers are the same to the bit.
 class Experiment {
@@ -136,6 +138,9 @@ public:
 
     /// What a picture says below its title where the preset has no subtitle: what moves, and how it is stepped.
     virtual std::string subtitle() const { return {}; }
+
+    /// The figure where it is one map, whose cells can be found one by one; null where it is another.
+    virtual const MapFigure* map() const { return nullptr; }
 
     /// Everything that the numbers depend on, as the preset's tables would say it (TOML).
     const std::string& resolved() const { return settings_; }

@@ -1,4 +1,5 @@
 #include "figure/kinds.hpp"
+#include "figure/map_figure.hpp"
 #include "integrate/flips.hpp"
 #include "scene/captions.hpp"
 
@@ -23,13 +24,14 @@ struct CheckRow {
     double time, reference;
 };
 
-/// The time to the first flip over all releases θ1 × θ2. A trial is a row of the map; the last trials compare some
-/// random releases with a reference ten thousand times finer.
-class FlipMap final : public Experiment {
+/// The time to the first flip over all releases θ1 × θ2. The trials after those of the map compare some random releases
+/// with a reference ten thousand times finer.
+class FlipMap final : public MapFigure {
 public:
     static constexpr std::string_view table_key = "flip_map";
-    FlipMap() = default;
-    explicit FlipMap(FigureReader& reader) : release_(reader.release()) {
+    FlipMap() { frame_.x.count = frame_.y.count = 1000; }
+    explicit FlipMap(FigureReader& reader) : FlipMap() {
+        release_ = reader.release();
         auto system = reader.document.table(reader.top, "system");
         if (release_.links() != 2 || system.has("angle_deg"))
             throw system.fault(system.has("angle_deg") ? "angle_deg" : "links",
@@ -38,15 +40,16 @@ public:
         settings_ = fmt::format("{}omega_deg_per_s = {}\n{}", resolved_chain(release_),
                                 toml_value(release_.omega_deg_per_s), table.finish());
         pendulum_ = chain_of(release_).cast<double>();
-        const bool at_rest = pendulum_.rate[0] == 0 && pendulum_.rate[1] == 0;
-        map_trials_ = static_cast<std::size_t>(at_rest ? (rows_ + 1) / 2 : rows_);
+        make_frame();
     }
 
     template <class Visit>
     void fields(Visit& visit) {
-        constexpr auto cells = from_to(2, 20'000);
-        visit({"columns", "angles of the upper link, from −180° to 180°", "", cells}, columns_);
-        visit({"rows", "angles of the lower link", "", cells}, rows_);
+        constexpr auto cells = from_to(2, most_map_cells);
+        visit({"columns", "angles of the upper link", "", cells}, frame_.x.count);
+        visit({"rows", "angles of the lower link", "", cells}, frame_.y.count);
+        visit({"theta1_range_deg", "of the upper link, [lowest, highest]", "deg", from_to(-180, 180)}, theta1_);
+        visit({"theta2_range_deg", "of the lower link", "deg", from_to(-180, 180)}, theta2_);
         visit({"duration_s", "how long a flip is waited for", "s", positive}, spec_.duration);
         spec_.tolerance = flip_tolerance(spec_.duration);
         visit({"tolerance",
@@ -58,71 +61,42 @@ public:
         visit({"checked", "random releases that are compared with a reference", "", from_to(0, 100'000)}, checked_);
     }
 
-    std::size_t trials() const override {
-        return map_trials_ + static_cast<std::size_t>((checked_ + a_check - 1) / a_check);
-    }
     std::string unit() const override { return "releases"; }
-    double units(std::size_t trial) const override {
-        return trial < map_trials_ ? columns_ * (is_mirrored(trial) ? 2 : 1) : 0;
-    }
 
-    bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        // a time, or infinity for no flip
-        const auto count = trial < map_trials_ ? static_cast<std::size_t>(columns_)
-                                               : checks_of(trial - map_trials_) * numbers_in<CheckRow>;
-        return numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), [](double t) { return t >= 0; });
+    void find(int row, int column, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const override {
+        std::vector<Pendulum<double>> releases;
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            releases.push_back(released(frame_.x.middle(column + static_cast<int>(i)), frame_.y.middle(row)));
+        std::vector<double> times(cells.size());
+        first_flips(releases, spec_, times, stop);
+        for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = {times[i]};
     }
-
-    std::vector<std::string> columns() const override { return {"theta1_deg", "theta2_deg", "flip_time_s"}; }
-
-    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (int r = 0; r < rows_; ++r)
-            for (int c = 0; c < columns_; ++c) {
-                const double time = at(numbers, r, c);
-                add_row(table, angle_deg(c, columns_), angle_deg(r, rows_), std::isfinite(time) ? time : NAN);
-            }
-    }
+    /// A time, or infinity for no flip.
+    bool fits_cell(std::span<const double> numbers) const override { return numbers.size() == 1 && numbers[0] >= 0; }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        Plot plot;
-        plot.x = {.label = "release angle θ₁, °", .low = -180, .high = 180, .every = 45};
-        plot.y = {.label = "release angle θ₂, °", .low = -180, .high = 180, .every = 45};
+        MapFigure::draw(numbers, figure);
+        auto& plot = figure.panels.back();
         plot.square = true;
-        HeatMap map{.columns = static_cast<std::size_t>(columns_),
-                    .rows = static_cast<std::size_t>(rows_),
-                    .x_low = -180,
-                    .x_high = 180,
-                    .y_low = -180,
-                    .y_high = 180,
-                    .label = "time to the first flip, s",
-                    .none_label = fmt::format("no flip within {} s", spec_.duration),
-                    .high = spec_.duration,
-                    .logarithmic = true};
-        for (int r = 0; r < rows_; ++r)
-            for (int c = 0; c < columns_; ++c) {
-                const double time = at(numbers, r, c);
-                map.values.push_back(static_cast<float>(std::isfinite(time) ? time : NAN));
-            }
-        plot.map = std::move(map);
-        plot.curves.push_back(forbidden_outline());
-        figure.panels.push_back(std::move(plot));
+        if (has_outline()) plot.curves.push_back(forbidden_outline());
         const auto found = check_findings(numbers);
         figure.captions.push_back(fmt::format(
-            "{} × {} releases from rest. Inside the line no rod has the energy to flip. Taylor series of order 16 in "
+            "{} × {} releases{}.{} Taylor series of order 16 in "
             "SIMD lanes at tolerance {}: of {} releases drawn by lot, {} flip within 0.01 s of a reference at 10⁻¹⁴ "
             "(so of all, with 95 % confidence, {:.1f} % at least), half of them within {} s.",
-            columns_, rows_, scientific(spec_.tolerance), checked_, found.agreeing,
-            100 * share_at_least(found.agreeing, checked_), scientific(found.median)));
+            frame_.x.count, frame_.y.count, is_at_rest() ? " from rest" : "",
+            has_outline() ? " Inside the line no rod has the energy to flip." : "", scientific(spec_.tolerance),
+            checked_, found.agreeing, 100 * share_at_least(found.agreeing, checked_), scientific(found.median)));
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         double flipped = 0, forbidden = 0;
-        for (int r = 0; r < rows_; ++r)
-            for (int c = 0; c < columns_; ++c) {
-                flipped += std::isfinite(at(numbers, r, c));
-                forbidden += flip_is_forbidden(released(angle_deg(c, columns_), angle_deg(r, rows_)));
+        for (int row = 0; row < frame_.y.count; ++row)
+            for (int column = 0; column < frame_.x.count; ++column) {
+                flipped += std::isfinite(at(numbers, row, column));
+                forbidden += flip_is_forbidden(released(frame_.x.middle(column), frame_.y.middle(row)));
             }
-        const double all = static_cast<double>(rows_) * columns_;
+        const double all = static_cast<double>(frame_.x.count) * frame_.y.count;
         const auto found = check_findings(numbers);
         return {{"share_that_flips", flipped / all},
                 {"share_forbidden_by_energy", forbidden / all},
@@ -135,8 +109,33 @@ public:
 private:
     static constexpr int a_check = 10;  // releases to a trial of checks
 
-    /// The middle of a cell; mirror images have exactly opposite angles.
-    static double angle_deg(int cell, int cells) { return 180.0 * (2 * cell + 1 - cells) / cells; }
+    void make_frame() {
+        frame_.x.from = theta1_.low, frame_.x.to = theta1_.high;
+        frame_.y.from = theta2_.low, frame_.y.to = theta2_.high;
+        frame_.x_axis = {.label = "release angle θ₁, °"};
+        frame_.y_axis = {.label = "release angle θ₂, °"};
+        constexpr double many = 90;  // degrees
+        if (theta1_.high - theta1_.low > many) frame_.x_axis.every = 45;
+        if (theta2_.high - theta2_.low > many) frame_.y_axis.every = 45;
+        frame_.columns = {"theta1_deg", "theta2_deg", "flip_time_s"};
+        frame_.look = {.label = "time to the first flip, s",
+                       .none_label = fmt::format("no flip within {} s", spec_.duration),
+                       .high = spec_.duration,
+                       .logarithmic = true};
+        frame_.is_mirrored = is_at_rest() && theta1_.low == -theta1_.high && theta2_.low == -theta2_.high;
+    }
+
+    bool is_at_rest() const { return pendulum_.rate[0] == 0 && pendulum_.rate[1] == 0; }
+    /// Whether the map shows releases with and without the energy to flip, by a line.
+    bool has_outline() const {
+        if (!is_at_rest()) return false;
+        const auto line = forbidden_outline();
+        for (std::size_t i = 0; i < line.x.size(); ++i)
+            if (line.x[i] > theta1_.low && line.x[i] < theta1_.high && line.y[i] > theta2_.low &&
+                line.y[i] < theta2_.high)
+                return true;
+        return false;
+    }
 
     Pendulum<double> released(double theta1_deg, double theta2_deg) const {
         auto p = pendulum_;
@@ -144,29 +143,13 @@ private:
         return p;
     }
 
-    /// Whether a trial's row stands for its mirror image at (−θ1, −θ2) too.
-    bool is_mirrored(std::size_t trial) const {
-        return map_trials_ < static_cast<std::size_t>(rows_) &&
-               static_cast<int>(trial) != rows_ - 1 - static_cast<int>(trial);
+    std::size_t other_trials() const override { return static_cast<std::size_t>((checked_ + a_check - 1) / a_check); }
+    TrialNumbers compute_other(std::size_t trial, const std::atomic<bool>& stop) const override {
+        return checks(trial, stop);
     }
-
-    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        return trial < map_trials_ ? row(trial, stop) : checks(trial - map_trials_, stop);
-    }
-
-    TrialNumbers row(std::size_t trial, const std::atomic<bool>& stop) const {
-        std::vector<Release> releases;
-        const double theta2 = radians(angle_deg(static_cast<int>(trial), rows_));
-        for (int c = 0; c < columns_; ++c) releases.push_back({radians(angle_deg(c, columns_)), theta2});
-        TrialNumbers times(releases.size());
-        first_flips(pendulum_, releases, spec_, times, stop);
-        return times;
-    }
-
-    double at(std::span<const TrialNumbers> numbers, int r, int c) const {
-        const bool below = static_cast<std::size_t>(r) < map_trials_;
-        return below ? numbers[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)]
-                     : numbers[static_cast<std::size_t>(rows_ - 1 - r)][static_cast<std::size_t>(columns_ - 1 - c)];
+    bool fits_other(std::size_t trial, std::span<const double> numbers) const override {
+        return numbers.size() == checks_of(trial) * numbers_in<CheckRow> &&
+               std::all_of(numbers.begin(), numbers.end(), [](double t) { return t >= 0; });
     }
 
     /// How many releases the trial of checks follows.
@@ -177,15 +160,19 @@ private:
     /// CheckRows of random releases with the energy to flip.
     TrialNumbers checks(std::size_t trial, const std::atomic<bool>& stop) const {
         std::mt19937_64 random(trial);
-        const auto drawn = [&] { return 360.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 180; };
+        const auto drawn = [&](const Range& range) {
+            return (range.high - range.low) * (static_cast<double>(random() >> 11) * 0x1p-53) + range.low;
+        };
         TrialNumbers numbers;
+        int tries = 1000;
         for (auto left = checks_of(trial); left > 0;) {
-            const auto p = released(drawn(), drawn());
-            if (flip_is_forbidden(p)) continue;
             throw_if_set(stop);
-            const std::array releases{Release{p.angle[0], p.angle[1]}};
+            const double theta2 = drawn(theta2_);
+            const auto p = released(drawn(theta1_), theta2);
+            // a part of the map may have no other releases
+            if (flip_is_forbidden(p) && --tries > 0) continue;
             std::array<double, 1> time;
-            first_flips(pendulum_, releases, spec_, time, stop);
+            first_flips(std::span(&p, 1), spec_, time, stop);
             constexpr double finer = 1e-14;
             append(numbers, CheckRow{time[0], reference_flip(p, spec_.duration, finer)});
             --left;
@@ -201,7 +188,7 @@ private:
         constexpr double near = 0.01;
         std::vector<double> errors;
         int agreeing = 0;
-        for (std::size_t trial = map_trials_; trial < numbers.size(); ++trial)
+        for (std::size_t trial = row_trials(); trial < numbers.size(); ++trial)
             for (const auto& [ours, reference] : rows_of<CheckRow>(numbers[trial])) {
                 const bool both = std::isfinite(ours) && std::isfinite(reference);
                 if (both) errors.push_back(std::abs(ours - reference));
@@ -237,8 +224,8 @@ private:
     SideSpec release_;
     Pendulum<double> pendulum_;
     FlipSpec spec_;
-    int columns_ = 1000, rows_ = 1000, checked_ = 500;
-    std::size_t map_trials_ = 0;
+    Range theta1_{-180, 180}, theta2_{-180, 180};
+    int checked_ = 500;
 };
 
 }  // namespace

@@ -90,22 +90,23 @@ std::string system_words(const Scene& scene) {
 }
 
 /// The angles that both sides are released at: "90°/90°", or those that are named, "θ₂ = θ₃ = 0".
-std::string release_words(const Scene& scene, std::optional<std::size_t> swept_angle) {
+std::string release_words(const Scene& scene, const std::vector<std::size_t>& varied) {
     constexpr std::size_t most = 3;
     const auto &angles = scene.preset.a.angle_deg, &others = scene.preset.b.angle_deg;
     if (!scene.preset.a.particles.empty() || angles.size() > most) return "";
+    const auto is_varied = [&](std::size_t i) { return std::find(varied.begin(), varied.end(), i) != varied.end(); };
     std::string all, named;
     for (std::size_t i = 0; i < angles.size(); ++i) {
         all += fmt::format("{}{}°", all.empty() ? "" : "/", text_of(angles[i]));
-        if (i == swept_angle || angles[i] != others[i]) continue;
-        const bool same = !named.empty() && i > 0 && angles[i] == angles[i - 1] && i - 1 != swept_angle;
+        if (is_varied(i) || angles[i] != others[i]) continue;
+        const bool same = !named.empty() && i > 0 && angles[i] == angles[i - 1] && !is_varied(i - 1);
         const auto name = fmt::format("θ{}", subscript(i + 1)), value = degrees(angles[i]);
         if (same)
             named.insert(named.rfind(" = "), " = " + name);
         else
             named += fmt::format("{}{} = {}", named.empty() ? "" : ", ", name, value);
     }
-    return !swept_angle && angles == others ? all : named;
+    return varied.empty() && angles == others ? all : named;
 }
 
 std::string rate_words(const SideSpec& a, const SideSpec& b) {
@@ -119,15 +120,15 @@ std::string rate_words(const SideSpec& a, const SideSpec& b) {
 }
 
 /// What both sides have in common of how they are stepped.
-std::string method_words(const Scene& scene) {
+std::string method_words(const Scene& scene, bool step_is_varied) {
     std::vector<std::string> words;
     const auto &a = scene.a, &b = scene.b;
     const auto &accuracy = scene.preset.a.accuracy, &other = scene.preset.b.accuracy;
     if (accuracy && other && *accuracy == *other) {
-        words.push_back(fmt::format("accuracy {} rad", text_of(*accuracy)));
+        if (!step_is_varied) words.push_back(fmt::format("accuracy {} rad", text_of(*accuracy)));
     } else {
         if (a.method.name == b.method.name) words.emplace_back(a.method.title);
-        if (step_control_text(a) == step_control_text(b)) words.push_back(step_control_text(a));
+        if (step_control_text(a) == step_control_text(b) && !step_is_varied) words.push_back(step_control_text(a));
     }
     if (a.motion.precision == Precision::in_quad && b.motion.precision == Precision::in_quad)
         words.emplace_back("in quad");
@@ -146,23 +147,23 @@ bool released_alike(const SideSpec& a, const SideSpec& b) {
            std::equal(a.particles.begin(), a.particles.end(), b.particles.begin(), b.particles.end(), same);
 }
 
-std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_angle, const std::string& apart) {
+std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::string& apart) {
     std::vector<std::string> parts{system_words(scene)};
     const auto add = [&](std::string words) {
         if (!words.empty()) parts.push_back(std::move(words));
     };
-    add(release_words(scene, swept_angle));
+    add(release_words(scene, varied.angles));
     add(rate_words(scene.preset.a, scene.preset.b));
     add(apart);
     if (const auto sides = side_captions(scene); sides[0].heading != "a")
         add(fmt::format("{} against {}", sides[0].heading, sides[1].heading));
-    const auto method = method_words(scene);
+    const auto method = method_words(scene, varied.step);
     return fmt::format("{}{}{}", fmt::join(parts, ", "), method.empty() ? "" : "; ", method);
 }
 
 std::span<const FigureKind> figure_kinds() {
     static const std::array<FigureKind, scene_kinds.size() - 1> kinds{
-        sweep_kind, curves_kind,         convergence_kind, spectrum_kind, section_kind,  flip_map_kind,
+        sweep_kind, curves_kind,         convergence_kind, spectrum_kind, section_kind,  map_kind,  flip_map_kind,
         links_kind, work_precision_kind, stability_kind,   drift_kind,    encoders_kind, audit_kind};
     return kinds;
 }

@@ -96,10 +96,13 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
 /// What moves in a figure of pairs, and how it is stepped: "two links in angles, θ₂ = 0, twins 0.003° apart; explicit
 /// Euler, 1/30 000 s". What sets the sides apart follows as "m₁ = 1 kg against m₁ = 1.01 kg".
 ///
-/// `swept_angle`  the link, from 0, whose angle of release is not the same in all pairs and so is left out
-/// `apart`        what else sets the sides of all pairs apart, "twins 0.003° apart"; then it is not part of `scene`
-std::string pair_subtitle(const Scene& scene, std::optional<std::size_t> swept_angle = {},
-                          const std::string& apart = "");
+/// `varied`  what is not the same in all pairs and so is left out
+/// `apart`   what else sets the sides of all pairs apart, "twins 0.003° apart"; then it is not part of `scene`
+struct Varied {
+    std::vector<std::size_t> angles;  // of release: links, from 0
+    bool step = false;                // and how finely to step
+};
+std::string pair_subtitle(const Scene& scene, const Varied& varied = {}, const std::string& apart = "");
 
 /// Whether both sides are released alike: then their distance at the start is 0.
 bool released_alike(const SideSpec& a, const SideSpec& b);
@@ -133,7 +136,7 @@ constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
 std::span<const FigureKind> figure_kinds();
 
 // One file each.
-extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, flip_map_kind,
+extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, map_kind, flip_map_kind,
     links_kind, work_precision_kind, stability_kind, drift_kind, encoders_kind, audit_kind;
 
 }  // namespace doppel

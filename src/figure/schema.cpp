@@ -38,6 +38,7 @@ Json text_schema(const ListedField& field) {
     Json schema{{"type", "string"}};
     if (!field.choices.empty()) schema["enum"] = field.choices;
     if (field.is_needed()) schema["minLength"] = 1;
+    if (!field.pattern.empty()) schema["pattern"] = field.pattern;
     return schema;
 }
 

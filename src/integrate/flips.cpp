@@ -67,11 +67,11 @@ double first_flip(const Bernstein& theta, const At& at) {
     return first;
 }
 
-void check(const Pendulum<double>& p, std::span<const Release> releases, const FlipSpec& spec,
-           std::span<double> times) {
-    if (p.links() != 2) throw bad_input("flips are found for double pendulums, not for {} links", p.links());
-    if (releases.size() != times.size())
-        throw bad_input("{} releases have {} times to be written", releases.size(), times.size());
+void check(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times) {
+    for (const auto& p : pendulums)
+        if (p.links() != 2) throw bad_input("flips are found for double pendulums, not for {} links", p.links());
+    if (pendulums.size() != times.size())
+        throw bad_input("{} pendulums have {} times to be written", pendulums.size(), times.size());
     if (!(spec.duration > 0 && std::isfinite(spec.duration)))
         throw bad_input("flips are looked for during a positive time; it is {} s", spec.duration);
     if (!(spec.tolerance >= 1e-15 && spec.tolerance <= 1))
@@ -119,30 +119,32 @@ bool flip_is_forbidden(const Pendulum<double>& pendulum) {
     return energy_of(pendulum) < least_energy_to_flip(pendulum);
 }
 
-void first_flips(const Pendulum<double>& pendulum, std::span<const Release> releases, const FlipSpec& spec,
-                 std::span<double> times, const std::atomic<bool>& stop, int width) {
-    check(pendulum, releases, spec, times);
+void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times,
+                 const std::atomic<bool>& stop, int width) {
+    check(pendulums, spec, times);
     const auto find = at_width(chosen_width(width), []<int chosen>() { return find_flips<chosen>; });
-
-    // what is known beforehand; the rest is marked by a negative time
-    Pendulum<double> released = pendulum;
-    const double least = least_energy_to_flip(pendulum);
-    for (std::size_t i = 0; i < releases.size(); ++i) {
-        released.angle[0] = releases[i].theta1;
-        released.angle[1] = releases[i].theta2;
-        const bool is_beyond = std::max(std::abs(releases[i].theta1), std::abs(releases[i].theta2)) > pi;
-        times[i] = is_beyond ? 0 : energy_of(released) < least ? never : -1;
+    std::vector<FlipStart> starts;
+    starts.reserve(pendulums.size());
+    for (std::size_t i = 0; i < pendulums.size(); ++i) {
+        const auto& p = pendulums[i];
+        const auto &mass = p.mass, &length = p.length;
+        // what is known beforehand; the rest is marked by a negative time
+        const bool is_beyond = std::max(std::abs(p.angle[0]), std::abs(p.angle[1])) > pi;
+        times[i] = is_beyond ? 0 : flip_is_forbidden(p) ? never : -1;
+        const double swing =
+            std::sqrt(std::min(length[0], length[1]) / std::abs(p.gravity));  // s, a rod's natural time
+        starts.push_back({.chain = {.gravity = p.gravity / length[0],
+                                    .masses = 1 + mass[0] / mass[1],
+                                    .longer = length[1] / length[0],
+                                    .pull = -1 / (length[1] / length[0]),
+                                    .longest = std::min(swing, spec.duration)},
+                          .theta = {p.angle[0], p.angle[1]},
+                          .omega = {p.rate[0], p.rate[1]}});
     }
-
-    const auto& [mass, length, angle, rate, gravity] = pendulum;
-    const double swing = std::sqrt(std::min(length[0], length[1]) / std::abs(gravity));  // s, a rod's natural time
-    const FlipRequest request{.chain = {gravity / length[0], 1 + mass[0] / mass[1], length[1] / length[0]},
-                              .omega = {rate[0], rate[1]},
-                              .duration = spec.duration,
+    const FlipRequest request{.duration = spec.duration,
                               .allowed = std::log2(spec.tolerance),
-                              .longest = std::min(swing, spec.duration),
-                              .count = releases.size(),
-                              .releases = releases.data(),
+                              .count = starts.size(),
+                              .starts = starts.data(),
                               .times = times.data(),
                               .stop = &stop};
     switch (find(request)) {

@@ -18,31 +18,26 @@ struct FlipSpec {
 /// by more than 0.01 s at 1e-8, and none at 1e-11.
 double flip_tolerance(double duration);
 
-/// The angles that a double pendulum is released at, rad.
-struct Release {
-    double theta1, theta2;
-};
-
 /// When each double pendulum first flips, s: one of its rods passes the upward vertical, |θ_i| > π. Infinity where none
 /// does within the duration; 0 where it is released beyond. Those whose energy forbids it are not stepped at all.
 ///
 /// By Taylor series of order 16 in SIMD lanes, each with a step of its own and taking the next release as soon as its
-/// own is done. Time i depends on release i alone, to the last bit: not on the width, the order or the grouping; and
-/// the mirror image (−θ1, −θ2), where `pendulum` has no rates, flips at the same time.
+/// own is done. Time i depends on pendulum i alone, to the last bit: not on the width, the order or the grouping; and
+/// the mirror image (−θ1, −θ2, −ω1, −ω2) flips at the same time.
 ///
 /// Accuracy at 1e-8, over 10 000 releases of the whole square (rest, 1 m, 1 kg), against TaylorStepper at 1e-13:
 /// 99.98 % within 0.01 s. Chaos multiplies the error of a step: of the flips in 0–5, 5–10, 10–20 s, half are within 6e-11,
 /// 6e-9, 2e-7 s, and 99 % within 2e-8, 3e-6, 4e-3 s. At 1e-6 it is 99.5 %, of those after 10 s 90 %. For the same share
 /// RK4 and DOP853 in the same lanes, at fixed steps, need some 2 to 8 times as long.
 ///
-/// `pendulum`  masses, lengths, gravity and rates of all; its angles are not used
-/// `times`     as many as `releases`
-/// `width`     doubles to a register: one of register_widths(), or 0 for the widest
+/// `pendulums`  as they are released, of two links each
+/// `times`      as many
+/// `width`      doubles to a register: one of register_widths(), or 0 for the widest
 /// Errors      Error (exit 2) for other than two links, spans that differ in size, a duration that is not positive and
 ///             finite, a tolerance below 1e-15, or a width that this processor has not; exit 130 soon after `stop` is
 ///             set.
-void first_flips(const Pendulum<double>& pendulum, std::span<const Release> releases, const FlipSpec& spec,
-                 std::span<double> times, const std::atomic<bool>& stop, int width = 0);
+void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times,
+                 const std::atomic<bool>& stop, int width = 0);
 
 /// The same for one pendulum by other equations and means, some eight times slower, for the error of first_flips():
 /// TaylorStepper with its tolerance. At 1e-13, of 110 flips within 20 s none is further than 2e-6 s from the same in

@@ -12,10 +12,19 @@ namespace doppel {
 // integrate/batch_width.cpp.
 
 /// What the motion of a double pendulum depends on besides its state.
+template <class Number>
 struct FlipChain {
-    double gravity;  // g / l1, 1/s²
-    double masses;   // 1 + m1 / m2
-    double longer;   // l2 / l1
+    Number gravity;  // g / l1, 1/s²
+    Number masses;   // 1 + m1 / m2
+    Number longer;   // L = l2 / l1
+    Number pull;     // −1 / L
+    Number longest;  // s, of a step
+};
+
+/// A double pendulum as it is released.
+struct FlipStart {
+    FlipChain<double> chain;
+    double theta[2], omega[2];  // rad, rad/s
 };
 
 inline constexpr int flip_order = 16;  // at 1e-8 rad/s, 12 costs 1.2 times as much and 20 costs 1.1 times
@@ -43,17 +52,17 @@ struct FlipSeries {
     Pack determinant;  // 1 / (1 + m1/m2 − cos²D)
 
     /// Sets out from the angles and rates in term[0].
-    [[gnu::always_inline]] void start(const FlipChain& by) {
+    [[gnu::always_inline]] void start(const FlipChain<Pack>& by) {
         const LanesSinCos<Pack> one(term[0].theta[0]), d(term[0].theta[1] - term[0].theta[0]);
         term[0].sin1 = one.sin * by.gravity;
         term[0].cos1 = one.cos * by.gravity;
         term[0].sin_d = d.sin;
         term[0].cos_d = d.cos;
-        determinant = Pack(1) / (Pack(by.masses) - d.cos * d.cos);
+        determinant = Pack(1) / (by.masses - d.cos * d.cos);
     }
 
     /// The tensions of power k, and from them all else of power k + 1.
-    [[gnu::always_inline]] void extend(const FlipChain& by, int k) {
+    [[gnu::always_inline]] void extend(const FlipChain<Pack>& by, int k) {
         Term& now = term[k];
         now.turn = now.omega[1] - now.omega[0];
         Pack square1(0), square2(0);
@@ -91,7 +100,7 @@ struct FlipSeries {
         next.theta[0] = now.omega[0] * inverse;
         next.theta[1] = now.omega[1] * inverse;
         next.omega[0] = ((b_sin + now.b * sin_d) - now.sin1) * inverse;
-        next.omega[1] = (a_sin + now.a * sin_d) * (inverse * Pack(-1 / by.longer));
+        next.omega[1] = (a_sin + now.a * sin_d) * (inverse * by.pull);
         next.sin_d = (turn_cos + now.turn * cos_d) * inverse;
         next.cos_d = (turn_sin + now.turn * sin_d) * -inverse;
         next.sin1 = (omega_cos + now.omega[0] * term[0].cos1) * inverse;
@@ -100,13 +109,13 @@ struct FlipSeries {
 
     /// How far the series is good, s, but no more than `longest`: its last four terms of the rates stay below
     /// 2^allowed rad/s.
-    [[gnu::always_inline]] Pack step(double allowed, double longest) const {
+    [[gnu::always_inline]] Pack step(double allowed, const Pack& longest) const {
         Pack exponent(1000);
         for (int k = order - watched_coefficients + 1; k <= order; ++k) {
             const Pack size = greater(abs(term[k].omega[0]), abs(term[k].omega[1]));
             exponent = lesser(exponent, (Pack(allowed) - rough_log2(size)) * Pack(1.0 / k));
         }
-        return lesser(rough_exp2(exponent), Pack(longest));
+        return lesser(rough_exp2(exponent), longest);
     }
 
     struct Ends {
@@ -129,13 +138,10 @@ struct FlipSeries {
 };
 
 struct FlipRequest {
-    FlipChain chain;
-    double omega[2];  // rad/s, at the release
     double duration;  // s
     double allowed;   // log2 of the tolerance, rad/s
-    double longest;   // s, of a step
     std::size_t count;
-    const Release* releases;
+    const FlipStart* starts;
     double* times;  // s; those that are negative are to be found
     const std::atomic<bool>* stop;
 };

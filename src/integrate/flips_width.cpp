@@ -36,24 +36,26 @@ private:
     static constexpr double least_step = 1e-9;  // s; where no more is allowed the numbers have broken down
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr std::size_t none = ~std::size_t(0);
+    static constexpr FlipStart hanging{.chain = {1, 2, 1, -1, 1}, .theta = {}, .omega = {}};
 
     struct Group {
+        FlipChain<Pack> chain;
         Series series;
         Pack time;  // s, since the release
         std::size_t trial[Pack::width];
     };
 
     [[gnu::always_inline]] void step() {
-        for (auto& group : groups_) group.series.start(request_.chain);
+        for (auto& group : groups_) group.series.start(group.chain);
         for (int k = 0; k < flip_order; ++k)
-            for (auto& group : groups_) group.series.extend(request_.chain, k);
+            for (auto& group : groups_) group.series.extend(group.chain, k);
         for (auto& group : groups_) finish(group);
     }
 
     /// To the end of the step, which is searched in the lanes where a rod may flip on it or the time ends.
     [[gnu::always_inline]] void finish(Group& group) {
         auto& now = group.series.term[0];
-        const Pack h = group.series.step(request_.allowed, request_.longest);
+        const Pack h = group.series.step(request_.allowed, group.chain.longest);
         const auto end = group.series.at(h);
         const Pack after = group.time + h;
         const Pack reach1 = reach(h, now.theta[0], end.theta[0], now.omega[0], end.omega[0]);
@@ -114,10 +116,18 @@ private:
         busy_ += is_left;
         group.trial[lane] = is_left ? next_ : none;
         group.time.set(lane, 0);
-        auto& start = group.series.term[0];
-        start.theta[0].set(lane, is_left ? request_.releases[next_].theta1 : 0);
-        start.theta[1].set(lane, is_left ? request_.releases[next_].theta2 : 0);
-        for (int i = 0; i < 2; ++i) start.omega[i].set(lane, is_left ? request_.omega[i] : 0);
+        const FlipStart& start = is_left ? request_.starts[next_] : hanging;
+        const auto& chain = start.chain;
+        group.chain.gravity.set(lane, chain.gravity);
+        group.chain.masses.set(lane, chain.masses);
+        group.chain.longer.set(lane, chain.longer);
+        group.chain.pull.set(lane, chain.pull);
+        group.chain.longest.set(lane, chain.longest);
+        auto& now = group.series.term[0];
+        for (int i = 0; i < 2; ++i) {
+            now.theta[i].set(lane, start.theta[i]);
+            now.omega[i].set(lane, start.omega[i]);
+        }
         next_ += is_left;
     }
 

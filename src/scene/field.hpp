@@ -50,6 +50,7 @@ struct Field {
     bool is_drawn = false;                         // pictures show it: of letters that the font has
     std::size_t most = 0;                          // numbers of an array that may have 1 or more
     std::span<const std::string_view> known = {};  // names that it takes, where not the reader checks them
+    std::string_view pattern = {};                 // of a string's form: a regular expression, for the schema
 };
 
 /// The names of an enumeration's values in presets, in their order.

@@ -40,7 +40,8 @@ struct ListedField {
     std::string by_default;                  // Markdown
     std::vector<std::string> choices = {};   // of text, or of a list's elements
     Bounds bounds = {};
-    std::size_t most = 0;  // as in Field
+    std::size_t most = 0;           // as in Field
+    std::string_view pattern = {};  // as in Field
 
     bool is_list() const { return type.starts_with("list"); }
     bool is_needed() const { return by_default == must_be_given; }
@@ -73,7 +74,7 @@ struct FieldTable {
             choices.insert(choices.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
         }
         fields.push_back({field.key, type_words<T>(), field.unit, field.help, default_text(field, by_default),
-                          std::move(choices), field.bounds, field.most});
+                          std::move(choices), field.bounds, field.most, field.pattern});
     }
     template <class Visit>
     void table(std::string_view key, const Visit& visit) {

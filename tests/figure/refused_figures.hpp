@@ -82,8 +82,9 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{
         "sweep", "[chart]\nscale = 0.001", ":4:1: [chart] scale", {"16 to 16384 px a side; 0.001 times 1600×900 px"}},
     RefusedFigure{"sweep", "[chart]\nscale = 8\nsize = [4000, 900]", ":4:1: [chart] scale", {"is 32000×7200"}},
-    RefusedFigure{"sweep", "[sweep]\nfrom = 2e6\nto = 2e6", ":4:1: [sweep] from", {"from -1000000 to 1000000°"}},
-    RefusedFigure{"sweep", "[sweep]\ndifference = -1e300", ":4:1: [sweep] difference", {"from -1000000 to 1000000°"}},
+    RefusedFigure{
+        "sweep", "[sweep]\nfrom = 2e6\nto = 2e6", ":4:1: [sweep] from", {"from -1000000 to 1000000", "theta1_deg"}},
+    RefusedFigure{"sweep", "[sweep]\ndifference = -1e300", ":4:1: [sweep] difference", {"from -1000000 to 1000000"}},
     RefusedFigure{
         "convergence", "[convergence]\nmethods = [\"rk4\", \"rk4\"]", ":4:1: [convergence] methods", {"must differ"}},
     RefusedFigure{"drift", "[drift]\nmethods = [\"rk4\", \"rk4\"]", ":4:1: [drift] methods", {"must differ; \"rk4\""}},
@@ -115,7 +116,7 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{"flip-map", "[system]\nangle_deg = [90, 90]", ":4:1: [system] angle_deg", {"flip map"}},
     RefusedFigure{"flip-map", "[system]\nlinks = 3", ":4:1: [system] links", {"flip map"}},
     RefusedFigure{"flip-map", "[system]\nstep_s = 0.1", ":4:1: [system] has no \"step_s\"", {}},
-    RefusedFigure{"flip-map", "[flip_map]\ncolumns = 1", ":4:1: [flip_map] columns", {"from 2 to 20000; it is 1"}},
+    RefusedFigure{"flip-map", "[flip_map]\ncolumns = 1", ":4:1: [flip_map] columns", {"from 2 to 1048576; it is 1"}},
     RefusedFigure{"flip-map", "[flip_map]\nduration_s = 0", ":4:1: [flip_map] duration_s", {"must be > 0"}},
     RefusedFigure{"flip-map", "[flip_map]\nchecked = -1", ":4:1: [flip_map] checked", {"it is -1"}},
     RefusedFigure{"links", "[system]\nlinks = 2", "", {"one link"}},

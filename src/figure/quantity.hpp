@@ -1,0 +1,74 @@
+#pragma once
+
+#include "analysis/exponent.hpp"
+#include "analysis/twins.hpp"
+#include "figure/experiment.hpp"
+#include "integrate/flips.hpp"
+#include "scene/toml_reader.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// What sweeps and maps find of each pair.
+enum class Quantity { divergence, exponent, flip_time, distance_at_end, energy_error, parting_time };
+template <>
+inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>({"divergence", "exponent", "flip_time",
+                                                                            "distance_at_end", "energy_error",
+                                                                            "parting_time"});
+inline constexpr std::string_view quantity_help =
+    "what is found of each pair: the mean of ln(d/d₀), or the distance at the end; when they part; of side a the "
+    "largest "
+    "Lyapunov exponent, the time of the first flip, or the largest energy error";
+
+/// What figures say of a quantity.
+struct QuantityWords {
+    std::string label;                 // of an axis, with the unit
+    std::vector<std::string> columns;  // of the table, one a number
+    bool logarithmic = false;
+    std::string none;  // what it means where there is none
+    bool none_is_bad = false;
+};
+
+/// Finds one quantity of pairs. Where all can be stepped side by side, in lanes: the mean, distances and energies by
+/// explicit methods of fixed step in double on chains, flips of two links by Taylor series whatever the integrator. The
+/// rest one by one.
+///
+/// The numbers of a pair: the quantity; of an exponent its uncertainty too. NaN where the motion broke down, or the two
+/// never part; infinite where there is no flip.
+class Measurement {
+public:
+    /// Of pairs like `pair`; `alike` = they have one method and as many links. Throws Error (exit 2), of the table's
+    /// `key`, where such pairs have no such quantity.
+    Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair, bool alike,
+                const ExponentSpec& exponent);
+
+    const QuantityWords& words() const { return words_; }
+    std::size_t numbers() const { return words_.columns.size(); }
+    /// How many pairs are best found at once, of which each next has one of its two in common with the last where
+    /// `shared`.
+    std::size_t together(bool shared) const;
+    /// numbers() more for each pair. Throws Error (exit 130) soon after `stop` is set.
+    void append(std::span<const Preset> pairs, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
+    /// Whether they can be those of one pair.
+    bool fits(std::span<const double> numbers) const;
+
+private:
+    void append_in_lanes(std::span<const Preset> pairs, std::span<TrialNumbers> into,
+                         const std::atomic<bool>& stop) const;
+    void append_flips(std::span<const Preset> pairs, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
+    double watched(const Preset& pair, const std::atomic<bool>& stop) const;
+
+    Quantity quantity_;
+    QuantityWords words_;
+    ExponentSpec exponent_;
+    FlipSpec flip_;
+    std::optional<TwinRun> run_;
+    bool flips_in_lanes_ = false;
+};
+
+}  // namespace doppel
