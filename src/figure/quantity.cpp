@@ -105,10 +105,17 @@ public:
 
 private:
     double flip(double time, const Bob<double>& from, const Bob<double>& to, double sense) const {
-        const double h = time - before_s_, p = sense * from.theta, q = sense * to.theta;
-        const Bernstein angle{{p, p + h / 3 * sense * from.omega, q - h / 3 * sense * to.omega, q}, h};
-        const auto rises = angle.rises(pi);
-        return rises.empty() ? never : before_s_ + 0.5 * (rises.front().low + rises.front().high);
+        const double h = time - before_s_, p = sense * from.theta - pi, v = sense * from.omega;
+        const double q = sense * to.theta - pi, w = sense * to.omega;
+        const auto rises = Bernstein{{p, p + h / 3 * v, q - h / 3 * w, q}, h}.rises();
+        if (rises.empty()) return never;
+        const double second = (3 * (q - p) / h - 2 * v - w) / h, third = (v + w - 2 * (q - p) / h) / (h * h);
+        struct Beyond {
+            double value, rate;  // rad beyond the upright, rad/s
+        };
+        return before_s_ + root(rises.front(), [&](double t) {
+                   return Beyond{p + t * (v + t * (second + t * third)), v + t * (2 * second + t * 3 * third)};
+               });
     }
 
     Bobs<double> before_;

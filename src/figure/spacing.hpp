@@ -22,9 +22,9 @@ struct Cells {
     bool is_logarithmic() const { return spacing == Spacing::logarithmic; }
     /// The middle of a cell. Of ends that are opposite numbers, mirror images have exactly opposite middles.
     double middle(int cell) const {
-        const double place = static_cast<double>(2 * cell + 1 - count) / count;  // −1 … 1
-        if (is_logarithmic()) return std::sqrt(from * to) * std::pow(to / from, 0.5 * place);
-        return 0.5 * (from + to) + 0.5 * (to - from) * place;
+        const double before = 2.0 * cell + 1, after = 2.0 * count - before;  // half cells
+        if (is_logarithmic()) return from * std::pow(to / from, before / (2.0 * count));
+        return (from * after + to * before) / (2.0 * count);
     }
 };
 

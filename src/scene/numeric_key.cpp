@@ -1,8 +1,9 @@
 #include "scene/numeric_key.hpp"
 
-#include "base/text.hpp"
 #include "scene/captions.hpp"
 #include "scene/preset_fields.hpp"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -212,9 +213,8 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
         throw table.fault(key, "\"{}\" is varied where the preset gives an accuracy", number.path);
     if (visit.names().empty() && !place.table.empty())
         throw table.fault(key, "\"{}\" is of no particle, constraint or force of the preset", number.path);
-    const auto near = nearest(place.key, visit.names());
-    throw table.fault(key, "\"{}\" is no number of the preset{}", number.path,
-                      near ? fmt::format("; did you mean \"{}\"?", *near) : "");
+    throw table.fault(key, "\"{}\" is no number of the preset; there are {}", number.path,
+                      fmt::join(visit.names(), ", "));
 }
 
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {

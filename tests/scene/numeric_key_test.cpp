@@ -1,0 +1,136 @@
+#include "scene/numeric_key.hpp"
+
+#include "scene/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace numeric_key_test {
+
+const std::string springs = R"(
+[system]
+angle_deg = [90, 80]
+[b]
+mass_kg = [1, 2]
+[[system.force]]
+kind = "spring"
+name = "left"
+from = "bob1"
+to = [-1, 0]
+stiffness_N_per_m = 5
+[[system.force]]
+kind = "spring"
+from = "bob2"
+to = [1, 0]
+stiffness_N_per_m = 5
+damping_N_s_per_m = 0.1
+[[system.constraint]]
+kind = "slot-line"
+particle = "bob2"
+direction = [1, 0]
+)";
+
+/// What a key in a table of its own leads to.
+struct Found {
+    Preset preset;
+    std::optional<NumericKey> key;
+    std::string message;
+
+    Found(const std::string& path, const std::string& text = "", bool reads_springs = false) {
+        const PresetText source{"x", "x.toml", "[sweep]\nparameter = 1\n" + text};
+        preset = read_preset({"x", "x.toml", reads_springs ? springs : text});
+        const auto document = parse_document(source, {});
+        TomlReader top(&document.root, "", document.path, document.texts);
+        auto table = document.table(top, "sweep");
+        try {
+            key.emplace(table, "parameter", path, preset);
+        } catch (const Error& fault) {
+            message = fault.what();
+        }
+    }
+    Preset with(double value, double difference = 0) {
+        auto changed = preset;
+        key->set(changed, Quad(value), Quad(difference));
+        return changed;
+    }
+};
+
+TEST(NumericKey, OfBothSidesSetsBothAndTheDifferenceOfB) {
+    Found gravity("system.gravity_m_per_s2");
+    ASSERT_TRUE(gravity.key) << gravity.message;
+    EXPECT_EQ(gravity.key->label, "gravity, m/s²");
+    const auto set = gravity.with(3, 0.5);
+    EXPECT_EQ(set.a.gravity_m_per_s2, 3);
+    EXPECT_EQ(set.b.gravity_m_per_s2, Quad(3.5));
+}
+
+TEST(NumericKey, OfAnElementLeavesTheOthers) {
+    Found mass("b.mass_kg[1]");
+    ASSERT_TRUE(mass.key) << mass.message;
+    EXPECT_EQ(mass.key->label, "mass m₂ of side b, kg");
+    const auto set = mass.with(7);
+    EXPECT_EQ(set.b.mass_kg, (std::vector<Quad>{1, 7}));
+    EXPECT_EQ(set.a.mass_kg, (std::vector<Quad>{1, 1}));
+    Found all("system.length_m");
+    EXPECT_EQ(all.with(2).a.length_m, (std::vector<Quad>{2, 2}));
+}
+
+TEST(NumericKey, OfAnEntryIsFoundByNameOrByItsKind) {
+    Found left("system.force.left.stiffness_N_per_m", "", true);
+    ASSERT_TRUE(left.key) << left.message;
+    EXPECT_EQ(left.key->label, "stiffness of left, N/m");
+    const auto stiffness = [](const SideSpec& side, std::size_t i) {
+        return std::get<SpringSpec>(side.forces[i].part).stiffness_N_per_m;
+    };
+    const auto set = left.with(50);
+    EXPECT_EQ(stiffness(set.a, 0), 50);
+    EXPECT_EQ(stiffness(set.b, 0), 50);
+    EXPECT_EQ(stiffness(set.a, 1), 5);
+    Found line("system.constraint.slot-line.direction[1]", "", true);
+    ASSERT_TRUE(line.key) << line.message;
+    EXPECT_EQ(std::get<SlotLineSpec>(line.with(0.5).a.constraints[0].part).direction[1], Quad(0.5));
+    // two springs: which one?
+    EXPECT_NE(Found("system.force.spring.stiffness_N_per_m", "", true).message.find("of no particle"),
+              std::string::npos);
+}
+
+TEST(NumericKey, OfLinksKeepsWhatAllLinksHaveInCommon) {
+    Found links("system.links", "[system]\nlinks = 2\nangle_deg = 120\nlength_m = [1, 2]\n");
+    ASSERT_TRUE(links.key) << links.message;
+    EXPECT_TRUE(links.key->is_whole);
+    const auto set = links.with(4);
+    EXPECT_EQ(set.a.angle_deg, (std::vector<Quad>(4, 120)));
+    EXPECT_EQ(set.a.length_m, (std::vector<Quad>(4, 1)));  // they differed
+}
+
+TEST(NumericKey, OfAStepTakesTheNearestThatDividesASample) {
+    Found step("system.step_s", "[system]\nintegrator = \"rk4\"\n");
+    ASSERT_TRUE(step.key) << step.message;
+    EXPECT_TRUE(step.key->is_step);
+    EXPECT_EQ(step.with(1.0 / 1000).a.step_s, (Rational{1, 960}));  // 8 to a sample of 1/120 s
+    EXPECT_EQ(step.key->taken(Quad(1.0 / 1000), step.preset), Quad(1) / 960);
+    EXPECT_FALSE(step.key->keeps_method);
+}
+
+TEST(NumericKey, IsRefusedWithWhatWouldBeRight) {
+    const auto refused = [](const std::string& path, const std::string& words, const std::string& text = "") {
+        const Found found(path, text);
+        EXPECT_NE(found.message.find(words), std::string::npos) << path << ": " << found.message;
+        EXPECT_TRUE(found.message.starts_with("x.toml:2:1: [sweep] parameter ")) << found.message;
+    };
+    refused("gravity", "system.gravity_m_per_s2");
+    refused("system.gravity", "there are links, mass_kg, length_m, angle_deg, omega_deg_per_s, gravity_m_per_s2");
+    refused("system.model", "is no number");
+    refused("system.mass_kg[2]", "whose last is [1]");
+    refused("system.mass_kg[x]", "must end like");
+    refused("system.gravity_m_per_s2[0]", "is a number, not an array");
+    refused("system.force.wind.mass_kg", "of no particle, constraint or force");
+    refused("system.tolerance", "goes by step_s");
+    refused("system.step_s", "goes by tolerance", "[system]\nintegrator = \"dop853\"\n");
+    refused("system.accuracy", "where the preset gives an accuracy");
+    refused("scene.duration_s", "must be a numeric key");
+    refused("system.", "must be a numeric key");
+}
+
+}  // namespace numeric_key_test
+}  // namespace doppel
