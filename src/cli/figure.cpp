@@ -17,7 +17,7 @@ namespace {
 struct FigureCommandOptions : RunCommandOptions {
     std::string size, format, shard, gl = "auto";
     double scale = 0;
-    bool merge = false;
+    bool merge = false, tiles = false;
 };
 
 std::vector<Override> overrides(const FigureCommandOptions& options) {
@@ -94,7 +94,13 @@ void make_figures(const FigureCommandOptions& options) {
         [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
     outlive_readers();
     try {
-        run_figures(figures, {options.out, options.jobs, shard_of(options), options.merge, gl_named(options.gl)},
+        run_figures(figures,
+                    {.out = options.out,
+                     .jobs = options.jobs,
+                     .shard = shard_of(options),
+                     .merge = options.merge,
+                     .tiles = options.tiles,
+                     .gl = gl_named(options.gl)},
                     watch_interrupts(), report);
     } catch (...) {
         reports.clear();
@@ -115,6 +121,7 @@ void add_figure(CLI::App& app) {
         "  doppel figure fig2-right --format pdf --set chart.width_cm=8.6\n"
         "  doppel figure flip-map --shard 3/8        # a part, on one of eight machines\n"
         "  doppel figure flip-map --merge            # all parts in DIR/flip-map/ together\n"
+        "  doppel figure flip-map --tiles --set flip_map.columns=8192 --set flip_map.rows=8192\n"
         "A long figure that was interrupted goes on where it was when the same command is given again.");
     add_run_options(command, *options, "Threads that compute; one a core where not given. The numbers stay the same");
     command.add_option("--size", options->size, "Size of the layout, px; the preset's where not given")
@@ -128,6 +135,8 @@ void add_figure(CLI::App& app) {
     add_gl_option(command, options->gl);
     command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
+    command.add_flag("--tiles", options->tiles,
+                     "Of a map: tiles with a pixel a cell and a page to pan and zoom, NAME.html; no picture, no table");
     command.callback([options] { make_figures(*options); });
 }
 

@@ -100,7 +100,7 @@ public:
 
 private:
     static void check_range(const TomlReader& table, const std::string& axis, const Parameter& parameter,
-                            const Cells& cells) {
+                            const CellRange& cells) {
         const auto from = axis + "_from", to = axis + "_to";
         if (!(cells.from < cells.to))
             throw table.fault(to, "must be above {} ({}); it is {}", from, cells.from, cells.to);

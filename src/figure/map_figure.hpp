@@ -10,7 +10,7 @@ namespace doppel {
 
 /// The cells of a map and what they look like.
 struct MapFrame {
-    Cells x, y;
+    CellRange x, y;
     PlotAxis x_axis, y_axis;           // without their ends
     std::vector<std::string> columns;  // of the table: x, y, then the numbers of a cell, of which the first is drawn
     HeatMap look;                      // the scale and its words

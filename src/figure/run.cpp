@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/threads.hpp"
+#include "figure/tiles.hpp"
 #include "integrate/widths.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
@@ -169,6 +170,12 @@ PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) 
     return options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
 }
 
+/// That of figure k alone.
+ComputationReport report_of(const FigureReport& report, std::size_t k) {
+    return {[&report, k](const FigureProgress& p) { report.progress(k, p); },
+            [&report, k](const std::string& s) { report.note(k, s); }};
+}
+
 /// The computation of every figure, and the threads at work on them.
 class Scheduler {
 public:
@@ -187,10 +194,8 @@ public:
                 report.note(k, fmt::format("leaves {}{} alone, of another preset or version", others.front().string(),
                                            others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
             files[k]->note_part(name);
-            computations_.push_back(std::make_unique<Computation>(
-                figure, header, FilePlace(folder, name), jobs,
-                ComputationReport{[&report, k](const FigureProgress& p) { report.progress(k, p); },
-                                  [&report, k](const std::string& s) { report.note(k, s); }}));
+            computations_.push_back(
+                std::make_unique<Computation>(figure, header, FilePlace(folder, name), jobs, report_of(report, k)));
             auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
@@ -245,6 +250,11 @@ private:
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report) {
     const int jobs = options.jobs > 0 ? options.jobs : cores();
+    if (options.tiles) {
+        for (std::size_t k = 0; k < figures.size(); ++k)
+            make_tiles(figures[k], options, stop, report_of(report, k), [&](const RunResult& r) { report.done(k, r); });
+        return;
+    }
     FigureWriter writer(options, jobs, stop);
     if (options.merge) {
         for (std::size_t k = 0; k < figures.size(); ++k) {

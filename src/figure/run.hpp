@@ -19,6 +19,7 @@ struct FigureOptions {
     int jobs = 0;                       // threads that compute; 0 = one a core
     std::optional<Shard> shard;         // compute this part alone, into a file for a merge
     bool merge = false;                 // compute nothing: merge the parts
+    bool tiles = false;                 // of maps: a pyramid of tiles in place of picture and table (figure/tiles.hpp)
     Gl gl = Gl::automatic;              // what draws
 };
 

@@ -14,7 +14,7 @@ inline constexpr auto names_of<Spacing> = std::to_array<std::string_view>({"line
 inline constexpr std::string_view spacing_help = "by equal differences, or by equal ratios";
 
 /// Cells of equal size between two ends.
-struct Cells {
+struct CellRange {
     double from = 0, to = 1;
     int count = 200;
     Spacing spacing = Spacing::linear;

@@ -105,6 +105,25 @@ int image_pixels(const Axis& axis, double low, double high, std::size_t cells, f
 
 }  // namespace
 
+std::array<double, 2> color_range(const HeatMap& map) {
+    const auto scale = fitted_scale(map);
+    return {scale.low, scale.high};
+}
+
+Picture cell_picture(const HeatMap& map, const Theme& theme) {
+    Picture picture({static_cast<int>(map.columns), static_cast<int>(map.rows)});
+    const auto scale = fitted_scale(map);
+    const Color none = none_color(map, theme);
+    for (int y = 0; y < picture.size.height; ++y)
+        for (int x = 0; x < picture.size.width; ++x) {
+            const auto cell = (map.rows - 1 - static_cast<std::size_t>(y)) * map.columns + static_cast<std::size_t>(x);
+            const auto value = static_cast<double>(map.values[cell]);
+            const bool has_value = std::isfinite(value) && (value > 0 || !map.logarithmic);
+            set_pixel(picture, x, y, has_value ? map_color(scale.share(value)) : none);
+        }
+    return picture;
+}
+
 Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
                 Color none, float scale) {
     const Size size{image_pixels(x, map.x_low, map.x_high, map.columns, area.width() * scale),

@@ -4,6 +4,7 @@
 #include "image/picture.hpp"
 #include "render/display_list.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -90,6 +91,11 @@ struct Figure {
     std::optional<PlotTable> table;
     std::vector<std::string> captions;  // paragraphs, broken into lines
 };
+
+/// The ends of a map's scale of colours: its own, or those of its numbers.
+std::array<double, 2> color_range(const HeatMap& map);
+/// A map by itself, a pixel a cell, the first row at the bottom.
+Picture cell_picture(const HeatMap& map, const Theme& theme);
 
 /// Composes a figure for a picture of `size` px. `scale` = 2 gives every length twice as many pixels: the same layout
 /// as a picture of half the size, for print. Text of labels is 20 px times `unit` and scale, the rest in proportion; by the

@@ -1,0 +1,334 @@
+#include "figure/tiles.hpp"
+
+#include "base/clock.hpp"
+#include "base/machine.hpp"
+#include "base/threads.hpp"
+#include "figure/map_figure.hpp"
+#include "figure/tile_page.hpp"
+#include "output/png.hpp"
+#include "output/transaction.hpp"
+#include "scene/captions.hpp"
+#include "scene/resolved.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <set>
+
+namespace doppel {
+namespace {
+
+constexpr double bytes_a_cell = 1;  // of PNGs; of the flip map 0.6
+
+std::string text_at(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The tiles of one figure, on disk.
+class TileSet {
+public:
+    TileSet(const FigurePreset& figure, const Folder& above, int jobs, const std::atomic<bool>& stop,
+            ComputationReport report)
+        : figure_(figure),
+          map_(*figure.experiment->map()),
+          pyramid_(map_.frame().x.count, map_.frame().y.count),
+          theme_(*std::find_if(themes.begin(), themes.end(),
+                               [&](const Theme& theme) { return theme.name == figure.chart.theme; })),
+          folder_(claimed(above)),
+          stop_(stop),
+          report_(std::move(report)),
+          jobs_(jobs) {
+        for (const auto& name : folder_.names()) {
+            if (name.ends_with(".png")) there_.insert(name);
+        }
+        const auto& frame = map_.frame();
+        constexpr int tile = Pyramid::tile;
+        mirrors_ = frame.is_mirrored && frame.x.count % tile == 0 && frame.y.count % tile == 0;
+    }
+
+    /// Colours like those of a small map, if the preset does not say.
+    void fit_colors() {
+        look_ = map_.frame().look;
+        if (look_.low && look_.high) return;
+        constexpr int cells = 64;
+        std::vector<float> numbers(cells * cells, NAN);
+        parallel_for(cells, jobs_, [&](std::size_t i) {
+            const int row = spread(static_cast<int>(i), cells, map_.frame().y.count);
+            for (int k = 0; k < cells; ++k) {
+                std::vector<TrialNumbers> cell(1);
+                map_.find(row, spread(k, cells, map_.frame().x.count), cell, stop_);
+                numbers[i * cells + static_cast<std::size_t>(k)] = static_cast<float>(cell[0][0]);
+            }
+        });
+        auto sample = look_;
+        sample.values = std::move(numbers);
+        const auto [low, high] = color_range(sample);
+        look_.low = low;
+        look_.high = high;
+    }
+
+    void demand_space() const {
+        const double cells = static_cast<double>(pyramid_.columns) * pyramid_.rows;
+        std::error_code unknown;
+        const auto space = std::filesystem::space(folder_.path(), unknown);
+        const double needed = bytes_a_cell * cells * 4 / 3 * (1 - share_there());
+        if (unknown || needed < static_cast<double>(space.available)) return;
+        throw bad_input("{}: the tiles of {} × {} cells take some {:.0f} GB, and {} has {:.0f} GB free", figure_.name,
+                        grouped(pyramid_.columns), grouped(pyramid_.rows), needed / 1e9, folder_.path().string(),
+                        static_cast<double>(space.available) / 1e9);
+    }
+
+    /// The finest tiles of a part that are missing.
+    void compute(const Shard& shard) {
+        const int across = pyramid_.across(pyramid_.levels), down = pyramid_.down(pyramid_.levels);
+        const long all = static_cast<long>(across) * down, computed = mirrors_ ? (all + 1) / 2 : all;
+        const long first = computed * (shard.number - 1) / shard.of, last = computed * shard.number / shard.of;
+        std::vector<long> missing;
+        for (long i = first; i < last; ++i) {
+            const int row = static_cast<int>(i / across), column = static_cast<int>(i % across);
+            if (!is_there(pyramid_.levels, row, column) ||
+                (mirrors_ && !is_there(pyramid_.levels, down - 1 - row, across - 1 - column)))
+                missing.push_back(i);
+        }
+        total_ = static_cast<double>(last - first) * cells_a_tile() * (mirrors_ ? 2 : 1);
+        done_ =
+            total_ * (1 - static_cast<double>(missing.size()) / std::max<double>(1, static_cast<double>(last - first)));
+        if (done_ > 0)
+            report_.note(fmt::format("goes on: {:.0f} % of the finest tiles are there", 100 * done_ / total_));
+        if (!missing.empty()) fit_colors();
+        start_s_ = seconds_of(CLOCK_MONOTONIC);
+        parallel_for(missing.size(), jobs_, [&](std::size_t i) {
+            throw_if_set(stop_);
+            const int row = static_cast<int>(missing[i] / across), column = static_cast<int>(missing[i] % across);
+            auto picture = finest(row, column);
+            write(picture, pyramid_.levels, row, column);
+            const int other_row = down - 1 - row, other_column = across - 1 - column;
+            if (mirrors_ && (other_row != row || other_column != column)) {
+                turn(picture);
+                write(picture, pyramid_.levels, other_row, other_column);
+            }
+            progress(cells_a_tile() * (mirrors_ ? 2 : 1));
+        });
+    }
+
+    /// The coarser ones, from those below them.
+    void combine() {
+        for (int level = pyramid_.levels - 1; level >= 0; --level) {
+            const int across = pyramid_.across(level), down = pyramid_.down(level);
+            parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), jobs_, [&](std::size_t i) {
+                throw_if_set(stop_);
+                const int row = static_cast<int>(i) / across, column = static_cast<int>(i) % across;
+                if (!is_there(level, row, column)) write(combined(level, row, column), level, row, column);
+            });
+        }
+    }
+
+    /// Throws where a part of the finest tiles is missing.
+    void demand_finest() const {
+        for (int row = 0; row < pyramid_.down(pyramid_.levels); ++row)
+            for (int column = 0; column < pyramid_.across(pyramid_.levels); ++column)
+                if (!is_there(pyramid_.levels, row, column))
+                    throw bad_input("{}: the tile {} is missing; compute all parts before the merge", figure_.name,
+                                    (folder_.path() / Pyramid::name(pyramid_.levels, row, column)).string());
+    }
+
+    TilePage page() {
+        if (!look_.low || !look_.high) fit_colors();
+        return {figure_.title, figure_.subtitle, folder_.path().filename().string(), pyramid_, map_.frame(), look_,
+                theme_};
+    }
+    const Pyramid& pyramid() const { return pyramid_; }
+    double cells_computed() const { return computed_; }
+    double seconds() const { return seconds_of(CLOCK_MONOTONIC) - start_s_; }
+    std::size_t written() const { return written_; }
+
+private:
+    static int spread(int i, int of, int cells) { return static_cast<int>((2L * i + 1) * cells / (2L * of)); }
+    double cells_a_tile() const { return static_cast<double>(Pyramid::tile) * Pyramid::tile; }
+    double share_there() const {
+        const double all = static_cast<double>(pyramid_.across(pyramid_.levels)) * pyramid_.down(pyramid_.levels);
+        return std::min(1.0, static_cast<double>(there_.size()) / (all * 4 / 3));
+    }
+
+    /// The folder of tiles, made or of this figure.
+    Folder claimed(const Folder& above) const {
+        const auto name = figure_.name + ".tiles";
+        const auto kind = above.entry(name).kind;
+        if (kind == Entry::Kind::none) above.make_folder(name);
+        auto folder = above.folder(name);
+        const auto header = header_of(figure_);
+        const Json mark{{"doppel", program_json()},
+                        {"figure", header.figure},
+                        {"preset_sha256", header.preset},
+                        {"version", header.version},
+                        {"revision", header.revision}};
+        const auto text = mark.dump(2) + "\n";
+        const auto names = folder.names();
+        const auto path = folder.path() / mark_name;
+        if (std::find(names.begin(), names.end(), mark_name) == names.end()) {
+            if (!names.empty())
+                throw io_failed("{} is not a folder of tiles of Doppel's; remove it, or give another folder with --out",
+                                folder.path().string());
+            OutputFile file{FilePlace(folder, mark_name)};
+            file.write(text);
+            file.close();
+        } else if (text_at(path) != text) {
+            throw io_failed("{} belongs to another preset or version; remove it, or give another folder with --out",
+                            folder.path().string());
+        }
+        return folder;
+    }
+
+    bool is_there(int level, int row, int column) const {
+        const std::lock_guard hold(mutex_);
+        return there_.contains(Pyramid::name(level, row, column));
+    }
+
+    Picture finest(int row, int column) const {
+        constexpr int tile = Pyramid::tile;
+        const int left = column * tile, width = std::min(tile, pyramid_.columns - left);
+        HeatMap cells = look_;
+        cells.columns = static_cast<std::size_t>(width);
+        const int top = row * tile, height = std::min(tile, pyramid_.rows - top);
+        cells.rows = static_cast<std::size_t>(height);
+        for (int y = height - 1; y >= 0; --y) {  // from the bottom up
+            throw_if_set(stop_);
+            std::vector<TrialNumbers> numbers(cells.columns);
+            map_.find(pyramid_.rows - 1 - top - y, left, numbers, stop_);
+            for (const auto& cell : numbers) cells.values.push_back(static_cast<float>(cell[0]));
+        }
+        Picture picture({tile, tile});
+        paste(cell_picture(cells, theme_), 0, 0, picture);
+        return picture;
+    }
+
+    Picture combined(int level, int row, int column) const {
+        Picture four({2 * Pyramid::tile, 2 * Pyramid::tile});
+        for (int below = 0; below < 2; ++below)
+            for (int right = 0; right < 2; ++right) {
+                const int r = 2 * row + below, c = 2 * column + right;
+                if (r < pyramid_.down(level + 1) && c < pyramid_.across(level + 1))
+                    paste(read_png(folder_.path() / Pyramid::name(level + 1, r, c)), right * Pyramid::tile,
+                          below * Pyramid::tile, four);
+            }
+        return downscaled(four, {Pyramid::tile, Pyramid::tile});
+    }
+
+    static void paste(const Picture& from, int left, int top, Picture& into) {
+        for (int y = 0; y < from.size.height; ++y)
+            std::copy_n(from.at(0, y), 4 * static_cast<std::size_t>(from.size.width), into.at(left, top + y));
+    }
+    /// By half a turn.
+    static void turn(Picture& picture) {
+        const auto count = picture.rgba.size() / 4;
+        for (std::size_t i = 0; i < count / 2; ++i)
+            std::swap_ranges(&picture.rgba[4 * i], &picture.rgba[4 * i] + 4, &picture.rgba[4 * (count - 1 - i)]);
+    }
+
+    void write(const Picture& picture, int level, int row, int column) {
+        const auto name = Pyramid::name(level, row, column);
+        if (is_there(level, row, column)) return;
+        const FilePlace place(folder_, name), part = part_of(place);
+        if (folder_.entry(part.name).kind == Entry::Kind::file) folder_.remove(part.name);  // of a run that was killed
+        write_png(part, picture, {.with_alpha = !picture.is_opaque()}, stop_);
+        rename_file(part, place);
+        const std::lock_guard hold(mutex_);
+        there_.insert(name);
+        ++written_;
+    }
+
+    void progress(double cells) {
+        const std::lock_guard hold(mutex_);
+        done_ += cells;
+        computed_ += cells;
+        report_.progress({done_, total_});
+        const double seconds = seconds_of(CLOCK_MONOTONIC) - start_s_;
+        if (told_ || seconds < 5) return;
+        told_ = true;
+        const double rate = computed_ / seconds, left = (total_ - done_) / rate;
+        report_.note(fmt::format("{} cells to go, about {} a second: {}", grouped(std::lround(total_ - done_)),
+                                 roughly(rate),
+                                 left < 100 ? fmt::format("{:.0f} s", left) : fmt::format("{:.0f} min", left / 60)));
+    }
+
+    static constexpr const char* mark_name = "pyramid.json";
+
+    const FigurePreset& figure_;
+    const MapFigure& map_;
+    Pyramid pyramid_;
+    const Theme& theme_;
+    Folder folder_;
+    const std::atomic<bool>& stop_;
+    ComputationReport report_;
+    int jobs_;
+    HeatMap look_;
+    bool mirrors_ = false;
+    mutable std::mutex mutex_;  // of all below
+    std::set<std::string> there_;
+    double total_ = 0, done_ = 0, computed_ = 0, start_s_ = 0;  // cells, s
+    std::size_t written_ = 0;
+    bool told_ = false;
+};
+
+}  // namespace
+
+Pyramid::Pyramid(int across_cells, int down_cells) : columns(across_cells), rows(down_cells), levels(0) {
+    while ((static_cast<long>(tile) << levels) < std::max(columns, rows)) ++levels;
+}
+
+int Pyramid::tiles(int cells, int level) const {
+    const long side = static_cast<long>(tile) << (levels - level);
+    return static_cast<int>((cells + side - 1) / side);
+}
+
+std::string Pyramid::name(int level, int row, int column) {
+    return fmt::format("{}-{}-{}.png", level, row, column);
+}
+
+void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,
+                const ComputationReport& report, const std::function<void(const RunResult&)>& done) {
+    if (!figure.experiment->map())
+        throw bad_input("{}: --tiles are of maps, kind = \"map\" or \"flip-map\"; this is kind = \"{}\"", figure.name,
+                        figure.kind);
+    const double start = seconds_of(CLOCK_MONOTONIC);
+    const int jobs = options.jobs > 0 ? options.jobs : cores();
+    const auto run = options.shard ? fmt::format("tiles-{}-of-{}", options.shard->number, options.shard->of) : "tiles";
+    Transaction files(options.out / figure.name, run);
+    TileSet tiles(figure, files.folder(), jobs, stop, report);
+    RunResult result;
+    if (!options.merge) {
+        tiles.demand_space();
+        tiles.compute(options.shard.value_or(Shard{}));
+    }
+    if (!options.shard) {
+        if (options.merge) tiles.demand_finest();
+        const double computed_s = tiles.seconds();
+        tiles.combine();
+        const auto html = figure.name + ".html";
+        write_tile_page(files.file(html), tiles.page());
+        files.finished(html);
+        const auto& pyramid = tiles.pyramid();
+        write_manifest(files, figure.name + ".tiles.json",
+                       {{"doppel", program_json()},
+                        {"figure", figure.name},
+                        {"title", figure.title},
+                        {"resolved_preset", json_of_toml(figure.resolved())},
+                        {"tiles",
+                         {{"folder", figure.name + ".tiles"},
+                          {"size_px", Pyramid::tile},
+                          {"levels", pyramid.levels + 1},
+                          {"cells", {pyramid.columns, pyramid.rows}},
+                          {"written", tiles.written()}}},
+                        {"threads", jobs},
+                        {"time", {{"compute_wall_s", computed_s}, {"cells_computed", tiles.cells_computed()}}}});
+        result.files = files.publish();
+    }
+    result.samples = std::lround(tiles.cells_computed());
+    result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+    done(result);
+}
+
+}  // namespace doppel
