@@ -1,0 +1,204 @@
+#include "figure/tiles.hpp"
+
+#include "figure/map_figure.hpp"
+#include "figure/support.hpp"
+#include "image/color.hpp"
+#include "output/png.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace doppel {
+namespace tiles_test {
+
+namespace fs = std::filesystem;
+
+const std::string flips =
+    "title = \"<b> & more</script>\"\n[scene]\nkind = \"flip-map\"\n[flip_map]\nduration_s = 0.6\nchecked = 0\n";
+
+FigurePreset small(const std::string& size = "columns = 600\nrows = 300\n") {
+    return figure_from(flips + size);
+}
+
+struct TileRun {
+    fs::path out =
+        fs::path(DOPPEL_TEST_OUTPUT) / "tiles" / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::vector<std::string> notes;
+
+    TileRun() { fs::remove_all(out); }
+    fs::path tiles() const { return out / "x" / "x.tiles"; }
+
+    RunResult operator()(const FigurePreset& figure, const FigureOptions& options = {},
+                         const std::atomic<bool>& stop = false) {
+        auto placed = options;
+        placed.out = out;
+        placed.tiles = true;
+        if (placed.jobs == 0) placed.jobs = 2;
+        RunResult result;
+        run_figures({figure}, placed, stop,
+                    {[](std::size_t, const FigureProgress&) {},
+                     [&](std::size_t, const std::string& note) { notes.push_back(note); },
+                     [&](std::size_t, const RunResult& done) { result = done; }});
+        return result;
+    }
+    std::map<std::string, std::string> contents() const {
+        std::map<std::string, std::string> all;
+        for (const auto& entry : fs::directory_iterator(tiles()))
+            all[entry.path().filename()] = test::bytes_of(entry.path());
+        return all;
+    }
+};
+
+TEST(Pyramid, HasOneTileAtTheTopAndAPixelACellBelow) {
+    const Pyramid pyramid(600, 300);
+    EXPECT_EQ(pyramid.levels, 2);
+    EXPECT_EQ(pyramid.across(2), 3);
+    EXPECT_EQ(pyramid.down(2), 2);
+    EXPECT_EQ(pyramid.across(1), 2);
+    EXPECT_EQ(pyramid.down(1), 1);
+    EXPECT_EQ(pyramid.across(0), 1);
+    EXPECT_EQ(Pyramid(256, 2).levels, 0);
+    EXPECT_EQ(Pyramid(32768, 32768).levels, 7);
+}
+
+TEST(Tiles, AreTheCellsOfTheMap) {
+    TileRun run;
+    const auto figure = small();
+    run(figure);
+    auto names = run.contents();
+    EXPECT_EQ(names.size(), 6u + 2 + 1 + 1);  // and pyramid.json
+    // colours only depend on the number, and grow apart with it
+    const auto& map = *figure.experiment->map();
+    std::map<std::vector<std::uint8_t>, std::pair<double, double>> ranges;  // of times, by colour
+    for (const int row : {0, 255, 256, 299})
+        for (int column = 0; column < 600; column += 7) {
+            std::vector<TrialNumbers> cell(1);
+            map.find(299 - row, column, cell, false);
+            const auto picture = read_png(run.tiles() / Pyramid::name(2, row / 256, column / 256));
+            const auto* pixel = picture.at(column % 256, row % 256);
+            EXPECT_EQ(pixel[3], 255);
+            const double time = cell[0][0];
+            auto& [low, high] = ranges.try_emplace(std::vector(pixel, pixel + 3), time, time).first->second;
+            low = std::min(low, time);
+            high = std::max(high, time);
+        }
+    EXPECT_GT(ranges.size(), 50u);
+    for (const double end : {0.0, 1.0}) {  // beyond the scale
+        const auto color = bytes_of(map_color(end));
+        ranges.erase(std::vector(color.begin(), color.begin() + 3));
+    }
+    for (const auto& [color, range] : ranges)
+        EXPECT_TRUE(range.first == range.second || range.second < 1.05 * range.first)
+            << range.first << ' ' << range.second;
+    // beyond the map there is nothing
+    const auto last = read_png(run.tiles() / Pyramid::name(2, 1, 2));
+    EXPECT_EQ(last.at(600 - 512, 0)[3], 0);
+    EXPECT_EQ(last.at(0, 300 - 256)[3], 0);
+}
+
+TEST(Tiles, AreTheSameInPartsAndFromMoreThreads) {
+    TileRun whole;
+    whole(small());
+    const auto expected = whole.contents();
+    TileRun parts;
+    parts.out += "-parts";
+    fs::remove_all(parts.out);
+    for (const int number : {2, 3, 1}) parts(small(), {.jobs = number, .shard = Shard{number, 3}});
+    EXPECT_EQ(parts.contents().size(), 6u + 1);
+    parts(small(), {.merge = true});
+    EXPECT_EQ(parts.contents(), expected);
+}
+
+TEST(Tiles, OfAMirroredMapAreComputedOnce) {
+    TileRun mirrored;
+    const auto square = small("columns = 512\nrows = 512\n");
+    ASSERT_TRUE(square.experiment->map()->frame().is_mirrored);
+    const auto result = mirrored(square);
+    EXPECT_EQ(result.samples, 512 * 512);
+    const auto one = read_png(mirrored.tiles() / "1-0-0.png"), other = read_png(mirrored.tiles() / "1-1-1.png");
+    for (int y = 0; y < 256; y += 5)
+        for (int x = 0; x < 256; x += 5)
+            EXPECT_TRUE(std::equal(one.at(x, y), one.at(x, y) + 4, other.at(255 - x, 255 - y)));
+    // as each of the two is by itself
+    std::vector<TrialNumbers> cell(1), image(1);
+    square.experiment->map()->find(40, 300, cell, false);
+    square.experiment->map()->find(511 - 40, 511 - 300, image, false);
+    EXPECT_EQ(cell[0], image[0]);
+}
+
+TEST(Tiles, GoOnWithThoseThatAreMissing) {
+    TileRun run;
+    run(small());
+    const auto expected = run.contents();
+    fs::remove(run.tiles() / "2-0-1.png");
+    fs::remove(run.tiles() / "0-0-0.png");
+    test::write_bytes(run.tiles() / "2-0-1.png.part", "of a run that was killed");
+    const auto kept = fs::last_write_time(run.tiles() / "2-1-1.png");
+    const auto result = run(small());
+    EXPECT_EQ(result.samples, 256 * 256);
+    EXPECT_EQ(run.contents(), expected);
+    EXPECT_EQ(fs::last_write_time(run.tiles() / "2-1-1.png"), kept);
+    ASSERT_FALSE(run.notes.empty());
+    EXPECT_NE(run.notes.back().find("83 %"), std::string::npos) << run.notes.back();
+}
+
+std::pair<ExitCode, std::string> refusal(TileRun& run, const FigurePreset& figure, const FigureOptions& options = {},
+                                         bool stop = false) {
+    try {
+        run(figure, options, stop);
+    } catch (const Error& fault) {
+        return {fault.code(), fault.what()};
+    }
+    return {ExitCode::done, ""};
+}
+
+TEST(Tiles, LeaveOtherFilesAlone) {
+    TileRun run;
+    run(small());
+    auto [code, message] = refusal(run, small("columns = 600\nrows = 301\n"));
+    EXPECT_EQ(code, ExitCode::io_failed);
+    EXPECT_NE(message.find("belongs to another preset or version"), std::string::npos) << message;
+    fs::remove_all(run.out);
+    fs::create_directories(run.tiles());
+    test::write_bytes(run.tiles() / "diary.txt", "mine");
+    std::tie(code, message) = refusal(run, small());
+    EXPECT_EQ(code, ExitCode::io_failed);
+    EXPECT_NE(message.find("not a folder of tiles of Doppel's"), std::string::npos) << message;
+    EXPECT_EQ(test::bytes_of(run.tiles() / "diary.txt"), "mine");
+    // nor through a link
+    fs::remove_all(run.tiles());
+    fs::create_directories(run.out / "elsewhere");
+    fs::create_directory_symlink(run.out / "elsewhere", run.tiles());
+    EXPECT_EQ(refusal(run, small()).first, ExitCode::io_failed);
+    EXPECT_TRUE(fs::is_empty(run.out / "elsewhere"));
+}
+
+TEST(Tiles, AreOfMapsAndOfAllParts) {
+    TileRun run;
+    auto [code, message] = refusal(run, figure_of("fig2-right"));
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("kind = \"sweep\""), std::string::npos) << message;
+    run(small(), {.shard = Shard{1, 2}});
+    std::tie(code, message) = refusal(run, small(), {.merge = true});
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("2-1-0.png is missing"), std::string::npos) << message;
+    EXPECT_EQ(refusal(run, small(), {}, true).first, ExitCode::interrupted);
+    EXPECT_EQ(run.contents().size(), 3u + 1);  // what was there stays
+}
+
+TEST(TilePage, SaysWhatItShowsAndNothingThatTheTitleMeans) {
+    TileRun run;
+    run(small());
+    const auto page = test::bytes_of(run.out / "x" / "x.html");
+    EXPECT_LT(page.size(), 100'000u);
+    EXPECT_NE(page.find("<title>&lt;b&gt; &amp; more&lt;/script&gt;</title>"), std::string::npos);
+    EXPECT_NE(page.find("\"columns\":600"), std::string::npos);
+    EXPECT_NE(page.find("no flip within 0.6 s"), std::string::npos);
+    EXPECT_EQ(page.find("{map}"), std::string::npos);
+    EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+}  // namespace tiles_test
+}  // namespace doppel
