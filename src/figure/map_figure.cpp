@@ -1,9 +1,12 @@
 #include "figure/map_figure.hpp"
 
 #include "base/error.hpp"
+#include "base/machine.hpp"
+#include "scene/captions.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace doppel {
 
@@ -78,6 +81,27 @@ void MapFigure::draw(std::span<const TrialNumbers> numbers, Figure& figure) cons
             map.values.push_back(static_cast<float>(at(numbers, row, column)));
     if (std::none_of(map.values.begin(), map.values.end(), [](float x) { return std::isnan(x); })) map.none_label = "";
     figure.panels.push_back(std::move(plot));
+}
+
+void demand_room(const FigurePreset& figure, const PartHeader& header, const Folder& folder) {
+    const auto* map = figure.experiment->map();
+    if (!map) return;
+    const auto& [x, y] = std::tie(map->frame().x, map->frame().y);
+    const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
+    const double numbers = static_cast<double>(map->frame().columns.size() - 2);
+    const double cells = share * x.count * y.count;
+    const auto refuse = [&](const char* what, double needed, double there) {
+        return bad_input(
+            "{}: {} × {} cells take {:.2g} GB of {}, and there are {:.2g} GB; take fewer, parts (--shard), or --tiles",
+            figure.name, grouped(x.count), grouped(y.count), needed / 1e9, what, there / 1e9);
+    };
+    // the numbers of all trials, and where a picture is drawn twice a float
+    const double memory = cells * (8 * numbers + 8), owned = static_cast<double>(this_machine().memory);
+    if (memory > 0.8 * owned) throw refuse("memory", memory, owned);
+    std::error_code unknown;
+    const auto space = std::filesystem::space(folder.path(), unknown);
+    const double table = cells * (30 + 18 * numbers), free = static_cast<double>(space.available);
+    if (!unknown && table > free) throw refuse("disk", table, free);
 }
 
 }  // namespace doppel

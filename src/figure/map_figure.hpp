@@ -1,6 +1,7 @@
 #pragma once
 
 #include "figure/experiment.hpp"
+#include "figure/part_file.hpp"
 #include "figure/spacing.hpp"
 
 #include <string>
@@ -54,5 +55,9 @@ private:
     std::size_t numbers_in_cell() const { return frame_.columns.size() - 2; }
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override;
 };
+
+/// Throws Error (exit 2) where the trials of `header` are so many cells of a map that memory, or the disk of `folder`,
+/// does not hold them. Nothing of other figures.
+void demand_room(const FigurePreset& figure, const PartHeader& header, const Folder& folder);
 
 }  // namespace doppel

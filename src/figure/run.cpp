@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/threads.hpp"
+#include "figure/map_figure.hpp"
 #include "figure/tiles.hpp"
 #include "integrate/widths.hpp"
 #include "output/png.hpp"
@@ -188,6 +189,7 @@ public:
             const auto& figure = figures[k];
             const auto header = header_for(figure, options);
             const auto& folder = files[k]->folder();
+            demand_room(figure, header, folder);
             const auto name = resume_name(header);
             if (const auto others = other_resumes(folder.path(), header);
                 !others.empty() && folder.entry(name).kind == Entry::Kind::none)

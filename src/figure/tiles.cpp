@@ -4,46 +4,35 @@
 #include "base/machine.hpp"
 #include "base/threads.hpp"
 #include "figure/map_figure.hpp"
+#include "figure/tile_folder.hpp"
 #include "figure/tile_page.hpp"
-#include "output/png.hpp"
 #include "output/transaction.hpp"
 #include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <mutex>
-#include <set>
 
 namespace doppel {
 namespace {
 
 constexpr double bytes_a_cell = 1;  // of PNGs; of the flip map 0.6
 
-std::string text_at(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The tiles of one figure, on disk.
-class TileSet {
+/// Makes the tiles of one figure.
+class TileMaker {
 public:
-    TileSet(const FigurePreset& figure, const Folder& above, int jobs, const std::atomic<bool>& stop,
-            ComputationReport report)
+    TileMaker(const FigurePreset& figure, const Folder& above, int jobs, const std::atomic<bool>& stop,
+              ComputationReport report)
         : figure_(figure),
           map_(*figure.experiment->map()),
           pyramid_(map_.frame().x.count, map_.frame().y.count),
           theme_(*std::find_if(themes.begin(), themes.end(),
                                [&](const Theme& theme) { return theme.name == figure.chart.theme; })),
-          folder_(claimed(above)),
+          folder_(above, figure.name + ".tiles", header_of(figure)),
           stop_(stop),
           report_(std::move(report)),
           jobs_(jobs) {
-        for (const auto& name : folder_.names()) {
-            if (name.ends_with(".png")) there_.insert(name);
-        }
         const auto& frame = map_.frame();
         constexpr int tile = Pyramid::tile;
         mirrors_ = frame.is_mirrored && frame.x.count % tile == 0 && frame.y.count % tile == 0;
@@ -143,49 +132,16 @@ public:
     const Pyramid& pyramid() const { return pyramid_; }
     double cells_computed() const { return computed_; }
     double seconds() const { return seconds_of(CLOCK_MONOTONIC) - start_s_; }
-    std::size_t written() const { return written_; }
 
 private:
     static int spread(int i, int of, int cells) { return static_cast<int>((2L * i + 1) * cells / (2L * of)); }
     double cells_a_tile() const { return static_cast<double>(Pyramid::tile) * Pyramid::tile; }
     double share_there() const {
         const double all = static_cast<double>(pyramid_.across(pyramid_.levels)) * pyramid_.down(pyramid_.levels);
-        return std::min(1.0, static_cast<double>(there_.size()) / (all * 4 / 3));
+        return std::min(1.0, static_cast<double>(folder_.count()) / (all * 4 / 3));
     }
 
-    /// The folder of tiles, made or of this figure.
-    Folder claimed(const Folder& above) const {
-        const auto name = figure_.name + ".tiles";
-        const auto kind = above.entry(name).kind;
-        if (kind == Entry::Kind::none) above.make_folder(name);
-        auto folder = above.folder(name);
-        const auto header = header_of(figure_);
-        const Json mark{{"doppel", program_json()},
-                        {"figure", header.figure},
-                        {"preset_sha256", header.preset},
-                        {"version", header.version},
-                        {"revision", header.revision}};
-        const auto text = mark.dump(2) + "\n";
-        const auto names = folder.names();
-        const auto path = folder.path() / mark_name;
-        if (std::find(names.begin(), names.end(), mark_name) == names.end()) {
-            if (!names.empty())
-                throw io_failed("{} is not a folder of tiles of Doppel's; remove it, or give another folder with --out",
-                                folder.path().string());
-            OutputFile file{FilePlace(folder, mark_name)};
-            file.write(text);
-            file.close();
-        } else if (text_at(path) != text) {
-            throw io_failed("{} belongs to another preset or version; remove it, or give another folder with --out",
-                            folder.path().string());
-        }
-        return folder;
-    }
-
-    bool is_there(int level, int row, int column) const {
-        const std::lock_guard hold(mutex_);
-        return there_.contains(Pyramid::name(level, row, column));
-    }
+    bool is_there(int level, int row, int column) const { return folder_.has(Pyramid::name(level, row, column)); }
 
     Picture finest(int row, int column) const {
         constexpr int tile = Pyramid::tile;
@@ -211,8 +167,8 @@ private:
             for (int right = 0; right < 2; ++right) {
                 const int r = 2 * row + below, c = 2 * column + right;
                 if (r < pyramid_.down(level + 1) && c < pyramid_.across(level + 1))
-                    paste(read_png(folder_.path() / Pyramid::name(level + 1, r, c)), right * Pyramid::tile,
-                          below * Pyramid::tile, four);
+                    paste(folder_.read(Pyramid::name(level + 1, r, c)), right * Pyramid::tile, below * Pyramid::tile,
+                          four);
             }
         return downscaled(four, {Pyramid::tile, Pyramid::tile});
     }
@@ -229,15 +185,7 @@ private:
     }
 
     void write(const Picture& picture, int level, int row, int column) {
-        const auto name = Pyramid::name(level, row, column);
-        if (is_there(level, row, column)) return;
-        const FilePlace place(folder_, name), part = part_of(place);
-        if (folder_.entry(part.name).kind == Entry::Kind::file) folder_.remove(part.name);  // of a run that was killed
-        write_png(part, picture, {.with_alpha = !picture.is_opaque()}, stop_);
-        rename_file(part, place);
-        const std::lock_guard hold(mutex_);
-        there_.insert(name);
-        ++written_;
+        folder_.write(Pyramid::name(level, row, column), picture, stop_);
     }
 
     void progress(double cells) {
@@ -254,22 +202,18 @@ private:
                                  left < 100 ? fmt::format("{:.0f} s", left) : fmt::format("{:.0f} min", left / 60)));
     }
 
-    static constexpr const char* mark_name = "pyramid.json";
-
     const FigurePreset& figure_;
     const MapFigure& map_;
     Pyramid pyramid_;
     const Theme& theme_;
-    Folder folder_;
+    TileFolder folder_;
     const std::atomic<bool>& stop_;
     ComputationReport report_;
     int jobs_;
     HeatMap look_;
     bool mirrors_ = false;
-    mutable std::mutex mutex_;  // of all below
-    std::set<std::string> there_;
+    mutable std::mutex mutex_;                                  // of all below
     double total_ = 0, done_ = 0, computed_ = 0, start_s_ = 0;  // cells, s
-    std::size_t written_ = 0;
     bool told_ = false;
 };
 
@@ -297,7 +241,7 @@ void make_tiles(const FigurePreset& figure, const FigureOptions& options, const 
     const int jobs = options.jobs > 0 ? options.jobs : cores();
     const auto run = options.shard ? fmt::format("tiles-{}-of-{}", options.shard->number, options.shard->of) : "tiles";
     Transaction files(options.out / figure.name, run);
-    TileSet tiles(figure, files.folder(), jobs, stop, report);
+    TileMaker tiles(figure, files.folder(), jobs, stop, report);
     RunResult result;
     if (!options.merge) {
         tiles.demand_space();
@@ -317,11 +261,12 @@ void make_tiles(const FigurePreset& figure, const FigureOptions& options, const 
                         {"title", figure.title},
                         {"resolved_preset", json_of_toml(figure.resolved())},
                         {"tiles",
-                         {{"folder", figure.name + ".tiles"},
-                          {"size_px", Pyramid::tile},
-                          {"levels", pyramid.levels + 1},
-                          {"cells", {pyramid.columns, pyramid.rows}},
-                          {"written", tiles.written()}}},
+                         {
+                             {"folder", figure.name + ".tiles"},
+                             {"size_px", Pyramid::tile},
+                             {"levels", pyramid.levels + 1},
+                             {"cells", {pyramid.columns, pyramid.rows}},
+                         }},
                         {"threads", jobs},
                         {"time", {{"compute_wall_s", computed_s}, {"cells_computed", tiles.cells_computed()}}}});
         result.files = files.publish();

@@ -84,7 +84,7 @@ TEST(Tiles, AreTheCellsOfTheMap) {
             low = std::min(low, time);
             high = std::max(high, time);
         }
-    EXPECT_GT(ranges.size(), 50u);
+    EXPECT_GT(ranges.size(), 25u);
     for (const double end : {0.0, 1.0}) {  // beyond the scale
         const auto color = bytes_of(map_color(end));
         ranges.erase(std::vector(color.begin(), color.begin() + 3));
@@ -186,6 +186,24 @@ TEST(Tiles, AreOfMapsAndOfAllParts) {
     EXPECT_NE(message.find("2-1-0.png is missing"), std::string::npos) << message;
     EXPECT_EQ(refusal(run, small(), {}, true).first, ExitCode::interrupted);
     EXPECT_EQ(run.contents().size(), 3u + 1);  // what was there stays
+}
+
+TEST(Map, OfMoreCellsThanMemoryHoldsIsRefusedBeforeItStarts) {
+    const auto out = fs::path(DOPPEL_TEST_OUTPUT) / "tiles" / "too-large";
+    fs::remove_all(out);
+    const std::string all = "columns = 1048576\nrows = 1048576\n";
+    std::string message;
+    try {
+        run_figures({small(all)}, {.out = out}, false, {});
+    } catch (const Error& fault) {
+        EXPECT_EQ(fault.code(), ExitCode::bad_input);
+        message = fault.what();
+    }
+    EXPECT_TRUE(message.starts_with("x: 1 048 576 × 1 048 576 cells take 1.8e+04 GB of memory")) << message;
+    EXPECT_FALSE(fs::exists(out));
+    // and tiles where the disk is too small for them
+    TileRun run;
+    EXPECT_EQ(refusal(run, small(all)).first, ExitCode::bad_input);
 }
 
 TEST(TilePage, SaysWhatItShowsAndNothingThatTheTitleMeans) {
