@@ -90,10 +90,10 @@ void demand_room(const FigurePreset& figure, const PartHeader& header, const Fol
     const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
     const double numbers = static_cast<double>(map->frame().columns.size() - 2);
     const double cells = share * x.count * y.count;
+    const auto gigabytes = [](double bytes) { return grouped(std::max(1L, std::lround(bytes / 1e9))); };
     const auto refuse = [&](const char* what, double needed, double there) {
-        return bad_input(
-            "{}: {} × {} cells take {:.2g} GB of {}, and there are {:.2g} GB; take fewer, parts (--shard), or --tiles",
-            figure.name, grouped(x.count), grouped(y.count), needed / 1e9, what, there / 1e9);
+        return bad_input("{}: {} × {} cells take {} GB of {}, and there are {} GB; take fewer, or --tiles", figure.name,
+                         grouped(x.count), grouped(y.count), gigabytes(needed), what, gigabytes(there));
     };
     // the numbers of all trials, and where a picture is drawn twice a float
     const double memory = cells * (8 * numbers + 8), owned = static_cast<double>(this_machine().memory);

@@ -199,7 +199,7 @@ TEST(Map, OfMoreCellsThanMemoryHoldsIsRefusedBeforeItStarts) {
         EXPECT_EQ(fault.code(), ExitCode::bad_input);
         message = fault.what();
     }
-    EXPECT_TRUE(message.starts_with("x: 1 048 576 × 1 048 576 cells take 1.8e+04 GB of memory")) << message;
+    EXPECT_TRUE(message.starts_with("x: 1 048 576 × 1 048 576 cells take 17 592 GB of memory")) << message;
     EXPECT_FALSE(fs::exists(out));
     // and tiles where the disk is too small for them
     TileRun run;
