@@ -14,9 +14,9 @@ namespace {
 constexpr std::string_view film_introduction = R"(# Presets: all tables and keys
 
 A preset is a TOML file that describes two pendulums and the film of them, or a figure. Every key has a default; units
-are part of the key. `doppel init FILE.toml` writes one to start from, `doppel show NAME` prints one, `doppel check FILE`
-tells what it would run, and `--set TABLE.KEY=VALUE` sets a key from the command line. A key that is not in these tables
-is an error; all faults of a preset are told in one go, in the order of its lines.
+are part of the key. `doppel init FILE.toml` writes one to start from (`doppel init --figure KIND` that of a figure),
+`doppel show NAME` prints one, `doppel check FILE` tells what it would run, and `--set TABLE.KEY=VALUE` sets a key from the command
+line. A key that is not in these tables is an error; all faults of a preset are told in one go, in the order of its lines.
 
 ```toml
 title = "Three thousandths of a degree"

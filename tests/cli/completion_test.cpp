@@ -106,6 +106,7 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     EXPECT_EQ(completed(folder, "figure fig2-right --set sweep.exponent ="), (Lines{"false", "true"}));
     EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
     EXPECT_EQ(completed(folder, "check flip-map --set flip_map.col"), Lines{"flip_map.columns="});
+    EXPECT_EQ(completed(folder, "init --figure fl"), Lines{"flip-map"});
     EXPECT_TRUE(has(completed(folder, "figure --set ''"), "poincare.orbits=") ||
                 has(completed(folder, "figure --set ''"), "section.orbits="));
 }
