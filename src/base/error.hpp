@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace doppel {
 
@@ -16,11 +17,15 @@ enum class ExitCode { done = 0, differs = 1, bad_input = 2, method_failed = 3, i
 /// thrown where the fault is known best, and caught once, in main.
 class Error : public std::runtime_error {
 public:
-    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    /// `further` = sentences about what else is wrong, where it was found in the same go.
+    Error(ExitCode code, const std::string& message, std::vector<std::string> further = {})
+        : std::runtime_error(message), code_(code), further_(std::move(further)) {}
     ExitCode code() const { return code_; }
+    const std::vector<std::string>& further() const { return further_; }
 
 private:
     ExitCode code_;
+    std::vector<std::string> further_;
 };
 
 /// What was asked for makes no sense (exit 2).

@@ -1,8 +1,10 @@
 #include "base/error.hpp"
+#include "cli/completion_scripts.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"
+#include "film/pair_table.hpp"
 #include "scene/preset_fields.hpp"
 
 #include <CLI/CLI.hpp>
@@ -17,45 +19,6 @@ namespace doppel {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view bash_script = R"(# Completion of doppel for bash: source <(doppel completion bash)
-_doppel() {
-    local program=${COMP_WORDS[0]}
-    if [[ $program == ./doppel && -x build/release/doppel ]]; then program=build/release/doppel; fi  # without building it
-    mapfile -t COMPREPLY < <("$program" complete bash "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
-    # the word goes on after a key, a table or a folder
-    if [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == *[=/] ]]; then compopt -o nospace 2>/dev/null; fi
-    return 0
-}
-complete -F _doppel doppel ./doppel
-)";
-
-constexpr std::string_view zsh_script = R"(#compdef doppel
-# Completion of doppel for zsh: source <(doppel completion zsh), or as a file _doppel in a folder of $fpath
-_doppel() {
-    local line
-    local -a open whole open_help whole_help
-    for line in "${(@f)$("${words[1]}" complete zsh "${(@)words[2,CURRENT]}" 2>/dev/null)}"; do
-        [[ -n $line ]] || continue
-        if [[ ${line%%$'\t'*} == *[=/] ]]; then
-            open+=("${line%%$'\t'*}") open_help+=("${line/$'\t'/  }")
-        else
-            whole+=("${line%%$'\t'*}") whole_help+=("${line/$'\t'/  }")
-        fi
-    done
-    compadd -l -d open_help -S '' -a open
-    compadd -l -d whole_help -a whole
-}
-if [[ $funcstack[1] == _doppel ]]; then _doppel "$@"; else compdef _doppel doppel; fi
-)";
-
-constexpr std::string_view fish_script = R"(# Completion of doppel for fish: doppel completion fish | source
-function __doppel_complete
-    set -l words (commandline -opc) (commandline -ct)
-    $words[1] complete fish $words[2..-1] 2>/dev/null
-end
-complete -c doppel -f -a '(__doppel_complete)'
-)";
 
 struct Candidate {
     std::string text, help = {};
@@ -151,16 +114,23 @@ void add_choices(const CLI::Option& option, const std::string& before, Candidate
     for (const auto& choice : CLI::detail::split(text, ',')) all.push_back({before + choice});
 }
 
-/// The kinds that --set may be for: that of the preset which is named, or those that the command takes.
-std::vector<std::string> kinds_of(const std::string& command, const std::vector<std::string>& words) {
+/// What find(preset) has for the first preset among the words for which it does not throw.
+template <class Find>
+auto of_preset(const std::vector<std::string>& words, const Find& find) {
     for (std::size_t i = 1; i + 1 < words.size(); ++i) {
         if (words[i].starts_with('-') || words[i - 1].starts_with('-')) continue;
         try {
-            return {kind_of_preset(find_preset(words[i]))};
+            return std::optional(find(find_preset(words[i])));
         } catch (const Error&) {
             continue;  // a value, or not yet whole
         }
     }
+    return std::optional<decltype(find(PresetText()))>();
+}
+
+/// The kinds that --set may be for: that of the preset which is named, or those that the command takes.
+std::vector<std::string> kinds_of(const std::string& command, const std::vector<std::string>& words) {
+    if (const auto kind = of_preset(words, kind_of_preset)) return {*kind};
     if (command != "figure") return {std::string(pair_kind)};
     return {scene_kinds.begin() + 1, scene_kinds.end()};
 }
@@ -191,9 +161,23 @@ void add_settings(const std::string& command, const std::vector<std::string>& wo
             if (!table.name.starts_with("[[")) add_keys(table, "", word, all);
 }
 
+/// The last name of --columns: those of the preset that is named, where nothing has to be computed for them.
+void add_columns(const std::vector<std::string>& words, const std::string& word, const std::string& option,
+                 Candidates& all) {
+    const auto columns = of_preset(words, [](const PresetText& source) {
+        const auto preset = read_preset(source);
+        if (preset.a.accuracy || preset.b.accuracy) throw bad_input("{}: takes its time", source.path);
+        return columns_of(make_scene(preset));
+    });
+    const auto before = word.substr(0, std::max(option.size(), word.rfind(',') + 1));
+    all.insert(all.end(), {{before + "a", "all of side a"}, {before + "b", "all of side b"}});
+    for (const auto& column : columns.value_or(std::vector<std::string>())) all.push_back({before + column});
+}
+
 void add_values(const CLI::Option& option, const std::string& command, const std::vector<std::string>& words,
                 const std::string& word, const std::string& before, Candidates& all) {
     if (option.get_name() == "--set") return add_settings(command, words, word, all);
+    if (option.get_name() == "--columns") return add_columns(words, word, before, all);
     add_choices(option, before, all);
     if (option.get_type_name() == "DIR") add_files(word, "/", all);  // folders alone
 }

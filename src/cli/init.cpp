@@ -2,6 +2,7 @@
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
+#include "figure/kinds.hpp"
 #include "figure/preset.hpp"
 #include "output/folder.hpp"
 #include "scene/preset_fields.hpp"
@@ -13,78 +14,141 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace doppel {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Of [system], what most presets say; the rest is written as comments.
+/// What most presets say; the rest is written as comments.
 constexpr std::array<std::string_view, 9> used_keys{"title",     "duration_s",      "sample_hz",
                                                     "links",     "mass_kg",         "length_m",
                                                     "angle_deg", "omega_deg_per_s", "gravity_m_per_s2"};
 
+/// Of [system], what such figures give themselves.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> unused_keys{
+    {{"section", "angle_deg"}, {"section", "omega_deg_per_s"}, {"flip-map", "angle_deg"}}};
+
+bool is_used(const FieldTable& table, std::string_view key, std::string_view kind) {
+    if (table.name.starts_with("[[")) return key == "scene" || key == "column";
+    return (table.key() == "scene" || table.key() == "system") &&
+           std::ranges::find(used_keys, key) != used_keys.end() &&
+           std::ranges::find(unused_keys, std::pair(kind, key)) == unused_keys.end();
+}
+
+/// The value that a starting preset gives a key.
+std::string starting_value(const ListedField& field, std::string_view kind) {
+    if (field.key == "column") return "\"distance\"";
+    if (field.key == "scene") return "\"butterfly\"";
+    auto value = field.example();
+    if (kind != "links") return value;
+    // of chains of one link, which the longer ones are made of
+    if (field.key == "links") return "1";
+    if (value.starts_with('[') && field.type == type_words<std::vector<double>>())
+        return value.substr(0, value.find(',')) + "]";
+    return value;
+}
+
 /// "# help (number, > 0; unit s; default: none)", then the key, as a comment where it is seldom used.
-std::string key_lines(const ListedField& field, const std::string& prefix) {
-    const bool is_live = prefix.empty() && std::find(used_keys.begin(), used_keys.end(), field.key) != used_keys.end();
+std::string key_lines(const ListedField& field, const std::string& prefix, bool is_live, std::string_view kind) {
     auto text = fmt::format("# {} ({}", field.help, plain_words(field.takes()));
     if (!field.unit.empty()) text += fmt::format("; unit {}", field.unit);
     if (field.default_value().empty()) text += fmt::format("; default: {}", plain_words(field.by_default));
-    return fmt::format("{})\n{}{}{} = {}\n", text, is_live ? "" : "#", prefix, field.key, field.example());
+    return fmt::format("{})\n{}{}{} = {}\n", text, is_live ? "" : "#", prefix, field.key, starting_value(field, kind));
 }
 
-std::string table_lines(const FieldTable& table, const std::string& prefix = "") {
+std::string table_lines(const FieldTable& table, std::string_view kind, const std::string& prefix = "") {
     std::string text;
     for (const auto& field : table.fields)
-        if (field.key != kind_field.key) text += key_lines(field, prefix);
-    for (const auto& inner : table.tables) text += table_lines(inner, fmt::format("{}{}.", prefix, inner.key()));
+        if (field.key != kind_field.key)
+            text += key_lines(field, prefix, prefix.empty() && is_used(table, field.key, kind), kind);
+    for (const auto& inner : table.tables) text += table_lines(inner, kind, fmt::format("{}{}.", prefix, inner.key()));
     return text;
 }
 
-/// A film's preset, with every key: those that most presets have, and the others as comments.
-std::string starting_preset(const fs::path& file) {
-    auto text = schema_line(file.parent_path().empty() ? "." : file.parent_path()) +
-                fmt::format(
-                    "# A film of two pendulums. Take the # off a key, and change its value; then:\n"
-                    "#   doppel check {0}\n#   doppel render {0}\n",
-                    file.string());
-    for (const auto& table : tables_of(pair_kind)) {
+std::string first_lines(const fs::path& file, std::string_view kind) {
+    const bool is_film = kind == pair_kind;
+    return schema_line(file.parent_path().empty() ? "." : file.parent_path()) +
+           fmt::format(
+               "# {0}. Take the # off a key, and change its value; then:\n#   doppel check {1}\n#   doppel {2} {1}\n",
+               is_film ? "A film of two pendulums" : fmt::format("A figure of kind \"{}\"", kind), file.string(),
+               is_film ? "render" : "figure");
+}
+
+/// [a] or [b].
+std::string side_lines(std::string_view side, std::string_view kind) {
+    auto text = fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", side);
+    // the twins of a sweep differ in its parameter
+    if (side == "b" && kind != "sweep") text += "angle_deg = [90.003, 90]\n";
+    return kind == pair_kind ? text + table_lines(side_text_table(), kind) : text;
+}
+
+/// A preset of that kind with every key: those that most presets have, and the others as comments.
+std::string starting_preset(const fs::path& file, std::string_view kind) {
+    auto text = first_lines(file, kind);
+    const auto tables = tables_of(kind);
+    const bool has_sides = std::ranges::find(tables, "a", &FieldTable::key) != tables.end();
+    for (const auto& table : tables) {
         const auto key = table.key();
+        const bool is_entry = table.name.starts_with("[[");
         if (key.empty()) {
             text += fmt::format("\n# shown above the pictures\ntitle = {}\n", toml_text(file.stem().string()));
             for (const auto& field : table.fields)
-                if (field.key != title_field.key) text += key_lines(field, "");
+                if (field.key != title_field.key) text += key_lines(field, "", false, kind);
         } else if (key == "a" || key == "b") {
-            text += fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", key);
-            if (key == "b") text += "angle_deg = [90.003, 90]\n";
-            text += table_lines(side_text_table());
+            text += side_lines(key, kind);
         } else {
-            text += fmt::format("\n[{}]{}\n{}", key, key == "system" ? "  # both sides" : "", table_lines(table));
-            if (key == "system")
+            text += fmt::format("\n[{0}{1}{2}]{3}\n", is_entry ? "[" : "", key, is_entry ? "]" : "",
+                                key == "system" && has_sides ? "  # both sides" : "");
+            if (key == "scene" && kind != pair_kind) text += fmt::format("kind = {}\n", toml_text(std::string(kind)));
+            text += table_lines(table, kind);
+            if (key == "system" && kind == pair_kind)
                 text += "# particles, constraints and forces: see docs/presets.md, and \"doppel show springs\"\n";
+            if (key == "curve")
+                text += "# [curve.system], [curve.a] and [curve.b]: what this curve's sides have otherwise\n";
         }
     }
     return text;
+}
+
+void write_preset(const fs::path& path, std::string_view kind) {
+    if (path.extension() != ".toml" || path.stem().empty())
+        throw bad_input("{}: the name of a preset's file ends in .toml", path.string());
+    const PresetText preset{path.stem().string(), path.string(), starting_preset(path, kind), path.string()};
+    if (kind == pair_kind)
+        read_preset(preset);  // a title that can be drawn
+    else
+        read_figure(preset);
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(path, ignored)))
+        throw bad_input("{}: is there already; give the name of a new file", path.string());
+    write_file(path, preset.text);
+    print_line("{0}: edit it, then: doppel check {0}", path.string());
 }
 
 }  // namespace
 
 void add_init(CLI::App& app) {
     auto name = std::make_shared<std::string>();
+    auto kind = std::make_shared<std::string>(pair_kind);
     auto& command = *app.add_subcommand("init", "Writes a preset to start from: every key, with help and default");
-    command.footer("Example:\n  doppel init mine.toml && doppel render mine.toml");
-    command.add_option("FILE", *name, "The new file, which ends in .toml")->required();
-    command.callback([name] {
-        const fs::path path = *name;
-        if (path.extension() != ".toml" || path.stem().empty())
-            throw bad_input("{}: the name of a preset's file ends in .toml", path.string());
-        const auto text = starting_preset(path);
-        read_preset({path.stem().string(), path.string(), text, path.string()});  // a title that can be drawn
-        std::error_code ignored;
-        if (fs::exists(fs::symlink_status(path, ignored)))
-            throw bad_input("{}: is there already; give the name of a new file", path.string());
-        write_file(path, text);
-        print_line("{0}: edit it, then: doppel check {0}", path.string());
+    command.footer(
+        "Examples:\n"
+        "  doppel init mine.toml && doppel render mine.toml\n"
+        "  doppel init --figure section sections.toml && doppel figure sections.toml");
+    command.add_option("FILE", *name, "The new file, which ends in .toml; of a figure KIND.toml where not given");
+    std::vector<std::string> kinds;
+    for (const auto& figure : figure_kinds()) kinds.emplace_back(figure.name);
+    auto* figure =
+        command.add_option("--figure", *kind, "A figure of this kind, and not a film")->check(CLI::IsMember(kinds));
+    command.callback([name, kind, figure] {
+        if (name->empty() && figure->count() == 0)
+            throw bad_input("init wants the name of the new file: doppel init FILE.toml");
+        write_preset(name->empty() ? *kind + ".toml" : *name, *kind);
     });
 }
 

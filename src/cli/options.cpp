@@ -36,6 +36,20 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
     command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
 }
 
+void add_columns_option(CLI::App& command, std::string& columns) {
+    command
+        .add_option("--columns", columns,
+                    "Only these columns of the CSV, by their names; a, b: all of a side; all where not given")
+        ->type_name("NAME,NAME…");
+}
+
+std::vector<std::string> columns_of_option(const std::string& text) {
+    std::vector<std::string> names;
+    if (!text.empty())
+        for (const auto& name : CLI::detail::split(text, ',')) names.push_back(CLI::detail::trim_copy(name));
+    return names;
+}
+
 void add_gl_option(CLI::App& command, std::string& gl) {
     command.add_option("--gl", gl, "What draws: osmesa, egl or auto: OSMesa, EGL where OSMesa is missing")
         ->type_name("NAME")
@@ -110,7 +124,7 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
 
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options) {
     const auto& stop = watch_interrupts();
-    for (const auto& scene : scenes) check_range(scene, run_options);
+    for (const auto& scene : scenes) check_run(scene, run_options);
     work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples",
                 [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
 }

@@ -21,7 +21,7 @@ struct PresetOptions {
 
 /// What commands that run presets have besides.
 struct RunCommandOptions : PresetOptions {
-    std::string out = "out", progress = "auto";
+    std::string out = "out", progress = "auto", columns = {};
     int jobs = 0;
 };
 
@@ -30,6 +30,10 @@ void add_preset_options(CLI::App& command, PresetOptions& options);
 void add_out_options(CLI::App& command, std::string& out, std::string& progress);
 /// The same, and --jobs; `jobs` = what it counts, for the help.
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
+
+/// --columns, and its value as RunOptions has it.
+void add_columns_option(CLI::App& command, std::string& columns);
+std::vector<std::string> columns_of_option(const std::string& text);
 
 /// --gl, a name of gl_named().
 void add_gl_option(CLI::App& command, std::string& gl);

@@ -111,7 +111,9 @@ int run_program(int argc, char** argv) {
         }
         return exit_code;
     } catch (const Error& fault) {
-        return failed(fault.code(), fault.what());
+        failed(fault.code(), fault.what());
+        for (const auto& line : fault.further()) failed(fault.code(), line);
+        return static_cast<int>(fault.code());
     } catch (const std::bad_alloc&) {
         return failed(ExitCode::io_failed, "there is not enough memory");
     } catch (const std::exception& fault) {

@@ -79,9 +79,14 @@ void add_render(CLI::App& app) {
                     "draft (a quarter of the pixels, fast), standard (what the preset says) or best (slow)")
         ->type_name("QUALITY")
         ->check(CLI::IsMember({"draft", "standard", "best"}));
+    add_columns_option(command, options->columns);
     add_gl_option(command, options->gl);
     command.callback([options] {
-        RunOptions run{.out = options->out, .pictures = true, .jobs = options->jobs, .gl = gl_named(options->gl)};
+        RunOptions run{.out = options->out,
+                       .pictures = true,
+                       .jobs = options->jobs,
+                       .gl = gl_named(options->gl),
+                       .columns = columns_of_option(options->columns)};
         take_range(*options, run);
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first of them is filmed
@@ -129,10 +134,18 @@ void add_still(CLI::App& app) {
 void add_simulate(CLI::App& app) {
     auto options = std::make_shared<RunCommandOptions>();
     auto& command = *app.add_subcommand("simulate", "Runs presets without pictures: CSV and manifest, no OpenGL");
-    command.footer("Example:\n  doppel simulate butterfly --set 'system.integrator=\"rk4\"'");
+    command.footer(
+        "Examples:\n"
+        "  doppel simulate butterfly --set 'system.integrator=\"rk4\"'\n"
+        "  doppel simulate butterfly --columns time_s,a_theta2_rad,distance");
     add_run_options(command, *options, "Has no effect on a table");
+    add_columns_option(command, options->columns);
     command.callback([options] {
-        run_all(read_scenes(*options), *options, {.out = options->out, .pictures = false, .jobs = options->jobs});
+        run_all(read_scenes(*options), *options,
+                {.out = options->out,
+                 .pictures = false,
+                 .jobs = options->jobs,
+                 .columns = columns_of_option(options->columns)});
     });
 }
 

@@ -32,11 +32,10 @@ ChartLayout layout_of(const ChartSpec& chart) {
     return layout;
 }
 
-void read_chart(TomlReader& table, ChartSpec& chart) {
-    // which keys count depends on this one
-    table.read({.key = "width_cm"}, chart.width_cm.emplace(0));
-    if (!table.has("width_cm")) chart.width_cm.reset();
-    chart_fields(table, chart);
+namespace {
+
+/// A picture that can be made, with room for its words.
+void check_chart(const TomlReader& table, const ChartSpec& chart) {
     const auto layout = layout_of(chart);
     const auto [width, height] = layout.picture;
     const double height_pt = layout.width_pt * height / width;
@@ -55,7 +54,17 @@ void read_chart(TomlReader& table, ChartSpec& chart) {
                           "must leave a picture of {} to {} px a side; {} is {}×{} px", smallest, largest, what, width,
                           height);
     }
+}
+
+}  // namespace
+
+void read_chart(TomlReader& table, ChartSpec& chart) {
+    // which keys count depends on this one
+    table.read({.key = "width_cm"}, chart.width_cm.emplace(0));
+    if (!table.has("width_cm")) chart.width_cm.reset();
+    chart_fields(table, chart);
     table.finish();
+    table.check_together([&] { check_chart(table, chart); });
 }
 
 }  // namespace doppel

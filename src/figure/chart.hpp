@@ -36,7 +36,7 @@ template <class Visit, class Chart>
 void chart_fields(Visit& visit, Chart& chart) {
     const bool on_paper = chart.width_cm.has_value();
     const auto of_paper = [&](std::string_view what) {
-        return Only{on_paper, fmt::format("{}; it needs width_cm", what), true};
+        return Only{on_paper, fmt::format("{}; it needs width_cm", what), true, false, "width_cm"};
     };
     visit({"format", "what the picture is written as: pixels, or text and lines for a paper"}, chart.format);
     visit(size_field, chart.size);

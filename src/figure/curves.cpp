@@ -28,10 +28,9 @@ public:
     explicit Curves(FigureReader& reader) {
         auto table = reader.settings(*this);
         const auto own = table.finish();
-        const auto tables = reader.top.read_tables("curve");
-        if (tables.empty()) curves_.push_back({quantity_, "", reader.pair()});
-        for (std::size_t i = 0; i < tables.size(); ++i) {
-            auto entry = reader.top.inner(tables[i], fmt::format("[[curve]] {}", i + 1));
+        auto entries = reader.entries("curve");
+        if (entries.empty()) curves_.push_back({quantity_, "", reader.pair()});
+        for (auto& entry : entries) {
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
             if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
@@ -68,6 +67,15 @@ public:
         PairCurve none;
         curve_fields(curve, none);
         return curve;
+    }
+
+    static void read_others(FigureReader& reader) {
+        for (auto& entry : reader.entries("curve")) {
+            PairCurve curve;
+            curve_fields(entry, curve);
+            reader.read_pair({&entry});
+            entry.finish();
+        }
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }

@@ -56,12 +56,9 @@ public:
         settings_ = table.finish();
         for (const auto& setting : encoder_settings)
             if (setting.codec == codec_) tried_.push_back(&setting);
-        const auto tables = reader.top.read_tables("film");
-        if (tables.empty()) throw reader.top.fault("film", "is missing: a [[film]] each names what is encoded");
-        for (std::size_t i = 0; i < tables.size(); ++i) {
-            auto entry = reader.top.inner(tables[i], fmt::format("[[film]] {}", i + 1));
-            add_film(entry);
-        }
+        auto entries = reader.entries("film");
+        if (entries.empty()) throw reader.top.fault("film", "is missing: a [[film]] each names what is encoded");
+        for (auto& entry : entries) add_film(entry);
         recordings_ = std::make_unique<Recording[]>(films_.size());
     }
 
@@ -79,6 +76,15 @@ public:
         std::string name;
         film_fields(film, name, video);
         return film;
+    }
+
+    static void read_others(FigureReader& reader) {
+        for (auto& entry : reader.entries("film")) {
+            std::string name;
+            VideoSpec video;
+            film_fields(entry, name, video);
+            entry.finish();
+        }
     }
 
     std::size_t trials() const override { return films_.size() * trials_of_film(); }

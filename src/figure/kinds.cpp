@@ -9,15 +9,27 @@
 
 namespace doppel {
 
-Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
+Preset FigureReader::read_pair(const std::vector<TomlReader*>& more) {
     Preset preset;
     preset.name = preset.title = name;
     clock_fields(scene, preset);
     std::vector<TomlReader*> levels{&top};
     levels.insert(levels.end(), more.begin(), more.end());
     read_sides(document, levels, preset);
+    return preset;
+}
+
+Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
+    auto preset = read_pair(more);
     check_clock(preset, scene);
     return preset;
+}
+
+std::vector<TomlReader> FigureReader::entries(std::string_view key) {
+    std::vector<TomlReader> all;
+    for (const auto* table : top.read_tables(key))
+        all.push_back(top.inner(table, fmt::format("[[{}]] {}", key, all.size() + 1)));
+    return all;
 }
 
 SideSpec FigureReader::release() {

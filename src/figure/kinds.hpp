@@ -55,6 +55,10 @@ struct FigureReader {
     }
     /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_fields.hpp).
     Preset pair(const std::vector<TomlReader*>& more = {});
+    /// The keys of such a pair, without looking at what they say together.
+    Preset read_pair(const std::vector<TomlReader*>& more = {});
+    /// The tables of [[key]].
+    std::vector<TomlReader> entries(std::string_view key);
     /// The chain that [system] describes, where the figure itself knows how to step it.
     SideSpec release();
 };
@@ -113,16 +117,29 @@ struct FigureKind {
     std::string_view name;                      // of [scene] kind
     System system;
     std::shared_ptr<const Experiment> (*read)(FigureReader&);
-    std::vector<FieldTable> (*tables)();  // its own, with their defaults
+    void (*read_keys)(FigureReader&, System);  // each by itself, so that all their faults are found
+    std::vector<FieldTable> (*tables)();       // its own, with their defaults
 };
 
 /// A kind is a class that is made of a FigureReader. If it has keys of its own, `table_key` names their table, and
 /// fields(visit) visits each with its member, as the lists of scene/preset_fields.hpp do; other_table() lists further
-/// ones.
+/// ones, and read_others() reads them.
+template <class Kind>
+void read_keys_of(FigureReader& reader, FigureKind::System system) {
+    if (system == FigureKind::System::pair) reader.read_pair();
+    if (system == FigureKind::System::release) reader.release();
+    if constexpr (requires { Kind::table_key; }) {
+        Kind kind;
+        reader.settings(kind).finish();
+    }
+    if constexpr (requires { Kind::read_others(reader); }) Kind::read_others(reader);
+}
+
 template <class Kind>
 constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
     return {name, system,
             [](FigureReader& reader) -> std::shared_ptr<const Experiment> { return std::make_shared<Kind>(reader); },
+            read_keys_of<Kind>,
             [] {
                 std::vector<FieldTable> tables;
                 if constexpr (requires { Kind::table_key; })

@@ -14,9 +14,9 @@ namespace {
 constexpr std::string_view film_introduction = R"(# Presets: all tables and keys
 
 A preset is a TOML file that describes two pendulums and the film of them, or a figure. Every key has a default; units
-are part of the key. `doppel init FILE.toml` writes one to start from, `doppel show NAME` prints one, `doppel check FILE`
-tells what it would run, and `--set TABLE.KEY=VALUE` sets a key from the command line. A key that is not in these tables
-is an error.
+are part of the key. `doppel init FILE.toml` writes one to start from (`doppel init --figure KIND` that of a figure),
+`doppel show NAME` prints one, `doppel check FILE` tells what it would run, and `--set TABLE.KEY=VALUE` sets a key from the command
+line. A key that is not in these tables is an error; all faults of a preset are told in one go, in the order of its lines.
 
 ```toml
 title = "Three thousandths of a degree"
@@ -72,6 +72,32 @@ FieldTable release_table() {
     return release;
 }
 
+/// Throws all faults that keys have by themselves; read_figure() finds those of several keys.
+void find_faults(const PresetText& source, const TomlDocument& document, const std::vector<Override>& overrides) {
+    Faults faults(overrides);
+    FigurePreset figure;
+    auto top = document.top(&faults);
+    top.demand_title(source.name);
+    top_fields(top, figure);
+    auto scene = document.table(top, "scene");
+    const auto name = read_kind(scene);
+    if (faults.concern("scene")) faults.throw_if_any();  // which tables there may be is not known
+    if (name == pair_kind) return;
+    auto chart = document.table(top, "chart");
+    FigureReader reader{source.name, document, top, scene, chart};
+    try {
+        for (const auto& kind : figure_kinds())
+            if (kind.name == name) kind.read_keys(reader, kind.system);
+    } catch (const TomlFault& fault) {
+        top.refuse(fault.with({}), "");
+        faults.throw_if_any();
+    }
+    scene.finish();
+    read_chart(chart, figure.chart);
+    top.finish();
+    faults.throw_if_any();
+}
+
 }  // namespace
 
 std::string FigurePreset::resolved_work() const {
@@ -89,9 +115,10 @@ std::string FigurePreset::resolved() const {
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
                          std::span<const ExternalMethod> external_methods) {
     const auto document = parse_document(source, overrides);
+    find_faults(source, document, overrides);
     FigurePreset figure;
     figure.name = figure.title = source.name;
-    TomlReader top(&document.root, "", document.path, document.texts);
+    auto top = document.top();
     top.demand_title(figure.name);
     top_fields(top, figure);
 

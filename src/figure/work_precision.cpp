@@ -75,6 +75,11 @@ public:
         return chart;
     }
 
+    static void read_others(FigureReader& reader) {
+        auto cost = Cost::time;
+        reader.chart(cost_field, cost);
+    }
+
     std::size_t trials() const override { return problems_.all.size() + ladders_.size() * repeats(); }
     bool measures_time() const override { return cost_ == Cost::time; }
     std::string unit() const override { return "ladders"; }

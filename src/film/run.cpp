@@ -4,7 +4,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "film/film.hpp"
-#include "output/csv.hpp"
+#include "film/pair_table.hpp"
 #include "output/transaction.hpp"
 #include "scene/scene.hpp"
 
@@ -14,79 +14,6 @@
 
 namespace doppel {
 namespace {
-
-/// Angles and rates only where the masses hang in a chain.
-std::vector<std::string> columns(const Scene& scene) {
-    std::vector<std::string> names{"sample", "time_s"};
-    for (const auto* side : {&scene.a, &scene.b}) {
-        const char letter = side == &scene.a ? 'a' : 'b';
-        const auto add = [&](const std::string& name) { names.push_back(fmt::format("{}_{}", letter, name)); };
-        const auto bobs = side->mass.size();
-        for (std::size_t i = 1; side->has_angles && i <= bobs; ++i) add(fmt::format("theta{}_rad", i));
-        for (std::size_t i = 1; side->has_angles && i <= bobs; ++i) add(fmt::format("omega{}_rad_per_s", i));
-        for (std::size_t i = 1; i <= bobs; ++i) {
-            for (const char* place : {"x", "y"}) add(fmt::format("{}{}_m", place, i));
-            for (const char* velocity : {"vx", "vy"}) add(fmt::format("{}{}_m_per_s", velocity, i));
-        }
-        for (const char* name : {"energy_J", "energy_error", "length_error_m"}) add(name);
-    }
-    names.insert(names.end(), {"distance", "log_ratio"});
-    if (scene.preset.energy_columns)
-        names.insert(names.end(), {"a_kinetic_J", "a_potential_J", "b_kinetic_J", "b_potential_J"});
-    return names;
-}
-
-/// The table of a pair, a row a sample; the same columns for every model. Throws Error (exit 4), as Csv does.
-class PairTable {
-public:
-    PairTable(const FilePlace& place, const Scene& scene) : scene_(scene), csv_(place, columns(scene)) {}
-
-    /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers. Throws Error (exit 3) where the
-    /// distance is beyond the range of double.
-    void add(const PairState& state, double start_distance);
-    void finish() { csv_.finish(); }
-
-private:
-    void add_side(const Side& side, const Observation& seen, std::optional<double> energy_error);
-    void add(double value) { csv_.add(value); }
-    /// With all digits.
-    void add(const Quad& value) {
-        if (const auto near = static_cast<double>(value); !std::isfinite(near)) return csv_.add(near);
-        csv_.add(text_of(value));
-    }
-
-    const Scene& scene_;
-    Csv csv_;
-};
-
-void PairTable::add(const PairState& state, double start_distance) {
-    csv_.add(state.sample);
-    csv_.add(scene_.time(state.sample));
-    add_side(scene_.a, state.a, state.energy_error_a);
-    add_side(scene_.b, state.b, state.energy_error_b);
-    csv_.add(state.distance);
-    csv_.add(log_ratio(state.distance, start_distance));
-    for (const auto* seen : {&state.a, &state.b}) {
-        if (!scene_.preset.energy_columns) break;
-        const double kinetic = kinetic_energy(seen->bobs);
-        csv_.add(kinetic);
-        csv_.add(seen->energy - kinetic);
-    }
-    csv_.end_row();
-}
-
-void PairTable::add_side(const Side& side, const Observation& seen, std::optional<double> energy_error) {
-    const auto add_all = [&](const auto& bobs) {
-        for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].theta);
-        for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].omega);
-        for (const auto& bob : bobs)
-            for (const auto& value : {bob.x, bob.y, bob.vx, bob.vy}) add(value);
-    };
-    seen.exact.empty() ? add_all(seen.bobs) : add_all(seen.exact);
-    csv_.add(seen.energy);
-    csv_.add(energy_error);
-    csv_.add(seen.length_error);
-}
 
 /// Keeps the largest errors.
 void watch(SideRecord& record, const Observation& seen, std::optional<double> energy_error) {
@@ -205,8 +132,9 @@ SampleRange range_of(const Scene& scene, RunOptions options) {
 
 }  // namespace
 
-void check_range(const Scene& scene, const RunOptions& options) {
+void check_run(const Scene& scene, const RunOptions& options) {
     range_of(scene, options);
+    columns_of(scene, options.columns);
 }
 
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
@@ -220,7 +148,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     range.first = first, range.last = last;
     if (options.pictures) film.emplace(scene, range, parts, record, stop);
     const auto csv_name = scene.preset.name + ".csv";
-    PairTable table(parts.file(csv_name), scene);
+    PairTable table(parts.file(csv_name), scene, options.columns);
 
     Simulation simulation(scene, last, options.pictures, stop);
     const auto take_efforts = [&] { std::tie(record.a.effort, record.b.effort) = simulation.efforts(); };

@@ -21,6 +21,7 @@ struct RunOptions {
     std::optional<Rational> from_s = {}, to_s = {};  // in their place: times, both included
     int jobs = 0;                                    // threads that compress PNGs; 0 = one a core
     Gl gl = Gl::automatic;                           // what draws
+    std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all where there is none
 };
 
 /// How far a run is, as often as a frame is done.
@@ -44,8 +45,9 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
 /// The sample at that time. Throws Error (exit 2) where there is none.
 long still_sample(const Scene& scene, const Rational& time);
 
-/// Throws Error (exit 2) where the scene has none of the samples, or of the frames, that `options` ask for.
-void check_range(const Scene& scene, const RunOptions& options);
+/// Throws Error (exit 2) where the scene has none of the samples, or of the frames, that `options` ask for, or not all
+/// of the columns.
+void check_run(const Scene& scene, const RunOptions& options);
 
 /// Simulates, draws and writes; the three overlap through bounded queues. Files appear complete or not at all.
 /// Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.

@@ -4,33 +4,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 namespace doppel {
 
-Csv::Csv(const FilePlace& place, std::vector<std::string> columns) : file_(place), columns_(std::move(columns)) {
+Csv::Csv(const FilePlace& place, std::vector<std::string> columns, const std::vector<std::string>& written)
+    : file_(place), columns_(std::move(columns)) {
+    for (const auto& name : columns_) is_written_.push_back(std::ranges::find(written, name) != written.end());
     for (const std::string& name : columns_) add(name);
     end_row();
     row_ = 0;
 }
 
 void Csv::add(long value) {
-    separate();
-    fmt::format_to(std::back_inserter(buffer_), "{}", value);
+    if (separate()) fmt::format_to(std::back_inserter(buffer_), "{}", value);
 }
 
 void Csv::add(double value) {
-    separate();
+    const bool is_written = separate();
     if (!std::isfinite(value))
         throw method_failed("{}: {} of row {} would be {}; a table holds only finite numbers", file_.path().string(),
                             columns_[cell_ - 1], row_, value);
-    fmt::format_to(std::back_inserter(buffer_), "{}", value);
+    if (is_written) fmt::format_to(std::back_inserter(buffer_), "{}", value);
 }
 
 void Csv::add(std::string_view text) {
-    separate();
+    if (!separate()) return;
     if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
         buffer_ += text;
         return;
@@ -41,11 +44,14 @@ void Csv::add(std::string_view text) {
 }
 
 void Csv::add(std::optional<double> value) {
-    value ? add(*value) : separate();
+    if (value)
+        add(*value);
+    else
+        separate();
 }
 
 void Csv::add_or_empty(double value) {
-    std::isnan(value) ? separate() : add(value);
+    add(std::isnan(value) ? std::nullopt : std::optional(value));
 }
 
 void Csv::end_row() {
@@ -54,6 +60,7 @@ void Csv::end_row() {
             fmt::format("{}: a row of {} cells under {} columns", file_.path().string(), cell_, columns_.size()));
     buffer_ += "\r\n";
     cell_ = 0;
+    begins_row_ = true;
     ++row_;
     if (buffer_.size() >= std::size_t{1} << 16) {
         file_.write(buffer_);
@@ -66,10 +73,12 @@ void Csv::finish() {
     file_.close();
 }
 
-void Csv::separate() {
+bool Csv::separate() {
     if (cell_ == columns_.size())
         throw std::logic_error(fmt::format("{}: more than {} cells in a row", file_.path().string(), columns_.size()));
-    if (cell_++ > 0) buffer_ += ',';
+    if (!is_written_[cell_++]) return false;
+    if (!std::exchange(begins_row_, false)) buffer_ += ',';
+    return true;
 }
 
 }  // namespace doppel

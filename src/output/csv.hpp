@@ -13,7 +13,9 @@ namespace doppel {
 class Csv {
 public:
     /// Opens the file and writes the header. Throws Error (exit 4), as do all that write.
-    Csv(const FilePlace& place, std::vector<std::string> columns);
+    Csv(const FilePlace& place, const std::vector<std::string>& columns) : Csv(place, columns, columns) {}
+    /// Rows are added with all columns; the file has only those that are `written`.
+    Csv(const FilePlace& place, std::vector<std::string> columns, const std::vector<std::string>& written);
 
     void add(long value);
     /// Throws Error (exit 3) where the value is not finite.
@@ -30,11 +32,14 @@ public:
     void finish();
 
 private:
-    void separate();
+    /// Goes on to the next cell; whether it is written.
+    bool separate();
 
     OutputFile file_;
     std::string buffer_;
     std::vector<std::string> columns_;
+    std::vector<bool> is_written_;  // by column
+    bool begins_row_ = true;
     std::size_t cell_ = 0;
     long row_ = 0;
 };

@@ -31,9 +31,10 @@ constexpr Bounds from_to(double low, double high, std::string_view zero = {}) {
 /// The values beside which a key counts.
 struct Only {
     bool holds = true;
-    std::string fault = {};  // the error for a key that does not count; where empty, it is read and not written
-    bool drops = false;      // the command line chose otherwise: what the file says is no error
-    bool hides = false;      // the table has no such key where it does not count
+    std::string fault = {};        // the error for a key that does not count; where empty, it is read and not written
+    bool drops = false;            // the command line chose otherwise: what the file says is no error
+    bool hides = false;            // the table has no such key where it does not count
+    std::string_view beside = {};  // the key that decides, where one does
 };
 
 /// One key of a table. Lists of fields (preset_fields.hpp, and those of each kind of figure) serve the reader, the
@@ -51,6 +52,7 @@ struct Field {
     std::size_t most = 0;                          // numbers of an array that may have 1 or more
     std::span<const std::string_view> known = {};  // names that it takes, where not the reader checks them
     std::string_view pattern = {};                 // of a string's form: a regular expression, for the schema
+    std::optional<Bounds> otherwise = {};          // the widest that it takes, where other keys decide on `bounds`
 };
 
 /// The names of an enumeration's values in presets, in their order.

@@ -61,6 +61,7 @@ std::string ListedField::example() const {
     if (is(type_words<QuadPair>())) return "[0, 0]";
     if (is(type_words<Size>())) return "[4, 3]";
     if (is(type_words<Rational>())) return bounds.is_open ? "60" : "1";
+    if (unit == "cm") return "8.6";  // a column of a journal
     if (is(type_words<double>())) return bounds.is_open ? "1e-6" : "1";
     return "\"\"";
 }

@@ -74,8 +74,11 @@ void side_text_fields(Visit& visit, Side&& side) {
 
 template <class Visit, class Side>
 void gravity_field(Visit& visit, Side& side) {
-    visit({"gravity_m_per_s2", "may be 0 with particles, constraints or forces", "m/s²",
-           side.is_mechanism() ? not_negative : positive},
+    visit({.key = "gravity_m_per_s2",
+           .help = "may be 0 with particles, constraints or forces",
+           .unit = "m/s²",
+           .bounds = side.is_mechanism() ? not_negative : positive,
+           .otherwise = not_negative},
           side.gravity_m_per_s2);
 }
 
@@ -94,7 +97,7 @@ void method_fields(Visit& visit, Side& side) {
         return Only{
             holds,
             fmt::format("is for {}; \"{}\" goes by {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
-            side.integrator_from_command_line};
+            side.integrator_from_command_line, false, "integrator"};
     };
     const auto of_fixed = only(!adaptive, "methods with a fixed step"),
                of_adaptive = only(adaptive, "adaptive methods");
@@ -183,7 +186,7 @@ void format_fields(Visit& visit, Video& video) {
     visit({"format", "the file; png: a picture a frame"}, video.format);
     const auto only = [&](bool holds, const char* what) {
         return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
-                    visit.from_command_line("format")};
+                    visit.from_command_line("format"), false, "format"};
     };
     const bool is_webm = video.format == FilmFormat::webm;
     const auto encoded = only(video.is_encoded(), "of mp4 and webm");
@@ -191,17 +194,15 @@ void format_fields(Visit& visit, Video& video) {
     visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
     visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.holds = video.transparent}},
           video.transparent);
-    visit({"preset",
-           "of mp4 and webm: effort of the encoder; \"doppel\": chosen for such pictures",
-           "",
-           {},
-           "",
-           encoded,
-           "",
-           encoder_presets},
-          video.preset);
+    constexpr std::string_view effort = "of mp4 and webm: effort of the encoder; \"doppel\": chosen for such pictures";
+    visit({"preset", effort, "", {}, "", encoded, "", encoder_presets}, video.preset);
     const auto quality = from_to(0, is_webm ? 63 : 51);
-    visit({"crf", "of mp4 and webm: lower is better; of mp4 up to 51", "", quality, "", encoded}, video.crf);
+    visit({.key = "crf",
+           .help = "of mp4 and webm: lower is better; of mp4 up to 51",
+           .bounds = quality,
+           .only = encoded,
+           .otherwise = from_to(0, 63)},
+          video.crf);
 }
 
 /// What is shown when.
@@ -214,7 +215,8 @@ void time_fields(Visit& visit, Video& video) {
           video.fps);
     visit({"speed", "seconds of motion a second of film; a list: each speed is reached at its time", "", speeds},
           video.speed);
-    const Only of_changes{video.speed.changes_over_time(), "is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]"};
+    const Only of_changes{video.speed.changes_over_time(), "is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]",
+                          false, false, "speed"};
     constexpr std::string_view ease =
         "of motion before a change of speed, in which the film's pace goes over by 3u² − 2u³";
     visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
@@ -241,7 +243,8 @@ void layout_fields(Visit& visit, Video& video) {
     visit({"layout", "how the pendulums are placed"}, video.layout);
     const auto only = [&](Arrangement layout) {
         return Only{video.layout == layout,
-                    fmt::format("is of the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout))};
+                    fmt::format("is of the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)), false,
+                    false, "layout"};
     };
     const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
     constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);

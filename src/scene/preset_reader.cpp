@@ -104,9 +104,8 @@ void check_transparent(const TomlReader& table, const VideoSpec& video) {
                           name_of(video.format));
 }
 
-void check_layout(TomlReader& table, VideoSpec& video) {
+void check_layout(const TomlReader& table, const VideoSpec& video) {
     const bool is_portrait = video.layout == Arrangement::portrait;
-    if (is_portrait && !table.has("size")) video.size = {1080, 1920};
     if (is_portrait && video.size.height < video.size.width)
         throw table.fault("size", "must be higher than wide for the layout \"portrait\"; it is [{}, {}]",
                           video.size.width, video.size.height);
@@ -119,8 +118,10 @@ void read_style(TomlReader& table, VideoSpec& video) {
     const bool is_ensemble = video.layout == Arrangement::ensemble;
     if (is_ensemble) video.trail_s = video.members.angles_deg.empty() ? 0.3 : 1;
     style_fields(table, video);
-    if (!is_ensemble) return;
-    if (video.glow_px.value_or(0) > 0)
+}
+
+void check_style(const TomlReader& table, const VideoSpec& video) {
+    if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
         throw table.fault("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
                           *video.glow_px);
 }
@@ -139,25 +140,29 @@ void read_video(TomlReader& table, VideoSpec& video) {
     table(preview_field, is_preview);
     table(size_field, video.size);
     format_fields(table, video);
-    check_transparent(table, video);
     time_fields(table, video);
     layout_fields(table, video);
-    check_layout(table, video);
-    check_size(table, video);
+    if (video.layout == Arrangement::portrait && !table.has("size")) video.size = {1080, 1920};
     read_style(table, video);
-    if (is_preview) make_preview(table, video);
     table.finish();
+    table.check_together([&] {
+        check_transparent(table, video);
+        check_layout(table, video);
+        check_size(table, video);
+        check_style(table, video);
+    });
+    if (is_preview) make_preview(table, video);
 }
 
 /// The font of the film's words, before the words: it decides which letters they may have. Beside the preset, or from
-/// here; from the command line always from here.
-void read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) {
+/// here; from the command line always from here. Whether it is known.
+bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) {
     auto table = document.table(top, "video");
     auto fonts = table.inner(table.read_table("fonts"), "[video.fonts]");
     constexpr std::string_view key = "text";
     std::string given;
     fonts.read({.key = key}, given);
-    if (given.empty()) return;
+    if (given.empty()) return !fonts.has(key);
     namespace fs = std::filesystem;
     std::error_code ignored;
     const auto beside = fs::path(document.path).parent_path() / given;
@@ -165,9 +170,12 @@ void read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     try {
         video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font));
     } catch (const Error& error) {
-        throw Error(error.code(),
-                    fmt::format("{}: [video.fonts] text {}: {}", fonts.place(key), *video.text_font, error.what()));
+        const auto fault = fonts.fault(key, "{}: {}", *video.text_font, error.what());
+        if (error.code() != ExitCode::bad_input) throw Error(error.code(), fault.what());
+        fonts.refuse(fault, key);
+        return false;
     }
+    return true;
 }
 
 /// The pair of an ensemble whose members are listed is its first and its last. Throws where the file gives a side
@@ -210,13 +218,15 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
         auto a = document.table(*level, "a"), b = document.table(*level, "b");
         read_side(a, preset.a, is_film);
         read_side(b, preset.b, is_film);
-        if (!is_film && preset.a.links() != preset.b.links())
-            throw b.fault("links",
-                          "must be that of the other side, so that the two can be compared; they are {} and {}",
-                          preset.a.links(), preset.b.links());
-        if (is_film && preset.a.particles.empty() != preset.b.particles.empty()) continue;
-        check_particles(preset.a, preset.b, a);
-        check_particles(preset.b, preset.a, b);
+        b.check_together([&] {
+            if (!is_film && preset.a.links() != preset.b.links())
+                throw b.fault("links",
+                              "must be that of the other side, so that the two can be compared; they are {} and {}",
+                              preset.a.links(), preset.b.links());
+            if (is_film && preset.a.particles.empty() != preset.b.particles.empty()) return;
+            check_particles(preset.a, preset.b, a);
+            check_particles(preset.b, preset.a, b);
+        });
     }
 }
 
@@ -241,18 +251,21 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
 
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
     const auto document = parse_document(source, overrides);
+    Faults faults(overrides);
     Preset preset;
     preset.name = preset.title = source.name;
-    TomlReader first(&document.root, "", document.path, document.texts);
-    read_font(first, document, preset.video);
+    auto first = document.top(&faults);
+    const bool knows_font = read_font(first, document, preset.video);
     const auto font = preset.video.text_font;
-    TomlReader top(&document.root, "", document.path, document.texts, preset.video.typeface);
+    auto top = document.top(&faults, knows_font ? &preset.video.typeface : nullptr);
     top.demand_title(preset.name);
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
 
     auto scene = document.table(top, "scene");
-    if (read_kind(scene) != pair_kind)
+    const auto kind = read_kind(scene);
+    if (faults.concern("scene")) faults.throw_if_any();  // which tables there may be is not known
+    if (kind != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     clock_fields(scene, preset);
     column_fields(scene, preset);
@@ -261,8 +274,9 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     auto video = document.table(top, "video");
     read_video(video, preset.video);
     preset.video.text_font = font;  // as it was found
-    place_members(document, top, video, preset);
     top.finish();
+    faults.throw_if_any();
+    place_members(document, top, video, preset);
     check_clock(preset, scene);
     check_frames(preset, video);
     check_layout(preset, video);
@@ -271,7 +285,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
 
 std::string kind_of_preset(const PresetText& source) {
     const auto document = parse_document(source, {});
-    TomlReader top(&document.root, "", document.path, document.texts);
+    auto top = document.top();
     auto scene = document.table(top, "scene");
     return read_kind(scene);
 }

@@ -21,7 +21,10 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
     if (table.has("accuracy")) {
         const bool ours = table.from_command_line("accuracy"), theirs = rival && table.from_command_line(*rival);
         if (rival && ours == theirs)
-            throw table.fault("accuracy", "chooses integrator, step and tolerance itself; give it, or {}", *rival);
+            table.refuse(
+                table.fault("accuracy", "chooses integrator, step and tolerance itself; give it, or {}", *rival)
+                    .with(table.beside(*rival)),
+                "accuracy");
         if (theirs) {
             side.accuracy.reset();
             return false;
@@ -42,6 +45,7 @@ std::string served(const MethodEntry& method) {
 }
 
 /// Particles, constraints and forces. An entry with the name of one that is there changes it; others are added.
+/// read(entry, spec, is_new) tells whether the entry says enough to know which keys it may have.
 template <class Spec, class Read>
 void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& entries, const Read& read) {
     const auto tables = table.read_tables(key);
@@ -51,19 +55,23 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
         std::string name;
         entry.read({.key = "name"}, name);
         if (!name.empty() && !given.insert(name).second)
-            throw entry.fault("name", "must differ from those before it; \"{}\" is there already", name);
+            entry.refuse(entry.fault("name", "must differ from those before it; \"{}\" is there already", name),
+                         "name");
         auto same = std::find_if(entries.begin(), entries.end(),
                                  [&](const Spec& spec) { return !name.empty() && spec.name == name; });
         const bool is_new = same == entries.end();
-        read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : *same, is_new);
-        entry.finish();
+        if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : *same, is_new)) entry.finish();
     }
 }
 
-void read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
-    if (particle.name.empty()) throw entry.fault("name", "is missing; constraints and forces call a particle by it");
-    entry.demand_drawable("name", particle.name);
+bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
+    entry.check_together([&] {
+        if (particle.name.empty())
+            throw entry.fault("name", "is missing; constraints and forces call a particle by it");
+        entry.demand_drawable("name", particle.name);
+    });
     part_fields(entry, particle);
+    return true;
 }
 
 /// The variant's alternative of that number; what it has in common with the old one stays.
@@ -86,15 +94,21 @@ void change_kind(std::variant<Parts...>& part, std::size_t kind) {
 
 /// The keys of one constraint or force: those of its kind, and no others.
 template <class Spec>
-void read_part(TomlReader& entry, Spec& spec, bool is_new) {
-    if (is_new && !entry.has("kind"))
-        throw entry.fault("kind", "is missing; there is \"{}\"", fmt::join(Spec::kinds, "\", \""));
-    std::string kind(kind_name(spec));
+bool read_part(TomlReader& entry, Spec& spec, bool is_new) {
+    const bool has_kind = entry.has("kind");
+    if (is_new && !has_kind) {
+        entry.refuse(entry.fault("kind", "is missing; there is \"{}\"", fmt::join(Spec::kinds, "\", \"")).with({}),
+                     "kind");
+        return false;
+    }
+    std::string kind(has_kind ? "" : kind_name(spec));
     entry.read({.key = "kind", .names = Spec::kinds}, kind);
+    if (kind.empty()) return false;
     if (kind != kind_name(spec))
         change_kind(spec.part, static_cast<std::size_t>(std::find(Spec::kinds.begin(), Spec::kinds.end(), kind) -
                                                         Spec::kinds.begin()));
     std::visit([&](auto& part) { part_fields(entry, part, kind); }, spec.part);
+    return true;
 }
 
 void read_mechanism(TomlReader& table, SideSpec& side) {
@@ -104,7 +118,9 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
     if (side.particles.empty()) return;
     for (const auto* key : {"links", "mass_kg", "length_m", "angle_deg", "omega_deg_per_s"})
         if (table.has(key))
-            throw table.fault(key, "describes a chain, and [[system.particle]] another system; give one");
+            table.refuse(table.fault(key, "describes a chain, and [[system.particle]] another system; give one")
+                             .with(table.beside("particle")),
+                         key);
 }
 
 /// What the keys say together must be possible.
@@ -171,8 +187,8 @@ void read_side(TomlReader& table, SideSpec& side, bool has_text) {
         method_fields(table, side);
     }
     precision_fields(table, side);
-    check_choices(table, side);
     table.finish();
+    table.check_together([&] { check_choices(table, side); });
 }
 
 }  // namespace doppel

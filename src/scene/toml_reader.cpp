@@ -42,11 +42,25 @@ std::optional<std::string> not_drawable(std::string_view text, const Typeface& t
         fmt::join(letters, ", "), rest);
 }
 
+/// The tables whose keys mean something beside each other: [video] and those inside; all that describe sides.
+std::string group_of(std::string_view name) {
+    name.remove_prefix(std::min(name.find_first_not_of('['), name.size()));
+    const auto table = name.substr(0, name.find_first_of(".]"));
+    constexpr std::array<std::string_view, 4> of_sides{"system", "a", "b", "curve"};
+    return std::string(std::find(of_sides.begin(), of_sides.end(), table) != of_sides.end() ? of_sides[0] : table);
+}
+
 }  // namespace
 
 TomlReader::TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts,
-                       const Typeface& typeface)
-    : table_(table), name_(std::move(name)), path_(std::move(path)), texts_(&texts), typeface_(&typeface) {}
+                       const Typeface* typeface, Faults* faults)
+    : table_(table),
+      name_(std::move(name)),
+      path_(std::move(path)),
+      group_(group_of(name_)),
+      texts_(&texts),
+      typeface_(typeface),
+      faults_(faults) {}
 
 std::string TomlReader::place(std::string_view key) const {
     if (!table_) return path_;
@@ -57,6 +71,37 @@ std::string TomlReader::place(std::string_view key) const {
         return fmt::format("{}:{}:{}", path_, name.source().begin.line, name.source().begin.column);
     }
     return path_;
+}
+
+FaultPlace TomlReader::fault_place(std::string_view key) const {
+    const auto line_of = [](const toml::source_region& source) {
+        const auto& at = source.begin;
+        return at.line > 0 ? FaultPlace{at.line, at.column} : FaultPlace{};
+    };
+    if (!table_) return {};
+    for (auto&& [name, node] : *table_) {
+        if (name.str() != key) continue;
+        const auto& origin = node.source().path;
+        const bool is_option = origin && origin->starts_with(command_line);
+        if (is_option && faults_) return faults_->of_option(*origin);
+        return is_option ? FaultPlace{} : line_of(name.source());
+    }
+    return name_.empty() ? FaultPlace{} : line_of(table_->source());
+}
+
+void TomlReader::note(std::string_view key, const Error& fault) const {
+    const auto* known = dynamic_cast<const TomlFault*>(&fault);
+    // a title says nothing of the tables
+    faults_->add({.message = fault.what(),
+                  .place = fault_place(key),
+                  .group = name_.empty() ? std::string(key) : group_,
+                  .key = std::string(key),
+                  .beside = known ? known->beside() : std::nullopt});
+}
+
+void TomlReader::refuse(const TomlFault& fault, std::string_view key) const {
+    if (!faults_) throw TomlFault(fault);
+    faults_->add({fault.what(), fault.place(), group_, std::string(key), fault.beside()});
 }
 
 std::string TomlReader::subject(std::string_view key) const {
@@ -78,18 +123,22 @@ bool TomlReader::from_command_line(std::string_view key) {
 }
 
 void TomlReader::demand_drawable(std::string_view key, std::string_view text) const {
+    if (!typeface_) return;
     if (const auto fault = not_drawable(text, *typeface_)) throw this->fault(key, "{}", *fault);
 }
 
 void TomlReader::demand_title(const std::string& name) {
-    if (has("title")) return;
+    if (has("title") || !typeface_) return;
     if (const auto fault = not_drawable(name, *typeface_))
-        throw bad_input("{}: title is missing, and the preset's name in its place {}", path_, *fault);
+        refuse({fmt::format("{}: title is missing, and the preset's name in its place {}", path_, *fault),
+                {},
+                BesideKeys{}},
+               "title");
 }
 
 const toml::table* TomlReader::read_table(std::string_view key) {
     const auto* node = find(key);
-    if (node && !node->is_table()) throw fault(key, "must be a table; {}", found(*node));
+    if (node && !node->is_table()) refuse(fault(key, "must be a table; {}", found(*node)), key);
     return node ? node->as_table() : nullptr;
 }
 
@@ -98,9 +147,12 @@ std::vector<const toml::table*> TomlReader::read_tables(std::string_view key) {
     const auto* node = find(key);
     if (!node) return tables;
     const auto* array = node->as_array();
-    if (!array || !array->is_array_of_tables())
-        throw fault(key, "must be written as [[{}{}{}]] tables; {}", bare_name(), name_.empty() ? "" : ".", key,
-                    found(*node));
+    if (!array || !array->is_array_of_tables()) {
+        refuse(fault(key, "must be written as [[{}{}{}]] tables; {}", bare_name(), name_.empty() ? "" : ".", key,
+                     found(*node)),
+               key);
+        return tables;
+    }
     for (const auto& element : *array) tables.push_back(element.as_table());
     return tables;
 }
@@ -111,9 +163,13 @@ void TomlReader::finish() const {
         if (known_.contains(name.str())) continue;
         const std::vector<std::string_view> keys(known_.begin(), known_.end());
         const auto meant = nearest(name.str(), keys);
-        throw bad_input(
+        const auto message = fmt::format(
             "{}: {} no \"{}\"; {}", place(name.str()), name_.empty() ? "a preset has" : name_ + " has", name.str(),
             meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("it has {}", fmt::join(keys, ", ")));
+        const auto hidden = hidden_.find(name.str());
+        refuse({message, fault_place(name.str()),
+                hidden == hidden_.end() ? std::nullopt : std::optional(beside(hidden->second))},
+               name.str());
     }
 }
 
@@ -131,6 +187,44 @@ void TomlReader::read(const Field& field, const toml::node& node, Speed& into) {
         read({.key = field.key, .bounds = not_negative}, *pair->get(0), at_s);
         read({.key = field.key, .bounds = changing_speeds}, *pair->get(1), speed);
     }
+}
+
+void TomlReader::read(const Field& field, const toml::node& node, Color& into) {
+    const auto* text = node.as_string();
+    const auto color = text ? parse_color(text->get()) : std::nullopt;
+    if (!color) throw fault(field.key, "must be a colour such as \"#ff9f40\"; {}", found(node));
+    into = *color;
+}
+
+void TomlReader::read(const Field& field, const toml::node& node, std::array<Color, 2>& into) {
+    const auto colors = texts_in(field, node);
+    if (colors.size() != 2) throw fault(field.key, "must have 2 colours, a and b; it has {}", colors.size());
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto color = parse_color(colors[i]);
+        if (!color) throw fault(field.key, "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
+        into[i] = *color;
+    }
+}
+
+/// "pendulums" and the strips, in their order.
+void TomlReader::read(const Field& field, const toml::node& node, Panels& into) {
+    const auto panels = texts_in(field, node);
+    const auto& names = names_of<StripKind>;
+    into = {false, {}};
+    for (const auto& panel : panels) {
+        const auto strip = std::find(names.begin(), names.end(), panel);
+        if (panel == "pendulums") {
+            into.pendulums = true;
+        } else if (strip == names.end()) {
+            throw fault(field.key, "may hold \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
+                        panel);
+        } else if (const auto kind = static_cast<StripKind>(strip - names.begin());
+                   std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end()) {
+            into.strips.push_back(kind);
+        }
+    }
+    if (panels.empty())
+        throw fault(field.key, "must hold at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
 }
 
 }  // namespace doppel

@@ -27,15 +27,24 @@ std::string written(const Quad& value) {
 }  // namespace
 
 bool TomlReader::counts(const Field& field) {
-    if (field.only.hides) return field.only.holds;
-    if (field.only.holds || field.only.fault.empty()) return true;
-    if (has(field.key) && (!field.only.drops || from_command_line(field.key)))
-        throw fault(field.key, "{}", field.only.fault);
+    const auto& only = field.only;
+    if (only.hides && !only.holds) hidden_.emplace(field.key, only.beside);
+    if (only.hides || only.holds || only.fault.empty()) return only.hides ? only.holds : true;
+    if (has(field.key) && (!only.drops || from_command_line(field.key)))
+        throw fault(field.key, "{}", only.fault).with(beside(only.beside));
     return false;
 }
 
 void TomlReader::demand(const Field& field, bool given) const {
-    if (!given && !field.needed_by.empty()) throw fault(field.key, "is missing; a {} needs it", field.needed_by);
+    if (!given && !field.needed_by.empty())
+        throw fault(field.key, "is missing; a {} needs it", field.needed_by).with(beside("kind"));
+}
+
+/// The fault as one of several keys, where beside others the key would take the number.
+TomlFault TomlReader::faulty_number(const Field& field, double value, const TomlFault& fault) const {
+    const auto& widest = field.otherwise;
+    const bool is_possible = widest && value >= widest->low && value <= widest->high;
+    return is_possible ? fault.with(beside(field.only.beside)) : fault;
 }
 
 /// `element` = "[1]" of an array.
@@ -46,8 +55,9 @@ void TomlReader::check(const Field& field, std::string_view element, const Numbe
     if (is_open ? value > low : value >= low)
         if (value <= high) return;
     const auto refuse = [&](const std::string& what) {
-        return bad_input("{}: {}{} must be {}; {} is {}", place(field.key), subject(field.key),
-                         why.empty() ? element : "", what, why.empty() ? "it" : "one", written(value));
+        const auto message = fmt::format("{}: {}{} must be {}; {} is {}", place(field.key), subject(field.key),
+                                         why.empty() ? element : "", what, why.empty() ? "it" : "one", written(value));
+        return faulty_number(field, static_cast<double>(value), {message, fault_place(field.key)});
     };
     // keys mostly name the unit
     const auto unit = field.unit.empty() || field.key.ends_with(field.unit) ? "" : fmt::format(" {}", field.unit);
@@ -73,7 +83,9 @@ void TomlReader::read(const Field& field, const toml::node& node, int& into) {
     if (!node.is_integer()) throw fault(field.key, "must be a whole number; {}", found(node));
     const auto value = node.as_integer()->get();
     if (static_cast<double>(value) < field.bounds.low || static_cast<double>(value) > field.bounds.high)
-        throw fault(field.key, "must be from {} to {}; it is {}", field.bounds.low, field.bounds.high, value);
+        throw faulty_number(
+            field, static_cast<double>(value),
+            fault(field.key, "must be from {} to {}; it is {}", field.bounds.low, field.bounds.high, value));
     into = static_cast<int>(value);
 }
 
@@ -201,6 +213,17 @@ void TomlReader::read(const Field& field, const toml::node& node, std::span<Quad
     check(field, "[0]", into[0]);
 }
 
+/// As many numbers as there are already: other keys say how many.
+void TomlReader::read(const Field& field, const toml::node& node, std::vector<Quad>& into) {
+    const auto* array = node.as_array();
+    const bool is_of_other_length = array && array->size() != into.size();
+    try {
+        read(field, node, std::span(into));
+    } catch (const TomlFault& fault) {
+        throw is_of_other_length ? fault.with(beside("links")) : fault;
+    }
+}
+
 void TomlReader::read(const Field& field, const toml::node& node, QuadPair& into) {
     if (!node.is_array()) throw fault(field.key, "must be two numbers, [x, y]; {}", found(node));
     read_array({.key = field.key, .each = "x and y"}, node, std::span<Quad>(into));
@@ -260,44 +283,6 @@ void TomlReader::read(const Field& field, const toml::node& node, Rational& into
         throw fault(field.key, "must be {} 0; it is {}", field.bounds.is_open ? ">" : "≥", shown(node));
     check(field, "", value->value());
     into = *value;
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, Color& into) {
-    const auto* text = node.as_string();
-    const auto color = text ? parse_color(text->get()) : std::nullopt;
-    if (!color) throw fault(field.key, "must be a colour such as \"#ff9f40\"; {}", found(node));
-    into = *color;
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, std::array<Color, 2>& into) {
-    const auto colors = texts_in(field, node);
-    if (colors.size() != 2) throw fault(field.key, "must have 2 colours, a and b; it has {}", colors.size());
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto color = parse_color(colors[i]);
-        if (!color) throw fault(field.key, "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
-        into[i] = *color;
-    }
-}
-
-/// "pendulums" and the strips, in their order.
-void TomlReader::read(const Field& field, const toml::node& node, Panels& into) {
-    const auto panels = texts_in(field, node);
-    const auto& names = names_of<StripKind>;
-    into = {false, {}};
-    for (const auto& panel : panels) {
-        const auto strip = std::find(names.begin(), names.end(), panel);
-        if (panel == "pendulums") {
-            into.pendulums = true;
-        } else if (strip == names.end()) {
-            throw fault(field.key, "may hold \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
-                        panel);
-        } else if (const auto kind = static_cast<StripKind>(strip - names.begin());
-                   std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end()) {
-            into.strips.push_back(kind);
-        }
-    }
-    if (panels.empty())
-        throw fault(field.key, "must hold at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
 }
 
 }  // namespace doppel

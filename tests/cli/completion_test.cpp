@@ -102,10 +102,15 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     EXPECT_EQ(completed(folder, "render calm --set video.colors.backg"), Lines{"video.colors.background="});
     EXPECT_EQ(completed(folder, "render calm --set scene.duration_s ="), Lines{"30"});
     EXPECT_EQ(completed(folder, "render calm --set nonesuch"), Lines{""});
+    EXPECT_EQ(completed(folder, "simulate calm --columns time_s,a_th"),
+              (Lines{"time_s,a_theta1_rad", "time_s,a_theta2_rad"}));
+    EXPECT_EQ(completed(folder, "simulate calm --columns di"), Lines{"distance"});
+    EXPECT_EQ(completed(folder, "render calm --columns = di"), Lines{"distance"});
     // of a figure: those of its kind
     EXPECT_EQ(completed(folder, "figure fig2-right --set sweep.exponent ="), (Lines{"false", "true"}));
     EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
     EXPECT_EQ(completed(folder, "check flip-map --set flip_map.col"), Lines{"flip_map.columns="});
+    EXPECT_EQ(completed(folder, "init --figure fl"), Lines{"flip-map"});
     EXPECT_TRUE(has(completed(folder, "figure --set ''"), "poincare.orbits=") ||
                 has(completed(folder, "figure --set ''"), "section.orbits="));
 }

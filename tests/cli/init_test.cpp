@@ -1,7 +1,12 @@
 // The preset that "doppel init" writes. With the real program.
 #include "cli/sandbox.hpp"
+#include "figure/kinds.hpp"
+#include "figure/preset.hpp"
 #include "scene/resolved.hpp"
 
+#include <functional>
+#include <map>
+#include <set>
 #include <sstream>
 
 namespace doppel {
@@ -29,12 +34,11 @@ TEST(Init, WritesAPresetThatIsCheckedAndRendered) {
     EXPECT_EQ(resolved_pair(preset), resolved_pair(read_preset(find_preset("butterfly"))));
 }
 
-TEST(Init, EachKeyCanBeTakenIntoUse) {
-    const auto folder = fresh_folder();
-    ASSERT_EQ(doppel(folder, {"init", "mine.toml"}).code, 0);
-    std::istringstream lines(bytes_of(folder / "mine.toml"));
-    const auto whole = lines.str();
-    std::size_t at = 0, keys = 0;
+/// The keys that stand as comments, and cannot be taken into use alone.
+std::set<std::string> refused_keys(const std::string& whole, const std::function<void(const std::string&)>& read_text,
+                                   std::size_t& keys) {
+    std::istringstream lines(whole);
+    std::size_t at = 0;
     std::set<std::string> refused;
     for (std::string line; std::getline(lines, line); at += line.size() + 1) {
         if (line.size() < 2 || line[0] != '#' || !std::isalpha(static_cast<unsigned char>(line[1]))) continue;
@@ -42,14 +46,82 @@ TEST(Init, EachKeyCanBeTakenIntoUse) {
         text.erase(at, 1);
         ++keys;
         try {
-            read(text);
+            read_text(text);
         } catch (const std::exception&) {
             refused.insert(line.substr(1, line.find(' ') - 1));
         }
     }
+    return refused;
+}
+
+TEST(Init, EachKeyCanBeTakenIntoUse) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(doppel(folder, {"init", "mine.toml"}).code, 0);
+    std::size_t keys = 0;
+    const auto refused = refused_keys(bytes_of(folder / "mine.toml"), read, keys);
     EXPECT_GT(keys, 50u);
     // those that are for other values of other keys
     EXPECT_EQ(refused, (std::set<std::string>{"codec", "members", "phase", "phase_link", "speed_ease_s", "tolerance"}));
+}
+
+TEST(Init, WritesAPresetOfEveryKindOfFigure) {
+    const auto folder = fresh_folder();
+    for (const auto& kind : figure_kinds()) {
+        const std::string name(kind.name), file = name + ".toml";
+        const auto result = doppel(folder, {"init", "--figure", name});
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(result.out, file + ": edit it, then: doppel check " + file + "\n");
+        const auto check = doppel(folder, {"check", file});
+        EXPECT_EQ(check.code, 0) << name << check.err;
+        const auto text = bytes_of(folder / file);
+        EXPECT_EQ(doppel(folder, {"show", file}).out, text);
+        EXPECT_EQ(kind_of_preset({name, file, text, file}), name);
+        for (const auto& table : tables_of(name))
+            for (const auto& field : table.fields) {
+                const auto key = std::string(field.key) + " = ";
+                EXPECT_TRUE(text.find("\n" + key) != std::string::npos || text.find("\n#" + key) != std::string::npos)
+                    << name << ": " << key;
+                if (field.key == "title" || field.key == "kind") continue;  // given, by the file's name and the option
+                EXPECT_NE(text.find("# " + std::string(field.help) + " ("), std::string::npos) << name << ": " << key;
+            }
+    }
+}
+
+TEST(Init, EachKeyOfAFigureCanBeTakenIntoUse) {
+    const auto folder = fresh_folder();
+    // those that are for other values of other keys, and what the figure gives itself
+    std::map<std::string_view, std::set<std::string>> beside{{"sweep", {"tolerance", "exponent_duration_s"}},
+                                                             {"curves", {"tolerance", "check_tolerance"}},
+                                                             {"convergence", {"tolerance"}},
+                                                             {"section", {"angle_deg", "omega_deg_per_s"}},
+                                                             {"flip-map", {"angle_deg"}},
+                                                             {"work-precision", {"duration_s"}}};
+    for (const auto& kind : figure_kinds()) {
+        const std::string name(kind.name);
+        ASSERT_EQ(doppel(folder, {"init", "--figure", name}).code, 0);
+        std::size_t keys = 0;
+        const auto refused = refused_keys(
+            bytes_of(folder / (name + ".toml")),
+            [](const auto& text) {
+                read_figure({"x", "x.toml", text});
+            },
+            keys);
+        EXPECT_GT(keys, 8u) << name;
+        EXPECT_EQ(refused, beside[kind.name]) << name;
+    }
+}
+
+TEST(Init, WritesAFigureThatIsDrawn) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(doppel(folder, {"init", "mine.toml", "--figure", "section"}).code, 0);
+    const auto figure = doppel(folder, {"figure", "mine.toml", "--set", "section.orbits=2", "--set",
+                                        "section.crossings=10", "--set", "chart.scale=0.25"});
+    EXPECT_EQ(figure.code, 0) << figure.err;
+    EXPECT_TRUE(fs::exists(folder / "out/mine/mine.png"));
+    EXPECT_EQ(doppel(folder, {"init", "--figure", "pair"}).code, 2);
+    EXPECT_EQ(doppel(folder, {"init"}).err, "doppel: init wants the name of the new file: doppel init FILE.toml\n");
+    EXPECT_EQ(doppel(folder, {"init", "mine.toml", "--figure", "sweep"}).err,
+              "doppel: mine.toml: is there already; give the name of a new file\n");
 }
 
 TEST(Init, LeavesWhatIsThere) {

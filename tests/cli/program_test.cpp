@@ -44,6 +44,12 @@ TEST(Program, SimulatesWithoutPictures) {
     EXPECT_EQ(doppel(folder, {"simulate", "calm", "-o", "data"}).code, 0);
     EXPECT_TRUE(fs::exists(folder / "data/calm/calm.csv"));
     EXPECT_FALSE(fs::exists(folder / "data/calm/calm.mp4"));
+    EXPECT_EQ(doppel(folder, {"simulate", "calm", "--columns", "time_s, distance"}).code, 0);
+    EXPECT_TRUE(bytes_of(folder / "out/calm/calm.csv").starts_with("time_s,distance\r\n0,"));
+    const auto refused = doppel(folder, {"render", "calm", "--columns=time", "-o", "none"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(refused.err.starts_with("doppel: --columns: the table of calm has no \"time\"; ")) << refused.err;
+    EXPECT_FALSE(fs::exists(folder / "none"));
 }
 
 TEST(Program, ListsShowsAndChecks) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <csignal>
 
 namespace doppel {
@@ -194,6 +195,31 @@ TEST(Streams, APipeAsPresetIsReadAndDoesNotSwallowCtrlC) {
         "file\n");
     write_bytes(folder / "work.toml", "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"/dev/zero\"\n");
     EXPECT_EQ(doppel(folder, {"check", "work.toml"}).code, 2);
+}
+
+TEST(Streams, TellAllFaultsOfAPresetALineEach) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "film.toml", "[video]\nfps = -2\nsise = 3\n[scene]\nduration_s = []\n[b]\nlinks = 0\n");
+    const auto film = doppel(folder, {"render", "film.toml", "--size", "7x7", "--set", "a.foo=1"});
+    EXPECT_EQ(film.code, 2);
+    EXPECT_EQ(film.out, "");
+    EXPECT_TRUE(
+        film.err.starts_with("doppel: film.toml:2:1: [video] fps must be > 0; it is -2\n"
+                             "doppel: film.toml:3:1: [video] has no \"sise\"; did you mean \"size\"?\n"
+                             "doppel: film.toml:5:1: [scene] duration_s must be a number; it is an array ([])\n"
+                             "doppel: film.toml:7:1: [b] links must be from 1 to 10000; it is 0\n"
+                             "doppel: --set a.foo: [a] has no \"foo\"; "))
+        << film.err;
+    EXPECT_EQ(std::count(film.err.begin(), film.err.end(), '\n'), 6) << film.err;
+    write_bytes(folder / "chart.toml", "[scene]\nkind = \"section\"\n[section]\norbits = 0\nfoo = 1\n");
+    for (const char* command : {"figure", "check"}) {
+        const auto figure = doppel(folder, {command, "chart.toml", "--set", "chart.scale=99"});
+        EXPECT_EQ(figure.code, 2);
+        EXPECT_EQ(figure.err,
+                  "doppel: chart.toml:4:1: [section] orbits must be from 1 to 10000; it is 0\n"
+                  "doppel: chart.toml:5:1: [section] has no \"foo\"; it has crossings, energy_J, orbits, tolerance\n"
+                  "doppel: --set chart.scale: [chart] scale must be at most 8; it is 99\n");
+    }
 }
 
 }  // namespace streams_test

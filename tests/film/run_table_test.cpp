@@ -66,6 +66,44 @@ TEST(RunTable, GivesEveryQuadBack) {
     EXPECT_GE(longest, 36u);
 }
 
+TEST(RunTable, HasTheColumnsThatAreChosenInTheirOrder) {
+    const auto out = fresh_folder();
+    const auto scene =
+        small_scene({"scene.energy_columns=true", "system.precision=\"quad\"", "system.step_s=\"1/480\""});
+    render(scene, {.out = out, .pictures = false});
+    const auto all = lines_of(out / "butterfly/butterfly.csv");
+    const auto names = cells_of(all[0]);
+    const auto chosen = [&](const std::vector<std::string>& columns, const auto& is_chosen) {
+        render(scene, {.out = out / "few", .pictures = false, .columns = columns});
+        const auto few = lines_of(out / "few/butterfly/butterfly.csv");
+        ASSERT_EQ(few.size(), all.size());
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const auto cells = cells_of(all[k]);
+            std::string expected;
+            for (std::size_t i = 0; i < names.size(); ++i)
+                if (is_chosen(names[i])) expected += (expected.empty() ? "" : ",") + cells[i];
+            EXPECT_EQ(few[k], expected) << k;
+        }
+    };
+    chosen({"distance", "time_s", "a_theta2_rad", "time_s"},
+           [](const auto& name) { return name == "time_s" || name == "a_theta2_rad" || name == "distance"; });
+    chosen({"b"}, [](const auto& name) { return name.starts_with("b_"); });
+    chosen({"a", "sample"}, [](const auto& name) { return name.starts_with("a_") || name == "sample"; });
+}
+
+TEST(RunTable, RefusesColumnsThatItDoesNotHave) {
+    const auto scene = small_scene();
+    for (const auto& name : {"a_theta3_rad", "c", "", "a_kinetic_J", "*", "a_"}) {
+        const auto [code, message] = error_of([&] { check_run(scene, {.columns = {"time_s", name}}); });
+        EXPECT_EQ(code, ExitCode::bad_input) << name;
+        EXPECT_TRUE(message.starts_with("--columns: the table of butterfly has no \"" + std::string(name) + "\"; "))
+            << message;
+        EXPECT_NE(message.find("it has sample, time_s, a_theta1_rad,"), std::string::npos) << message;
+    }
+    EXPECT_NE(error_of([&] { check_run(scene, {.columns = {"a_theta3_rad"}}); }).second.find("did you mean"),
+              std::string::npos);
+}
+
 TEST(RunTable, HasTheEnergiesLastWhereTheyAreAskedFor) {
     const auto out = fresh_folder();
     render(small_scene({"scene.energy_columns=true"}), {.out = out, .pictures = false});

@@ -72,6 +72,8 @@ std::string refusal_of(const Read& read) {
         const std::string message = fault.what();
         if (fault.code() != ExitCode::bad_input) throw std::logic_error("not exit 2: " + message);
         if (!names_a_place(message)) throw std::logic_error("names no place: " + message);
+        for (const auto& line : fault.further())
+            if (!names_a_place(line) && !line.starts_with("and ")) throw std::logic_error("names no place: " + line);
         return message;
     }
 }

@@ -1,0 +1,68 @@
+#include "figure/preset.hpp"
+#include "figure/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace doppel {
+namespace all_figure_faults_test {
+
+using Lines = std::vector<std::string>;
+
+/// How the faults of a figure of this kind begin; the text is from line 3 on.
+Lines faults_of(const std::string& kind, const std::string& text, const std::vector<std::string>& arguments = {},
+                std::size_t letters = 24) {
+    try {
+        read_figure({"x", "x.toml", "[scene]\nkind = \"" + kind + "\"\n" + text, "x.toml"}, sets(arguments));
+    } catch (const Error& fault) {
+        EXPECT_EQ(fault.code(), ExitCode::bad_input);
+        Lines lines{fault.what()};
+        lines.insert(lines.end(), fault.further().begin(), fault.further().end());
+        for (auto& line : lines) {
+            if (line.starts_with("x.toml:")) line.erase(0, 7);
+            line = line.substr(0, letters);
+        }
+        return lines;
+    }
+    return {};
+}
+
+TEST(AllFaultsOfAFigure, StandInTheOrderOfTheFileAndThenOfTheCommandLine) {
+    EXPECT_EQ(
+        faults_of("sweep",
+                  "duration_s = \"long\"\n[chart]\nscale = 9\nsice = 1\n[sweep]\nto = inf\nstep = 0\n[b]\nlabel = "
+                  "\"x\"\n[system]\nmodel = 1\n",
+                  {"sweep.frm=1"}),
+        (Lines{"3:1: [scene] duration_s ", "5:1: [chart] scale must ", "6:1: [chart] has no \"sic",
+               "8:1: [sweep] to must be ", "9:1: [sweep] step must b", "11:1: [b] has no \"label\"",
+               "13:1: [system] model mus", "--set sweep.frm: [sweep]"}));
+}
+
+TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
+    const auto figures = {"sweep",    "curves", "convergence", "spectrum",  "section",
+                          "flip-map", "links",  "drift",       "stability", "work-precision"};
+    for (const auto* kind : figures) {
+        std::string table = kind;
+        for (auto& letter : table)
+            if (letter == '-') letter = '_';
+        const auto faults = faults_of(kind, "[" + table + "]\nfoo = 1\n[chart]\nscale = 9\nbar = 2\n");
+        EXPECT_EQ(faults.size(), 3u) << kind << testing::PrintToString(faults);
+    }
+    EXPECT_EQ(faults_of("curves", "[[curve]]\ncolumn = 3\n[curve.a]\nlinks = 0\n[[curve]]\nfoo = 1\n", {}, 18),
+              (Lines{"4:1: [[curve]] 1 c", "6:1: [a] links mus", "8:1: [[curve]] 2 h"}));
+    EXPECT_EQ(faults_of("encoders", "[[film]]\nfps = 0\n[[film]]\nsize = 1\n", {}, 18),
+              (Lines{"4:1: [[film]] 1 fp", "6:1: [[film]] 2 si"}));
+}
+
+TEST(AllFaultsOfAFigure, LeaveOutWhatMayFollowFromAnother) {
+    EXPECT_EQ(faults_of("sweep", "[sweep]\nexponent = 1\nexponent_duration_s = 3\n"),
+              (Lines{"4:1: [sweep] exponent mu"}));
+    EXPECT_EQ(faults_of("sweep", "[sweep]\nfrom = 10\nto = 5\nstep = \"x\"\n"), (Lines{"6:1: [sweep] step must b"}));
+    EXPECT_EQ(faults_of("spectrum", "[system]\nlinks = 5\n[chart]\nscale = 0\n"), (Lines{"6:1: [chart] scale must "}));
+    EXPECT_EQ(faults_of("sweeep", "[sweep]\nfoo = 1\n"), (Lines{"2:1: [scene] kind must b"}));
+}
+
+}  // namespace all_figure_faults_test
+}  // namespace doppel
