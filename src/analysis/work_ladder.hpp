@@ -147,6 +147,11 @@ std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>&
 /// Median and greatest spread of the CPU times of all useful rungs; NaN where there are none.
 std::pair<double, double> time_spread(const std::vector<Ladder>& all);
 
+/// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems at all
+/// `errors`. One that does not come so far ranks behind all that do; of equals the first.
+std::vector<std::string> ranked(const std::vector<Ladder>& all, Cost cost, std::span<const double> errors,
+                                bool external);
+
 /// The ladder that gets to `error` at the least cost, of Doppel's methods or of the external ones.
 struct Cheapest {
     const Ladder* ladder;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace doppel {
 namespace {
@@ -117,6 +119,40 @@ std::pair<double, double> time_spread(const std::vector<Ladder>& all) {
     if (spreads.empty()) return {NAN, NAN};
     std::sort(spreads.begin(), spreads.end());
     return {spreads[spreads.size() / 2], spreads.back()};
+}
+
+std::vector<std::string> ranked(const std::vector<Ladder>& all, Cost cost, std::span<const double> errors,
+                                bool external) {
+    std::vector<std::string> names;
+    std::vector<std::size_t> problems;
+    for (const auto& ladder : all) {
+        if ((ladder.solver.external != nullptr) != external) continue;
+        const auto add = [](auto& list, const auto& value) {
+            if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+        };
+        add(names, ladder.solver.name());
+        add(problems, ladder.problem);
+    }
+    constexpr double never = std::numeric_limits<double>::infinity();
+    std::vector<long> ranks(names.size());
+    for (const std::size_t problem : problems)
+        for (const double error : errors) {
+            std::vector<double> costs(names.size(), never);
+            for (const auto& ladder : all) {
+                const auto at = std::find(names.begin(), names.end(), ladder.solver.name()) - names.begin();
+                if (ladder.problem != problem || at == static_cast<long>(names.size())) continue;
+                auto& least = costs[static_cast<std::size_t>(at)];
+                least = std::min(least, cost_at(ladder, cost, error).value_or(never));
+            }
+            for (std::size_t i = 0; i < names.size(); ++i)
+                ranks[i] += std::count_if(costs.begin(), costs.end(), [&](double other) { return other < costs[i]; });
+        }
+    std::vector<std::size_t> order(names.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ranks[a] < ranks[b]; });
+    std::vector<std::string> best;
+    for (const std::size_t i : order) best.push_back(names[i]);
+    return best;
 }
 
 std::optional<Cheapest> cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error,

@@ -1,8 +1,11 @@
 #include "analysis/drift.hpp"
 
 #include "figure/kinds.hpp"
+#include "figure/system_words.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -111,21 +114,26 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        figure.captions.push_back(cost_words(numbers));
         for (const bool of_rods : {false, true}) {
             Plot plot;
             // room for names beyond the end
             plot.x = {.label = "time, s", .low = 1, .high = 9 * spec_.times_s.back(), .logarithmic = true};
             plot.y = {.label = of_rods ? "worst error of a rod so far, m, in constraints"
                                        : "worst relative error of the energy so far",
-                      .high = 100,
+                      .high = 10,
                       .logarithmic = true};
             for (const std::size_t run : longest_first(numbers))
                 if (shows(run, of_rods)) add_curves(run_of(numbers[run]), curve_words(run), of_rods, plot);
             if (plot.curves.empty()) continue;
             figure.panels.push_back(std::move(plot));
-            figure.captions.push_back(growth_caption(numbers, of_rods));
         }
+        figure.captions.push_back(seen_words(numbers));
+    }
+
+    std::string subtitle() const override {
+        return fmt::format("{} {}, {}; every method at some {:g} evaluations a second of motion",
+                           pendulum_words(release_.links()), released_words(release_), links_words(release_),
+                           spec_.evaluations_per_s);
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
@@ -245,38 +253,20 @@ private:
         plot.curves.push_back(std::move(curve));
     }
 
-    /// The cost of all, and the exceptions.
-    std::string cost_words(std::span<const TrialNumbers> numbers) const {
-        std::string exceptions;
+    /// How the energy's error ends, and how to read the curves.
+    std::string seen_words(std::span<const TrialNumbers> numbers) const {
+        std::vector<std::string> bounded;
+        bool breaks = false;
         for (std::size_t run = 0; run < runs_.size(); ++run) {
-            constexpr double within = 0.02;
-            const auto [setting, taken, cpu_s, broken_at_s] = row_of<RunRow>(numbers[run]);
-            if (broken_at_s > 0 || std::abs(taken / spec_.evaluations_per_s - 1) < within) continue;
-            exceptions += fmt::format("{} {} in {} {:.0f}", exceptions.empty() ? ";" : ",", curve_words(run),
-                                      name_of(runs_[run].model), taken);
+            const auto kind = growth(run_of(numbers[run]), false).kind;
+            breaks |= kind == Growth::Kind::breakdown;
+            if (shows(run, false) && kind == Growth::Kind::bounded) bounded.push_back(curve_words(run));
         }
-        return fmt::format("Each takes {:g} evaluations of the right-hand side a second of motion{}.",
-                           spec_.evaluations_per_s, exceptions);
-    }
-
-    /// The growth of each method's error, with the fitted exponents.
-    std::string growth_caption(std::span<const TrialNumbers> numbers, bool of_rods) const {
-        std::string words;
-        for (const auto& look : looks) {
-            std::string names;
-            for (std::size_t run = 0; run < runs_.size(); ++run) {
-                const auto found = growth(run_of(numbers[run]), of_rods);
-                if (!shows(run, of_rods) || found.kind != look.kind) continue;
-                names += fmt::format("{} {}", names.empty() ? ":" : ",", curve_words(run));
-                if (found.kind == Growth::Kind::breakdown)
-                    names += fmt::format(" after {} s", roughly(found.broken_at_s));
-                else
-                    names += fmt::format(" ({:.2f})", found.exponent);
-                if (found.doubling_s > 0) names += fmt::format(" (doubling in {} s)", roughly(found.doubling_s));
-            }
-            if (!names.empty()) words += fmt::format("{} {}{}", words.empty() ? "" : ";", look.words, names);
-        }
-        return fmt::format("{}{}.", of_rods ? "The rods’ error" : "The energy’s error", words);
+        return fmt::format("{}; ∝ tells how the others grow{}.",
+                           bounded.empty()
+                               ? "No method keeps the error of the energy bounded"
+                               : fmt::format("The error of the energy stays bounded with {}", fmt::join(bounded, ", ")),
+                           breaks ? ", a dot marks a breakdown" : "");
     }
 
     SideSpec release_;

@@ -1,6 +1,7 @@
 #include "analysis/exponent.hpp"
 #include "base/clock.hpp"
 #include "figure/kinds.hpp"
+#include "figure/system_words.hpp"
 #include "integrate/motion.hpp"
 
 #include <algorithm>
@@ -65,24 +66,29 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        Plot plot;
-        plot.x = {.label = "links"};
-        plot.y = {.label = "largest Lyapunov exponent, 1/s", .low = 0};
-        plot.right = PlotAxis{.label = "an Euler step, ns", .low = 0};
-        Curve exponents{.label = "exponent", .mark = Mark::both};
-        Curve angles{.label = "a step in angles", .hue = 1, .right = true};
-        Curve constraints{.label = "a step in constraints", .hue = 2, .right = true};
+        Plot chaos, cost;
+        chaos.x = cost.x = {.label = "links"};
+        chaos.y = {.label = "largest Lyapunov exponent, 1/s"};
+        cost.y = {.label = "CPU time of an Euler step, ns"};
+        Curve exponents{.mark = Mark::both};
+        Curve angles{.label = "in angles", .hue = 1}, constraints{.label = "in constraints", .hue = 2};
         const auto costs = rows_of<CostRow>(numbers[0]);
         for (std::size_t i = 0; i < chains(); ++i) {
-            for (auto* curve : {&exponents, &angles, &constraints}) curve->x.push_back(static_cast<double>(links(i)));
+            const auto number = static_cast<double>(links(i));
             const auto exponent = row_of<ExponentRow>(numbers[i + 1]);
-            exponents.y.push_back(exponent.value);
+            add_point(exponents, number, exponent.value);
             exponents.uncertainty.push_back(exponent.uncertainty);
-            angles.y.push_back(costs[i].angles);
-            constraints.y.push_back(costs[i].constraints);
+            add_point(angles, number, costs[i].angles);
+            add_point(constraints, number, costs[i].constraints);
         }
-        plot.curves = {std::move(exponents), std::move(angles), std::move(constraints)};
-        figure.panels.push_back(std::move(plot));
+        chaos.curves = {std::move(exponents)};
+        cost.curves = {std::move(angles), std::move(constraints)};
+        figure.panels = {std::move(chaos), std::move(cost)};
+    }
+
+    std::string subtitle() const override {
+        return fmt::format("chains {}, {}; exponents from {:g} s, the band one standard deviation; Euler at 30 kHz",
+                           released_words(release_), links_words(release_), spec_.duration_s);
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

@@ -1,31 +1,36 @@
 #include "analysis/section.hpp"
 
+#include "analysis/exponent.hpp"
 #include "figure/kinds.hpp"
+#include "figure/system_words.hpp"
 #include "image/color.hpp"
+#include "scene/captions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace doppel {
 namespace {
 
-/// The legend: a theme may have fewer colours than a section has orbits.
-std::string color_words(std::size_t orbits) {
-    const auto colors = themes.front().palette.size();
-    if (orbits <= colors) return "Every colour is one orbit.";
-    return fmt::format(
-        "An orbit has one colour throughout; of the {} orbits to an energy, {} share each of {} colours.", orbits,
-        orbits % colors == 0 ? fmt::format("{}", orbits / colors) : "several", colors);
-}
+/// What an orbit's numbers begin with: its largest exponent, 1/s, and how many crossings follow.
+struct OrbitRow {
+    double exponent, uncertainty, crossings;
 
-/// A crossing of θ1 = 0. The numbers of an orbit: how many there are, then these.
+    bool regular() const { return is_regular({exponent, uncertainty}); }
+};
+/// A crossing of θ1 = 0.
 struct CrossingRow {
     double theta2, p2, time_s;
 };
+OrbitRow orbit_of(const TrialNumbers& orbit) {
+    return row_of<OrbitRow>(orbit);
+}
 std::vector<CrossingRow> crossings_of(const TrialNumbers& orbit) {
-    return rows_of<CrossingRow>(std::span(orbit).subspan(1));
+    return rows_of<CrossingRow>(std::span(orbit).subspan(numbers_in<OrbitRow>));
 }
 
-/// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy.
+/// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy. Regular orbits
+/// are those whose largest exponent cannot be told from 0.
 class Section final : public Experiment {
 public:
     static constexpr std::string_view table_key = "section";
@@ -37,6 +42,8 @@ public:
                 throw system.fault(key, "is not for a section, whose orbits start all over their energy");
         auto table = reader.settings(*this);
         if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
+        constexpr int transient = 10;  // a part of the time: the tangent finds its direction
+        exponent_spec_.transient_s = exponent_spec_.duration_s / transient;
         settings_ = resolved_chain(release_) + table.finish();
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
@@ -53,64 +60,101 @@ public:
         visit({"orbits", "of each energy", "", from_to(1, 10'000)}, orbits_);
         visit({"crossings", "of each orbit", "", from_to(1, 1'000'000)}, spec_.crossings);
         visit({"tolerance", "of taylor: relative error of a step", "", positive}, spec_.tolerance);
+        visit({"exponent_duration_s", "of the motion by whose largest exponent an orbit is regular or chaotic", "s",
+               positive},
+              exponent_spec_.duration_s);
     }
 
     std::size_t trials() const override { return energies_.size() * orbits(); }
     std::string unit() const override { return "orbits"; }
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        return !numbers.empty() && is_count(numbers[0]) && numbers[0] <= spec_.crossings &&
-               numbers.size() == 1 + numbers_in<CrossingRow> * static_cast<std::size_t>(numbers[0]) &&
-               all_finite(numbers);
+        if (numbers.size() < numbers_in<OrbitRow> || !all_finite(numbers)) return false;
+        const double crossings = row_of<OrbitRow>(numbers).crossings;
+        return is_count(crossings) && crossings <= spec_.crossings &&
+               numbers.size() == numbers_in<OrbitRow> + numbers_in<CrossingRow> * static_cast<std::size_t>(crossings);
     }
 
     std::vector<std::string> columns() const override {
-        return {"energy_J", "orbit", "time_s", "theta2_rad", "p2_N_m_s"};
+        return {"energy_J", "orbit", "exponent_per_s", "regular", "time_s", "theta2_rad", "p2_N_m_s"};
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (std::size_t i = 0; i < numbers.size(); ++i)
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const auto orbit = orbit_of(numbers[i]);
             for (const auto& crossing : crossings_of(numbers[i]))
-                add_row(table, energies_[i / orbits()], i % orbits(), crossing.time_s, crossing.theta2, crossing.p2);
+                add_row(table, energies_[i / orbits()], i % orbits(), orbit.exponent, orbit.regular(), crossing.time_s,
+                        crossing.theta2, crossing.p2);
+        }
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        for (std::size_t panel = 0; panel < energies_.size(); ++panel) {
-            Plot plot;
-            plot.title = fmt::format("E = {:.4g} J", energies_[panel]);
-            plot.x = {.label = "θ₂, rad"};
-            plot.y = {.label = "p₂, N m s"};
-            plot.square = true;
-            for (std::size_t orbit = 0; orbit < orbits(); ++orbit) {
-                Curve curve{.mark = Mark::points, .hue = static_cast<int>(orbit)};
-                for (const auto& crossing : crossings_of(numbers[panel * orbits() + orbit]))
-                    add_point(curve, crossing.theta2, crossing.p2);
-                plot.curves.push_back(std::move(curve));
-            }
-            figure.panels.push_back(std::move(plot));
-        }
-        figure.captions.push_back(color_words(orbits()) +
-                                  " Closed curves are regular orbits; what fills an area is chaotic.");
+        for (std::size_t panel = 0; panel < energies_.size(); ++panel)
+            figure.panels.push_back(plot_of(panel, numbers.subspan(panel * orbits(), orbits())));
+        long most = 0;
+        for (std::size_t panel = 0; panel < energies_.size(); ++panel)
+            most = std::max(most, regular_ones(numbers.subspan(panel * orbits(), orbits())));
+        figure.captions.push_back(
+            fmt::format("In colour, regular orbits ({}): the largest Lyapunov exponent of {} s of their motion is at "
+                        "most twice its uncertainty. In grey, chaotic ones.",
+                        most > static_cast<long>(themes.front().palette.size()) ? "colours repeat" : "a colour each",
+                        grouped(std::lround(exponent_spec_.duration_s))));
+    }
+
+    std::string subtitle() const override {
+        return fmt::format("Poincaré sections θ₁ = 0, ω₁ > 0 of a double pendulum, {}; energies above hanging at rest",
+                           links_words(release_));
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
+        std::vector<Finding> all;
         double points = 0;
-        for (const auto& orbit : numbers) points += orbit.front();
-        return {{"points", points}};
+        for (const auto& orbit : numbers) points += orbit_of(orbit).crossings;
+        all.push_back({"points", points});
+        for (std::size_t panel = 0; panel < energies_.size(); ++panel)
+            all.push_back({fmt::format("regular_orbits_of_{:g}_J", energies_[panel]),
+                           static_cast<double>(regular_ones(numbers.subspan(panel * orbits(), orbits())))});
+        return all;
     }
 
 private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        const auto points = poincare_section(releases_[trial / orbits()][trial % orbits()], spec_, stop);
-        TrialNumbers numbers{static_cast<double>(points.size())};
+        const auto& release = releases_[trial / orbits()][trial % orbits()];
+        const auto points = poincare_section(release, spec_, stop);
+        const auto exponent = largest_exponent(release, exponent_spec_, stop);
+        auto numbers = numbers_of(OrbitRow{exponent.value, exponent.uncertainty, static_cast<double>(points.size())});
         for (const auto& point : points) append(numbers, CrossingRow{point.theta2, point.p2, point.time_s});
         return numbers;
+    }
+
+    /// The orbits of one energy.
+    Plot plot_of(std::size_t panel, std::span<const TrialNumbers> orbits_of_panel) const {
+        Plot plot{.title = fmt::format("E = {:.4g} J", energies_[panel])};
+        plot.note = fmt::format("{} of {} regular", regular_ones(orbits_of_panel), orbits());
+        plot.x = {.label = "θ₂, rad"};
+        plot.y = {.label = "p₂, N m s"};
+        plot.square = true;
+        int hue = 0;
+        for (const auto& numbers : orbits_of_panel) {
+            Curve curve{.mark = Mark::points};
+            if (orbit_of(numbers).regular())
+                curve.hue = hue++;
+            else
+                curve.quiet = true;
+            for (const auto& crossing : crossings_of(numbers)) add_point(curve, crossing.theta2, crossing.p2);
+            plot.curves.push_back(std::move(curve));
+        }
+        return plot;
+    }
+    static long regular_ones(std::span<const TrialNumbers> orbits) {
+        return std::count_if(orbits.begin(), orbits.end(), [](const auto& orbit) { return orbit_of(orbit).regular(); });
     }
 
     std::size_t orbits() const { return static_cast<std::size_t>(orbits_); }
 
     SideSpec release_;
     SectionSpec spec_;
+    ExponentSpec exponent_spec_{.duration_s = 10000};
     std::vector<double> energies_{9.8, 49, 98};  // above hanging at rest, J
     int orbits_ = 24;
     std::vector<std::vector<Pendulum<double>>> releases_;  // by energy

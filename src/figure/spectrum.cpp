@@ -1,5 +1,6 @@
 #include "analysis/exponent.hpp"
 #include "figure/kinds.hpp"
+#include "figure/system_words.hpp"
 #include "scene/captions.hpp"
 
 #include <cmath>
@@ -71,6 +72,11 @@ public:
         figure.captions.push_back(
             fmt::format("After {} s: {} 1/s. Their sum is 0 within {}, and the pairs are ± within {} 1/s.",
                         spec_.duration_s, words, scientific(std::abs(sum(last))), scientific(pair_mismatch(last))));
+    }
+
+    std::string subtitle() const override {
+        return fmt::format("{} {}, {}; tangent equations by dual numbers in canonical variables, dop853",
+                           pendulum_words(release_.links()), released_words(release_), links_words(release_));
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

@@ -1,6 +1,7 @@
 #include "analysis/stability.hpp"
 
 #include "figure/kinds.hpp"
+#include "figure/system_words.hpp"
 
 #include <algorithm>
 #include <array>
@@ -87,8 +88,11 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        constexpr std::size_t many = 8, side_by_side = 4;
-        if (methods_.size() > many) figure.columns = side_by_side;
+        // as many columns as leave methods of either sort rows of their own
+        constexpr std::size_t many = 6, few = 3;
+        const auto stepped = std::count_if(methods_.begin(), methods_.end(), [](auto* m) { return !m->adaptive; });
+        if (methods_.size() > many) figure.columns = stepped % few == 0 ? few : few + 1;
+        figure.shares_axes = true;
         for (std::size_t m = 0; m < methods_.size(); ++m) {
             const auto& method = *methods_[m];
             const auto &cells = columns_of(method), &rows = rows_;
@@ -97,8 +101,10 @@ public:
                       .low = cells.from,
                       .high = cells.to,
                       .logarithmic = true};
-            plot.y = {.low = rows.from, .high = rows.to, .logarithmic = rows.logarithmic};
-            if (figure.columns == 0 || m % side_by_side == 0) plot.y.label = std::string(parameter_->label);
+            plot.y = {.label = std::string(parameter_->label),
+                      .low = rows.from,
+                      .high = rows.to,
+                      .logarithmic = rows.logarithmic};
             if (!rows.logarithmic) plot.y.every = 45;
             plot.map = map_of(numbers, m);
             if (!method.adaptive) draw_limit(method.name, plot);
@@ -109,6 +115,17 @@ public:
             "Gauss collocation has none. A blow-up: an error beyond {:g} times the energy released, NaN, or a method "
             "that gives up, as gauss and rattle do where they do not find their stages or multipliers.",
             blow_up, duration_.value(), blow_up));
+    }
+
+    std::string subtitle() const override {
+        auto moved = links_words(release_);
+        if (parameter_->is_ratio) {
+            moved = moved.substr(0, moved.find(" and "));
+            moved += fmt::format(", m₂ = {} kg, g = {} m/s²", text_of(release_.mass_kg[1]),
+                                 text_of(release_.gravity_m_per_s2));
+        }
+        const auto swept = parameter_->is_ratio ? std::nullopt : std::optional<std::size_t>(0);
+        return fmt::format("{} {}; {}", pendulum_words(release_.links()), released_words(release_, swept), moved);
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -262,14 +279,15 @@ private:
 
     /// A rule where it is the same for all rows, else a curve.
     void draw_limit(std::string_view method, Plot& plot) const {
-        Curve curve{.label = "linear limit", .dashed = true, .quiet = true};
+        Curve curve{.dashed = true, .quiet = true};
         for (std::size_t row = 0; row < releases_.size(); ++row)
             add_point(curve, limit_at(method, row), rows_.middle(static_cast<int>(row)));
         const auto [least, most] = std::minmax_element(curve.x.begin(), curve.x.end());
         constexpr double alike = 1e-4;
         if (std::isnan(*least)) return;
         if (*most < *least * (1 + alike)) {
-            plot.rules.push_back({Rule::Orientation::vertical, *least, fmt::format("limit {:.3g} s", *least)});
+            plot.rules.push_back({Rule::Orientation::vertical, *least, ""});
+            plot.note = fmt::format("limit {:.3g} s", *least);
             return;
         }
         curve.y.front() = rows_.from;

@@ -15,12 +15,7 @@ namespace doppel {
 namespace {
 
 /// Accuracies, rad, for which the cheapest method is named.
-struct Accuracy {
-    double error;
-    const char *key, *words;
-};
-constexpr std::array<Accuracy, 4> accuracies{
-    {{1e-3, "1e-3", "10⁻³"}, {1e-6, "1e-6", "10⁻⁶"}, {1e-9, "1e-9", "10⁻⁹"}, {1e-12, "1e-12", "10⁻¹²"}}};
+constexpr std::array accuracies{1e-3, 1e-6, 1e-9, 1e-12};
 
 /// The numbers of a problem's own trial.
 struct ProblemRow {
@@ -124,20 +119,19 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        if (figure.subtitle.empty()) figure.subtitle = problems_.subtitle;
         const auto ladders = merged_ladders(numbers);
+        const auto named = names_in_colour(ladders);
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             figure.panels.push_back(
-                work_plot({p, problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity, ladders, cost_}));
-        figure.captions.push_back(legend_words(std::any_of(figure.panels.begin(), figure.panels.end(),
-                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
-        if (const auto words = winner_words(ladders); !words.empty())
-            figure.captions.push_back(
-                fmt::format("The least {}: {}.", cost_ == Cost::time ? "time, µs" : "evaluations", words));
-        if (const auto words = external_words(ladders); !words.empty())
-            figure.captions.push_back(fmt::format("The best of the others takes so many times as much: {}.", words));
+                work_plot({p, problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity, ladders, cost_,
+                           named, has_libraries()}));
+        figure.captions.push_back(color_words(ladders));
+        figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
+                                                          [](const Plot& plot) { return !plot.rules.empty(); })));
         if (cost_ == Cost::time) figure.captions.push_back(spread_words(ladders));
     }
+
+    std::string subtitle() const override { return problems_.subtitle; }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
@@ -147,7 +141,7 @@ public:
             const auto problem = row_of<ProblemRow>(numbers[p]);
             all.push_back({name + "_sensitivity", problem.sensitivity});
             all.push_back({name + "_reference_disagreement", problem.disagreement});
-            for (const auto& accuracy : accuracies) add_findings(ladders, p, accuracy, all);
+            for (const double accuracy : accuracies) add_findings(ladders, p, accuracy, all);
         }
         if (cost_ == Cost::evaluations) return all;
         const auto [typical, worst] = time_spread(ladders);
@@ -158,6 +152,10 @@ public:
 
 private:
     std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
+    bool has_libraries() const {
+        return std::any_of(ladders_.begin(), ladders_.end(),
+                           [](const auto& l) { return l.second.external != nullptr; });
+    }
     bool has_angles() const { return problems_.all.front().has_angles(); }
 
     void find_solvers(TomlReader& table) {
@@ -205,11 +203,11 @@ private:
         return all;
     }
 
-    void add_findings(const std::vector<Ladder>& ladders, std::size_t p, const Accuracy& accuracy,
+    void add_findings(const std::vector<Ladder>& ladders, std::size_t p, double accuracy,
                       std::vector<Finding>& all) const {
-        const auto key = fmt::format("{}_{}_", problems_.all[p].name, accuracy.key);
-        const auto best = cheapest(p, ladders, cost_, accuracy.error, false);
-        const auto external = cheapest(p, ladders, cost_, accuracy.error, true);
+        const auto key = fmt::format("{}_1e{}_", problems_.all[p].name, std::lround(std::log10(accuracy)));
+        const auto best = cheapest(p, ladders, cost_, accuracy, false);
+        const auto external = cheapest(p, ladders, cost_, accuracy, true);
         if (best) {
             const auto& solver = best->ladder->solver;
             all.push_back({key + "best", fmt::format("{}, {}", solver.method, name_of(solver.model))});
@@ -222,55 +220,37 @@ private:
         if (best && external) all.push_back({key + "peer_ratio", external->cost / best->cost});
     }
 
-    std::string legend_words(bool floors) const {
-        return fmt::format(
-            "Each method by its best model on the problem, its other models faint; the pale band is the front: no "
-            "method here errs less at less cost.{}{} Errors are those of the worst {} against Taylor series in quad, "
-            "{}, which agree.",
-            solvers_.back().external ? " In grey, methods of other libraries." : "",
-            floors ? " Dashed across: the rounding of a double, and what the motion makes of it." : "",
-            has_angles() ? "angle" : "place, as a part of the mechanism's size,",
-            problems_.all.front().plain ? "in angles and as particles on rods" : "at two tolerances");
-    }
-
-    /// The cheapest at each accuracy, a problem after the other.
-    std::string winner_words(const std::vector<Ladder>& ladders) const {
-        std::string words;
-        for (const auto& accuracy : accuracies) {
-            std::vector<std::string> winners;
-            std::string last;
-            for (std::size_t p = 0; p < problems_.all.size(); ++p) {
-                const auto best = cheapest(p, ladders, cost_, accuracy.error, false);
-                if (!best) continue;
-                const auto& method = best->ladder->solver.method;
-                winners.push_back((method == last ? "" : method + " ") + cost_words(best->cost));
-                last = method;
-            }
-            if (winners.empty()) continue;
-            words += fmt::format("{}{} by {}", words.empty() ? "" : "; ", accuracy.words, fmt::join(winners, ", "));
+    /// The five best; of other libraries with Doppel's best before them.
+    std::vector<std::string> names_in_colour(const std::vector<Ladder>& ladders) const {
+        auto names = ranked(ladders, cost_, accuracies, false);
+        if (!has_libraries()) {
+            names.resize(std::min(names.size(), best_shown));
+            return names;
         }
-        return words;
+        names.resize(1);
+        const auto others = ranked(ladders, cost_, accuracies, true);
+        names.insert(names.end(), others.begin(), others.begin() + std::min(others.size(), best_shown));
+        return names;
     }
 
-    /// The cost of the best external method in units of that of our best, at each accuracy, problem by problem.
-    std::string external_words(const std::vector<Ladder>& ladders) const {
-        std::string words;
-        for (const auto& accuracy : accuracies) {
-            std::vector<std::string> ratios;
-            for (std::size_t p = 0; p < problems_.all.size(); ++p) {
-                const auto ours = cheapest(p, ladders, cost_, accuracy.error, false);
-                const auto external = cheapest(p, ladders, cost_, accuracy.error, true);
-                if (ours && external) ratios.push_back(fmt::format("{:.1f}", external->cost / ours->cost));
-            }
-            if (!ratios.empty())
-                words += fmt::format("{}{} at {}", words.empty() ? "" : "; ", fmt::join(ratios, ", "), accuracy.words);
-        }
-        return words;
+    std::string color_words(const std::vector<Ladder>& ladders) const {
+        const bool all = ranked(ladders, cost_, accuracies, has_libraries()).size() <= best_shown;
+        const auto rank = fmt::format("by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}", has_angles() ? " rad" : "");
+        if (has_libraries())
+            return fmt::format(
+                "In colour {} of other libraries{} and Doppel’s best; the pale band is the front of all of "
+                "Doppel’s.",
+                all ? "all methods" : "the five best methods", all ? "" : fmt::format(" ({})", rank));
+        if (all) return "Each method in its best model; the pale band is the front: no method errs less at less cost.";
+        return fmt::format("In colour the five best, {}, each in its best model; the pale band is the front of all.",
+                           rank);
     }
 
-    std::string cost_words(double cost) const {
-        const double number = cost_ == Cost::time ? 1e6 * cost : cost;
-        return number < 1000 ? fmt::format("{:.3g}", number) : grouped(std::lround(number));
+    std::string error_words(bool floors) const {
+        return fmt::format("Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
+                           has_angles() ? "angle" : "place, as a part of the mechanism's size,",
+                           problems_.all.front().plain ? "in two formulations" : "at two tolerances",
+                           floors ? " Dashed: the rounding of a double, and what the motion makes of it." : "");
     }
 
     std::string spread_words(const std::vector<Ladder>& ladders) const {
@@ -281,6 +261,7 @@ private:
             repeats_, 100 * typical, 100 * worst);
     }
 
+    static constexpr std::size_t best_shown = 5;
     inline static const Field cost_field{.key = "cost", .help = "what the error is drawn over"};
     Cost cost_ = Cost::time;
     std::optional<std::string> scene_;

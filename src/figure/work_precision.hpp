@@ -26,10 +26,12 @@ struct WorkDiagram {
     double floor;  // that the problem's sensitivity sets in double; NaN where it is not known
     const std::vector<Ladder>& ladders;
     Cost cost;
+    const std::vector<std::string>& named;  // what is in colour, the best first: Solver::name()
+    bool of_libraries;                      // what is faint is theirs, else Doppel's
 };
 
-/// Error over cost, a curve for each method: its best model plain, the others faint. Behind them a pale band along the
-/// front, and methods of other libraries in grey.
+/// Error over cost, a curve for each method in its best model: those that are named in colour, the others faint. Behind
+/// them a pale band along the front of Doppel's methods.
 Plot work_plot(const WorkDiagram& diagram);
 
 }  // namespace doppel

@@ -41,19 +41,27 @@ ErrorRange range_of(const WorkDiagram& diagram) {
     return {std::isnan(diagram.floor) ? 0 : at_floor * diagram.floor, most_shown};
 }
 
-Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram, bool best) {
+/// In colour with its name, or faint.
+Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
     const auto& [model, method, external] = ladder.solver;
-    const auto look = look_of(method);
-    Curve curve{.label = !best      ? ""
-                         : external ? external->name
-                                    : method,
-                .hue = look.hue,
-                .dashed = look.dashed && best,
-                .quiet = external != nullptr,
-                .background = best ? Background::none : Background::line};
+    const auto rank = std::find(diagram.named.begin(), diagram.named.end(), ladder.solver.name());
+    const bool named = rank != diagram.named.end();
+    Curve curve;
+    if (!named) {
+        curve.quiet = true;
+        curve.background = Background::line;
+    } else if (external) {
+        curve.label = external->name;
+        curve.hue = static_cast<int>(rank - diagram.named.begin());
+    } else {
+        const auto look = look_of(method);
+        curve.label = diagram.of_libraries ? method + " of Doppel" : method;
+        curve.hue = look.hue;
+        curve.dashed = look.dashed;
+    }
     const auto useful = useful_rungs(ladder, diagram.cost, range_of(diagram));
     for (const std::size_t i : useful) add_point(curve, cost_of(ladder.rungs[i], diagram.cost), ladder.rungs[i].error);
-    if (diagram.cost == Cost::evaluations || !best) return curve;
+    if (diagram.cost == Cost::evaluations || !named) return curve;
     // the spread of times, as horizontal bars
     constexpr double shows = 0.05;
     for (const std::size_t i : useful) {
@@ -84,7 +92,7 @@ void add_study(const WorkDiagram& diagram, Plot& plot) {
                                        .x = {cost_of(rung, diagram.cost)},
                                        .y = {rung.error},
                                        .mark = Mark::points,
-                                       .hue = look_of("euler").hue});
+                                       .quiet = true});
     }
 }
 
@@ -103,11 +111,11 @@ void fit(const WorkDiagram& diagram, Plot& plot) {
     if (!(least < near * diagram.floor)) return;
     const double grown = diagram.floor / rounding;
     const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);
-    plot.rules.push_back({.at = diagram.floor, .label = "rounding of a double × " + times});
+    plot.rules.push_back({.at = diagram.floor, .label = "rounding × " + times});
     plot.y.low = std::fmin(least, diagram.floor) / 20;
     constexpr double in_sight = 1e-12;
     if (diagram.floor > in_sight) return;
-    plot.rules.push_back({.at = rounding, .label = "rounding of a double"});
+    plot.rules.push_back({.at = rounding, .label = "rounding"});
     plot.y.low = rounding / 20;
 }
 
@@ -122,12 +130,13 @@ Plot work_plot(const WorkDiagram& diagram) {
                                                     : "error of place at the end, of the size",
               .logarithmic = true};
     plot.curves.push_back(front_curve(diagram));
-    add_study(diagram, plot);
-    const auto best = best_models(diagram.index, diagram.ladders, diagram.cost);
-    for (const auto& ladder : diagram.ladders)
-        if (ladder.problem == diagram.index && std::count(best.begin(), best.end(), &ladder) == 0)
-            plot.curves.push_back(curve_of(ladder, diagram, false));
-    for (const auto* ladder : best) plot.curves.push_back(curve_of(*ladder, diagram, true));
+    if (!diagram.of_libraries) add_study(diagram, plot);
+    for (const bool named : {false, true})
+        for (const auto* ladder : best_models(diagram.index, diagram.ladders, diagram.cost)) {
+            const bool is_named = std::count(diagram.named.begin(), diagram.named.end(), ladder->solver.name()) > 0;
+            const bool is_subject = (ladder->solver.external != nullptr) == diagram.of_libraries;
+            if (is_named == named && (named || is_subject)) plot.curves.push_back(curve_of(*ladder, diagram));
+        }
     fit(diagram, plot);
     return plot;
 }

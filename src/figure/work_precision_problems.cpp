@@ -1,4 +1,5 @@
 #include "analysis/tangent.hpp"
+#include "figure/system_words.hpp"
 #include "figure/work_precision.hpp"
 #include "scene/method_choice.hpp"
 
@@ -60,21 +61,26 @@ WorkProblem standard_problem(const std::string& name, const StandardProblem& sta
     return make_problem(name, side, {standard.seconds, 1});
 }
 
-/// "1", or "1, 2, 0.5" where they differ.
-std::string numbers_words(const std::vector<double>& numbers) {
-    const bool alike = std::all_of(numbers.begin(), numbers.end(), [&](double x) { return x == numbers.front(); });
-    return alike ? fmt::format("{}", numbers.front()) : fmt::format("{}", fmt::join(numbers, ", "));
-}
-
 /// What moves, in the words of a subtitle.
 std::string system_words(const WorkProblem& problem) {
     constexpr std::string_view computed = "double precision, one core";
     if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
     const auto chain = problem.motion.chain->cast<double>();
     const bool rests = std::all_of(chain.rate.begin(), chain.rate.end(), [](double rate) { return rate == 0; });
-    return fmt::format("side a of {}{}: links of {} m and {} kg{}, g = {} m/s²; {}", problem.name,
-                       rests ? ", released at rest" : "", numbers_words(chain.length), numbers_words(chain.mass),
-                       problem.plain ? "" : " and more", chain.gravity, computed);
+    return fmt::format("side a of {}{}: {}{}; {}", problem.name, rests ? ", released at rest" : "",
+                       links_words(chain.length, chain.mass, chain.gravity), problem.plain ? "" : ", and more",
+                       computed);
+}
+
+/// What the standard problems are of: "double and triple pendulums".
+std::string pendulums_words(const std::vector<WorkProblem>& problems) {
+    const auto of = [&](std::size_t links) {
+        return std::count_if(problems.begin(), problems.end(),
+                             [&](const auto& problem) { return problem.motion.chain->links() == links; });
+    };
+    const auto doubles = of(2), triples = of(3);
+    if (doubles > 0 && triples > 0) return "double and triple pendulums";
+    return doubles > 1 ? "double pendulums" : pendulum_words(doubles == 1 ? 2 : 3);
 }
 
 }  // namespace
@@ -92,8 +98,10 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
         const auto number = std::find(names_of_all.begin(), names_of_all.end(), name) - names_of_all.begin();
         problems.all.push_back(standard_problem(name, all_standard.at(static_cast<std::size_t>(number))));
     }
+    const auto chain = problems.all.front().motion.chain->cast<double>();  // one for all but its links
     problems.subtitle =
-        "double and triple pendulums released at rest, links of 1 m and 1 kg, g = 9.8 m/s²; double precision, one core";
+        fmt::format("{} released at rest, {}; double precision, one core", pendulums_words(problems.all),
+                    links_words(chain.length, chain.mass, chain.gravity));
     return problems;
 }
 

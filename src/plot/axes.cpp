@@ -30,8 +30,9 @@ struct Heading {
     Color color;
 };
 
-std::vector<Heading> headings(const Plot& plot, const PlotStyle& style) {
-    std::vector<Heading> all{{plot.y.label, Align::left, axis_color(plot, false, style)}};
+std::vector<Heading> headings(const Plot& plot, const AxisWords& words, const PlotStyle& style) {
+    std::vector<Heading> all;
+    if (words.y_name) all.push_back({plot.y.label, Align::left, axis_color(plot, false, style)});
     if (plot.right) all.push_back({plot.right->label, Align::right, axis_color(plot, true, style)});
     if (plot.map && !plot.map->shares_bar) all.push_back({plot.map->label, Align::right, style.theme.text});
     std::erase_if(all, [](const Heading& heading) { return heading.text.empty(); });
@@ -47,8 +48,8 @@ bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle&
     return all.size() == 1 || (need <= width && from_right <= 1);
 }
 
-void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& held, const PlotStyle& style,
-                 DisplayList& list) {
+void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& held, bool words,
+                 const PlotStyle& style, DisplayList& list) {
     const float em = style.tick, baseline = area.bottom + 1.45f * em;
     for (const Tick& tick : x_ticks(x, plot.x, style)) {
         const float at = x.at(tick.value);
@@ -56,31 +57,31 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
         if (named && !plot.map) list.push_back(vertical_line(at, area.top, area.bottom, style.line, style.theme.grid));
         list.push_back(
             vertical_line(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.line, style.theme.frame));
-        if (!named) continue;
+        if (!named || !words) continue;
         const Label text = label(tick.text, {at, baseline}, em, style.theme.quiet_text, Align::center);
         const Area box = text_area(text);
         if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(text);
     }
+    if (plot.x.label.empty() || !words) return;
     const Weight weight = Weight::regular;
     const float size = fitting_size(plot.x.label, style.axis, weight, held.width());
     const float half = text_width(plot.x.label, size, weight) / 2;
     const float middle =
         std::clamp((area.left + area.right) / 2, held.left + half, std::max(held.left + half, held.right - half));
-    if (plot.x.label.empty()) return;
     list.push_back(
         Label{plot.x.label, {middle, baseline + 1.5f * style.axis}, size, Align::center, weight, style.theme.text});
 }
 
 /// A vertical axis: its ticks point to `side`, −1 or 1, from `at`.
-void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, const Area& area, bool grid, Color color,
-                 const PlotStyle& style, DisplayList& list) {
+void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, const Area& area, bool grid, bool words,
+                 Color color, const PlotStyle& style, DisplayList& list) {
     const float em = style.tick;
     for (const Tick& tick : y_ticks(y, asked, style)) {
         const float place = y.at(tick.value), out = at + side * (tick.text.empty() ? 0.18f : 0.34f) * em;
         const bool named = !tick.text.empty();
         if (named && grid) list.push_back(horizontal_line(place, area.left, area.right, style.line, style.theme.grid));
         list.push_back(horizontal_line(place, std::min(at, out), std::max(at, out), style.line, style.theme.frame));
-        if (!named) continue;
+        if (!named || !words) continue;
         list.push_back(label(tick.text, {at + side * 0.55f * em, place + 0.36f * em}, em, color,
                              side < 0 ? Align::right : Align::left));
     }
@@ -109,38 +110,43 @@ std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotSty
 }
 
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
-               const PlotStyle& style, DisplayList& list) {
+               const AxisWords& words, const PlotStyle& style, DisplayList& list) {
     const Theme& theme = style.theme;
-    draw_x_axis(plot, x, area, held, style, list);
-    draw_y_axis(y, plot.y, area.left, -1, area, !plot.map, theme.quiet_text, style, list);
+    draw_x_axis(plot, x, area, held, words.x, style, list);
+    draw_y_axis(y, plot.y, area.left, -1, area, !plot.map, words.y, theme.quiet_text, style, list);
     if (right) {
         const Color color = axis_color(plot, true, style);
-        draw_y_axis(*right, *plot.right, area.right, 1, area, false, color, style, list);
+        draw_y_axis(*right, *plot.right, area.right, 1, area, false, true, color, style, list);
         list.push_back(vertical_line(area.right, area.top, area.bottom, style.line, theme.frame));
     }
     list.push_back(vertical_line(area.left, area.top, area.bottom, style.line, theme.frame));
     list.push_back(horizontal_line(area.bottom, area.left, area.right, style.line, theme.frame));
 }
 
-float axis_labels_height(const Plot& plot, float width, const PlotStyle& style) {
-    const auto all = headings(plot, style);
+float axis_labels_height(const Plot& plot, float width, const AxisWords& words, const PlotStyle& style) {
+    const auto all = headings(plot, words, style);
     if (all.empty()) return 0;
     const float line = label_line * style.axis;
     return side_by_side(all, width, style) ? line : line * static_cast<float>(all.size());
 }
 
-void draw_headings(const Plot& plot, const Area& held, float title, float labels, const PlotStyle& style,
-                   DisplayList& list) {
-    const float width = held.width();
+void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
+                   const AxisWords& words, const PlotStyle& style, DisplayList& list) {
+    // above the panel, and above the words beside it that are its own
+    const bool own_words = plot.right || (plot.map && !plot.map->shares_bar);
+    const float width = held.width(), left = words.y ? held.left : area.left;
+    const float right = own_words ? held.right : area.right;
     const auto write = [&](const Heading& heading, float baseline, float em, Weight weight) {
         const float size = fitting_size(heading.text, em, weight, width);
-        const float x = heading.align == Align::left ? held.left : held.right;
+        const float x = heading.align == Align::left ? left : right;
         list.push_back(Label{heading.text, {x, baseline}, size, heading.align, weight, heading.color});
     };
-    if (!plot.title.empty())
-        write({plot.title, Align::left, style.theme.text}, held.top + 0.95f * style.heading, style.heading,
-              Weight::bold);
-    const auto all = headings(plot, style);
+    const float first = held.top + 0.95f * style.heading;
+    if (!plot.title.empty()) write({plot.title, Align::left, style.theme.text}, first, style.heading, Weight::bold);
+    const float room = right - left - text_width(plot.title, style.heading, Weight::bold) - style.heading;
+    if (!plot.note.empty() && text_width(plot.note, style.tick) <= room)
+        write({plot.note, Align::right, style.theme.quiet_text}, first, style.tick, Weight::regular);
+    const auto all = headings(plot, words, style);
     const bool together = !all.empty() && side_by_side(all, width, style);
     float baseline = held.top + title + labels - 0.35f * style.axis;
     // from the line next to the panel up

@@ -55,12 +55,12 @@ std::string decimal(long long number, int exponent) {
     if (number == 0) exponent = std::min(exponent, 0);
     std::string digits = fmt::format("{}", std::abs(number));
     if (exponent > 0) digits.append(static_cast<std::size_t>(exponent), '0');
-    if (exponent < 0) {
-        const auto decimals = static_cast<std::size_t>(-exponent);
-        if (digits.size() <= decimals) digits.insert(0, decimals + 1 - digits.size(), '0');
-        digits.insert(digits.size() - decimals, ".");
-    }
-    return number < 0 ? "−" + digits : digits;
+    const std::string_view sign = number < 0 ? "−" : "";
+    if (exponent >= 0) return fmt::format("{}{}", sign, digits);
+    const auto decimals = static_cast<std::size_t>(-exponent);
+    if (digits.size() <= decimals) digits.insert(0, decimals + 1 - digits.size(), '0');
+    const auto whole = digits.size() - decimals;
+    return fmt::format("{}{}.{}", sign, digits.substr(0, whole), digits.substr(whole));
 }
 
 /// The largest k with 10^k ≤ value.

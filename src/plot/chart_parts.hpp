@@ -42,17 +42,22 @@ void check(const Figure& figure);
 std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
 std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
 
+/// Of which axes a panel has the words: numbers at the ticks of either, the name of the vertical one above it.
+struct AxisWords {
+    bool x = true, y = true, y_name = true;
+};
+
 /// The grid, the axes, their ticks with labels, and the x axis's label. No text leaves `held`; `right` may be null.
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
-               const PlotStyle& style, DisplayList& list);
+               const AxisWords& words, const PlotStyle& style, DisplayList& list);
 
 /// px that the labels above a panel `width` px wide take: one line if all fit side by side, else one each.
-float axis_labels_height(const Plot& plot, float width, const PlotStyle& style);
+float axis_labels_height(const Plot& plot, float width, const AxisWords& words, const PlotStyle& style);
 
 /// The panel's title in the uppermost `title` px of `held`; in the `labels` px below, the labels of the vertical axes
 /// and of the map's bar.
-void draw_headings(const Plot& plot, const Area& held, float title, float labels, const PlotStyle& style,
-                   DisplayList& list);
+void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
+                   const AxisWords& words, const PlotStyle& style, DisplayList& list);
 
 /// The map's cells in `area` as seen through the axes, a pixel a cell where all are shown: crisp where they are larger than pixels, else averaged, the
 /// logarithm where the scale is logarithmic. Below zero on such a scale is as good as no value.
@@ -80,20 +85,32 @@ struct Gutters {
 };
 
 /// Of a panel alone in a cell of this size; panels beside each other share the largest.
-Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const PlotStyle& style);
+Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const AxisWords& words,
+                const PlotStyle& style);
 
 /// The larger of each.
 Gutters united(const Gutters& a, const Gutters& b);
 
 /// The panel in its cell. Nothing where the labels leave it no room.
 void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
-                const PlotStyle& style, DisplayList& list);
+                const AxisWords& words, const PlotStyle& style, DisplayList& list);
+
+/// Of panels.
+struct Grid {
+    int columns, rows;
+};
+
+/// The figure's columns, or those that give the panels the most room.
+Grid grid_of(const Figure& figure, const Area& body);
+
+/// All panels of the figure, and the bar that they share.
+void draw_panels(const Figure& figure, Area body, const PlotStyle& style, DisplayList& list);
 
 /// A curve in pixels, cut to its panel.
 struct DrawnCurve {
     std::vector<std::vector<Point>> lines;  // pieces
     std::vector<Point> points;              // where a mark is due
-    std::size_t marks_in_panel = 0;         // the more, the smaller they are drawn
+    std::size_t marks_in_panel = 0;         // quiet or not, as its own; the more, the smaller they are drawn
 };
 
 /// Of many points in half a column of pixels the first, the last, the lowest and the highest stay: no pixel tells the

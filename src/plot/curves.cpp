@@ -157,7 +157,8 @@ void draw_background(const Curve& curve, const Axis& x, const Axis& y, const Are
                   mixed(style.theme.background, curve_color(curve, style, false), 0.3f), style, list);
 }
 
-constexpr std::size_t many = 400;  // marks in a panel: from here on they are drawn as images, and smaller
+/// Marks in a panel: from here on they are drawn as images, and smaller. Points of a line: from here on it is thin.
+constexpr std::size_t many = 400;
 
 }  // namespace
 
@@ -230,7 +231,8 @@ void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool d
 void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
                 DisplayList& list) {
     const Color color = curve_color(curve, style, over_map), edge = rgb(0x0b0e13).with_alpha(0.75f);
-    const float width = curve.quiet && !over_map ? style.thin : style.curve;
+    const bool thin = (curve.quiet && !over_map) || curve.x.size() > many;
+    const float width = thin ? style.thin : style.curve;
     const float casing = std::max(1.6f * style.unit, 1.0f);
     if (over_map) draw_line(drawn.lines, width + 2 * casing, curve.dashed, edge, style, list);
     draw_line(drawn.lines, width, curve.dashed, color, style, list);
@@ -238,8 +240,10 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, c
     float radius = curve.quiet ? 0.75f * style.marker : style.marker;
     if (curve.mark == Mark::line) radius = 0.8f * width;
     if (drawn.marks_in_panel > many) {
+        constexpr float wide = 450, least = 0.3f;  // px where the unit is 1: a panel of which so many marks are many
+        const float side = std::sqrt(std::max(area.width(), 0.0f) * std::max(area.height(), 0.0f)) / style.unit;
         const float share = static_cast<float>(many) / static_cast<float>(drawn.marks_in_panel);
-        radius = std::max(radius * std::sqrt(share), 0.75f * style.unit);
+        radius = std::max(radius * std::sqrt(share) * std::min(side / wide, 1.0f), least * style.unit);
         if (over_map) list.push_back(scatter_image(drawn.points, radius + casing, edge, area, style.scale));
         list.push_back(scatter_image(drawn.points, radius, color, area, style.scale));
         return;

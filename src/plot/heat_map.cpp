@@ -55,8 +55,8 @@ Image colors(const Bar& bar, float left, float top, float scale) {
 
 /// The label of a bar by itself, in lines above it.
 TextBlock bar_heading(const HeatMap& map, const PlotStyle& style) {
-    return {wrapped(map.label, style.tick, Weight::regular, heading_width * style.tick), style.tick, Weight::regular,
-            style.theme.text};
+    return {evenly_wrapped(map.label, style.tick, Weight::regular, heading_width * style.tick), style.tick,
+            Weight::regular, style.theme.text};
 }
 
 float below_heading(const HeatMap& map, float height, const PlotStyle& style) {

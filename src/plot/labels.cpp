@@ -9,59 +9,6 @@
 namespace doppel {
 namespace {
 
-constexpr float square = 3;  // px
-
-std::uint64_t bit(std::size_t owner) {
-    return std::uint64_t{1} << (owner % LabelPlacer::no_owner);
-}
-
-}  // namespace
-
-LabelPlacer::LabelPlacer(const Area& area)
-    : area_(area),
-      columns_(std::max(1, static_cast<int>(std::ceil(area.width() / square)))),
-      rows_(std::max(1, static_cast<int>(std::ceil(area.height() / square)))),
-      drawn_(static_cast<std::size_t>(columns_) * rows_) {}
-
-void LabelPlacer::add_line(Point from, Point to, std::size_t owner) {
-    const float length = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
-    const int steps = 1 + static_cast<int>(length / square * 1.5f);
-    for (int i = 0; i <= steps; ++i) {
-        const float part = static_cast<float>(i) / static_cast<float>(steps);
-        const int column = static_cast<int>((std::lerp(from.x, to.x, part) - area_.left) / square);
-        const int row = static_cast<int>((std::lerp(from.y, to.y, part) - area_.top) / square);
-        if (column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
-        drawn_[static_cast<std::size_t>(row) * columns_ + column] |= bit(owner);
-    }
-}
-
-LabelPlacer::Squares LabelPlacer::squares(const Area& box) const {
-    const auto within = [](float v, int most) {
-        return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(most)));
-    };
-    return {within(std::floor((box.left - area_.left) / square), columns_),
-            within(std::floor((box.top - area_.top) / square), rows_),
-            within(std::ceil((box.right - area_.left) / square), columns_),
-            within(std::ceil((box.bottom - area_.top) / square), rows_)};
-}
-
-int LabelPlacer::ink(const Area& box, std::size_t except) const {
-    const std::uint64_t others = except == no_owner ? ~std::uint64_t{0} : ~bit(except);
-    const Squares part = squares(box);
-    int count = 0;
-    for (int row = part.top; row < part.bottom; ++row)
-        for (int column = part.left; column < part.right; ++column)
-            count += (drawn_[static_cast<std::size_t>(row) * columns_ + column] & others) != 0;
-    return count;
-}
-
-bool LabelPlacer::is_free(const Area& box) const {
-    return area_.holds(box) &&
-           std::none_of(texts_.begin(), texts_.end(), [&](const Area& text) { return text.overlaps(box); });
-}
-
-namespace {
-
 /// The label of a curve or rule before it has a place.
 struct LabelText {
     std::string text;
@@ -229,58 +176,86 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
     }
 }
 
-void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  bool over_map, LabelPlacer& placer, DisplayList& list) {
+namespace {
+
+/// What is written beside or on the curves, and those for which there is no room.
+struct Written {
+    std::vector<Label> labels;
+    std::vector<Area> backgrounds;
+    std::vector<Capsule> leaders;
+    std::vector<std::size_t> left_over;
+};
+
+/// Labels of `size` for all curves but those that are named elsewhere.
+Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, float size, bool dense,
+                const std::vector<std::size_t>& elsewhere, const PlotStyle& style, bool over_map, LabelPlacer placer) {
     constexpr std::size_t most_marks = 60;  // beyond this no label has room beside marks
-    constexpr int many = 10;                // curves that leave little room beside each
-    const bool dense =
-        std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
-    const float size = dense ? 0.8f * style.text : style.text;
+    Written made;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const Curve& curve = curves[i];
+        const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
+        if (curve.label.empty() || empty || std::count(elsewhere.begin(), elsewhere.end(), i) > 0) continue;
+        const LabelText text = text_for(curve, size, style, over_map);
+        const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
+        std::optional<Found> found;
+        if (curve.mark != Mark::points || drawn[i].points.size() <= most_marks)
+            found = beside(drawn[i], i, text, clear, placer);
+        if (!found && dense && drawn[i].lines.empty() && drawn[i].points.size() == 1) {
+            Capsule leader{};
+            found = with_leader(drawn[i].points.front(), text, placer, leader);
+            leader.radius = style.hairline / 2;
+            if (found) made.leaders.push_back(leader);
+        }
+        if (!found && dense && !drawn[i].lines.empty()) {
+            found = upon(drawn[i], i, text, placer);
+            if (found) made.backgrounds.push_back(text_area(found->label).grown(0.15f * text.size, 0.05f * text.size));
+        }
+        if (!found) {
+            made.left_over.push_back(i);
+            continue;
+        }
+        placer.add_text(text_area(found->label).grown(0.3f * text.size, 0.1f * text.size));
+        made.labels.push_back(found->label);
+    }
+    return made;
+}
+
+}  // namespace
+
+void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
+                  bool over_map, const LabelPlacer& placer, DisplayList& list) {
+    constexpr int many = 10;  // curves that leave little room beside each
+    const float small = 0.8f * style.text;
+    bool dense = std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
-    while (true) {
-        // the legend first, for it is the larger; who finds no place beside it joins it
-        const auto legend = others.empty() ? std::nullopt : fitted_legend(curves, others, style, placer);
+    const auto tried = [&](float size, const LabelPlacer& left) {
+        return written(curves, drawn, size, dense, others, style, over_map, left);
+    };
+    float size = dense ? small : style.text;
+    Written made = tried(size, placer);
+    // rather small words at all curves than a legend, and rather on the curves than a legend over them
+    if (!dense && !made.left_over.empty()) {
+        Written fine = tried(small, placer);
+        const auto legend = fitted_legend(curves, made.left_over, style, placer);
+        dense = !fine.left_over.empty() && (!legend || placer.ink(legend->box) > 0);
+        if (dense) fine = tried(small, placer);
+        if (dense || fine.left_over.empty()) made = std::move(fine), size = small;
+    }
+    // the legend first, for it is the larger; who then finds no place beside it joins it
+    std::optional<Legend> legend;
+    while (!made.left_over.empty()) {
+        others.insert(others.end(), made.left_over.begin(), made.left_over.end());
+        legend = fitted_legend(curves, others, style, placer);
         LabelPlacer left = placer;
         if (legend) left.add_text(legend->box);
-        std::vector<Label> labels;
-        std::vector<Area> backgrounds;
-        std::vector<Capsule> leaders;
-        const std::size_t before = others.size();
-        for (std::size_t i = 0; i < curves.size(); ++i) {
-            const Curve& curve = curves[i];
-            const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
-            if (curve.label.empty() || empty || std::find(others.begin(), others.end(), i) != others.end()) continue;
-            const LabelText text = text_for(curve, size, style, over_map);
-            const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
-            std::optional<Found> found;
-            if (curve.mark != Mark::points || drawn[i].points.size() <= most_marks)
-                found = beside(drawn[i], i, text, clear, left);
-            if (!found && dense && drawn[i].lines.empty() && drawn[i].points.size() == 1) {
-                Capsule leader{};
-                found = with_leader(drawn[i].points.front(), text, left, leader);
-                leader.radius = style.hairline / 2;
-                if (found) leaders.push_back(leader);
-            }
-            if (!found && dense && !drawn[i].lines.empty()) {
-                found = upon(drawn[i], i, text, left);
-                if (found) backgrounds.push_back(text_area(found->label).grown(0.15f * text.size, 0.05f * text.size));
-            }
-            if (!found) {
-                others.push_back(i);
-                continue;
-            }
-            left.add_text(text_area(found->label).grown(0.3f * text.size, 0.1f * text.size));
-            labels.push_back(found->label);
-        }
-        if (others.size() > before) continue;
-        if (legend) draw_legend(*legend, curves, style, over_map, list);
-        const Color background = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
-        for (const Area& g : backgrounds)
-            list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, background});
-        for (const Capsule& leader : leaders) list.push_back(leader);
-        for (const Label& label : labels) write(label, over_map, list);
-        return;
+        made = tried(size, left);
     }
+    if (legend) draw_legend(*legend, curves, style, over_map, list);
+    const Color background = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
+    for (const Area& g : made.backgrounds)
+        list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, background});
+    for (const Capsule& leader : made.leaders) list.push_back(leader);
+    for (const Label& label : made.labels) write(label, over_map, list);
 }
 
 }  // namespace doppel

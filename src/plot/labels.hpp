@@ -59,17 +59,20 @@ void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const P
 void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
                  LabelPlacer& placer, DisplayList& list);
 
-/// Labels the curves: at the line where a label touches nothing, else in a legend in the emptiest place; where curves
-/// are many, on their lines. Curve i has drawn in `placer` as number i.
+/// Labels the curves: at the line where a label touches nothing, smaller if need be, else in a legend in the emptiest
+/// place; where curves are many, on their lines. Curve i has drawn in `placer` as number i.
 void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  bool over_map, LabelPlacer& placer, DisplayList& list);
+                  bool over_map, const LabelPlacer& placer, DisplayList& list);
 
 /// Where the ink of a line of text may be, with the tallest accents and the deepest tails of the font.
 Area text_area(const Label& label);
 
-/// `text` in lines no wider than `width` px, broken at spaces and at '\n'; a word that is wider itself is broken
-/// anywhere.
+/// `text` in lines no wider than `width` px, broken at spaces and at '\n', but not within a number or between it and its
+/// unit; a word that is wider itself is broken anywhere.
 std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width);
+
+/// The same in as many lines, all of them shorter where else the last would be less than a third of a line.
+std::vector<std::string> evenly_wrapped(std::string_view text, float size, Weight weight, float width);
 
 /// The width of the widest, px.
 float widest(const std::vector<std::string>& lines, float size);

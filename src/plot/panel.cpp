@@ -3,6 +3,7 @@
 #include "render/typeface.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace doppel {
@@ -58,9 +59,9 @@ void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& placer
                 placer.add_line({at.x - r, at.y + up}, {at.x + r, at.y + up}, owner);
         draw_band(curves[i], panel.x, panel.y_of(curves[i]), panel.area, style, list);
     }
-    std::size_t marks_in_panel = 0;
-    for (const auto& curve : all) marks_in_panel += curve.points.size();
-    for (auto& curve : all) curve.marks_in_panel = marks_in_panel;
+    std::array<std::size_t, 2> marks{};  // quiet ones apart
+    for (std::size_t i = 0; i < curves.size(); ++i) marks[curves[i].quiet] += all[i].points.size();
+    for (std::size_t i = 0; i < curves.size(); ++i) all[i].marks_in_panel = marks[curves[i].quiet];
     // what is there to compare with lies below
     for (const bool quiet : {true, false})
         for (std::size_t i = 0; i < curves.size(); ++i)
@@ -76,16 +77,19 @@ Gutters united(const Gutters& a, const Gutters& b) {
             std::max(a.labels, b.labels), std::max(a.bottom, b.bottom)};
 }
 
-Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const PlotStyle& style) {
+Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const AxisWords& words,
+                const PlotStyle& style) {
     const float em = style.tick;
     Gutters made;
-    made.title = plot.title.empty() ? 0 : 1.5f * style.heading;
-    made.labels = axis_labels_height(plot, width, style);
-    made.bottom = 1.75f * em + (plot.x.label.empty() ? 0 : 1.45f * style.axis);
+    made.title = plot.title.empty() && plot.note.empty() ? 0 : 1.5f * style.heading;
+    made.labels = axis_labels_height(plot, width, words, style);
+    made.bottom = words.x ? 1.75f * em + (plot.x.label.empty() ? 0 : 1.45f * style.axis) : 0.34f * em;
     const float tall = std::max(height - made.top(style) - made.bottom, 1.0f);
-    made.left = 0.55f * em + widest(y_ticks(placed(ranges.y, tall, 0), plot.y, style), em);
+    made.left = 0.34f * em;
+    if (words.y) made.left = 0.55f * em + widest(y_ticks(placed(ranges.y, tall, 0), plot.y, style), em);
     if (ranges.right) made.right = 0.55f * em + widest(y_ticks(placed(*ranges.right, tall, 0), *plot.right, style), em);
     if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
+    if (!words.x) return made;
     // the first and the last label below the axis reach out by half
     const float wide = std::max(width - made.left - made.right, 1.0f);
     const auto below = x_ticks(placed(ranges.x, 0, wide), plot.x, style);
@@ -96,7 +100,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
 }
 
 void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
-                const PlotStyle& style, DisplayList& list) {
+                const AxisWords& words, const PlotStyle& style, DisplayList& list) {
     Area area{std::round(cell.left + around.left), std::round(cell.top + around.top(style)),
               std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
     Area held = cell;
@@ -116,8 +120,8 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
             plot.right ? 0.55f * style.tick + widest(y_ticks(panel.right, *plot.right, style), style.tick) : 0;
         if (!plot.map->shares_bar) draw_bar(*plot.map, area, area.right + after, style, list);
     }
-    draw_axes(plot, panel.x, panel.y, plot.right ? &panel.right : nullptr, area, held, style, list);
-    draw_headings(plot, held, around.title, around.labels, style, list);
+    draw_axes(plot, panel.x, panel.y, plot.right ? &panel.right : nullptr, area, held, words, style, list);
+    draw_headings(plot, area, held, around.title, around.labels, words, style, list);
     LabelPlacer placer(area);
     draw_rules(panel, style, placer, list);
     draw_curves(panel, style, placer, list);

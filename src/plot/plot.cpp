@@ -10,61 +10,6 @@
 namespace doppel {
 namespace {
 
-/// Of panels.
-struct Grid {
-    int columns, rows;
-};
-
-/// The figure's columns, or those that give the panels the most room.
-Grid grid_of(const Figure& figure, const Area& body) {
-    const int panels = static_cast<int>(figure.panels.size());
-    const auto grid = [&](int columns) { return Grid{columns, (panels + columns - 1) / columns}; };
-    if (figure.columns > 0) return grid(std::min(figure.columns, panels));
-    const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // width to height that suits
-    Grid best = grid(1);
-    float most = 0;
-    for (int columns = 1; columns <= panels; ++columns) {
-        const Grid tried = grid(columns);
-        const float room = std::min(body.width() / static_cast<float>(columns),
-                                    shape * (body.height() / static_cast<float>(tried.rows)));
-        if (room > 1.001f * most) most = room, best = tried;
-    }
-    return best;
-}
-
-/// The map whose bar stands for those of all panels; null where each has its own.
-const HeatMap* sharing_map(const Figure& figure) {
-    const auto found = std::find_if(figure.panels.begin(), figure.panels.end(),
-                                    [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
-    return found == figure.panels.end() ? nullptr : &*found->map;
-}
-
-void draw_panels(const Figure& figure, Area body, const PlotStyle& style, DisplayList& list) {
-    const auto [columns, rows] = grid_of(figure, body);
-    if (const HeatMap* map = sharing_map(figure)) {
-        const float gutter = shared_bar_gutter(*map, body.height(), style);
-        draw_shared_bar(*map, body, body.right - gutter, style, list);
-        body.right -= gutter;
-    }
-    // whole pixels, so that all panels come out alike
-    const float across = std::round(1.9f * style.tick), down = std::round(1.3f * style.tick);
-    const float width =
-        std::floor((body.width() - across * static_cast<float>(columns - 1)) / static_cast<float>(columns));
-    const float height = std::floor((body.height() - down * static_cast<float>(rows - 1)) / static_cast<float>(rows));
-    std::vector<PlotRanges> ranges;
-    Gutters around;
-    for (const Plot& plot : figure.panels) {
-        ranges.push_back(fitted_ranges(plot));
-        around = united(around, gutters(plot, ranges.back(), width, height, style));
-    }
-    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-        const int k = static_cast<int>(i);
-        const float left = body.left + static_cast<float>(k % columns) * (width + across);
-        const float top = body.top + static_cast<float>(k / columns) * (height + down);
-        draw_panel(figure.panels[i], ranges[i], {left, top, left + width, top + height}, around, style, list);
-    }
-}
-
 /// What stands above and below the panels, and the room between.
 struct Page {
     TextBlock title, subtitle;
@@ -86,7 +31,7 @@ Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style, b
     float height = 0;
     for (const std::string& caption : figure.captions) {
         if (!captions) break;
-        page.captions.push_back({wrapped(caption, style.caption, Weight::regular, width), style.caption,
+        page.captions.push_back({evenly_wrapped(caption, style.caption, Weight::regular, width), style.caption,
                                  Weight::regular, theme.quiet_text});
         height += page.captions.back().height();
     }

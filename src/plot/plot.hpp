@@ -17,6 +17,8 @@ struct PlotAxis {
     std::optional<double> low, high;  // fitted to what is drawn where not given; low > high: inverted
     bool logarithmic = false;
     std::optional<double> every;  // between ticks, as long as their labels fit: 45 for degrees
+
+    friend bool operator==(const PlotAxis&, const PlotAxis&) = default;
 };
 
 /// What a line of data looks like.
@@ -60,6 +62,7 @@ struct HeatMap {
 /// One pair of axes and what is drawn between them.
 struct Plot {
     std::string title;  // of a panel among several
+    std::string note;   // beside the title where there is room: a number or two
     PlotAxis x, y;
     std::optional<PlotAxis> right;
     std::optional<HeatMap> map;
@@ -87,7 +90,8 @@ struct PlotTable {
 struct Figure {
     std::string title, subtitle;
     std::vector<Plot> panels;
-    int columns = 0;  // of panels; 0 = as fits
+    int columns = 0;           // of panels; 0 = as fits
+    bool shares_axes = false;  // numbers and names stand once for a row, or column, of panels whose axes are alike
     std::optional<PlotTable> table;
     std::vector<std::string> captions;  // paragraphs, broken into lines
 };

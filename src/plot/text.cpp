@@ -21,10 +21,41 @@ std::size_t bytes_within(std::string_view text, float size, Weight weight, float
     return taken;
 }
 
+/// Whether a line may not end between the words: "2 464", "1 kg", "θ₁ = 45°".
+bool stay_together(std::string_view word, std::string_view next) {
+    const auto is_sign = [](std::string_view text) { return text == "=" || text == "×" || text == "±"; };
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (is_sign(word) || is_sign(next)) return true;
+    if (!is_digit(word.back())) return false;
+    constexpr std::size_t unit = 4;  // letters, a mark behind them included
+    std::size_t letters = 0;
+    for (std::string_view rest = next; !rest.empty(); ++letters) next_character(rest);
+    return is_digit(next.front()) || letters <= unit;
+}
+
+/// The parts of `text` between which a line may end.
+std::vector<std::string> words_of(std::string_view text, float size, Weight weight, float width) {
+    std::vector<std::string> words;
+    std::string_view before;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(' '), text.size());
+        if (const auto word = text.substr(0, end); !word.empty()) {
+            const auto joined = words.empty() ? "" : words.back() + ' ' + std::string(word);
+            if (!joined.empty() && stay_together(before, word) && text_width(joined, size, weight) <= width)
+                words.back() = joined;
+            else
+                words.emplace_back(word);
+            before = word;
+        }
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return words;
+}
+
 void wrap_paragraph(std::string_view text, float size, Weight weight, float width, std::vector<std::string>& lines) {
     std::string line;
-    const auto add = [&](std::string_view word) {
-        const std::string longer = line.empty() ? std::string(word) : line + ' ' + std::string(word);
+    const auto add = [&](const std::string& word) {
+        const std::string longer = line.empty() ? word : line + ' ' + word;
         if (line.empty() || text_width(longer, size, weight) <= width) {
             line = longer;
         } else {
@@ -39,11 +70,7 @@ void wrap_paragraph(std::string_view text, float size, Weight weight, float widt
             line.erase(0, part);
         }
     };
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(' '), text.size());
-        if (end > 0) add(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
+    for (const auto& word : words_of(text, size, weight, width)) add(word);
     lines.push_back(std::move(line));
 }
 
@@ -64,6 +91,21 @@ std::vector<std::string> wrapped(std::string_view text, float size, Weight weigh
         if (end == text.size()) return lines;
         text.remove_prefix(end + 1);
     }
+}
+
+std::vector<std::string> evenly_wrapped(std::string_view text, float size, Weight weight, float width) {
+    constexpr float least_share = 1.0f / 3, narrower = 0.97f;
+    auto lines = wrapped(text, size, weight, width);
+    const auto ends_short = [&](const std::vector<std::string>& all, float measure) {
+        return all.size() > 1 && text_width(all.back(), size, weight) < least_share * measure;
+    };
+    for (float measure = width; ends_short(lines, measure);) {
+        measure *= narrower;
+        auto tried = wrapped(text, size, weight, measure);
+        if (tried.size() > lines.size()) break;
+        lines = std::move(tried);
+    }
+    return lines;
 }
 
 float widest(const std::vector<std::string>& lines, float size) {
@@ -90,7 +132,7 @@ TextBlock fitted_block(std::string_view text, float size, Weight weight, Color c
     if (text.empty()) return {{}, size, weight, color};
     const float shrunk =
         std::max(fitting_size(text, size, weight, width), std::max(0.75f * size, std::min(size, 9.0f)));
-    return {wrapped(text, shrunk, weight, width), shrunk, weight, color};
+    return {evenly_wrapped(text, shrunk, weight, width), shrunk, weight, color};
 }
 
 namespace {

@@ -104,6 +104,20 @@ TEST(Drift, KeepsTheRodsThatAreKept) {
               (std::vector<std::string>{"method", "model", "setting", "time_s", "energy_error", "length_error_m"}));
 }
 
+TEST(Drift, SaysInALineWhatIsSeen) {
+    const auto caption = [](const std::string& methods) {
+        const auto figure = short_drift(100, {"drift.projected=[]", "drift.methods=" + methods});
+        Figure page;
+        figure.experiment->draw(computed(figure), page);
+        EXPECT_EQ(page.captions.size(), 1u);
+        return page.captions.front();
+    };
+    EXPECT_EQ(
+        caption("[\"euler\", \"rk4\", \"rattle6\"]"),
+        "The error of the energy stays bounded with rattle6; ∝ tells how the others grow, a dot marks a breakdown.");
+    EXPECT_EQ(caption("[\"rk4\"]"), "No method keeps the error of the energy bounded; ∝ tells how the others grow.");
+}
+
 TEST(Drift, IsTheSameForAnyNumberOfJobs) {
     const auto figure = short_drift(20, {"drift.methods=[\"euler\", \"dop853\", \"gauss4\"]"});
     EXPECT_EQ(table_text(figure, computed(figure, 1)), table_text(figure, computed(figure, 3)));

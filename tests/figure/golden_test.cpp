@@ -33,22 +33,25 @@ TEST_P(GoldenFigure, IsAsItWas) {
 
 INSTANTIATE_TEST_SUITE_P(
     Presets, GoldenFigure,
-    testing::Values(
-        Golden{"figure-sweep", "fig2-right", {"sweep.to=40"}}, Golden{"figure-curves", "fig6", {"scene.duration_s=3"}},
-        Golden{"figure-curves-dark", "fig4-left", {"scene.duration_s=3", "chart.theme=\"dark\""}},
-        // tolerances so coarse that the errors in the captions are truncation, not rounding
-        Golden{"figure-flip-map",
-               "flip-map",
-               {"flip_map.columns=48", "flip_map.rows=48", "flip_map.duration_s=2", "flip_map.checked=20",
-                "flip_map.tolerance=1e-4"}},
-        Golden{"figure-spectrum",
-               "lyapunov-spectrum",
-               {"spectrum.duration_s=3", "spectrum.samples=60", "spectrum.tolerance=1e-6"}},
-        Golden{"figure-section", "poincare", {"section.energy_J=[1, 2]", "section.orbits=6", "section.crossings=30"}},
-        Golden{"figure-convergence",
-               "why-they-part",
-               {"scene.duration_s=1", "convergence.methods=[\"euler\", \"rk4\"]", "convergence.halvings=4",
-                "convergence.quad_halvings=4"}}),
+    testing::Values(Golden{"figure-sweep", "fig2-right", {"sweep.to=40"}},
+                    Golden{"figure-curves", "fig6", {"scene.duration_s=3"}},
+                    Golden{"figure-curves-dark", "fig4-left", {"scene.duration_s=3", "chart.theme=\"dark\""}},
+                    // tolerances so coarse that the errors in the captions are truncation, not rounding
+                    Golden{"figure-flip-map",
+                           "flip-map",
+                           {"flip_map.columns=48", "flip_map.rows=48", "flip_map.duration_s=2", "flip_map.checked=20",
+                            "flip_map.tolerance=1e-4"}},
+                    Golden{"figure-spectrum",
+                           "lyapunov-spectrum",
+                           {"spectrum.duration_s=3", "spectrum.samples=60", "spectrum.tolerance=1e-6"}},
+                    Golden{"figure-section",
+                           "poincare",
+                           {"section.energy_J=[1, 39.2]", "section.orbits=6", "section.crossings=6",
+                            "section.exponent_duration_s=300"}},
+                    Golden{"figure-convergence",
+                           "why-they-part",
+                           {"scene.duration_s=1", "convergence.methods=[\"euler\", \"rk4\"]", "convergence.halvings=4",
+                            "convergence.quad_halvings=4"}}),
     [](const auto& parameter) {
         std::string name = parameter.param.name;
         std::replace(name.begin(), name.end(), '-', '_');

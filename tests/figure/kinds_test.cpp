@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 namespace doppel {
@@ -46,33 +47,87 @@ TEST(Spectrum, ComesInPairsThatSumToZero) {
     EXPECT_GT(last[1], 0.5);                                             // 90°/90° is chaotic
 }
 
-TEST(Section, SaysWhoseColourIsWhose) {
-    const auto caption = [](const std::string& orbits) {
-        const auto figure =
-            figure_of("poincare", {"section.energy_J=[9.8]", "section.orbits=" + orbits, "section.crossings=1"});
-        Figure page;
-        figure.experiment->draw(computed(figure), page);
-        return page.captions.front();
-    };
-    EXPECT_EQ(caption("8").find("Every colour is one orbit. Closed curves"), 0u);
-    EXPECT_EQ(
-        caption("24").find("An orbit has one colour throughout; of the 24 orbits to an energy, 3 share each of 8"), 0u);
-    EXPECT_NE(caption("9").find("several share each of 8 colours"), std::string::npos);
+/// The orbits of a section of one energy, by whether they are grey, and what is said of them.
+struct SectionPage {
+    std::vector<std::size_t> grey;
+    std::vector<int> hues;  // of the others
+    std::string caption, note;
+};
+SectionPage section_page(const std::string& energy_J, int orbits, const std::string& gravity = "9.8") {
+    const auto figure = figure_of(
+        "poincare", {fmt::format("section.energy_J=[{}]", energy_J), fmt::format("section.orbits={}", orbits),
+                     "section.crossings=4", "section.exponent_duration_s=2000", "system.gravity_m_per_s2=" + gravity});
+    Figure page;
+    figure.experiment->draw(computed(figure), page);
+    SectionPage made{.caption = page.captions.front(), .note = page.panels[0].note};
+    const auto& curves = page.panels[0].curves;
+    for (std::size_t i = 0; i < curves.size(); ++i)
+        if (curves[i].quiet)
+            made.grey.push_back(i);
+        else
+            made.hues.push_back(curves[i].hue);
+    return made;
+}
+
+TEST(Section, TellsRegularOrbitsFromChaoticOnes) {
+    using Numbers = std::vector<std::size_t>;
+    // all but without gravity a double pendulum keeps its angular momentum, too: every orbit is regular, but for the
+    // first, which rounding drives along its separatrix
+    const auto free = section_page("39.2", 12, "1e-9");
+    EXPECT_EQ(free.grey, Numbers{0});
+    EXPECT_EQ(free.note, "11 of 12 regular");
+    EXPECT_NE(free.caption.find("(colours repeat): the largest Lyapunov exponent of 2 000 s"), std::string::npos);
+    // at 4 m g l above hanging none is: exponents of 1.2 … 1.3 1/s
+    const auto wild = section_page("39.2", 4);
+    EXPECT_EQ(wild.grey, (Numbers{0, 1, 2, 3}));
+    EXPECT_NE(wild.caption.find("(a colour each)"), std::string::npos);
+    // between, both: these are chaotic, at 0.06 … 0.13 1/s, the others below 0.002 1/s
+    const auto mixed = section_page("14.7", 12);
+    EXPECT_EQ(mixed.grey, (Numbers{1, 2, 6, 9, 10, 11}));
+    EXPECT_EQ(mixed.hues, (std::vector<int>{0, 1, 2, 3, 4, 5}));
 }
 
 TEST(Section, HasPointsThatTheEnergyAllows) {
-    const auto table =
-        table_of(figure_of("poincare", {"section.energy_J=[9.8, 20]", "section.orbits=3", "section.crossings=10"}));
-    EXPECT_EQ(table.columns, (std::vector<std::string>{"energy_J", "orbit", "time_s", "theta2_rad", "p2_N_m_s"}));
+    const auto table = table_of(figure_of("poincare", {"section.energy_J=[9.8, 20]", "section.orbits=3",
+                                                       "section.crossings=10", "section.exponent_duration_s=100"}));
+    EXPECT_EQ(table.columns, (std::vector<std::string>{"energy_J", "orbit", "exponent_per_s", "regular", "time_s",
+                                                       "theta2_rad", "p2_N_m_s"}));
     EXPECT_EQ(table.rows.size(), 2u * 3 * 10);
     double time = 0, orbit = -1;
     for (const auto& row : table.rows) {
         // with θ1 = 0 and ω1 free: E ≥ p2² / (2 m2 l2²) + m2 g l2 (1 − cosθ2)
-        EXPECT_LE(row[4] * row[4] / 2 + 9.8 * (1 - std::cos(row[3])), row[0] * (1 + 1e-9));
-        EXPECT_TRUE(row[1] != orbit || row[2] > time) << row[2];
-        time = row[2];
+        EXPECT_LE(row[6] * row[6] / 2 + 9.8 * (1 - std::cos(row[5])), row[0] * (1 + 1e-9));
+        EXPECT_TRUE(row[1] != orbit || row[4] > time) << row[4];
+        time = row[4];
         orbit = row[1];
     }
+}
+
+/// What a figure says below its title of a system that is not the preset's.
+TEST(Subtitle, IsOfTheSystem) {
+    const auto subtitle = [](const std::string& preset, const std::vector<std::string>& sets) {
+        return figure_of(preset, sets).subtitle;
+    };
+    EXPECT_EQ(
+        subtitle("poincare", {"system.mass_kg=[1, 2.5]", "system.length_m=0.5"}),
+        "Poincaré sections θ₁ = 0, ω₁ > 0 of a double pendulum, links of 0.5 m and 1, 2.5 kg, g = 9.8 m/s²; energies "
+        "above hanging at rest");
+    EXPECT_EQ(subtitle("lyapunov-spectrum", {"system.links=3", "system.angle_deg=[10, 20, 30.5]"}),
+              "a triple pendulum released at rest from 10°/20°/30.5°, links of 1 m and 1 kg, g = 9.8 m/s²; tangent "
+              "equations by dual numbers in canonical variables, dop853");
+    EXPECT_EQ(
+        subtitle("drift",
+                 {"system.angle_deg=[40, 5]", "system.omega_deg_per_s=[0, -90]", "drift.evaluations_per_s=250"}),
+        "a double pendulum released from 40°/5° at 0/-90 °/s, links of 1 m and 1 kg, g = 9.8 m/s²; every method at "
+        "some 250 evaluations a second of motion");
+    EXPECT_EQ(subtitle("stability", {"system.angle_deg=[0, 45]", "system.gravity_m_per_s2=1.6"}),
+              "a double pendulum released at rest from θ₁/45°; links of 1 m and 1 kg, g = 1.6 m/s²");
+    EXPECT_EQ(subtitle("stability-mass", {"system.mass_kg=[1, 0.2]", "system.length_m=[1, 0.5]"}),
+              "a double pendulum released at rest from 5°/0°; links of 1, 0.5 m, m₂ = 0.2 kg, g = 9.8 m/s²");
+    EXPECT_EQ(
+        subtitle("links", {"system.angle_deg=[120]", "system.mass_kg=[2]", "links.duration_s=30"}),
+        "chains released at rest from 120°, links of 1 m and 2 kg, g = 9.8 m/s²; exponents from 30 s, the band one "
+        "standard deviation; Euler at 30 kHz");
 }
 
 TEST(FlipMap, ForbidsWhatTheEnergyForbids) {

@@ -150,6 +150,32 @@ TEST(Stability, NeedsEnergyToCompareWith) {
     }
 }
 
+TEST(Stability, SharesItsAxes) {
+    const auto page_of = [](const std::string& methods) {
+        const auto figure = figure_of("stability", {"stability.rows=2", "stability.columns=2", "stability.duration_s=1",
+                                                    "stability.methods=" + methods});
+        Figure page;
+        figure.experiment->draw(computed(figure), page);
+        return page;
+    };
+    // nine of fixed step and three by tolerance: rows of three, each of one sort
+    const auto all = page_of(
+        "[\"euler\", \"semi-implicit-euler\", \"midpoint\", \"rk4\", \"adams\", \"gauss4\", "
+        "\"gauss6\", \"rattle\", \"rattle6\", \"dopri5\", \"dop853\", \"taylor\"]");
+    EXPECT_TRUE(all.shares_axes);
+    EXPECT_EQ(all.columns, 3);
+    ASSERT_EQ(all.panels.size(), 12u);
+    for (std::size_t i = 0; i < 12; ++i) {
+        EXPECT_EQ(all.panels[i].x, all.panels[i < 9 ? 0 : 9].x) << i;
+        EXPECT_EQ(all.panels[i].y, all.panels[0].y) << i;
+        for (const auto& rule : all.panels[i].rules) EXPECT_EQ(rule.label, "");  // no words on the maps
+    }
+    EXPECT_NE(all.panels[0].x, all.panels[9].x);
+    EXPECT_TRUE(all.panels[3].note.starts_with("limit 0."));  // of rk4
+    EXPECT_EQ(all.panels[6].note, "");                        // Gauss collocation has none
+    EXPECT_EQ(page_of("[\"rk4\", \"taylor\"]").columns, 0);
+}
+
 /// Steps, times and angles at which nothing is chaotic yet.
 TEST(GoldenFigureOfStability, IsAsItWas) {
     const auto figure =

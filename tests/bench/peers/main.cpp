@@ -25,14 +25,15 @@ std::string where_and_when() {
             processor = line.substr(line.find(": ") + 2);
             break;
         }
-    return fmt::format("Measured on {}, {:%B %Y}.", processor, fmt::localtime(std::time(nullptr)));
+    return fmt::format("{}, {:%B %Y}", processor, fmt::localtime(std::time(nullptr)));
 }
 
-/// A chart of work against precision as `doppel figure` makes it, with the methods of other libraries in it.
+/// A chart of work against precision like that of `doppel figure`, but of the methods of other libraries.
 void make_figure(const RunCommandOptions& options) {
     const auto peers = all_peers();
     std::vector<FigurePreset> figures{read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};
-    figures[0].captions.push_back(where_and_when());
+    figures[0].name += "-libraries";
+    figures[0].title += fmt::format(", beside other libraries: {}", where_and_when());
     ProgressReport show(progress_style(options.progress), figures[0].name, figures[0].experiment->unit());
     const FigureReport report{[&](std::size_t, const FigureProgress& progress) {
                                   show({std::lround(progress.done), std::lround(progress.total)});
@@ -58,7 +59,10 @@ int failed(ExitCode code, const char* message) {
 int main(int argc, char** argv) {
     using namespace doppel;
     try {
-        CLI::App app("Speed against accuracy, with Boost.odeint, GSL and SUNDIALS in the chart.", "doppel-peers");
+        CLI::App app(
+            "Speed against accuracy: a chart of methods of Boost.odeint, GSL and SUNDIALS, beside the best of "
+            "Doppel's.",
+            "doppel-peers");
         RunCommandOptions options;
         add_run_options(app, options, "Threads that compute what is not timed");
         app.get_option("PRESET")->required(false)->expected(1);

@@ -1,0 +1,118 @@
+#include "plot/chart_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+/// The map whose bar stands for those of all panels; null where each has its own.
+const HeatMap* sharing_map(const Figure& figure) {
+    const auto found = std::find_if(figure.panels.begin(), figure.panels.end(),
+                                    [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
+    return found == figure.panels.end() ? nullptr : &*found->map;
+}
+
+/// Panels that share their axes leave words to the one on their left, or below them.
+AxisWords axis_words(const Figure& figure, std::size_t panel, std::size_t columns) {
+    if (!figure.shares_axes) return {};
+    const auto& all = figure.panels;
+    const Plot& plot = all[panel];
+    AxisWords words;
+    words.x = panel + columns >= all.size() || all[panel + columns].x != plot.x;
+    words.y = panel % columns == 0 || all[panel - 1].y != plot.y;
+    words.y_name = words.y && (panel < columns || all[panel - columns].y != plot.y);
+    return words;
+}
+
+/// The cells of all panels, and what around the panels is for words.
+struct Cells {
+    std::vector<Gutters> columns, rows;
+    float width, height;  // of a panel without its words, px
+
+    Gutters around(std::size_t column, std::size_t row) const {
+        return {columns[column].left, columns[column].right, rows[row].title, rows[row].labels, rows[row].bottom};
+    }
+};
+
+/// Of whole pixels, so that all panels come out alike. Where they share axes, a column or row takes no more than its own
+/// words need; else all take as much as the largest.
+Cells cells_of(const std::vector<Gutters>& own, const Grid& grid, float width, float height, bool shares_axes,
+               const PlotStyle& style) {
+    const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
+    Cells cells{std::vector<Gutters>(columns), std::vector<Gutters>(rows), 0, 0};
+    Gutters largest;
+    for (const Gutters& each : own) largest = united(largest, each);
+    if (!shares_axes) {
+        std::fill(cells.columns.begin(), cells.columns.end(), largest);
+        std::fill(cells.rows.begin(), cells.rows.end(), largest);
+        cells.width = std::floor(width / static_cast<float>(columns)) - largest.left - largest.right;
+        cells.height = std::floor(height / static_cast<float>(rows)) - largest.top(style) - largest.bottom;
+        return cells;
+    }
+    for (std::size_t i = 0; i < own.size(); ++i)
+        for (Gutters* of : {&cells.columns[i % columns], &cells.rows[i / columns]}) *of = united(*of, own[i]);
+    for (Gutters& of : cells.columns) {
+        of.left = std::ceil(of.left), of.right = std::ceil(of.right);
+        width -= of.left + of.right;
+    }
+    for (Gutters& of : cells.rows) {
+        of.bottom += std::ceil(of.top(style) + of.bottom) - of.top(style) - of.bottom;
+        height -= of.top(style) + of.bottom;
+    }
+    cells.width = std::floor(width / static_cast<float>(columns));
+    cells.height = std::floor(height / static_cast<float>(rows));
+    return cells;
+}
+
+}  // namespace
+
+Grid grid_of(const Figure& figure, const Area& body) {
+    const int panels = static_cast<int>(figure.panels.size());
+    const auto grid = [&](int columns) { return Grid{columns, (panels + columns - 1) / columns}; };
+    if (figure.columns > 0) return grid(std::min(figure.columns, panels));
+    const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // width to height that suits
+    Grid best = grid(1);
+    float most = 0;
+    for (int columns = 1; columns <= panels; ++columns) {
+        const Grid tried = grid(columns);
+        const float room = std::min(body.width() / static_cast<float>(columns),
+                                    shape * (body.height() / static_cast<float>(tried.rows)));
+        if (room > 1.001f * most) most = room, best = tried;
+    }
+    return best;
+}
+
+void draw_panels(const Figure& figure, Area body, const PlotStyle& style, DisplayList& list) {
+    const Grid grid = grid_of(figure, body);
+    if (const HeatMap* map = sharing_map(figure)) {
+        const float gutter = shared_bar_gutter(*map, body.height(), style);
+        draw_shared_bar(*map, body, body.right - gutter, style, list);
+        body.right -= gutter;
+    }
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    const float across = std::round(1.9f * style.tick), down = std::round(1.3f * style.tick);
+    const float width = body.width() - across * static_cast<float>(grid.columns - 1);
+    const float height = body.height() - down * static_cast<float>(grid.rows - 1);
+    std::vector<PlotRanges> ranges;
+    std::vector<AxisWords> words;
+    std::vector<Gutters> own;
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+        ranges.push_back(fitted_ranges(figure.panels[i]));
+        words.push_back(axis_words(figure, i, columns));
+        own.push_back(gutters(figure.panels[i], ranges[i], std::floor(width / static_cast<float>(grid.columns)),
+                              std::floor(height / static_cast<float>(grid.rows)), words[i], style));
+    }
+    const Cells cells = cells_of(own, grid, width, height, figure.shares_axes, style);
+    float left = body.left, top = body.top;
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+        const Gutters around = cells.around(i % columns, i / columns);
+        const float right = left + around.left + cells.width + around.right;
+        const float bottom = top + around.top(style) + cells.height + around.bottom;
+        draw_panel(figure.panels[i], ranges[i], {left, top, right, bottom}, around, words[i], style, list);
+        left = right + across;
+        if ((i + 1) % columns == 0) left = body.left, top = bottom + down;
+    }
+}
+
+}  // namespace doppel

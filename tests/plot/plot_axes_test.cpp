@@ -1,0 +1,141 @@
+#include "plot/labels.hpp"
+#include "plot/plot.hpp"
+#include "render/typeface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace doppel {
+namespace plot_axes_test {
+
+// Axes that panels share, words beside a panel's title, how lines of text end, and how thick lines are.
+
+constexpr const Theme& light = themes[1];
+constexpr Size size{1200, 900};
+
+/// Two rows of two maps: all of one height, the lower row over another x axis where `split`.
+Figure four_maps(bool shares_axes, bool split) {
+    Figure figure{.title = "Maps", .columns = 2, .shares_axes = shares_axes};
+    for (int i = 0; i < 4; ++i) {
+        const double high = split && i >= 2 ? 50 : 10;
+        Plot plot{.title = "map", .note = "17 s"};
+        plot.x = {.label = high == 10 ? "step, s" : "tolerance", .low = 0, .high = high};
+        plot.y = {.label = "angle, °", .low = 0, .high = 180, .every = 90};
+        plot.map = HeatMap{.columns = 1,
+                           .rows = 1,
+                           .values = {1},
+                           .x_low = 0,
+                           .x_high = high,
+                           .y_low = 0,
+                           .y_high = 180,
+                           .low = 0,
+                           .high = 2,
+                           .shares_bar = true};
+        figure.panels.push_back(plot);
+    }
+    return figure;
+}
+
+std::map<std::string, int> words_in(const DisplayList& list) {
+    std::map<std::string, int> counts;
+    for (const Item& item : list)
+        if (const auto* label = std::get_if<Label>(&item)) ++counts[label->text];
+    return counts;
+}
+
+/// Of the four maps, px².
+std::vector<float> areas(const DisplayList& list) {
+    std::vector<float> all;
+    constexpr float bar = 60;  // wider than the bar
+    for (const Item& item : list)
+        if (const auto* image = std::get_if<Image>(&item); image && image->right - image->left > bar)
+            all.push_back((image->right - image->left) * (image->bottom - image->top));
+    return all;
+}
+
+TEST(Plot, SharedAxesHaveTheirWordsOnce) {
+    const auto apart = compose(four_maps(false, false), size, light);
+    const auto shared = compose(four_maps(true, false), size, light);
+    EXPECT_EQ(words_in(apart)["step, s"], 4);
+    EXPECT_EQ(words_in(apart)["angle, °"], 4);
+    EXPECT_EQ(words_in(apart)["90"], 4);
+    EXPECT_EQ(words_in(shared)["step, s"], 2);   // below each column
+    EXPECT_EQ(words_in(shared)["angle, °"], 1);  // above the first panel
+    EXPECT_EQ(words_in(shared)["90"], 2);        // beside each row
+    // all panels have one size, and a larger one
+    const auto before = areas(apart), after = areas(shared);
+    ASSERT_EQ(after.size(), 4u);
+    for (const float area : after) EXPECT_EQ(area, after.front());
+    EXPECT_GT(after.front(), 1.1f * before.front());  // measured 1.13
+}
+
+TEST(Plot, AxesThatDifferAreNotShared) {
+    auto words = words_in(compose(four_maps(true, true), size, light));
+    EXPECT_EQ(words["step, s"], 2);
+    EXPECT_EQ(words["tolerance"], 2);
+    EXPECT_EQ(words["50"], 2);
+    EXPECT_EQ(words["angle, °"], 1);
+    auto figure = four_maps(true, false);
+    figure.panels[1].y.high = 90;
+    words = words_in(compose(figure, size, light));
+    EXPECT_EQ(words["angle, °"], 2);  // of the first, and of the one beside it
+}
+
+TEST(Plot, ANoteStandsBesideTheTitleWhereThereIsRoom) {
+    EXPECT_EQ(words_in(compose(four_maps(true, false), size, light))["17 s"], 4);
+    auto figure = four_maps(true, false);
+    for (auto& plot : figure.panels) plot.title = "a title of a panel that leaves a note no room beside it";
+    const auto words = words_in(compose(figure, size, light));
+    EXPECT_EQ(words.count("17 s"), 0u);
+    EXPECT_EQ(words.count(figure.panels[0].title), 1u);
+}
+
+/// The width of the longest stroke, px.
+float line_width(std::size_t points) {
+    Curve curve;
+    for (std::size_t i = 0; i < points; ++i) {
+        curve.x.push_back(static_cast<double>(i));
+        curve.y.push_back(static_cast<double>(i % 7));
+    }
+    const auto list = compose({.panels = {{.curves = {curve}}}}, {1600, 900}, light);
+    const Stroke* longest = nullptr;
+    for (const Item& item : list)
+        if (const auto* stroke = std::get_if<Stroke>(&item))
+            if (!longest || stroke->vertices.size() > longest->vertices.size()) longest = stroke;
+    return longest->width;
+}
+
+TEST(Plot, LinesOfManyPointsAreThin) {
+    EXPECT_FLOAT_EQ(line_width(200), 3.2f);
+    EXPECT_FLOAT_EQ(line_width(1000), 2);
+}
+
+TEST(Text, LinesEndEvenlyAndNotWithinANumber) {
+    const std::string text =
+        "It takes 12 464 evaluations at a step of 0.25 s where θ₁ = 45° and one more line of words that goes on and on";
+    const auto joined = [](const std::vector<std::string>& lines) {
+        return std::accumulate(std::next(lines.begin()), lines.end(), lines.front(),
+                               [](const std::string& all, const std::string& line) { return all + ' ' + line; });
+    };
+    for (float width = 120; width < 900; width += 7) {
+        const auto lines = evenly_wrapped(text, 18, Weight::regular, width);
+        EXPECT_EQ(joined(lines), text);
+        EXPECT_EQ(lines.size(), wrapped(text, 18, Weight::regular, width).size());
+        for (const auto& line : lines) {
+            EXPECT_LE(text_width(line, 18), width);
+            for (const auto* end : {"12", "0.25", "=", "θ₁"}) EXPECT_FALSE(line.ends_with(end)) << line;
+        }
+    }
+    // what would end with a word by itself
+    const float width = text_width(text, 18) * 0.98f;
+    EXPECT_EQ(wrapped(text, 18, Weight::regular, width).back(), "on");
+    const auto even = evenly_wrapped(text, 18, Weight::regular, width);
+    ASSERT_EQ(even.size(), 2u);
+    EXPECT_GT(text_width(even[1], 18), text_width(even[0], 18) / 3);
+}
+
+}  // namespace plot_axes_test
+}  // namespace doppel
