@@ -37,7 +37,8 @@ public:
         visit({"to", "the last"}, to_);
         visit({"spacing", spacing_help}, spacing_);
         visit({"points", "how many values", "", from_to(2, most_trials), "as `step` says"}, points_);
-        const Only of_steps{!points_ && spacing_ == Spacing::linear, "is for even values; give it, or points"};
+        const Only of_steps{!points_ && spacing_ == Spacing::linear, "is for even values; give it, or points",
+                            visit.from_command_line("points") || visit.from_command_line("spacing")};
         visit({"step", "between two values; from `from` to `to` a whole number of them", "", positive, "", of_steps},
               step_);
         visit({"difference", "of the parameter between the two of a pair"}, difference_);
