@@ -39,8 +39,8 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
 void add_columns_option(CLI::App& command, std::string& columns) {
     command
         .add_option("--columns", columns,
-                    "Only these columns of the CSV, by their names; a, b: all of a side; all where not given")
-        ->type_name("NAME,NAME…");
+                    "Only these columns of the CSV, such as time_s,a,distance; a and b are all of a side")
+        ->type_name("LIST");
 }
 
 std::vector<std::string> columns_of_option(const std::string& text) {
