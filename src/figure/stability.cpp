@@ -1,6 +1,7 @@
 #include "analysis/stability.hpp"
 
 #include "figure/kinds.hpp"
+#include "figure/map_cells.hpp"
 #include "figure/system_words.hpp"
 
 #include <algorithm>
@@ -10,18 +11,6 @@
 
 namespace doppel {
 namespace {
-
-/// Cells from `from` to `to`, evenly or in even ratios.
-struct Cells {
-    double from, to;
-    int count;
-    bool logarithmic;
-
-    double middle(int cell) const {
-        const double part = (cell + 0.5) / count;
-        return logarithmic ? from * std::pow(to / from, part) : from + part * (to - from);
-    }
-};
 
 /// The energy error of each method over its step or tolerance and a parameter of the release, and the limit of linear
 /// theory. A trial is a column of one method's map: all releases at one step.
@@ -117,16 +106,7 @@ public:
             blow_up, duration_.value(), blow_up));
     }
 
-    std::string subtitle() const override {
-        auto moved = links_words(release_);
-        if (parameter_->is_ratio) {
-            moved = moved.substr(0, moved.find(" and "));
-            moved += fmt::format(", m₂ = {} kg, g = {} m/s²", text_of(release_.mass_kg[1]),
-                                 text_of(release_.gravity_m_per_s2));
-        }
-        const auto swept = parameter_->is_ratio ? std::nullopt : std::optional<std::size_t>(0);
-        return fmt::format("{} {}; {}", pendulum_words(release_.links()), released_words(release_, swept), moved);
-    }
+    std::string subtitle() const override { return swept_words(release_, parameter_->is_ratio); }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
@@ -220,7 +200,7 @@ private:
             return !method || method->adaptive == adaptive;
         });
     }
-    const Cells& columns_of(const MethodEntry& method) const { return method.adaptive ? tolerances_ : steps_; }
+    const MapCells& columns_of(const MethodEntry& method) const { return method.adaptive ? tolerances_ : steps_; }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         return greatest_energy_errors(run_of(trial), releases_, stop);
@@ -303,8 +283,8 @@ private:
     std::vector<const MethodEntry*> methods_;
     std::string model_ = "auto";  // angles where a method serves them
     Rational duration_{10, 1};    // s
-    Cells rows_{0, 180, 72, false};
-    Cells steps_{0.002, 1, 100, true}, tolerances_{1e-13, 1, 100, true};  // s; as many columns of either
+    MapCells rows_{0, 180, 72, false};
+    MapCells steps_{0.002, 1, 100, true}, tolerances_{1e-13, 1, 100, true};  // s; as many columns of either
     std::size_t columns_ = 0;
     std::vector<Pendulum<Quad>> releases_;  // of each row
 };

@@ -65,4 +65,11 @@ std::string links_words(const SideSpec& side) {
     return links_words(doubles(side.length_m), doubles(side.mass_kg), static_cast<double>(side.gravity_m_per_s2));
 }
 
+std::string swept_words(const SideSpec& side, bool mass_ratio) {
+    const auto pendulum = pendulum_words(side.links());
+    if (!mass_ratio) return fmt::format("{} {}; {}", pendulum, released_words(side, 0), links_words(side));
+    return fmt::format("{} {}; links of {} m, m₂ = {} kg, g = {} m/s²", pendulum, released_words(side),
+                       numbers_words(doubles(side.length_m)), text_of(side.mass_kg[1]), text_of(side.gravity_m_per_s2));
+}
+
 }  // namespace doppel

@@ -21,4 +21,8 @@ std::string links_words(const std::vector<double>& length_m, const std::vector<d
                         double gravity_m_per_s2);
 std::string links_words(const SideSpec& side);
 
+/// What moves where the mass ratio, or else the first angle, is not one: "a double pendulum released at rest from θ₁/0°; links
+/// of 1 m and 1 kg, g = 9.8 m/s²".
+std::string swept_words(const SideSpec& side, bool mass_ratio);
+
 }  // namespace doppel

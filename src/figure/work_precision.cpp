@@ -1,5 +1,6 @@
 #include "figure/work_precision.hpp"
 
+#include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
 
@@ -174,6 +175,11 @@ private:
         const std::size_t problems = problems_.all.size();
         if (trial < problems) {
             const auto& solution = reference(trial, stop);
+            if (std::isinf(solution.sensitivity))
+                throw method_failed(
+                    "{}: an error at the start grows beyond all numbers in {:g} s; take a shorter "
+                    "work_precision.duration_s",
+                    problems_.all[trial].name, problems_.all[trial].duration());
             return numbers_of(ProblemRow{solution.sensitivity, solution.reference.disagreement});
         }
         const auto& [p, solver] = ladders_[(trial - problems) % ladders_.size()];

@@ -61,18 +61,22 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
     }
     const auto useful = useful_rungs(ladder, diagram.cost, range_of(diagram));
     for (const std::size_t i : useful) add_point(curve, cost_of(ladder.rungs[i], diagram.cost), ladder.rungs[i].error);
-    if (diagram.cost == Cost::evaluations || !named) return curve;
-    // the spread of times, as horizontal bars
-    constexpr double shows = 0.05;
-    for (const std::size_t i : useful) {
-        const auto& rung = ladder.rungs[i];
-        const double spread = std::min(ladder.spread[i], 0.9);
-        if (spread < shows) continue;
-        add_point(curve, NAN, NAN);
-        add_point(curve, rung.cpu_s * (1 - spread), rung.error);
-        add_point(curve, rung.cpu_s * (1 + spread), rung.error);
-    }
     return curve;
+}
+
+/// The spread of times of a curve of the ladder, as pale bars.
+Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
+    Curve bars{.hue = hue, .background = Background::line};
+    constexpr double shows = 0.05, most = 0.9;
+    for (const std::size_t i : useful_rungs(ladder, diagram.cost, range_of(diagram))) {
+        const auto& rung = ladder.rungs[i];
+        const double spread = std::min(ladder.spread[i], most);
+        if (spread < shows) continue;
+        add_point(bars, rung.cpu_s * (1 - spread), rung.error);
+        add_point(bars, rung.cpu_s * (1 + spread), rung.error);
+        add_point(bars, NAN, NAN);
+    }
+    return bars;
 }
 
 Curve front_curve(const WorkDiagram& diagram) {
@@ -124,6 +128,7 @@ void fit(const WorkDiagram& diagram, Plot& plot) {
 Plot work_plot(const WorkDiagram& diagram) {
     Plot plot;
     plot.title = diagram.problem.title;
+    plot.needs_no_legend = true;
     plot.x = {.label = diagram.cost == Cost::time ? "CPU time, s" : "evaluations of the right-hand side",
               .logarithmic = true};
     plot.y = {.label = diagram.problem.has_angles() ? "angle error at the end, rad"
@@ -135,7 +140,10 @@ Plot work_plot(const WorkDiagram& diagram) {
         for (const auto* ladder : best_models(diagram.index, diagram.ladders, diagram.cost)) {
             const bool is_named = std::count(diagram.named.begin(), diagram.named.end(), ladder->solver.name()) > 0;
             const bool is_subject = (ladder->solver.external != nullptr) == diagram.of_libraries;
-            if (is_named == named && (named || is_subject)) plot.curves.push_back(curve_of(*ladder, diagram));
+            if (is_named != named || !(named || is_subject)) continue;
+            plot.curves.push_back(curve_of(*ladder, diagram));
+            if (named && diagram.cost == Cost::time)
+                plot.curves.push_back(spread_bars(*ladder, diagram, plot.curves.back().hue));
         }
     fit(diagram, plot);
     return plot;

@@ -222,9 +222,11 @@ Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>&
 
 }  // namespace
 
-void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  bool over_map, const LabelPlacer& placer, DisplayList& list) {
+void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
+                  const LabelPlacer& placer, DisplayList& list) {
     constexpr int many = 10;  // curves that leave little room beside each
+    const auto& curves = plot.curves;
+    const bool over_map = plot.map.has_value();
     const float small = 0.8f * style.text;
     bool dense = std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
@@ -237,7 +239,7 @@ void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve
     if (!dense && !made.left_over.empty()) {
         Written fine = tried(small, placer);
         const auto legend = fitted_legend(curves, made.left_over, style, placer);
-        dense = !fine.left_over.empty() && (!legend || placer.ink(legend->box) > 0);
+        dense = !fine.left_over.empty() && (plot.needs_no_legend || !legend || placer.ink(legend->box) > 0);
         if (dense) fine = tried(small, placer);
         if (dense || fine.left_over.empty()) made = std::move(fine), size = small;
     }

@@ -60,9 +60,9 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
                  LabelPlacer& placer, DisplayList& list);
 
 /// Labels the curves: at the line where a label touches nothing, smaller if need be, else in a legend in the emptiest
-/// place; where curves are many, on their lines. Curve i has drawn in `placer` as number i.
-void label_curves(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  bool over_map, const LabelPlacer& placer, DisplayList& list);
+/// place; where curves are many, or a legend would cover them, on their lines. Curve i has drawn in `placer` as number i.
+void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
+                  const LabelPlacer& placer, DisplayList& list);
 
 /// Where the ink of a line of text may be, with the tallest accents and the deepest tails of the font.
 Area text_area(const Label& label);

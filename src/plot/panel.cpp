@@ -67,7 +67,7 @@ void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& placer
         for (std::size_t i = 0; i < curves.size(); ++i)
             if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel.area, style, over_map, list);
     label_rules(panel.plot.rules, panel.x, panel.y, style, over_map, placer, list);
-    label_curves(curves, all, style, over_map, placer, list);
+    label_curves(panel.plot, all, style, placer, list);
 }
 
 }  // namespace

@@ -68,7 +68,8 @@ struct Plot {
     std::optional<HeatMap> map;
     std::vector<Curve> curves;
     std::vector<Rule> rules;
-    bool square = false;  // as high as wide
+    bool square = false;           // as high as wide
+    bool needs_no_legend = false;  // words that have no room beside their curves stand on them
 };
 
 /// A table for reading: a page of claims and verdicts.

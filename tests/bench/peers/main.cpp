@@ -25,6 +25,9 @@ std::string where_and_when() {
             processor = line.substr(line.find(": ") + 2);
             break;
         }
+    for (const std::string word : {"(R)", "(TM)", " CPU", " Processor"})
+        for (auto at = processor.find(word); at != std::string::npos; at = processor.find(word))
+            processor.erase(at, word.size());
     return fmt::format("{}, {:%B %Y}", processor, fmt::localtime(std::time(nullptr)));
 }
 
@@ -33,7 +36,7 @@ void make_figure(const RunCommandOptions& options) {
     const auto peers = all_peers();
     std::vector<FigurePreset> figures{read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};
     figures[0].name += "-libraries";
-    figures[0].title += fmt::format(", beside other libraries: {}", where_and_when());
+    figures[0].title += fmt::format(": other libraries, on {}", where_and_when());
     ProgressReport show(progress_style(options.progress), figures[0].name, figures[0].experiment->unit());
     const FigureReport report{[&](std::size_t, const FigureProgress& progress) {
                                   show({std::lround(progress.done), std::lround(progress.total)});
