@@ -45,7 +45,7 @@ public:
 
     template <class Visit>
     void fields(Visit& visit) {
-        constexpr auto cells = from_to(2, most_map_cells);
+        constexpr auto cells = from_to(2, most_cells_across);
         visit({"columns", "angles of the upper link", "", cells}, frame_.x.count);
         visit({"rows", "angles of the lower link", "", cells}, frame_.y.count);
         visit({"theta1_range_deg", "of the upper link, [lowest, highest]", "deg", from_to(-180, 180)}, theta1_);

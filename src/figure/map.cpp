@@ -37,7 +37,7 @@ public:
 
     template <class Visit>
     void fields(Visit& visit) {
-        constexpr auto cells = from_to(2, most_map_cells);
+        constexpr auto cells = from_to(2, most_cells_across);
         visit(parameter_field("x_parameter", parameter_help), x_name_);
         visit({"x_from", "its value at the left edge"}, frame_.x.from);
         visit({"x_to", "its value at the right edge"}, frame_.x.to);

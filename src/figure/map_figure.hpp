@@ -19,7 +19,7 @@ struct MapFrame {
 };
 
 /// The numbers of a cell that has none are NaN or infinite.
-inline constexpr int most_map_cells = 1'048'576;  // across, or down
+inline constexpr int most_cells_across = 1'048'576;  // across, or down
 
 /// A figure that is one map. Its first trials are rows of cells, from y_low up; of a mirrored map the lower half of them.
 /// Kinds may have further trials.

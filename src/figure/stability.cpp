@@ -1,7 +1,7 @@
 #include "analysis/stability.hpp"
 
 #include "figure/kinds.hpp"
-#include "figure/map_cells.hpp"
+#include "figure/spacing.hpp"
 #include "figure/system_words.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ public:
         static constexpr std::array<std::string_view, 2> parameters{"theta1_deg", "mass_ratio"};
         static constexpr std::array<std::string_view, 3> models{"auto", "angles", "constraints"};
         parameter_field(visit, parameters, parameter_);
-        if (parameter_->is_ratio) rows_ = {0.01, 10, rows_.count, true};
+        if (parameter_->is_ratio) rows_ = {0.01, 10, rows_.count, Spacing::logarithmic};
         visit({"from", "the lowest release", "", {}, "0; of ratios 0.01"}, rows_.from);
         visit({"to", "the highest, to 180; of ratios to 1e6", "", {}, "180; of ratios 10"}, rows_.to);
         visit({"rows", "releases", "", from_to(1, 10'000)}, rows_.count);
@@ -93,8 +93,8 @@ public:
             plot.y = {.label = std::string(parameter_->label),
                       .low = rows.from,
                       .high = rows.to,
-                      .logarithmic = rows.logarithmic};
-            if (!rows.logarithmic) plot.y.every = 45;
+                      .logarithmic = rows.is_logarithmic()};
+            if (!rows.is_logarithmic()) plot.y.every = 45;
             plot.map = map_of(numbers, m);
             if (!method.adaptive) draw_limit(method.name, plot);
             figure.panels.push_back(std::move(plot));
@@ -200,7 +200,7 @@ private:
             return !method || method->adaptive == adaptive;
         });
     }
-    const MapCells& columns_of(const MethodEntry& method) const { return method.adaptive ? tolerances_ : steps_; }
+    const CellRange& columns_of(const MethodEntry& method) const { return method.adaptive ? tolerances_ : steps_; }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         return greatest_energy_errors(run_of(trial), releases_, stop);
@@ -283,8 +283,9 @@ private:
     std::vector<const MethodEntry*> methods_;
     std::string model_ = "auto";  // angles where a method serves them
     Rational duration_{10, 1};    // s
-    MapCells rows_{0, 180, 72, false};
-    MapCells steps_{0.002, 1, 100, true}, tolerances_{1e-13, 1, 100, true};  // s; as many columns of either
+    CellRange rows_{0, 180, 72};
+    CellRange steps_{0.002, 1, 100, Spacing::logarithmic},
+        tolerances_{1e-13, 1, 100, Spacing::logarithmic};  // s; as many columns of either
     std::size_t columns_ = 0;
     std::vector<Pendulum<Quad>> releases_;  // of each row
 };
