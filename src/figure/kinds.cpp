@@ -169,7 +169,7 @@ std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::s
     add(apart);
     if (const auto sides = side_captions(scene); sides[0].heading != "a")
         add(fmt::format("{} against {}", sides[0].heading, sides[1].heading));
-    const auto method = method_words(scene, varied.step);
+    const auto method = varied.method.empty() ? method_words(scene, varied.step) : varied.method;
     return fmt::format("{}{}{}", fmt::join(parts, ", "), method.empty() ? "" : "; ", method);
 }
 

@@ -105,6 +105,7 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
 struct Varied {
     std::vector<std::size_t> angles;  // of release: links, from 0
     bool step = false;                // and how finely to step
+    std::string method = {};          // in place of the preset's, where the figure itself steps
 };
 std::string pair_subtitle(const Scene& scene, const Varied& varied = {}, const std::string& apart = "");
 

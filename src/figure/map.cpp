@@ -32,7 +32,7 @@ public:
         make_frame(table);
         const Parameter* const parameters[] = {&x_, &y_};
         subtitle_ = varied_subtitle(pair_, parameters, std::array{Quad(frame_.x.middle(0)), Quad(frame_.y.middle(0))},
-                                    difference_);
+                                    difference_, measurement_->words());
     }
 
     template <class Visit>

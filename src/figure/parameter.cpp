@@ -98,15 +98,16 @@ Parameter parameter_of(FigureReader& reader, const TomlReader& table, std::strin
 }
 
 std::string varied_subtitle(Preset pair, std::span<const Parameter* const> parameters, std::span<const Quad> values,
-                            const Quad& difference) {
-    Varied varied;
+                            const Quad& difference, const QuantityWords& quantity) {
+    Varied varied{.method = quantity.method};
+    if (quantity.is_of_side_a) pair.b = pair.a;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         // the difference of all twins is named on its own
         parameters[i]->set_both(pair, values[i]);
         if (parameters[i]->angle) varied.angles.push_back(*parameters[i]->angle);
         varied.step |= parameters[i]->is_of_method;
     }
-    return pair_subtitle(make_scene(pair), varied, parameters.front()->apart(difference));
+    return pair_subtitle(make_scene(pair), varied, quantity.is_of_side_a ? "" : parameters.front()->apart(difference));
 }
 
 }  // namespace doppel

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "figure/kinds.hpp"
+#include "figure/quantity.hpp"
 
 #include <functional>
 #include <optional>
@@ -45,7 +46,8 @@ Parameter parameter_of(FigureReader& reader, const TomlReader& table, std::strin
 /// values are those of `pair`.
 ///
 /// `difference`  of the first parameter between the two of a pair
+/// `quantity`    that is found of each
 std::string varied_subtitle(Preset pair, std::span<const Parameter* const> parameters, std::span<const Quad> values,
-                            const Quad& difference);
+                            const Quad& difference, const QuantityWords& quantity);
 
 }  // namespace doppel

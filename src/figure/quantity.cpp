@@ -3,6 +3,7 @@
 #include "analysis/parting.hpp"
 #include "figure/kinds.hpp"
 #include "numeric/roots.hpp"
+#include "scene/captions.hpp"
 
 #include <cmath>
 #include <limits>
@@ -26,12 +27,15 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
                     .none_is_bad = true};
         case Quantity::exponent:
             return {.label = "largest Lyapunov exponent, 1/s",
-                    .columns = {"exponent_per_s", "exponent_uncertainty_per_s"}};
+                    .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
+                    .is_of_side_a = true,
+                    .method = "tangent equations by Dormand–Prince 8"};
         case Quantity::flip_time:
             return {.label = "time to the first flip, s",
                     .columns = {"flip_time_s"},
                     .logarithmic = true,
-                    .none = fmt::format("no flip within {} s", seconds)};
+                    .none = fmt::format("no flip within {} s", seconds),
+                    .is_of_side_a = true};
         case Quantity::distance_at_end:
             return {.label = fmt::format("distance after {} s", seconds),
                     .columns = {"distance_at_end"},
@@ -43,7 +47,8 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
                     .columns = {"energy_error"},
                     .logarithmic = true,
                     .none = "broke down",
-                    .none_is_bad = true};
+                    .none_is_bad = true,
+                    .is_of_side_a = true};
         case Quantity::parting_time:
             return {.label = "time at which the two part, s",
                     .columns = {"parting_time_s"},
@@ -141,6 +146,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     if (quantity == Quantity::energy_error && !scene.a.conserves_energy)
         throw table.fault(key, "\"energy_error\" takes a system that keeps its energy; a spring is damped");
     flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.links() == 2;
+    if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));
     if (alike && quantity != Quantity::exponent && quantity != Quantity::flip_time) run_ = lanes_of(scene);
     if (run_ && !is_of_distance(quantity)) run_->b = run_->a;
 }

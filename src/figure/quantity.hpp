@@ -32,6 +32,8 @@ struct QuantityWords {
     bool logarithmic = false;
     std::string none;  // what it means where there is none
     bool none_is_bad = false;
+    bool is_of_side_a = false;  // alone: what sets the two apart does not matter
+    std::string method = {};    // by which it is found, where not by the preset's
 };
 
 /// Finds one quantity of pairs. Where all can be stepped side by side, in lanes: the mean, distances and energies by

@@ -27,7 +27,8 @@ public:
             measurements_.emplace_back(table, "exponent", Quantity::exponent, first, parameter_.keeps_method,
                                        exponent_spec_);
         make_scene(twins(trials_ - 1));  // reports faults now
-        subtitle_ = varied_subtitle(pair_, std::array{&std::as_const(parameter_)}, std::array{value(0)}, difference_);
+        subtitle_ = varied_subtitle(pair_, std::array{&std::as_const(parameter_)}, std::array{value(0)}, difference_,
+                                    measurements_.front().words());
     }
 
     template <class Visit>

@@ -70,8 +70,7 @@ TEST(Sweep, OneByOneFindsWhatLanesFind) {
         const auto lanes = table_of(figure_from(twins, sets)), alone = table_of(figure_from(twins + spring, sets));
         for (std::size_t i = 0; i < lanes.rows.size(); ++i)
             if (std::isfinite(lanes.rows[i][1]) || std::isfinite(alone.rows[i][1]))
-                EXPECT_NEAR(lanes.rows[i][1], alone.rows[i][1], 1e-8)
-                    << quantity << ' ' << i;  // measured 1.8e-10
+                EXPECT_NEAR(lanes.rows[i][1], alone.rows[i][1], 1e-8) << quantity << ' ' << i;  // measured 1.8e-10
     }
 }
 
@@ -86,6 +85,23 @@ TEST(Sweep, OfEqualRatiosHasItsEndsAndTheStepsThatAreTaken) {
     // of order 4
     const double slope = std::log(table.rows[8][1] / table.rows[5][1]) / std::log(table.rows[8][0] / table.rows[5][0]);
     EXPECT_NEAR(slope, 4, 0.1);  // measured 3.98
+}
+
+TEST(Map, SaysOfItselfByWhatItIsFound) {
+    const auto subtitle = [](const std::string& quantity, const std::vector<std::string>& sets = {}) {
+        auto all = sets;
+        all.insert(all.end(),
+                   {"map.columns=4", "map.rows=3", "scene.duration_s=1", "map.quantity=\"" + quantity + "\""});
+        return figure_of("parting-map", all).subtitle;
+    };
+    EXPECT_EQ(subtitle("divergence"), "two links in angles, θ₂ = 0, twins 0.001° apart; Runge–Kutta 4, 1/480 s");
+    EXPECT_EQ(subtitle("energy_error"), "two links in angles, θ₂ = 0; Runge–Kutta 4, 1/480 s");
+    EXPECT_EQ(subtitle("exponent"), "two links in angles, θ₂ = 0; tangent equations by Dormand–Prince 8");
+    EXPECT_EQ(subtitle("flip_time"), "two links in angles, θ₂ = 0; Taylor series, tolerance 1.0 × 10⁻⁸");
+    // what is varied is no number of all
+    EXPECT_EQ(subtitle("energy_error", {"map.x_parameter=\"system.step_s\"", "map.x_from=0.0001", "map.x_to=0.002",
+                                        "map.difference=0"}),
+              "two links in angles, 90°/0°; Runge–Kutta 4");
 }
 
 TEST(Map, HasTheNumbersOfSweeps) {
