@@ -79,7 +79,8 @@ void MapFigure::draw(std::span<const TrialNumbers> numbers, Figure& figure) cons
     for (int row = 0; row < y.count; ++row)
         for (int column = 0; column < x.count; ++column)
             map.values.push_back(static_cast<float>(at(numbers, row, column)));
-    if (std::none_of(map.values.begin(), map.values.end(), [](float x) { return std::isnan(x); })) map.none_label = "";
+    if (std::none_of(map.values.begin(), map.values.end(), [](float cell) { return std::isnan(cell); }))
+        map.none_label = "";
     figure.panels.push_back(std::move(plot));
 }
 
