@@ -68,6 +68,7 @@ Parameter parameter_of(FigureReader& reader, const TomlReader& table, std::strin
     if (std::find(of_releases.begin(), of_releases.end(), name) != of_releases.end())
         return release(table, key, name, pair);
     const NumericKey number(table, key, name, pair);
+    table.demand_drawable(key, number.label);  // an entry's name may have other letters
     const bool is_scalar = !number.element && number.inside.find('.') == std::string::npos;
     for (const auto* side : {"a", "b"})
         if (is_scalar && number.sides == NumericKey::Sides::both &&

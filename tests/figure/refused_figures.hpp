@@ -138,6 +138,12 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   "[sweep]\nparameter = \"system.links\"\nfrom = 1\nto = 3\nstep = 0.5",
                   ":7:1: [sweep] step",
                   {"a whole number"}},
+    RefusedFigure{
+        "sweep",
+        "[[system.force]]\nname = \"双\"\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]\n[sweep]\nparameter = "
+        "\"system.force.双.stiffness_N_per_m\"",
+        ":9:1: [sweep] parameter",
+        {"双", "font"}},
     RefusedFigure{"map", "[map]\nx_from = 10\nx_to = 5", ":5:1: [map] x_to", {"must be above x_from (10); it is 5"}},
     RefusedFigure{
         "map", "[map]\ny_parameter = \"theta1_deg\"", ":4:1: [map] y_parameter", {"another than x_parameter"}},
