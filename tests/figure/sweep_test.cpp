@@ -52,10 +52,11 @@ TEST(Sweep, InLanesFindsWhatAFilmShows) {
         EXPECT_EQ(distances.rows[i][1], last) << i;
         EXPECT_NEAR(errors.rows[i][1], worst / scene.a.energy_unit, 1e-25) << i;  // the same
         parted += parting.since().has_value();
-        if (parting.since())
+        if (parting.since()) {
             EXPECT_EQ(partings.rows[i][1], *parting.since()) << i;
-        else
+        } else {
             EXPECT_TRUE(std::isnan(partings.rows[i][1])) << i;
+        }
     }
     EXPECT_GT(parted, 0);
 }
@@ -69,8 +70,9 @@ TEST(Sweep, OneByOneFindsWhatLanesFind) {
                                             "system.integrator=\"rk4\""};
         const auto lanes = table_of(figure_from(twins, sets)), alone = table_of(figure_from(twins + spring, sets));
         for (std::size_t i = 0; i < lanes.rows.size(); ++i)
-            if (std::isfinite(lanes.rows[i][1]) || std::isfinite(alone.rows[i][1]))
+            if (std::isfinite(lanes.rows[i][1]) || std::isfinite(alone.rows[i][1])) {
                 EXPECT_NEAR(lanes.rows[i][1], alone.rows[i][1], 1e-8) << quantity << ' ' << i;  // measured 1.8e-10
+            }
     }
 }
 
