@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace doppel {
 
@@ -87,7 +86,7 @@ void MapFigure::draw(std::span<const TrialNumbers> numbers, Figure& figure) cons
 void demand_room(const FigurePreset& figure, const PartHeader& header, const Folder& folder) {
     const auto* map = figure.experiment->map();
     if (!map) return;
-    const auto& [x, y] = std::tie(map->frame().x, map->frame().y);
+    const auto &x = map->frame().x, &y = map->frame().y;
     const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
     const double numbers = static_cast<double>(map->frame().columns.size() - 2);
     const double cells = share * x.count * y.count;

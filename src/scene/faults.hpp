@@ -19,7 +19,7 @@ namespace doppel {
 struct FaultPlace {
     static constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max() / 2;
     std::size_t line = no_line, column = 0;
-    auto operator<=>(const FaultPlace&) const = default;
+    auto operator<=>(const FaultPlace&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 takes it for 0
 };
 
 /// A fault of several keys: the key is right or wrong by what others say, and so may be wrong because they are.
