@@ -90,12 +90,14 @@ TEST(Init, WritesAPresetOfEveryKindOfFigure) {
 TEST(Init, EachKeyOfAFigureCanBeTakenIntoUse) {
     const auto folder = fresh_folder();
     // those that are for other values of other keys, and what the figure gives itself
-    std::map<std::string_view, std::set<std::string>> beside{{"sweep", {"tolerance", "exponent_duration_s"}},
-                                                             {"curves", {"tolerance", "check_tolerance"}},
-                                                             {"convergence", {"tolerance"}},
-                                                             {"section", {"angle_deg", "omega_deg_per_s"}},
-                                                             {"flip-map", {"angle_deg"}},
-                                                             {"work-precision", {"duration_s"}}};
+    std::map<std::string_view, std::set<std::string>> beside{
+        {"sweep", {"tolerance", "exponent_duration_s", "points"}},
+        {"map", {"tolerance", "exponent_duration_s", "color_range"}},
+        {"curves", {"tolerance", "check_tolerance"}},
+        {"convergence", {"tolerance"}},
+        {"section", {"angle_deg", "omega_deg_per_s"}},
+        {"flip-map", {"angle_deg"}},
+        {"work-precision", {"duration_s"}}};
     for (const auto& kind : figure_kinds()) {
         const std::string name(kind.name);
         ASSERT_EQ(doppel(folder, {"init", "--figure", name}).code, 0);

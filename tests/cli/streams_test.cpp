@@ -217,7 +217,8 @@ TEST(Streams, TellAllFaultsOfAPresetALineEach) {
         EXPECT_EQ(figure.code, 2);
         EXPECT_EQ(figure.err,
                   "doppel: chart.toml:4:1: [section] orbits must be from 1 to 10000; it is 0\n"
-                  "doppel: chart.toml:5:1: [section] has no \"foo\"; it has crossings, energy_J, orbits, tolerance\n"
+                  "doppel: chart.toml:5:1: [section] has no \"foo\"; it has crossings, energy_J, exponent_duration_s, "
+                  "orbits, tolerance\n"
                   "doppel: --set chart.scale: [chart] scale must be at most 8; it is 99\n");
     }
 }
