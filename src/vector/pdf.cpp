@@ -181,6 +181,7 @@ std::string pdf_page(const DisplayList& list, const Page& page) {
     const Surface surface(cairo_pdf_surface_create_for_stream(append, &file, page.width_pt, scale * page.size.height));
     check(cairo_surface_status(surface.get()));
     describe(surface.get(), page.metadata);
+    cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);  // newer Cairos write 1.7
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
     {
         const Context context(cairo_create(surface.get()));
