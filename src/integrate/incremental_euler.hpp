@@ -34,45 +34,9 @@ class IncrementalEuler;
 template <class Model>
 inline constexpr bool has_incremental_euler = false;
 template <class Scalar>
-inline constexpr bool is_machine_number = std::is_same_v<Scalar, double> || is_lanes<Scalar>;
-template <class Scalar>
 inline constexpr bool has_incremental_euler<DoublePendulum<Scalar>> = is_machine_number<Scalar>;
 template <class Scalar, int N>
 inline constexpr bool has_incremental_euler<RodChain<Scalar, N>> = is_machine_number<Scalar> && (N == 2 || N == 3);
-
-/// Sine and cosine, times one factor, of an angle that advances by small steps. They turn with it by three shears,
-///     u = cosθ − t sinθ,   sin(θ+δ) = sinθ + sinδ u,   cos(θ+δ) = u − t sin(θ+δ),   t = tan(δ/2),
-/// with the series of sinδ and t, which for |δ| ≤ largest leave less than 2⁻⁵⁶ out.
-template <class Scalar>
-struct TurningAngle {
-    Scalar sin, cos;
-
-    void update(const Scalar& factor, const Scalar& angle) {
-        if constexpr (is_lanes<Scalar>) {
-            for (int lane = 0; lane < Scalar::width; ++lane) {
-                const SinCos<double> turn(angle[lane]);  // both in one call
-                sin.set(lane, turn.sin);
-                cos.set(lane, turn.cos);
-            }
-        } else {
-            const SinCos<Scalar> turn(angle);
-            sin = turn.sin;
-            cos = turn.cos;
-        }
-        sin *= factor;
-        cos *= factor;
-    }
-
-    static constexpr double largest = 1.0 / 1024;
-
-    /// Turns by d, where square = d².
-    [[gnu::always_inline]] void turn(const Scalar& d, const Scalar& square) {
-        const Scalar t = d * (Scalar(0.5) + square * Scalar(1.0 / 24));
-        const Scalar u = cos - t * sin;
-        sin += (d * (Scalar(1) - square * Scalar(1.0 / 6))) * u;
-        cos = u - t * sin;
-    }
-};
 
 /// The double pendulum needs sine and cosine of θ1 and of D = θ2 − θ1 alone. With the tensions of the rods T1, T2
 /// (physics/angle_chain.hpp), L = l2/l1, q = ω1² + (g/l1) cosθ1 and sine and cosine of D as S = sinD / L, C = cosD / L:
@@ -98,12 +62,12 @@ public:
 
         // While δ1 and δD stay within the largest turn, (h ω2)² ≤ 4 largest² and f ≤ L / (2 √(m1/m2)); so in one step
         // neither grows by more than
-        const Scalar largest = Turning::largest * Turning::largest, q = largest + abs(gravity_);
+        const Scalar largest = largest_turn * largest_turn, q = largest + abs(gravity_);
         const Scalar growth =
             (Scalar(4) * largest + q * inverse_longer_ + q * by_.lever + Scalar(4) * largest * inverse_longer_) *
                 longer / sqrt(masses) +
             abs(gravity_);
-        slow_ = Scalar(Turning::largest) - Scalar(double(block)) * growth;
+        slow_ = Scalar(largest_turn) - Scalar(double(block)) * growth;
     }
 
     DOPPEL_COMPONENTS_APART void advance(long steps) { run(steps); }
@@ -153,8 +117,9 @@ private:
     };
 
     [[gnu::noinline]] void update(Now& now) const {
-        now.one.update(gravity_, now.theta1);
-        now.two.update(inverse_longer_, now.theta2 - now.theta1);
+        const SinCos<Scalar> one(now.theta1), two(now.theta2 - now.theta1);
+        now.one = {one.sin * gravity_, one.cos * gravity_};
+        now.two = {two.sin * inverse_longer_, two.cos * inverse_longer_};
     }
 
     [[gnu::always_inline]] static void step(Now& now, const Constants& by) {
@@ -180,7 +145,7 @@ private:
     [[gnu::noinline]] void step_fast() {
         using std::abs;
         const Scalar d1 = now_.dtheta1, d = now_.dtheta2 - now_.dtheta1;
-        const auto slow1 = abs(d1) <= Scalar(Turning::largest), slow = abs(d) <= Scalar(Turning::largest);
+        const auto slow1 = abs(d1) <= Scalar(largest_turn), slow = abs(d) <= Scalar(largest_turn);
         Now turned = now_;
         step(turned, by_);
         now_ = turned;

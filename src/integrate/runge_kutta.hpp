@@ -3,6 +3,7 @@
 #include "integrate/methods.hpp"
 #include "integrate/stepper.hpp"
 #include "numeric/decimal.hpp"
+#include "numeric/lanes.hpp"
 
 #include <array>
 #include <cstddef>
@@ -67,6 +68,24 @@ constexpr bool is_zero(const Fraction& f) {
 constexpr bool is_zero(const Decimal& d) {
     return d.high == 0;
 }
+
+/// A model in angles whose rates at the stages of a step may reuse what those at its start were found with.
+template <class Model>
+concept HasStageAngles = is_machine_number<typename Model::Scalar> &&
+    requires(Model model, const typename Model::State& y, typename Model::State& dydt, typename Model::Angles& angles) {
+    model.rate(y, dydt, angles);
+    model.rate_of_stage(y, dydt, angles);
+};
+template <class Model>
+struct StageAnglesOf {
+    struct type {
+        explicit type(Eigen::Index) {}
+    };
+};
+template <HasStageAngles Model>
+struct StageAnglesOf<Model> {
+    using type = typename Model::Angles;
+};
 
 /// The slopes k_i of one step of `pair`: any system, any scalar; no allocation after the constructor.
 template <System Model, const auto& pair>
@@ -148,7 +167,8 @@ public:
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
 
-    RungeKutta(Model& model, const State& start, const Scalar& step) : model_(model), y_(start), h_(step), sum_(start) {
+    RungeKutta(Model& model, const State& start, const Scalar& step)
+        : model_(model), y_(start), h_(step), angles_(start.size() / 2) {
         slopes_.fill(start);
         at_ = start;
     }
@@ -166,6 +186,7 @@ public:
 
 private:
     static constexpr std::size_t stages = table.b.size();
+    static constexpr bool reuses_angles = stages > 1 && HasStageAngles<Model>;
 
     void repeat(long steps) {
         for (long i = 0; i < steps; ++i) step(y_);
@@ -176,7 +197,7 @@ private:
 #ifdef __SANITIZE_ADDRESS__
     static constexpr bool flattened = false;
 #else
-    static constexpr bool flattened = std::is_same_v<Scalar, double> && State::RowsAtCompileTime != Eigen::Dynamic;
+    static constexpr bool flattened = is_machine_number<Scalar> && State::RowsAtCompileTime != Eigen::Dynamic;
 #endif
 
     [[gnu::flatten]] void repeat_flattened(long steps) {
@@ -187,12 +208,18 @@ private:
         // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)
         const auto slope = [&]<std::size_t i>() {
             if constexpr (i == 0) {
-                model_.rate(y, slopes_[0]);
+                if constexpr (reuses_angles)
+                    model_.rate(y, slopes_[0], angles_);
+                else
+                    model_.rate(y, slopes_[0]);
             } else {
                 static constexpr auto row = table.a[i];
                 at_ = y;
                 move<row>(at_, std::make_index_sequence<i>());
-                model_.rate(at_, slopes_[i]);
+                if constexpr (reuses_angles)
+                    model_.rate_of_stage(at_, slopes_[i], angles_);
+                else
+                    model_.rate(at_, slopes_[i]);
             }
         };
         [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -209,13 +236,15 @@ private:
     /// y ← y + h Σ_j weight_j k_j over the weights that are not zero; which those are is known to the compiler.
     template <const auto& weights, std::size_t... J>
     void move(State& y, std::index_sequence<J...>) {
-        sum_.fill(Scalar(-0.0));  // unlike +0, it changes no sum and costs no addition
-        [[maybe_unused]] const auto add = [&]<std::size_t j>() {
-            constexpr Fraction w = weights[j];
-            if constexpr (w.numerator != 0) sum_ += (Scalar(w.numerator) / Scalar(w.denominator)) * slopes_[j];
-        };
-        (add.template operator()<J>(), ...);
-        y += h_ * sum_;
+        [[maybe_unused]] const std::array<Scalar, sizeof...(J)> share{Scalar(h_ * value<Scalar>(weights[J]))...};  // s
+        for (Eigen::Index i = 0; i < y.size(); ++i) {
+            Scalar change(-0.0);  // unlike +0, it changes no sum and costs no addition
+            [[maybe_unused]] const auto add = [&]<std::size_t j>() {
+                if constexpr (!is_zero(weights[j])) change += share[j] * slopes_[j][i];
+            };
+            (add.template operator()<J>(), ...);
+            y[i] += change;
+        }
     }
 
     Model& model_;
@@ -223,7 +252,8 @@ private:
     Scalar h_;
     long evaluations_ = 0;
     std::array<State, stages> slopes_;
-    State at_, sum_;
+    State at_;
+    [[no_unique_address]] typename StageAnglesOf<Model>::type angles_;
 };
 
 /// Runge 1895; Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, eq. II.1.4.

@@ -6,6 +6,7 @@
 #include "integrate/methods.hpp"
 #include "integrate/rod_series.hpp"
 #include "integrate/stepper.hpp"
+#include "numeric/portable_math.hpp"
 #include "numeric/roots.hpp"
 
 #include <algorithm>
@@ -126,7 +127,7 @@ private:
             exponent = std::min(exponent, rough_log2(tolerance_ / size) / k);
         }
         const double longest = series_.longest_step();
-        return std::min({std::exp2(exponent), longest, steps_ == 0 ? longest : growth * plain_value(step_)});
+        return std::min({portable_pow(2, exponent), longest, steps_ == 0 ? longest : growth * plain_value(step_)});
     }
 
     /// sum + lost ← sum + lost + more, all but exactly. Source  Knuth, The Art of Computer Programming 2, §4.2.2.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "integrate/motion.hpp"
+#include "numeric/portable_math.hpp"
 #include "physics/bob.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ public:
     explicit Turns(const std::vector<double>& angles) {
         for (const double angle : angles) {
             const SinCos<double> turn(angle);
-            const double within = std::atan2(turn.sin, turn.cos);
+            const double within = portable_atan2(turn.sin, turn.cos);
             rods_.push_back({within, 0, std::round((angle - within) / (2 * pi))});
         }
     }
@@ -39,7 +40,7 @@ public:
                 return static_cast<double>(i == 0 ? y[of] : Scalar(y[of] - y[of - 2]));
             };
             const double x = along(q), height = along(q + 1);
-            const double angle = std::atan2(x, -height);
+            const double angle = portable_atan2(x, -height);
             const double rate = (x * along(v + 1) - height * along(v)) / (x * x + height * height);
             auto& rod = rods_[i];
             rod.turns += std::round((rod.angle + turned(rod.rate, rate, seconds) - angle) / (2 * pi));

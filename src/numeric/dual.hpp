@@ -1,5 +1,8 @@
 #pragma once
 
+#include "numeric/portable_math.hpp"
+#include "numeric/sin_cos.hpp"
+
 #include <Eigen/Core>
 
 #include <cmath>
@@ -75,19 +78,12 @@ struct Dual {
 
     // f(a)′ = f′(a) a′
 
-    friend Dual sin(const Dual& a) {
-        using std::cos, std::sin;
-        return {sin(a.value), Scalar(cos(a.value)) * a.tangent};
-    }
-    friend Dual cos(const Dual& a) {
-        using std::cos, std::sin;
-        return {cos(a.value), Scalar(-sin(a.value)) * a.tangent};
-    }
+    friend Dual sin(const Dual& a) { return SinCos<Dual>(a).sin; }
+    friend Dual cos(const Dual& a) { return SinCos<Dual>(a).cos; }
     friend Dual abs(const Dual& a) { return a.value < Scalar(0) ? -a : a; }
     friend Dual atan2(const Dual& y, const Dual& x) {
-        using std::atan2;
         const Scalar square = x.value * x.value + y.value * y.value;
-        return {atan2(y.value, x.value), (x.value * y.tangent - y.value * x.tangent) / square};
+        return {portable_atan2(y.value, x.value), (x.value * y.tangent - y.value * x.tangent) / square};
     }
 
     // These have no finite slope at the ends of their range, where a constant is still a constant.
@@ -113,6 +109,17 @@ struct Dual {
     }
 
     bool varies() const { return (tangent.array() != Scalar(0)).any(); }
+};
+
+template <class Scalar, int N>
+struct SinCos<Dual<Scalar, N>> {
+    Dual<Scalar, N> sin, cos;
+
+    explicit SinCos(const Dual<Scalar, N>& angle) {
+        const SinCos<Scalar> of(angle.value);
+        sin = {of.sin, of.cos * angle.tangent};
+        cos = {of.cos, Scalar(-of.sin) * angle.tangent};
+    }
 };
 
 }  // namespace doppel

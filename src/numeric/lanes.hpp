@@ -36,9 +36,9 @@ struct LaneRegister {
 };
 
 /// `lanes` doubles that are computed side by side, each by the operations, and so to the bits, of a double on its own:
-/// + − × ÷ and the square root round alike at every width; sin and cos go through the C library lane by lane, so they
-/// belong into rare paths. More lanes than a register holds hide the wait for its results. Lanes are
-/// never compared as a whole: a comparison gives a mask, for select().
+/// + − × ÷ and the square root round alike at every width; for sine and cosine see numeric/sin_cos.hpp. More lanes than
+/// a register holds hide the wait for its results. Lanes are never compared as a whole: a comparison gives a mask, for
+/// select().
 ///
 /// `Build` names the code that the type belongs to. Code for different processors must differ in it, or the linker
 /// would take one for the other (integrate/batch_width.cpp).
@@ -170,12 +170,6 @@ struct Lanes {
     friend Lanes sqrt(const Lanes& a) {
         return each(a, [](double x) { return std::sqrt(x); });
     }
-    friend Lanes sin(const Lanes& a) {
-        return each(a, [](double x) { return std::sin(x); });
-    }
-    friend Lanes cos(const Lanes& a) {
-        return each(a, [](double x) { return std::cos(x); });
-    }
 
     /// Lane i from lane i xor s.
     template <int s>
@@ -211,6 +205,10 @@ inline constexpr bool is_lanes = false;
 template <int width, class Build>
 inline constexpr bool is_lanes<Lanes<width, Build>> = true;
 
+/// What the processor computes with by itself: double and lanes.
+template <class Scalar>
+inline constexpr bool is_machine_number = std::is_same_v<Scalar, double> || is_lanes<Scalar>;
+
 // The same for a lone number, whose mask is a bool.
 [[gnu::always_inline]] inline bool all_of(bool mask) {
     return mask;
@@ -229,54 +227,6 @@ template <class Scalar>
 [[gnu::always_inline]] inline Scalar greater(const Scalar& a, const Scalar& b) {
     return select(b <= a, a, select(a <= a, b, a));
 }
-
-/// Sine and cosine in lanes, for |angle| ≤ 10⁵ rad: within 0.8 ulp, from + − × alone, so that every width gives the
-/// same bits; sine exactly odd (but for the sign of zero), cosine exactly even. Quicker than the C library, lane by
-/// lane, by more than ten times.
-///
-///     angle = n π/2 + r + tail,   |r| ≤ π/4,   π/2 in three parts whose products with n are exact
-///
-/// Source  the polynomials of fdlibm's k_sin.c and k_cos.c (Sun Microsystems 1993)
-template <class Pack>
-struct LanesSinCos {
-    Pack sin, cos;
-
-    [[gnu::always_inline]] explicit LanesSinCos(const Pack& angle) {
-        for (int k = 0; k < Pack::parts; ++k) turn(angle.v[k], sin.v[k], cos.v[k]);
-    }
-
-private:
-    using Doubles = typename Pack::Doubles;
-    using Masks = typename Pack::Masks;
-
-    [[gnu::always_inline]] static void turn(Doubles angle, Doubles& sine, Doubles& cosine) {
-        // the last bits of `shifted` are those of n
-        constexpr double shift = 0x1.8p52, quarters = 0x1.45f306dc9c883p-1;
-        constexpr double half_pi1 = 0x1.921fb544p0, half_pi2 = 0x1.0b4611a6p-34, half_pi3 = 0x1.3198a2e037073p-69;
-        const Doubles shifted = angle * quarters + shift, n = shifted - shift;
-        const Doubles coarse = angle - n * half_pi1, fine = n * half_pi2;
-        const Doubles r = coarse - fine, tail = ((coarse - r) - fine) - n * half_pi3;
-
-        const Doubles z = r * r, half = 0.5 * z, rest = 1.0 - half;
-        const Doubles odd = z * (8.33333333332248946124e-03 +
-                                 z * (-1.98412698298579493134e-04 +
-                                      z * (2.75573137070700676789e-06 +
-                                           z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))));
-        const Doubles even = z * (4.16666666666666019037e-02 +
-                                  z * (-1.38888888888741095749e-03 +
-                                       z * (2.48015872894767294178e-05 +
-                                            z * (-2.75573143513906633035e-07 +
-                                                 z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
-        const Doubles s = r + (tail * rest + (r * z) * (odd - 1.66666666666666324348e-01));
-        const Doubles c = rest + (((1.0 - rest) - half) + (z * even - r * tail));
-
-        // by the quarter of the circle
-        const Masks bits = Masks(shifted);
-        const Masks swaps = -(bits & 1);
-        sine = Doubles(Masks(swaps ? c : s) ^ ((bits & 2) << 62));
-        cosine = Doubles(Masks(swaps ? s : c) ^ (((bits + 1) & 2) << 62));
-    }
-};
 
 }  // namespace doppel
 

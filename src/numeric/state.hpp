@@ -13,19 +13,6 @@ using State = Eigen::Matrix<Scalar, N, 1>;
 template <int factor, int N>
 inline constexpr int times = N == Eigen::Dynamic ? Eigen::Dynamic : factor* N;
 
-/// Sine and cosine of the same angle.
-template <class Scalar>
-struct SinCos {
-    Scalar sin, cos;
-
-    explicit SinCos(const Scalar& angle) {
-        using std::cos;
-        using std::sin;
-        this->sin = sin(angle);
-        this->cos = cos(angle);
-    }
-};
-
 /// π to the digits of the scalar: acos(−1), which every scalar knows.
 template <class Scalar>
 Scalar pi_of() {

@@ -4,6 +4,8 @@
 #include "numeric/tridiagonal.hpp"
 #include "physics/pendulum.hpp"
 
+#include <array>
+
 namespace doppel {
 
 /// N point masses on N massless rigid rods, each hanging below the one before (Lagrange). A step costs O(N): the
@@ -24,6 +26,7 @@ struct AngleChain {
     using Scalar = S;
     using State = doppel::State<Scalar, times<2, N>>;
     using Half = doppel::State<Scalar, N>;
+    using Angles = StageAngles<Scalar, N>;
 
     Pendulum<Scalar> pendulum;
     Half w;                  // 1/kg, inverse masses
@@ -58,36 +61,26 @@ struct AngleChain {
 
     /// dydt ← d/dt of the state.
     void rate(const State& y, State& dydt) {
-        const auto n = w.size();
         update(y);
-        for (Eigen::Index k = 0; k < n; ++k) tension[k] = length[k] * y[n + k] * y[n + k];
-        tension[0] += pendulum.gravity * cos[0];
-        matrix.solve(tension);
-        for (Eigen::Index k = 0; k < n; ++k) {
-            Scalar across = k == 0 ? Scalar(-(pendulum.gravity * sin[0])) : Scalar(-(tension[k - 1] * s[k - 1]));
-            if (k + 1 < n) across += tension[k + 1] * s[k];
-            dydt[k] = y[n + k];
-            dydt[n + k] = across * by_length[k];
-        }
+        rate_of_angles(y, dydt);
+    }
+    /// The same at the start of a step and at one of its stages.
+    void rate(const State& y, State& dydt, Angles& angles) {
+        angles.start(y, sin, cos);
+        factor();
+        rate_of_angles(y, dydt);
+    }
+    void rate_of_stage(const State& y, State& dydt, const Angles& angles) {
+        angles.at(y, sin, cos);
+        factor();
+        rate_of_angles(y, dydt);
     }
 
     /// For the angles that `y` begins with: all that depends on them alone, the matrix factored.
-    template <class Angles>
-    void update(const Angles& y) {
-        const auto n = w.size();
-        for (Eigen::Index k = 0; k < n; ++k) {
-            const SinCos<Scalar> turn(y[k]);
-            sin[k] = turn.sin;
-            cos[k] = turn.cos;
-        }
-        for (Eigen::Index k = 0; k + 1 < n; ++k) {
-            s[k] = (sin[k + 1] * cos[k] - cos[k + 1] * sin[k]) * w[k];
-            c[k] = (cos[k + 1] * cos[k] + sin[k + 1] * sin[k]) * w[k];
-            matrix.upper[k] = matrix.lower[k] = -c[k];
-            matrix.diagonal[k + 1] = w[k] + w[k + 1];
-        }
-        matrix.diagonal[0] = w[0];
-        matrix.factor(pendulum.mass[0], by_last_);
+    template <class Y>
+    void update(const Y& y) {
+        take_sin_cos(y, sin, cos);
+        factor();
     }
 
     /// a ← M⁻¹ f at the angles of the last update(), in O(N): the accelerations that generalized forces f (N m) would cause,
@@ -113,6 +106,32 @@ struct AngleChain {
 private:
     static Eigen::Index rows(const Pendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.links()); }
 
+    /// From sines and cosines: s, c and the matrix, factored.
+    void factor() {
+        const auto n = w.size();
+        for (Eigen::Index k = 0; k + 1 < n; ++k) {
+            s[k] = (sin[k + 1] * cos[k] - cos[k + 1] * sin[k]) * w[k];
+            c[k] = (cos[k + 1] * cos[k] + sin[k + 1] * sin[k]) * w[k];
+            matrix.upper[k] = matrix.lower[k] = -c[k];
+            matrix.diagonal[k + 1] = w[k] + w[k + 1];
+        }
+        matrix.diagonal[0] = w[0];
+        matrix.factor(pendulum.mass[0], by_last_);
+    }
+
+    void rate_of_angles(const State& y, State& dydt) {
+        const auto n = w.size();
+        for (Eigen::Index k = 0; k < n; ++k) tension[k] = length[k] * y[n + k] * y[n + k];
+        tension[0] += pendulum.gravity * cos[0];
+        matrix.solve(tension);
+        for (Eigen::Index k = 0; k < n; ++k) {
+            Scalar across = k == 0 ? Scalar(-(pendulum.gravity * sin[0])) : Scalar(-(tension[k - 1] * s[k - 1]));
+            if (k + 1 < n) across += tension[k + 1] * s[k];
+            dydt[k] = y[n + k];
+            dydt[n + k] = across * by_length[k];
+        }
+    }
+
     Scalar by_last_;  // the inverse of the last entry of the diagonal, kg; that of the first is m_1
 };
 
@@ -125,31 +144,66 @@ template <class S>
 struct DoublePendulum {
     using Scalar = S;
     using State = doppel::State<Scalar, 4>;
+    using Angles = StageAngles<Scalar, 2>;
 
     Scalar m1, m2;  // kg
     Scalar l1, l2;  // m
     Scalar g;       // m/s²
 
     explicit DoublePendulum(const Pendulum<Scalar>& p)
-        : m1(p.mass[0]), m2(p.mass[1]), l1(p.length[0]), l2(p.length[1]), g(p.gravity) {}
+        : m1(p.mass[0]),
+          m2(p.mass[1]),
+          l1(p.length[0]),
+          l2(p.length[1]),
+          g(p.gravity),
+          mass_ratio_(m1 / m2),
+          length_ratio_(l2 / l1),
+          lever_((m1 + m2) / (m2 * length_ratio_)),
+          pull_(g / l1) {}
 
     static State start(const Pendulum<Scalar>& p) { return released_in_angles<Scalar, 2>(p); }
 
-    /// dydt ← d/dt of the state. With D = θ1 − θ2 and n = m1 + m2 sin²D:
-    ///     θ1″ = [ −m2 sinD (l2 ω2² + l1 ω1² cosD) − g ((m1 + m2) sinθ1 − m2 cosD sinθ2) ] / (l1 n)
-    ///     θ2″ = [ sinD ((m1 + m2) l1 ω1² + m2 l2 ω2² cosD) + (m1 + m2) g (sinθ1 cosD − sinθ2) ] / (l2 n)
+    /// dydt ← d/dt of the state. With D = θ2 − θ1, L = l2/l1, μ = m1/m2 and q = ω1² + (g/l1) cosθ1:
+    ///     θ1″ =  (q cosD + L ω2²) f − (g/l1) sinθ1
+    ///     θ2″ = −(q (1 + μ) / L + ω2² cosD) f,      f = sinD / (μ + sin²D)
     void rate(const State& y, State& dydt) const {
-        const Scalar &w1 = y[2], &w2 = y[3];
-        const SinCos<Scalar> one(y[0]), two(y[1]);
-        const Scalar sin_d = one.sin * two.cos - one.cos * two.sin;
-        const Scalar cos_d = one.cos * two.cos + one.sin * two.sin;
-        const Scalar m = m1 + m2;
-        const Scalar n = m1 + m2 * sin_d * sin_d;
-        const Scalar pull1 = l1 * w1 * w1, pull2 = l2 * w2 * w2;
-        const Scalar a1 = (-m2 * sin_d * (pull2 + pull1 * cos_d) - g * (m * one.sin - m2 * cos_d * two.sin)) / (l1 * n);
-        const Scalar a2 = (sin_d * (m * pull1 + m2 * pull2 * cos_d) + m * g * (one.sin * cos_d - two.sin)) / (l2 * n);
-        dydt << w1, w2, a1, a2;
+        Pair sin, cos;
+        take_sin_cos(turned(y), sin, cos);
+        rate_of_angles(y, sin, cos, dydt);
     }
+    /// The same at the start of a step and at one of its stages.
+    void rate(const State& y, State& dydt, Angles& angles) const {
+        Pair sin, cos;
+        angles.start(turned(y), sin, cos);
+        rate_of_angles(y, sin, cos, dydt);
+    }
+    void rate_of_stage(const State& y, State& dydt, const Angles& angles) const {
+        Pair sin, cos;
+        angles.at(turned(y), sin, cos);
+        rate_of_angles(y, sin, cos, dydt);
+    }
+
+private:
+    using Pair = doppel::State<Scalar, 2>;
+
+    /// θ1 and D
+    static std::array<Scalar, 2> turned(const State& y) { return {y[0], Scalar(y[1] - y[0])}; }
+
+    void rate_of_angles(const State& y, const Pair& sin, const Pair& cos, State& dydt) const {
+        const Scalar square1 = y[2] * y[2], square2 = y[3] * y[3];
+        const Scalar f = sin[1] / (mass_ratio_ + sin[1] * sin[1]);
+        const Scalar q = square1 + pull_ * cos[0];
+        const Scalar a1 = (q * cos[1] + length_ratio_ * square2) * f - pull_ * sin[0];
+        const Scalar a2 = -((q * lever_ + square2 * cos[1]) * f);
+        dydt[0] = y[2];
+        dydt[1] = y[3];
+        dydt[2] = a1;
+        dydt[3] = a2;
+    }
+
+    Scalar mass_ratio_, length_ratio_;  // μ, L
+    Scalar lever_;                      // (1 + μ) / L
+    Scalar pull_;                       // g / l1, 1/s²
 };
 
 }  // namespace doppel

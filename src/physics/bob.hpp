@@ -1,5 +1,6 @@
 #pragma once
 
+#include "numeric/portable_math.hpp"
 #include "physics/pendulum.hpp"
 
 #include <algorithm>
@@ -58,13 +59,12 @@ void place_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, B
 /// The same with their angles, within (−π, π].
 template <class Scalar, int N>
 Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
-    using std::atan2;
     Bobs<Scalar> bobs;
     place_particles(p, state, bobs);
     Bob<Scalar> above{};  // the pivot
     for (auto& bob : bobs) {
         const Scalar rx = bob.x - above.x, ry = bob.y - above.y;
-        bob.theta = atan2(rx, Scalar(-ry));
+        bob.theta = portable_atan2(rx, Scalar(-ry));
         bob.omega = (rx * (bob.vy - above.vy) - ry * (bob.vx - above.vx)) / (rx * rx + ry * ry);
         above = bob;
     }

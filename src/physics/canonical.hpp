@@ -152,8 +152,7 @@ struct Canonical<DoublePendulum<S>> {
           weight2_(d.m2 * d.g * d.l2) {}
 
     void momenta(const State& y, State& z) const {
-        using std::cos;
-        const Scalar c = cos(Scalar(y[0] - y[1]));
+        const Scalar c = SinCos<Scalar>(Scalar(y[0] - y[1])).cos;
         const Scalar v1 = l1_ * y[2], v2 = l2_ * y[3];
         z << y[0], y[1], l1_ * ((m1_ + m2_) * v1 + m2_ * v2 * c), m2_ * l2_ * (v2 + v1 * c);
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "numeric/sin_cos.hpp"
 #include "numeric/state.hpp"
 
 #include <cstddef>

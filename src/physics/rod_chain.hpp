@@ -2,6 +2,7 @@
 
 #include "numeric/tridiagonal.hpp"
 #include "physics/bob.hpp"
+#include "physics/rod_pulls.hpp"
 
 #include <cmath>
 #include <limits>
@@ -37,6 +38,10 @@ struct RodChain {
             w[k] = Scalar(1) / p.mass[i];
             l2[k] = p.length[i] * p.length[i];
         }
+        if constexpr (N == 2 || N == 3) {
+            pulls_ = RodPulls<Scalar>(w, g);
+            by_rho2_ = w[0] / w[1];
+        }
     }
 
     static State start(const Pendulum<Scalar>& p) { return released_as_particles<Scalar, N>(p); }
@@ -46,16 +51,10 @@ struct RodChain {
     ///         = −u_k·u_k + [k = 1] g r_1y
     /// (all masses fall alike, so gravity drops out of all rows but the first).
     void rate(const State& y, State& dydt) {
-        const auto n = w.size();
-        const auto q = y.head(2 * n), v = y.tail(2 * n);
-        find_multipliers(q, v);
-        dydt.head(2 * n) = v;
-        auto a = dydt.tail(2 * n);
-        for (Eigen::Index k = 0; k < n; ++k) {
-            a[2 * k] = Scalar(0);
-            a[2 * k + 1] = -g;
-        }
-        pull_on(q, lambda_, a);
+        if constexpr (N == 2 || N == 3)
+            rate_of_few(y, dydt);
+        else
+            rate_of_any(y, dydt);
     }
 
     /// The forces in the rods, N, > 0 where one pulls: on particle k acts λ_k r_k, so T_k = −λ_k |r_k|.
@@ -131,6 +130,58 @@ private:
         return x * x + y * y;
     }
 
+    void rate_of_any(const State& y, State& dydt) {
+        const auto n = w.size();
+        const auto q = y.head(2 * n), v = y.tail(2 * n);
+        find_multipliers(q, v);
+        dydt.head(2 * n) = v;
+        auto a = dydt.tail(2 * n);
+        for (Eigen::Index k = 0; k < n; ++k) {
+            a[2 * k] = Scalar(0);
+            a[2 * k + 1] = -g;
+        }
+        pull_on(q, lambda_, a);
+    }
+
+    void rate_of_few(const State& y, State& dydt) {
+        Planar<Scalar> r[N], u[N], p[N];
+        for (Eigen::Index k = 0; k < N; ++k) {
+            r[k] = {along(y, k, 0), along(y, k, 1)};
+            u[k] = {along(y, k, 2 * N), along(y, k, 2 * N + 1)};
+        }
+        if constexpr (N == 3) {
+            r[2] = r[2] * by_rho2_;
+            u[2] = u[2] * by_rho2_;
+        }
+        pulls_.find(r, u, p);
+        dydt.head(2 * N) = y.tail(2 * N);
+        auto a = dydt.tail(2 * N);
+        a[0] = p[0].x - p[1].x;
+        a[1] = (p[0].y - p[1].y) - g;
+        a[2] = p[1].x * pulls_.rho2;
+        a[3] = p[1].y * pulls_.rho2;
+        if constexpr (N == 3) {
+            a[2] -= p[2].x;
+            a[3] -= p[2].y;
+            a[4] = p[2].x * pulls_.below;
+            a[5] = p[2].y * pulls_.below - g;
+        }
+        a[3] -= g;
+
+        Scalar motion(0);
+        for (const auto& rate : u) motion += dot(rate, rate);
+        const auto moves = motion > Scalar(0);
+        if (!all_of(moves)) [[unlikely]]
+            take_resting(moves, y, dydt);
+    }
+    /// In equilibrium, these sums leave exactly nothing.
+    template <class Mask>
+    [[gnu::noinline]] void take_resting(const Mask& moves, const State& y, State& dydt) {
+        State careful = dydt;
+        rate_of_any(y, careful);
+        for (Eigen::Index i = 0; i < y.size(); ++i) dydt[i] = select(moves, dydt[i], careful[i]);
+    }
+
     template <class Vector>
     void find_multipliers(const Vector& q, const Vector& v) {
         fill(q, q, matrix_);
@@ -166,6 +217,9 @@ private:
 
     Matrix matrix_;
     Multipliers lambda_;
+    // of two or three rods
+    RodPulls<Scalar> pulls_;
+    Scalar by_rho2_{1};
 };
 
 /// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) of bobs.

@@ -91,18 +91,6 @@ TEST(IncrementalEuler, TakesSinesAfreshWhereStepsAreLarge) {
     EXPECT_LT(apart<DoublePendulum<double>>(p, 0.1, 1e-3), 2e-15);  // measured 0
 }
 
-TEST(IncrementalEuler, TurnsByTheSeriesAsFarAsItMay) {
-    // just within the largest turn the series must still give the sine and cosine of the sum
-    TurningAngle<double> angle;
-    for (double theta = -3; theta < 3; theta += 0.01) {
-        angle.update(1, theta);
-        const double d = TurningAngle<double>::largest;
-        angle.turn(d, d * d);
-        EXPECT_NEAR(angle.sin, std::sin(theta + d), 4e-16);  // measured 1.1e-16
-        EXPECT_NEAR(angle.cos, std::cos(theta + d), 4e-16);
-    }
-}
-
 template <class Model>
 void expect_no_bit_changes_when_chopped(const Pendulum<double>& p) {
     Model model(p);
