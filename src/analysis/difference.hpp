@@ -31,7 +31,7 @@ Scalar state_space_distance(const Bobs<Scalar>& a, const Bobs<Scalar>& b) {
 /// is 0.
 inline std::optional<double> log_ratio(double distance, double start) {
     if (start == 0 || distance == 0) return std::nullopt;
-    return std::log(distance / start);
+    return portable_log(distance / start);
 }
 
 /// How far one angle is from another, rad, up to whole turns: 0 … π. NaN where one is NaN. Either may be in quad; the
@@ -62,8 +62,9 @@ double place_error(const Bobs<One>& one, const Bobs<Other>& other) {
     using Wide = std::conditional_t<std::is_same_v<One, double>, Other, One>;
     double worst = 0;
     for (std::size_t i = 0; i < one.size(); ++i) {
-        const double error = std::hypot(static_cast<double>(Wide(Wide(one[i].x) - Wide(other[i].x))),
-                                        static_cast<double>(Wide(Wide(one[i].y) - Wide(other[i].y))));
+        const auto x = static_cast<double>(Wide(Wide(one[i].x) - Wide(other[i].x)));
+        const auto y = static_cast<double>(Wide(Wide(one[i].y) - Wide(other[i].y)));
+        const double error = std::sqrt(x * x + y * y);
         if (!std::isfinite(error)) return error;
         worst = std::max(worst, error);
     }

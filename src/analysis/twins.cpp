@@ -24,14 +24,20 @@ public:
     }
 
     void start(const TwinRun& run, int width) {
-        batch_.emplace(members_, side_.model, side_.method,
-                       run.sample_interval / static_cast<double>(side_.steps_per_sample), width);
+        if (side_.method == "taylor")
+            series_.emplace(members_, side_.tolerance, run.sample_interval, width);
+        else
+            batch_.emplace(members_, side_.model, side_.method,
+                           run.sample_interval / static_cast<double>(side_.steps_per_sample), width);
         seen_.resize(members_.size());
         update();
     }
 
     void advance() {
-        batch_->advance(side_.steps_per_sample);
+        if (series_)
+            series_->advance();
+        else
+            batch_->advance(side_.steps_per_sample);
         update();
     }
 
@@ -40,7 +46,7 @@ public:
 private:
     void update() {
         for (std::size_t i = 0; i < members_.size(); ++i) {
-            batch_->read(i, state_);
+            series_ ? series_->read(i, state_) : batch_->read(i, state_);
             if (side_.model == Model::angles)
                 place_angles(members_[i], state_, seen_[i]);
             else
@@ -50,14 +56,17 @@ private:
 
     TwinSide side_;
     std::vector<Pendulum<double>> members_;
-    std::optional<Batch> batch_;
+    std::optional<Batch> batch_;         // of a fixed step
+    std::optional<TaylorBatch> series_;  // of Taylor series
     State<double, Eigen::Dynamic> state_;
     std::vector<Bobs<double>> seen_;
 };
 
 }  // namespace
 
-std::size_t twins_block(int width) {
+std::size_t twins_block(const std::string& method, int width) {
+    constexpr std::size_t of_taylor = 64;  // whose lanes take the next member as soon as one is done
+    if (method == "taylor") return of_taylor;
     return 2 * static_cast<std::size_t>(width == 0 ? register_widths().back() : width);
 }
 

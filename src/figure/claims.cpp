@@ -240,7 +240,7 @@ const auto three_links = claim(
     "three_links", "Figure 8 takes over an hour and a half, and more than three links are out of reach",
     [](const std::atomic<bool>& stop) {
         std::vector<SideTwins> twins;
-        for (std::size_t i = 0; i < twins_block() / 2; ++i) {
+        for (std::size_t i = 0; i < twins_block("euler") / 2; ++i) {
             const int angle = static_cast<int>(20 * i);
             twins.emplace_back(side({angle, 0, 0}), side({angle + parse_quad("0.003"), 0, 0}));
         }

@@ -26,6 +26,7 @@ public:
         if (x_.is_of_one_side && difference_ != 0)
             throw table.fault("difference", "must be 0 for {}, in which the two of a pair cannot differ", x_.name);
         settings_ = resolved_pair(pair_) + table.finish();
+        if (x_.keeps_method && y_.keeps_method) step_by_series(pair_);
         measurement_.emplace(table, "quantity", quantity_, twins(0, 0), x_.keeps_method && y_.keeps_method,
                              exponent_spec_);
         make_scene(twins(frame_.y.count - 1, frame_.x.count - 1));  // reports faults now

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "integrate/batch_kernel.hpp"
+#include "integrate/batch_table.hpp"
 #include "integrate/widths.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/rod_chain.hpp"
@@ -26,23 +27,6 @@ constexpr auto method_names = []<std::size_t... I>(std::index_sequence<I...>) {
 std::size_t method_number(std::string_view name) {
     return static_cast<std::size_t>(std::find(method_names.begin(), method_names.end(), name) - method_names.begin());
 }
-
-/// The members' numbers, by quantity, as the blocks are made from them.
-struct Table {
-    std::vector<double> mass, length, angle, rate, gravity;
-
-    explicit Table(std::span<const Pendulum<double>> members) {
-        const auto gather = [&](std::vector<double>& to, const std::vector<double> Pendulum<double>::*quantity) {
-            for (std::size_t j = 0; j < members.front().links(); ++j)
-                for (const auto& member : members) to.push_back((member.*quantity)[j]);
-        };
-        gather(mass, &Pendulum<double>::mass);
-        gather(length, &Pendulum<double>::length);
-        gather(angle, &Pendulum<double>::angle);
-        gather(rate, &Pendulum<double>::rate);
-        for (const auto& member : members) gravity.push_back(member.gravity);
-    }
-};
 
 /// A long chain on its own.
 BatchBlock* make_lone_block(const BatchRequest& request, std::size_t member) {
@@ -72,7 +56,7 @@ Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string
     if (!serves(method))
         throw bad_input("\"{}\" does not step many pendulums side by side; these do: {}", method,
                         fmt::join(method_names, ", "));
-    const Table table(members);
+    const BatchTable table(members);
     const BatchRequest request{.members = members.size(),
                                .links = links,
                                .mass = table.mass.data(),

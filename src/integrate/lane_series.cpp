@@ -4,9 +4,7 @@
 #include "integrate/widths.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 namespace doppel {
 namespace {
@@ -45,11 +43,9 @@ LaneSeries<N>::LaneSeries(const Pendulum<double>& p, int order, int width)
 
 template <int N>
 void LaneSeries<N>::expand(const State& y) {
-    const auto angles = [&]<int... i>(std::integer_sequence<int, i...>) {
-        return std::array{SinCos<double>(y[i])...};
-    }
-    (std::make_integer_sequence<int, N>());
-    kernel_.expand(chain_, angles.data(), y.data() + N, terms_.data(), order_);
+    doppel::State<double, N> sin, cos;
+    take_sin_cos(y, sin, cos);
+    kernel_.expand(chain_, sin.data(), cos.data(), y.data() + N, terms_.data(), order_);
     amount_ = greatest(0) + std::sqrt(greatest(1));
 }
 

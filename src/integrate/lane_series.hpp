@@ -30,7 +30,7 @@ public:
         double force[N - 1][4];   // F
     };
     struct Kernel {
-        void (*expand)(const Chain&, const SinCos<double>* angles, const double* rates, Term*, int order);
+        void (*expand)(const Chain&, const double* sin, const double* cos, const double* rates, Term*, int order);
         void (*move)(const Chain&, const Term*, int order, double h, double* change);
     };
 

@@ -129,8 +129,8 @@ struct Recurrence {
     Vectors known;             // R_{k−1}
 
     /// Rates up to `order` from angles and rates.
-    [[gnu::always_inline]] void run(const SinCos<double>* angles, const double* rates, int order) {
-        start(angles, rates);
+    [[gnu::always_inline]] void run(const double* sin, const double* cos, const double* rates, int order) {
+        start(sin, cos, rates);
         rate = of_newest(known) + solve((across0 * weight).sum());
         rate.store(term[1].rate);
         Vectors across{}, force{};  // r_k, F_{k−2}
@@ -161,11 +161,11 @@ struct Recurrence {
         }
     }
 
-    [[gnu::always_inline]] void start(const SinCos<double>* angles, const double* rates) {
+    [[gnu::always_inline]] void start(const double* sin, const double* cos, const double* rates) {
         double x[N], y[N], dx[N], dy[N], m[N][N], n[N][N];  // r_0, r_1, M, −M⁻¹
         for (int i = 0; i < N; ++i) {
-            x[i] = chain.length[i] * angles[i].cos;
-            y[i] = chain.length[i] * angles[i].sin;
+            x[i] = chain.length[i] * cos[i];
+            y[i] = chain.length[i] * sin[i];
             dx[i] = -(y[i] * rates[i]);
             dy[i] = x[i] * rates[i];
         }
@@ -232,9 +232,9 @@ struct Recurrence {
 };
 
 template <int N>
-void expand(const typename LaneSeries<N>::Chain& chain, const SinCos<double>* angles, const double* rates,
+void expand(const typename LaneSeries<N>::Chain& chain, const double* sin, const double* cos, const double* rates,
             typename LaneSeries<N>::Term* term, int order) {
-    Recurrence<N>{chain, term}.run(angles, rates, order);
+    Recurrence<N>{chain, term}.run(sin, cos, rates, order);
 }
 
 /// change ← Σ_{k≥0} ω_k h^{k+1} / (k + 1) and Σ_{k≥1} ω_k h^k, even and odd orders apart.

@@ -6,7 +6,6 @@
 #include "integrate/methods.hpp"
 #include "integrate/rod_series.hpp"
 #include "integrate/stepper.hpp"
-#include "numeric/portable_math.hpp"
 #include "numeric/roots.hpp"
 
 #include <algorithm>
@@ -19,7 +18,7 @@ namespace doppel {
 /// The Taylor method. Each step computes the series of the motion to a high order by recurrence, and goes as far as its
 /// last coefficients allow; output times shorten no step, as the series holds anywhere inside one.
 ///
-/// Order   p = 10 − ½ ln ε: more than the usual 1 − ½ ln ε, since the work here grows more like p than like p².
+/// Order   p = 10 − ½ ln ε (taylor_order()).
 /// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the rates' amount.
 ///         Rates are the harder part: an angle errs by about h/p times as much. No step is more than twice the one
 ///         before.
@@ -36,7 +35,7 @@ public:
     TaylorStepper(Model& model, const State& start, const Scalar& tolerance, int order = 0)
         : model_(model),
           tolerance_(checked(plain_value(tolerance))),
-          order_(std::clamp(order == 0 ? order_for(tolerance_) : order, watched_coefficients + 1, most_orders)),
+          order_(std::clamp(order == 0 ? taylor_order(tolerance_) : order, watched_coefficients + 1, most_orders)),
           series_(model, order_),
           base_(start),
           lost_(State::Zero(start.size())),
@@ -95,8 +94,6 @@ private:
         return tolerance;
     }
 
-    static int order_for(double tolerance) { return static_cast<int>(std::lround(10 - 0.5 * std::log(tolerance))); }
-
     /// Goes to the end of the step and expands the next one there. `seconds`, the interval asked for, tells when steps
     /// have vanished.
     void next_step(double seconds) {
@@ -119,7 +116,7 @@ private:
     }
 
     double chosen_step() const {
-        double exponent = std::numeric_limits<double>::max();  // log2 h
+        double exponent = 900;  // log2 h
         for (int k = order_ - watched_coefficients + 1; k <= order_; ++k) {
             const double size = series_.size(k);
             if (!(size <= std::numeric_limits<double>::max()))
@@ -127,7 +124,8 @@ private:
             exponent = std::min(exponent, rough_log2(tolerance_ / size) / k);
         }
         const double longest = series_.longest_step();
-        return std::min({portable_pow(2, exponent), longest, steps_ == 0 ? longest : growth * plain_value(step_)});
+        return std::min(
+            {rough_exp2(std::max(exponent, -900.0)), longest, steps_ == 0 ? longest : growth * plain_value(step_)});
     }
 
     /// sum + lost ← sum + lost + more, all but exactly. Source  Knuth, The Art of Computer Programming 2, §4.2.2.

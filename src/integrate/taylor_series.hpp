@@ -42,6 +42,11 @@ concept HasSeries = requires {
 /// vanish.
 inline constexpr int watched_coefficients = 4;
 
+/// The order that a tolerance takes: more than the usual 1 − ½ ln ε, since the work grows more like p than like p².
+inline int taylor_order(double tolerance) {
+    return static_cast<int>(std::lround(10 - 0.5 * std::log(tolerance)));
+}
+
 /// A number in double, without the derivatives it may carry: what step control goes by.
 template <class Scalar>
 double plain_value(const Scalar& x) {

@@ -88,6 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
     Figures, SameNumbers,
     testing::Values(
         Case{"fig2-right", {"sweep.step=15", "scene.duration_s=2"}},
+        Case{"true-fig2-right", {"sweep.step=5", "scene.duration_s=2"}},
         Case{"fig3-right", {"sweep.to=0.19", "scene.duration_s=2"}}, Case{"fig6", {"scene.duration_s=2"}},
         Case{"flip-map", {"flip_map.columns=40", "flip_map.rows=41", "flip_map.duration_s=3", "flip_map.checked=15"}},
         Case{"parting-map", {"map.columns=17", "map.rows=5", "scene.duration_s=1"}},

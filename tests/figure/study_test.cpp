@@ -136,7 +136,12 @@ void expect_same_sweep(const std::vector<std::string>& one, const std::vector<st
 
 TEST(Sweep, IsTheSameByEveryPath) {
     const std::string rk4 = "system.integrator=\"rk4\"", dop853 = "system.integrator=\"dop853\"";
-    expect_same_sweep({rk4}, {dop853, "system.tolerance=1e-13"}, 1e-9);                         // measured 1.1e-10
+    expect_same_sweep({rk4}, {dop853, "system.tolerance=1e-13"}, 1e-9);  // measured 1.1e-10
+    const std::string taylor = "system.integrator=\"taylor\"", finest = "system.tolerance=1e-13";
+    expect_same_sweep({taylor, finest}, {dop853, finest}, 1e-9);
+    expect_same_sweep({"system.accuracy=1e-9"}, {dop853, finest}, 1e-9);
+    expect_same_sweep({taylor, finest, "system.angle_deg=[0, 20, 40]"},
+                      {dop853, finest, "system.angle_deg=[0, 20, 40]"}, 1e-9);
     expect_same_sweep({"system.model=\"constraints\""}, {"system.model=\"mechanism\""}, 3e-9);  // measured 3.8e-10
     expect_same_sweep({"scene.sample_hz=100", "system.step_s=\"1/1000\""},
                       {"scene.sample_hz=100", "system.step_s=\"1/1000\"", "system.precision=\"quad\""},
