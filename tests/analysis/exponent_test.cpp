@@ -115,7 +115,7 @@ Covered covered(const std::vector<double>& degrees, double apart, int releases) 
     return seen;
 }
 
-// With DOPPEL_ALL_SEAS in the environment, of all the seas and twice as many releases, which takes two minutes.
+// With DOPPEL_ALL_SEAS in the environment, of all the seas and twice as many releases, which takes some minutes.
 TEST(Exponent, UncertaintyHoldsForRunsFourTimesAsLong) {
     struct Sea {
         std::vector<double> degrees;
