@@ -4,13 +4,15 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
 // Google Benchmark's program, and three commands on what is kept of its results:
-//     bench --keep FILE           measures all and keeps it
+//     bench --keep FILE [PART]    measures all, or those with PART in their name, and keeps it
 //     bench --compare FILE        measures what takes less than two seconds; exit code 1 where something fell by 15 %
 //     bench --tables FILE PAGE    makes the tables of a page of it
 //     bench --add FILE NAME CPU_S WALL_S    keeps what was measured elsewhere
@@ -20,11 +22,16 @@ namespace {
 
 constexpr double most_fall = 0.15;
 
-void keep(const std::string& path) {
-    auto all = measure(benchmark_names(), 5);
+/// Those whose names have `part` in them; the others stay as they were.
+void keep(const std::string& path, const std::string& part) {
+    const auto names = benchmark_names();
+    std::vector<std::string> asked;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(asked),
+                 [&](const std::string& name) { return name.find(part) != std::string::npos; });
+    auto all = measure(asked, 5);
     if (std::filesystem::exists(path))
         for (const auto& [name, one] : read_performance(path).benchmarks)
-            if (name.starts_with("building/")) all.benchmarks[name] = one;
+            if (!part.empty() || name.starts_with("building/")) all.benchmarks.try_emplace(name, one);
     write_performance(path, all);
 }
 
@@ -53,7 +60,8 @@ int compare(const std::string& path) {
 int run(int argc, char** argv) {
     const std::vector<std::string> words(argv + 1, argv + argc);
     const std::string command = words.empty() ? "" : words[0];
-    if (command == "--keep" && words.size() == 2) return keep(words[1]), 0;
+    if (command == "--keep" && (words.size() == 2 || words.size() == 3))
+        return keep(words[1], words.size() == 3 ? words[2] : ""), 0;
     if (command == "--compare" && words.size() == 2) return compare(words[1]);
     if (command == "--tables" && words.size() == 3)
         return write_page(words[2], with_tables(read_page(words[2]), read_performance(words[1]))), 0;
