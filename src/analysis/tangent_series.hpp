@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 namespace doppel {
@@ -36,7 +36,7 @@ constexpr int whole_registers(int lanes) {
 ///     Σ_j (C_ij δω_j′ + F_ij δω_j + E_ij (δθ_i − δθ_j)) + μ_ii g l_i cosθ_i δθ_i = 0   with
 ///     C_ij = κ_ij cos(θ_i − θ_j) ,  S_ij = κ_ij sin(θ_i − θ_j) ,  F_ij = 2 S_ij ω_j ,  E_ij = C_ij ω_j² − S_ij ω_j′ .
 /// The series of C, E and F are found once; each is then multiplied with all tangents side by side. In dual numbers, which
-/// carry derivatives through every product twice, a step takes twice as long.
+/// carry derivatives through every product twice, a step takes two to three times as long.
 /// Source  Benettin et al. 1980, Meccanica 15:9, for the tangents; Jorba & Zou 2005 (integrate/taylor.hpp), for the series.
 template <int N>
 class TangentSeries {
@@ -49,15 +49,14 @@ public:
           unit_(NaturalUnits(model.pendulum).time),
           terms_(static_cast<std::size_t>(order) + 2) {
         const auto& p = model.pendulum;
-        double mass = 0;
-        for (std::size_t j = links; j-- > 0;) {
-            mass += p.mass[j];
-            weight_[j] = mass * p.gravity * p.length[j];
-            for (std::size_t i = 0; i < j; ++i) {
-                coupling_[pair(i, j)] = mass * p.length[i] * p.length[j];
-                coupling_[pair(j, i)] = coupling_[pair(i, j)];
-            }
+        std::array<double, links> mass{};  // of what hangs on a rod
+        for (std::size_t i = links; i-- > 0;) {
+            mass[i] = p.mass[i] + (i + 1 < links ? mass[i + 1] : 0);
+            weight_[i] = mass[i] * p.gravity * p.length[i];
         }
+        for_each_pair([&](std::size_t i, std::size_t j, int lane) {
+            coupling_.set(lane, mass[std::max(i, j)] * p.length[i] * p.length[j]);
+        });
     }
 
     void expand(const State& y) {
@@ -68,14 +67,16 @@ public:
             couple(k);
             vary(k);
         }
-        amount_ = greatest(0, &Term::omega) + std::sqrt(greatest(1, &Term::omega));
-        tangent_amount_ = greatest_tangent(0, &Term::tangent_omega) + greatest_tangent(0, &Term::tangent_theta) / unit_;
+        amount_ = greatest(term(0).omega) + std::sqrt(greatest(term(1).omega));
+        tangent_amount_ = greatest(term(0).tangent_omega) + greatest(term(0).tangent_theta) / unit_;
     }
 
     void move(double h, State& change) const {
+        const Links theta = polynomial(h, [](const Term&term) { return term.theta; }),
+                    omega = polynomial(h, [](const Term&term) { return term.omega; });
         for (std::size_t i = 0; i < links; ++i) {
-            change[at(i)] = polynomial(h, [&](const Term& term) { return term.theta[i]; });
-            change[at(links + i)] = polynomial(h, [&](const Term& term) { return term.omega[i]; });
+            change[at(i)] = theta[static_cast<int>(i)];
+            change[at(links + i)] = omega[static_cast<int>(i)];
             put(change, i, polynomial(h, [&](const Term& term) { return term.tangent_theta[i]; }));
             put(change, links + i, polynomial(h, [&](const Term& term) { return term.tangent_omega[i]; }));
         }
@@ -83,8 +84,8 @@ public:
 
     /// Of the motion or of its tangents, whichever is greater.
     double size(int k) const {
-        return greater(relative(greatest(k, &Term::omega), amount_),
-                       relative(greatest_tangent(k, &Term::tangent_omega), tangent_amount_));
+        return greater(relative(greatest(term(k).omega), amount_),
+                       relative(greatest(term(k).tangent_omega), tangent_amount_));
     }
 
     double longest_step() const { return longest_chain_step(chain_.pendulum.reach(), chain_.pendulum.gravity); }
@@ -99,8 +100,7 @@ private:
 
     /// Coefficients of one order.
     struct Term {
-        std::array<double, links> theta{}, omega{};               // rad, rad/s
-        Links rate{0}, square{0}, sin{0}, cos{0};                 // ω, ω², μ g l sinθ and μ g l cosθ
+        Links theta{0}, omega{0}, sin{0}, cos{0};                 // rad, rad/s; μ g l sinθ and μ g l cosθ
         Pairs s{0}, c{0}, apart{0};                               // S_ij, C_ij, ω_i − ω_j
         Pairs omega_j{0}, square_j{0}, turn_j{0};                 // ω_j, ω_j², ω_j′
         std::array<std::array<double, links>, links> by_theta{};  // what multiplies δθ_j,
@@ -110,18 +110,16 @@ private:
     };
 
     static Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
-    static constexpr std::size_t pair(std::size_t i, std::size_t j) { return i * (links - 1) + j - (j > i); }
     template <class Visit>
     static void for_each_pair(Visit&& visit) {
         for (std::size_t i = 0; i < links; ++i)
             for (std::size_t j = 0; j < links; ++j)
-                if (i != j) visit(i, j, static_cast<int>(pair(i, j)));
+                if (i != j) visit(i, j, static_cast<int>(i * (links - 1) + j - (j > i)));
     }
     /// For each pair (i, j) what belongs to j.
-    template <class Value>
-    static Pairs of_second(Value&& value) {
+    static Pairs of_second(const Links& all) {
         Pairs r(0);
-        for_each_pair([&](std::size_t, std::size_t j, int p) { r.set(p, value(j)); });
+        for_each_pair([&](std::size_t, std::size_t j, int p) { r.set(p, all[static_cast<int>(j)]); });
         return r;
     }
     Term& term(int k) { return terms_[static_cast<std::size_t>(k)]; }
@@ -139,12 +137,10 @@ private:
     /// Order 0, and the inverse of the mass matrix.
     void begin(const State& y) {
         chain_.update(y);
-        typename AngleChain<double, N>::Half unit, column;
+        typename AngleChain<double, N>::Half column;
         Term& first = term(0);
         for (std::size_t j = 0; j < links; ++j) {
-            unit.setZero();
-            unit[at(j)] = 1;
-            chain_.solve_mass(unit, column);
+            chain_.solve_mass(AngleChain<double, N>::Half::Unit(at(j)), column);
             for (std::size_t i = 0; i < links; ++i) inverse_mass_[i][j] = column[at(i)];
             first.sin.set(static_cast<int>(j), weight_[j] * chain_.sin[at(j)]);
             first.cos.set(static_cast<int>(j), weight_[j] * chain_.cos[at(j)]);
@@ -153,28 +149,22 @@ private:
         }
         for_each_pair([&](std::size_t i, std::size_t j, int p) {
             const auto &sin = chain_.sin, &cos = chain_.cos;
-            const double coupling = coupling_[pair(i, j)];
-            first.s.set(p, coupling * (sin[at(i)] * cos[at(j)] - cos[at(i)] * sin[at(j)]));
-            first.c.set(p, coupling * (cos[at(i)] * cos[at(j)] + sin[at(i)] * sin[at(j)]));
+            first.s.set(p, coupling_[p] * (sin[at(i)] * cos[at(j)] - cos[at(i)] * sin[at(j)]));
+            first.c.set(p, coupling_[p] * (cos[at(i)] * cos[at(j)] + sin[at(i)] * sin[at(j)]));
         });
-        std::array<double, links> omega;
-        for (std::size_t i = 0; i < links; ++i) omega[i] = y[at(links + i)];
+        Links omega(0);
+        for (std::size_t i = 0; i < links; ++i) omega.set(static_cast<int>(i), y[at(links + i)]);
         set_rates(0, omega);
     }
 
-    void set_rates(int k, const std::array<double, links>& omega) {
+    void set_rates(int k, const Links& omega) {
         Term& now = term(k);
         now.omega = omega;
-        Links rate(0);
-        for (std::size_t i = 0; i < links; ++i) {
-            rate.set(static_cast<int>(i), omega[i]);
-            if (k < order_) term(k + 1).theta[i] = omega[i] / (k + 1);
-        }
-        now.rate = rate;
-        const Pairs omega_j = of_second([&](std::size_t j) { return omega[j]; });
-        Pairs omega_i(0);
-        for_each_pair([&](std::size_t i, std::size_t, int p) { omega_i.set(p, omega[i]); });
+        term(k + 1).theta = omega * Links(1.0 / (k + 1));
+        const Pairs omega_j = of_second(omega);
         now.omega_j = omega_j;
+        Pairs omega_i(0);
+        for_each_pair([&](std::size_t i, std::size_t, int p) { omega_i.set(p, omega[static_cast<int>(i)]); });
         now.apart = omega_i - omega_j;
     }
 
@@ -184,42 +174,41 @@ private:
         Pairs s(0), c(0);
         for (int m = 0; m < k; ++m) {
             const Term &one = term(m), &other = term(k - 1 - m);
-            sin += one.cos * other.rate;
-            cos -= one.sin * other.rate;
+            sin += one.cos * other.omega;
+            cos -= one.sin * other.omega;
             s += one.c * other.apart;
             c -= one.s * other.apart;
         }
-        const double by = 1.0 / k;
         Term& now = term(k);
-        now.sin = sin * Links(by);
-        now.cos = cos * Links(by);
-        now.s = s * Pairs(by);
-        now.c = c * Pairs(by);
+        now.sin = sin * Links(1.0 / k);
+        now.cos = cos * Links(1.0 / k);
+        now.s = s * Pairs(1.0 / k);
+        now.c = c * Pairs(1.0 / k);
     }
 
     /// ω′ of order k, and so ω of order k + 1.
     void accelerate(int k) {
         Term& now = term(k);
         Links square(0);
-        for (int m = 0; m <= k; ++m) square += term(m).rate * term(k - m).rate;
-        now.square = square;
-        const Pairs square_j = of_second([&](std::size_t j) { return square[static_cast<int>(j)]; });
+        for (int m = 0; m <= k; ++m) square += term(m).omega * term(k - m).omega;
+        const Pairs square_j = of_second(square);
         now.square_j = square_j;
         Pairs torque = term(0).s * square_j;
         for (int m = 1; m <= k; ++m) {
             const Term &one = term(m), &other = term(k - m);
             torque += one.s * other.square_j + one.c * other.turn_j;
         }
-        std::array<double, links> sum, omega;
+        std::array<double, links> sum;
         for (std::size_t i = 0; i < links; ++i) sum[i] = now.sin[static_cast<int>(i)];
         for_each_pair([&](std::size_t i, std::size_t, int p) { sum[i] += torque[p]; });
-        std::array<double, links> turn{};
+        Links turn(0);
         for (std::size_t i = 0; i < links; ++i) {
-            for (std::size_t j = 0; j < links; ++j) turn[i] -= inverse_mass_[i][j] * sum[j];
-            omega[i] = turn[i] / (k + 1);
+            double all = 0;
+            for (std::size_t j = 0; j < links; ++j) all -= inverse_mass_[i][j] * sum[j];
+            turn.set(static_cast<int>(i), all);
         }
-        now.turn_j = of_second([&](std::size_t j) { return turn[j]; });
-        set_rates(k + 1, omega);
+        now.turn_j = of_second(turn);
+        set_rates(k + 1, turn * Links(1.0 / (k + 1)));
     }
 
     /// What multiplies the tangents, of order k.
@@ -244,9 +233,7 @@ private:
     template <bool knows_turn>
     [[gnu::always_inline]] static void add_products(const Term& one, const Term& other,
                                                     std::array<Tangents, links>& torque) {
-#pragma GCC unroll 4
         for (std::size_t i = 0; i < links; ++i)
-#pragma GCC unroll 4
             for (std::size_t j = 0; j < links; ++j) {
                 Tangents part = Tangents(one.by_theta[i][j]) * other.tangent_theta[j];
                 if (i != j) part += Tangents(one.by_omega[i][j]) * other.tangent_omega[j];
@@ -281,27 +268,25 @@ private:
         return sum;
     }
 
-    static double relative(double size, double amount) {
-        return amount == 0 ? 0 : size / amount;
-    }
+    static double relative(double size, double amount) { return amount == 0 ? 0 : size / amount; }
 
-    double greatest(int k, std::array<double, links> Term::*row) const {
+    static double greatest(const Links& all) {
         double most = 0;
-        for (const double x : term(k).*row) most = greater(most, std::abs(x));
+        for (int i = 0; i < N; ++i) most = greater(most, std::abs(all[i]));
         return most;
     }
-    double greatest_tangent(int k, std::array<Tangents, links> Term::*row) const {
+    static double greatest(const std::array<Tangents, links>& all) {
         double most = 0;
-        for (const auto& all : term(k).*row)
-            for (int d = 0; d < tangents; ++d) most = greater(most, std::abs(all[d]));
+        for (const auto& row : all)
+            for (int d = 0; d < tangents; ++d) most = greater(most, std::abs(row[d]));
         return most;
     }
 
     int order_;
     AngleChain<double, N> chain_;
-    double unit_;  // s, natural
-    std::array<double, links> weight_{};
-    std::array<double, static_cast<std::size_t>(std::max(1, pairs))> coupling_{};  // κ_ij, kg m²
+    double unit_;                         // s, natural
+    std::array<double, links> weight_{};  // μ_ii g l_i, J
+    Pairs coupling_{0};                   // κ_ij, kg m²
     std::array<std::array<double, links>, links> inverse_mass_{};
     std::vector<Term> terms_;
     double amount_ = 0, tangent_amount_ = 0;  // rad/s; of tangents, in their unit over s

@@ -177,7 +177,7 @@ std::string building(const Kept& kept) {
         if (kept.all().benchmarks.contains(name))
             rows.push_back({words, fmt::format("{:.0f}", kept.ns(name) / 1e9),
                             fmt::format("{:.0f}", kept.counter(name, "wall s"))});
-    return table(rows);
+    return rows.size() > 1 ? table(rows) : "Not measured on this machine yet (`tests/update-performance --build`).\n";
 }
 
 struct Table {
