@@ -43,7 +43,7 @@ double angle_sensitivity(const Pendulum<double>& p, double seconds, const std::a
 struct SpectrumSpec {
     double duration_s = 500;   // of the motion
     int samples = 500;         // equally spaced, the last at the end
-    double tolerance = 1e-10;  // of dop853, for the state and its tangents alike
+    double tolerance = 1e-10;  // of taylor, for the state and its tangents alike
 };
 
 /// The exponents as estimated up to a time.
@@ -53,7 +53,7 @@ struct SpectrumSample {
 };
 
 /// Estimates of all 2N Lyapunov exponents of a chain of 1 to 4 links.
-/// Errors  exit 2 where the spec or the number of links makes no sense, exit 3 where dop853 breaks down, exit 130 soon
+/// Errors  exit 2 where the spec or the number of links makes no sense, exit 3 where taylor breaks down, exit 130 soon
 ///         after `stop` is set.
 std::vector<SpectrumSample> lyapunov_spectrum(const Pendulum<double>& p, const SpectrumSpec& spec,
                                               const std::atomic<bool>& stop);
