@@ -174,21 +174,6 @@ TYPED_TEST(Adaptively, SamplesTheEndOfAStepToo) {
     }
 }
 
-TYPED_TEST(Adaptively, GoesOnFromAnotherStateByTheStepsItHad) {
-    const auto p = unequal();
-    DoublePendulum<double> model(p);
-    const auto start = DoublePendulum<double>::start(p);
-    typename TypeParam::template Stepper<DoublePendulum<double>> one(model, start, 1e-10);
-    one.advance(0.77);
-    const long before = one.evaluations(), steps = one.steps();
-    one.reset(start);
-    EXPECT_EQ(one.state(), start);
-    EXPECT_EQ(one.evaluations(), before + 1);
-    one.advance(0.77);
-    EXPECT_LT((one.state() - state_after<TypeParam, DoublePendulum<double>>(p, 0.77, 1e-14)).norm(), 1e-9);
-    EXPECT_LE(one.steps() - steps, steps);  // a first step is a short one
-}
-
 TYPED_TEST(Adaptively, SaysWhichToleranceIsTheFinest) {
     Counting model;
     try {

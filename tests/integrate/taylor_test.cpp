@@ -170,21 +170,6 @@ TEST(Taylor, StepsAlikeHoweverItIsSampled) {
     EXPECT_EQ(once.steps(), often.steps());
 }
 
-TEST(Taylor, GoesOnFromAnotherState) {
-    const auto p = uneven(2);
-    DoublePendulum<double> model(p);
-    const auto start = DoublePendulum<double>::start(p);
-    TaylorStepper<DoublePendulum<double>> stepper(model, start, 1e-14);
-    stepper.advance(1.1);
-    stepper.reset(start);
-    EXPECT_EQ(stepper.state(), start);
-    const double expanded = stepper.step();
-    stepper.advance(1.1);
-    const auto end = end_of<DoublePendulum<double>>(p, 1.1, 1e-15);
-    EXPECT_LT((stepper.state() - end).norm(), 1e-12);
-    EXPECT_GT(expanded, 0);
-}
-
 TEST(Taylor, AllModelsOfOneChainAgree) {
     const auto two = uneven(2), three = uneven(3);
     const auto exact = end_of<AngleChain<Quad, 2>>(two.cast<Quad>(), Quad(3), Quad(1e-25));
