@@ -1,12 +1,14 @@
 #include "analysis/exponent.hpp"
-#include "analysis/tangent.hpp"
+#include "analysis/tangent_series.hpp"
 #include "base/error.hpp"
+#include "integrate/taylor.hpp"
 #include "physics/canonical.hpp"
 
 #include <Eigen/Householder>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace doppel {
 namespace {
@@ -43,42 +45,46 @@ public:
     using Column = Eigen::VectorXd;
 
     Frame(const Pendulum<double>& p, double tolerance, const NaturalUnits& units)
-        : model_(p.cast<Number>()), canonical_(model_), motion_(p, tolerance) {
+        : model_(p.cast<Number>()), canonical_(model_), chain_{p} {
         double mass = 0;
         for (const double m : p.mass) mass += m;
         unit_.setOnes(size);
         unit_.tail(N).setConstant(mass * units.length * units.length / units.time);
         canonical_.momenta(Model::start(p.cast<Number>()), z_);
-        restart(Matrix::Identity(size, size));
+        motion_.emplace(chain_, tangents(Matrix::Identity(size, size)), tolerance);
     }
 
     /// What ln|δ_i| grow by in so many seconds.
     Column advance(double seconds) {
-        motion_.advance(seconds);
-        TangentFlow<Model>::to_dual(motion_.state(), y_);
+        motion_->advance(seconds);
+        TangentFlow<Model>::to_dual(motion_->state(), y_);
         canonical_.momenta(y_, z_);
         Matrix frame(size, size);
         for (int i = 0; i < size; ++i) frame.row(i) = z_[i].tangent.transpose() / unit_[i];
         const Column stretched = orthonormalise(frame);
-        restart(frame);
+        motion_->reset(tangents(frame));
         return stretched.unaryExpr([](double factor) { return std::log(factor); });
     }
 
 private:
     using Number = typename Model::Scalar;
 
-    /// Goes on from the values of z with the frame's columns for tangents.
-    void restart(const Matrix& frame) {
+    using Chain = TangentChain<N>;
+
+    /// The values of z with the frame's columns for tangents; angles without whole turns.
+    typename Chain::State tangents(const Matrix& frame) {
         for (int i = 0; i < size; ++i) z_[i].tangent = unit_[i] * frame.row(i).transpose();
         canonical_.velocities(z_, y_);
-        typename TangentMotion<Model>::State all(y_.size() * (1 + size));
+        typename Chain::State all;
         TangentFlow<Model>::from_dual(y_, all);
-        motion_.restart(all);
+        for (int i = 0; i < N; ++i) all[i] = std::remainder(all[i], 2 * pi);
+        return all;
     }
 
     Model model_;
     Canonical<Model> canonical_;
-    TangentMotion<Model> motion_;
+    Chain chain_;
+    std::optional<Taylor::Stepper<Chain>> motion_;
     Column unit_;  // of angles and momenta: 1 and N m s
     typename Model::State y_, z_;
 };

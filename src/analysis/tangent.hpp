@@ -1,12 +1,12 @@
 #pragma once
 
-#include "integrate/stepper.hpp"
+#include "integrate/dormand_prince.hpp"
 #include "numeric/dual.hpp"
 #include "physics/pendulum.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <optional>
 
 namespace doppel {
 
@@ -27,7 +27,7 @@ struct NaturalUnits {
 ///     y′ = f(y) ,    δ′ = Df(y) δ
 /// both from one evaluation of f in dual numbers. `Model` is one over Dual<double, D>.
 ///
-/// State   (y, δ_1 … δ_D).
+/// State   y, then D numbers for each component of y, one of each tangent.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:9.
 template <class Model>
 class TangentFlow {
@@ -36,7 +36,7 @@ public:
     using DualState = typename Model::State;
     using Number = typename Model::Scalar;
     static constexpr int directions = Number::Tangent::RowsAtCompileTime;
-    using State = doppel::State<double, Eigen::Dynamic>;
+    using State = doppel::State<double, times<1 + directions, DualState::RowsAtCompileTime>>;
 
     explicit TangentFlow(const Pendulum<double>& p)
         : model_(p.cast<Number>()), y_(Model::start(p.cast<Number>())), rate_(y_) {}
@@ -51,7 +51,7 @@ public:
         const auto n = y.size();
         for (Eigen::Index i = 0; i < n; ++i) {
             y[i].value = all[i];
-            for (Eigen::Index d = 0; d < directions; ++d) y[i].tangent[d] = all[n * (1 + d) + i];
+            for (Eigen::Index d = 0; d < directions; ++d) y[i].tangent[d] = all[n + i * directions + d];
         }
     }
 
@@ -59,7 +59,7 @@ public:
         const auto n = y.size();
         for (Eigen::Index i = 0; i < n; ++i) {
             all[i] = y[i].value;
-            for (Eigen::Index d = 0; d < directions; ++d) all[n * (1 + d) + i] = y[i].tangent[d];
+            for (Eigen::Index d = 0; d < directions; ++d) all[n + i * directions + d] = y[i].tangent[d];
         }
     }
 
@@ -81,21 +81,25 @@ public:
     using Flow = TangentFlow<Model>;
     using State = typename Flow::State;
 
+    TangentMotion(const TangentMotion&) = delete;  // the stepper knows where the flow is
     TangentMotion(const Pendulum<double>& p, double tolerance)
         : flow_(p), tolerance_(tolerance), links_(static_cast<Eigen::Index>(p.links())) {}
 
     void restart(State y) {
         for (Eigen::Index i = 0; i < links_; ++i) y[i] = std::remainder(y[i], 2 * pi);
-        stepper_ = make_any_stepper("dop853", AnySystem<State>(flow_), y, tolerance_);
+        if (stepper_)
+            stepper_->reset(y);
+        else
+            stepper_.emplace(flow_, y, tolerance_);
     }
-    void advance(double seconds) { stepper_->advance_by(seconds); }
-    State state() const { return stepper_->state(); }
+    void advance(double seconds) { stepper_->advance(seconds); }
+    const State& state() const { return stepper_->state(); }
 
 private:
     Flow flow_;
     double tolerance_;
     Eigen::Index links_;
-    std::unique_ptr<Stepper<double>> stepper_;
+    std::optional<Dop853::Stepper<Flow>> stepper_;
 };
 
 }  // namespace doppel

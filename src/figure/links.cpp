@@ -87,8 +87,9 @@ public:
     }
 
     std::string subtitle() const override {
-        return fmt::format("chains {}, {}; exponents from {:g} s, the band one standard deviation; Euler at 30 kHz",
-                           released_words(release_), links_words(release_), spec_.duration_s);
+        return fmt::format(
+            "chains {}, {}; exponents from {:g} s, in a band for two of three longer runs; Euler at 30 kHz",
+            released_words(release_), links_words(release_), spec_.duration_s);
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

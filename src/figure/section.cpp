@@ -96,7 +96,7 @@ public:
             most = std::max(most, regular_ones(numbers.subspan(panel * orbits(), orbits())));
         figure.captions.push_back(
             fmt::format("In colour, regular orbits ({}): the largest Lyapunov exponent of {} s of their motion is at "
-                        "most twice its uncertainty. In grey, chaotic ones.",
+                        "most 1.5 times its uncertainty. In grey, chaotic ones.",
                         most > static_cast<long>(themes.front().palette.size()) ? "colours repeat" : "a colour each",
                         grouped(std::lround(exponent_spec_.duration_s))));
     }

@@ -28,7 +28,8 @@ public:
         visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000)},
               spec_.samples);
         constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true};
-        visit({"tolerance", "of dop853: relative error of a step", "", tolerances}, spec_.tolerance);
+        visit({"tolerance", "of taylor: relative error of a step, of the motion and of its tangents", "", tolerances},
+              spec_.tolerance);
     }
 
     std::size_t trials() const override { return 1; }
@@ -75,7 +76,7 @@ public:
     }
 
     std::string subtitle() const override {
-        return fmt::format("{} {}, {}; tangent equations by dual numbers in canonical variables, dop853",
+        return fmt::format("{} {}, {}; tangent equations in canonical variables, taylor",
                            pendulum_words(release_.links()), released_words(release_), links_words(release_));
     }
 

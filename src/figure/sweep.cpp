@@ -221,8 +221,8 @@ private:
             exponents.y[i] = NAN;
         }
         return fmt::format(
-            "{} of {} releases are regular: their exponent cannot be told from 0. Its band is one standard "
-            "deviation.{}",
+            "{} of {} releases are regular: their exponent cannot be told from 0. Its band holds two of "
+            "three runs four times as long.{}",
             regular, trials_, equilibria);
     }
 

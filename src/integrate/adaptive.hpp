@@ -38,6 +38,15 @@ public:
         evaluations_ = 2;
     }
 
+    /// On from another state, by steps as long as before: for one much like the last.
+    void reset(const State& start) {
+        y1_ = out_ = start;
+        doppel::slope(model_, y1_, k_[end]);
+        ++evaluations_;
+        span_ = offset_ = lost_ = Scalar(0);
+        interpolates_ = false;
+    }
+
     void advance(const Scalar& seconds) {
         move(seconds);
         while (offset_ > span_) {

@@ -42,6 +42,14 @@ public:
           change_(start),
           out_(start) {}
 
+    /// On from another state, by a step of at most twice the last: for one much like the last.
+    void reset(const State& start) {
+        base_ = out_ = start;
+        lost_.setZero();
+        offset_ = offset_lost_ = Scalar(0);
+        expand(plain_value(step_));
+    }
+
     void advance(const Scalar& seconds) {
         add(offset_, offset_lost_, seconds);
         while (offset_ > step_) next_step(plain_value(seconds));
@@ -103,6 +111,10 @@ private:
             project(model_, base_);
             add(offset_, offset_lost_, -step_);
         }
+        expand(seconds);
+    }
+
+    void expand(double seconds) {
         series_.expand(base_);
         const double h = chosen_step();
         if (!(h > plain_value(std::numeric_limits<Scalar>::epsilon()) * seconds))

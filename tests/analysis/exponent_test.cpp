@@ -11,6 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
 
 namespace doppel {
 namespace exponent_test {
@@ -94,7 +97,66 @@ TEST(Exponent, OfRegularMotionIsThatOfLinearGrowth) {
     EXPECT_LT(e.uncertainty, 2 * linear);
 }
 
-TEST(Exponent, UncertaintyIsTheScatterOfLikeMotions) {
+/// Of releases next to each other, how many of whose runs four times as long end within the uncertainty, and within twice.
+struct Covered {
+    int once = 0, twice = 0;
+};
+Covered covered(const std::vector<double>& degrees, double apart, int releases) {
+    Covered seen;
+    for (int k = 0; k < releases; ++k) {
+        auto p = from_rest(degrees);
+        p.angle[0] += apart * k;
+        const auto usual = largest_exponent(p, {}, never),
+                   longer = largest_exponent(p, {.duration_s = 2000, .transient_s = 200}, never);
+        const double off = std::abs(usual.value - longer.value);
+        seen.once += off <= usual.uncertainty;
+        seen.twice += off <= 2 * usual.uncertainty;
+    }
+    return seen;
+}
+
+// With DOPPEL_ALL_SEAS in the environment, of all the seas and twice as many releases, which takes some minutes.
+TEST(Exponent, UncertaintyHoldsForRunsFourTimesAsLong) {
+    struct Sea {
+        std::vector<double> degrees;
+        double apart;  // rad
+    };
+    std::vector<Sea> chaotic{{{90, 90}, 1e-9}}, sticky{{{70, 0}, 1e-6}}, regular{{{30, 0}, 1e-9}};
+    int releases = 20;
+    if (std::getenv("DOPPEL_ALL_SEAS") != nullptr) {
+        releases = 40;
+        for (const double apart : {1e-9, 1e-6}) {
+            for (const auto& degrees : std::vector<std::vector<double>>{
+                     {120, -60}, {95, 0}, {140, 0}, {110, 30}, {100, -100}, {120, 0, 0}, {90, 90, 90}})
+                chaotic.push_back({degrees, apart});
+            for (const double angle : {72.0, 75.0, 85.0}) sticky.push_back({{angle, 0}, apart});
+            for (const double angle : {10.0, 60.0}) regular.push_back({{angle, 0}, apart});
+        }
+    }
+    const auto share = [](const std::vector<Sea>& seas, int count) {
+        double once = 0, twice = 0;
+        for (const auto& [degrees, apart] : seas) {
+            const auto seen = covered(degrees, apart, count);
+            once += seen.once;
+            twice += seen.twice;
+            std::printf("%g/%g: %d and %d of %d\n", degrees[0], degrees[1], seen.once, seen.twice, count);
+        }
+        const double all = static_cast<double>(seas.size()) * count;
+        return std::pair(once / all, twice / all);
+    };
+    // the libraries' last digits decide which runs these are: 2/3 and 9/10, less three times the binomial deviation
+    const auto least = [&](double part, const std::vector<Sea>& seas) {
+        return part - 3 * std::sqrt(part * (1 - part) / (static_cast<double>(seas.size()) * releases));
+    };
+    for (const auto& seas : {chaotic, sticky}) {
+        const auto [once, twice] = share(seas, releases);
+        EXPECT_GE(once, least(2.0 / 3, seas));
+        EXPECT_GE(twice, least(0.9, seas));
+    }
+    EXPECT_EQ(share(regular, 3), std::pair(1.0, 1.0));
+}
+
+TEST(Exponent, UncertaintyIsNotMuchMoreThanTheScatter) {
     // starts so close that they sample one chaotic sea, and soon independently
     constexpr int runs = 16;
     double mean = 0, uncertainty = 0;
@@ -107,41 +169,8 @@ TEST(Exponent, UncertaintyIsTheScatterOfLikeMotions) {
     }
     double scatter = 0;
     for (const double value : values) scatter += (value - mean) * (value - mean) / (runs - 1);
-    EXPECT_NEAR(scatter / uncertainty, 1, 0.7);  // measured 0.09
-}
-
-TEST(Exponent, UncertaintyHoldsNearStickyOrbitsToo) {
-    // motions of one sea each; in the last two, orbits that are regular for minutes on end
-    struct Sea {
-        std::vector<double> degrees, mass;
-        double worst;  // times that the scatter may exceed the uncertainty
-    };
-    for (const auto& [degrees, mass, worst] : {Sea{{90, 90}, {1, 1}, 1.3},
-                                               {{120, -60}, {2, 1}, 1.3},
-                                               {{95, 0}, {1, 1}, 1.3},
-                                               {{120, 0, 0}, {1, 1, 1}, 1.3},
-                                               {{75, 0}, {1, 1}, 1.8}}) {
-        constexpr int runs = 32;
-        std::vector<Exponent> all;
-        double mean = 0, uncertainty = 0, scatter = 0;
-        for (int k = 0; k < runs; ++k) {
-            auto p = from_rest(degrees);
-            p.mass = mass;
-            p.angle[0] += 2e-4 * k;
-            all.push_back(largest_exponent(p, {}, never));
-            mean += all.back().value / runs;
-            uncertainty += all.back().uncertainty * all.back().uncertainty / runs;
-        }
-        int within_two = 0;
-        for (const auto& e : all) {
-            scatter += (e.value - mean) * (e.value - mean) / (runs - 1);
-            within_two += std::abs(e.value - mean) < 2 * e.uncertainty;
-        }
-        const double ratio = std::sqrt(scatter / uncertainty);
-        EXPECT_LT(ratio, worst) << degrees[0] << '/' << degrees[1];  // measured 0.72, 1.00, 0.83, 0.65, 1.44
-        EXPECT_GT(ratio, 0.5) << degrees[0] << '/' << degrees[1];
-        EXPECT_GE(within_two, runs * 8 / 10) << degrees[0] << '/' << degrees[1];  // measured 27 and more
-    }
+    EXPECT_GT(scatter / uncertainty, 0.1);  // measured 0.54
+    EXPECT_LT(scatter / uncertainty, 1.5);
 }
 
 TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
@@ -162,7 +191,7 @@ TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
         grown.push_back(all - before);
         before = all;
     }
-    double greatest = 0;
+    double greatest = 0, whole = 0, last = 0;
     for (const int blocks : {16, 8, 4}) {
         const int length = parts / blocks;
         double square = 0;
@@ -171,10 +200,14 @@ TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
             for (int i = 0; i < length; ++i) block += grown[static_cast<std::size_t>(k * length + i)] / length;
             square += std::pow(block - before / parts, 2);
         }
-        greatest = std::max(greatest, std::sqrt(square / (blocks * (blocks - 1))));
+        // two-sided 68.27 % of Student's distribution
+        last = (blocks == 16 ? 1.0345 : blocks == 8 ? 1.0765 : 1.1966) * std::sqrt(square / (blocks * (blocks - 1)));
+        greatest = std::max(greatest, last);
+        if (blocks == 16) whole = last;
     }
-    const double expected = std::hypot(greatest, std::log(end_s / transient_s) / parts);
-    EXPECT_NEAR(run(parts, parts).uncertainty, expected, 1e-14);  // of 0.24; measured 3e-17
+    greatest *= std::max(1.0, last / whole);
+    const double expected = std::sqrt(1.25) * std::hypot(greatest, std::log(end_s / transient_s) / parts);
+    EXPECT_NEAR(run(parts, parts).uncertainty / expected, 1, 2e-3);  // measured 3e-5
 }
 
 TEST(Exponent, IsOfFiveHundredSecondsWhereNothingElseIsSaid) {

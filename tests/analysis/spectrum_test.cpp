@@ -1,6 +1,9 @@
 #include "analysis/exponent.hpp"
+#include "analysis/tangent_series.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
+#include "integrate/taylor.hpp"
+#include "physics/angle_chain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,6 +72,51 @@ TEST(Spectrum, DoesNotDependOnHowOftenTheFrameIsSetUpright) {
     EXPECT_EQ(rarely.time_s, often.time_s);
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_NEAR(rarely.exponents[i], often.exponents[i], 1e-11) << i;  // measured 1.4e-12
+}
+
+/// How far the motion and its tangents by series are from those by dual numbers, both to 1e-14, after 2 s; relative.
+template <class Model, int N>
+double apart(double heavy) {
+    auto p = uneven(N);
+    p.mass.back() *= heavy;
+    TangentFlow<Model> flow(p);
+    typename TangentChain<N>::State start = TangentChain<N>::State::Zero();
+    start.template head<2 * N>() = AngleChain<double, N>::start(p);
+    for (int i = 0; i < 2 * N; ++i)
+        for (int d = 0; d < 2 * N; ++d) start[2 * N + i * 2 * N + d] = 1.0 / (1 + i + 2 * d) + (i == d);
+    TangentChain<N> chain{p};
+    Taylor::Stepper<TangentChain<N>> series(chain, start, 1e-14);
+    Dop853::Stepper<TangentFlow<Model>> dual(flow, start, 1e-14);
+    series.advance(2);
+    dual.advance(2);
+    return (series.state() - dual.state()).norm() / dual.state().norm();
+}
+
+TEST(Spectrum, SeriesOfTangentsAreThoseOfDualNumbers) {
+    EXPECT_LT((apart<AngleChain<Dual<double, 2>, 1>, 1>(1)), 1e-13);
+    EXPECT_LT((apart<DoublePendulum<Dual<double, 4>>, 2>(1)), 1e-13);
+    EXPECT_LT((apart<DoublePendulum<Dual<double, 4>>, 2>(1e-6)), 1e-13);
+    EXPECT_LT((apart<AngleChain<Dual<double, 6>, 3>, 3>(1)), 1e-13);
+    EXPECT_LT((apart<AngleChain<Dual<double, 8>, 4>, 4>(1)), 1e-13);
+}
+
+TEST(Spectrum, StepsGoByTheTangentsToo) {
+    // hanging at rest, the motion itself allows any step
+    const TangentChain<2> chain{from_rest({0, 0})};
+    TangentSeries<2> series(chain, 20);
+    TangentChain<2>::State start = TangentChain<2>::State::Zero();
+    series.expand(start);
+    EXPECT_EQ(series.size(20), 0);
+    start[4] = 1;
+    series.expand(start);
+    EXPECT_GT(series.size(19), 0);
+    const double size = series.size(19);
+    start[4] = 1e-3;  // only relative to their own amount
+    series.expand(start);
+    EXPECT_NEAR(series.size(19) / size, 1, 1e-14);
+    start[4] = NAN;
+    series.expand(start);
+    EXPECT_TRUE(std::isnan(series.size(19)));
 }
 
 TEST(Spectrum, HasFiveHundredSamplesWhereNothingElseIsSaid) {

@@ -47,7 +47,7 @@ void compose(benchmark::State& state) {
 }
 BENCHMARK(compose)->Unit(benchmark::kMillisecond);
 
-/// Draws (and, if `converts`, converts what changed) frame after frame.
+/// Draws (and, if `converts`, converts what changed) frame after frame: CPU time of all threads, and how long one waits.
 void draw(benchmark::State& state, Size size, bool converts) {
     auto preset = read_preset(find_preset("butterfly"));
     preset.video.size = size;
@@ -58,19 +58,28 @@ void draw(benchmark::State& state, Size size, bool converts) {
     SampledAreas converted;
     std::size_t k = 0;
     double pixels = 0;
+    const double begun = seconds_of(CLOCK_MONOTONIC);
     for (auto _ : state) {
         const auto& picture = renderer.draw(lists[k++ % lists.size()]);
         for (const auto& area : renderer.changed())
             pixels += static_cast<double>(area.right - area.left) * (area.bottom - area.top);
         if (converts) convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, converted);
     }
+    state.counters["wall ms"] = 1e3 * (seconds_of(CLOCK_MONOTONIC) - begun) / static_cast<double>(state.iterations());
     state.counters["px changed"] = pixels / static_cast<double>(state.iterations());
 }
-BENCHMARK_CAPTURE(draw, alone, Size{1920, 1080}, false)->Unit(benchmark::kMillisecond)->Iterations(count);
-BENCHMARK_CAPTURE(draw, alone_4k, Size{3840, 2160}, false)->Unit(benchmark::kMillisecond)->Iterations(count);
+BENCHMARK_CAPTURE(draw, alone, Size{1920, 1080}, false)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(count)
+    ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(draw, alone_4k, Size{3840, 2160}, false)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(count)
+    ->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(draw, and_convert_what_changed, Size{1920, 1080}, true)
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(count);
+    ->Iterations(count)
+    ->MeasureProcessCPUTime();
 
 Picture one_frame(const Scene& scene) {
     Composer composer(scene);

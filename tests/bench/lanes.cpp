@@ -30,6 +30,17 @@ void thousand_steps(benchmark::State& state, Model model, std::size_t links, con
                                               benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+/// From one sample of figures to the next: 1/120 s.
+void thousand_pendulums(benchmark::State& state) {
+    std::vector<Pendulum<double>> all;
+    while (all.size() < 1000)
+        for (const auto& one : released(2)) all.push_back(one);
+    all.resize(1000);
+    Batch ensemble(all, Model::angles, "euler", 1.0 / 30000);
+    for (auto _ : state) ensemble.advance(250);
+}
+BENCHMARK(thousand_pendulums)->Name("lanes/thousand_pendulums")->Unit(benchmark::kMicrosecond);
+
 const bool registered = [] {
     for (const char* method : {"euler", "rk4"})
         for (const int width : register_widths())
