@@ -38,7 +38,7 @@ public:
         const double now = log_norm(y), growth = now - last_;
         last_ = now;
         if (std::abs(now) > huge || y.head(size_ / 2).cwiseAbs().maxCoeff() > many_turns) {
-            y.tail(size_) *= std::exp(-now);
+            y.tail(size_) *= portable_exp(-now);
             last_ = log_norm(y);
             motion_.restart(y);
         }
@@ -51,7 +51,7 @@ private:
         const auto half = size_ / 2;
         const double square =
             y.segment(size_, half).squaredNorm() + unit_ * unit_ * y.segment(size_ + half, half).squaredNorm();
-        return 0.5 * std::log(square);
+        return 0.5 * portable_log(square);
     }
 
     TangentMotion<Model> motion_;
@@ -103,7 +103,7 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
             if (count <= blocks && whole == 0) whole = last;
         }
     if (whole > 0 && last > whole) error *= last / whole;
-    const double finite_time = std::log(spec.duration_s / spec.transient_s) / (spec.duration_s - spec.transient_s);
+    const double finite_time = portable_log(spec.duration_s / spec.transient_s) / (spec.duration_s - spec.transient_s);
     return {mean, std::sqrt(1.25) * std::hypot(error, finite_time)};
 }
 

@@ -63,7 +63,7 @@ public:
         for (int i = 0; i < size; ++i) frame.row(i) = z_[i].tangent.transpose() / unit_[i];
         const Column stretched = orthonormalise(frame);
         motion_->reset(tangents(frame));
-        return stretched.unaryExpr([](double factor) { return std::log(factor); });
+        return stretched.unaryExpr([](double factor) { return portable_log(factor); });
     }
 
 private:
