@@ -75,8 +75,7 @@ private:
 
     /// Coefficients of one order.
     struct Term {
-        explicit Term(Eigen::Index links)
-            : x(Half::Zero(links)), y(x), rate(x), across(x), along(x) {}
+        explicit Term(Eigen::Index links) : x(Half::Zero(links)), y(x), rate(x), across(x), along(x) {}
         Half x, y;           // r over its length, across and along the rods at t_0
         Half rate;           // ω, rad/s
         Half across, along;  // F, N

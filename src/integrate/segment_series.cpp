@@ -34,7 +34,8 @@ SegmentSeries::SegmentSeries(const Pendulum<double>& p, int order, int width)
 }
 
 SegmentSeries::View SegmentSeries::view() const {
-    return {links_, blocks_, order_, gravity_, rods_.get(), terms_.get(), sums_.get(), work_.get(), inverse_.get(), greatest_.get()};
+    return {links_,       blocks_,     order_,      gravity_,       rods_.get(),
+            terms_.get(), sums_.get(), work_.get(), inverse_.get(), greatest_.get()};
 }
 
 void SegmentSeries::expand_about(const double* y) {

@@ -93,7 +93,8 @@ struct Recurrence {
         for (int k = 0; k < chain.order; ++k) {
             if (k % group == 0)
                 for (int b = 0; b < chain.blocks; ++b) add_known(chain.term(b), k, chain.sums[b]);
-            for (int b = 0; b < chain.blocks; ++b) multiply(chain.rods[b], chain.term(b), k, chain.sums[b], chain.work[b]);
+            for (int b = 0; b < chain.blocks; ++b)
+                multiply(chain.rods[b], chain.term(b), k, chain.sums[b], chain.work[b]);
             solve(k, last);
             finish(k);
         }

@@ -63,7 +63,8 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
                          "name");
         const auto same = indices.find(name);
         const bool is_new = same == indices.end();
-        if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : entries[same->second], is_new)) entry.finish();
+        if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : entries[same->second], is_new))
+            entry.finish();
     }
 }
 
