@@ -2,8 +2,8 @@
 // 8 doubles, by the rules of integrate/batch_width.cpp. Every lane has sums of its own, in the same order, and what goes
 // from lane to lane goes the same way, so all give the same bits.
 
+#include "integrate/segment_lanes.hpp"
 #include "integrate/segment_series.hpp"
-#include "numeric/lanes.hpp"
 
 namespace doppel {
 namespace {
@@ -23,75 +23,15 @@ constexpr int lanes = SegmentSeries::lanes, group = SegmentSeries::group;
     return Pack::load(row.of);
 }
 
-/// Lanes 1 … of a, then lane 0 of b; or the last lane of a, then lanes 0 … of b.
-template <bool up, class Doubles>
-[[gnu::always_inline]] inline Doubles shifted(Doubles a, Doubles b) {
-    constexpr int last = sizeof(Doubles) / sizeof(double) - 1, first = up ? 1 : last;
-    if constexpr (last == 7)
-        return __builtin_shufflevector(a, b, first, first + 1, first + 2, first + 3, first + 4, first + 5, first + 6,
-                                       first + 7);
-    else if constexpr (last == 3)
-        return __builtin_shufflevector(a, b, first, first + 1, first + 2, first + 3);
-    else
-        return __builtin_shufflevector(a, b, first, first + 1);
-}
-
-/// Lane l of lane l + 1, where the segment goes on; 0 in the last.
-[[gnu::always_inline]] inline Pack from_next(const Pack& a) {
-    Pack r;
-    for (int k = 0; k + 1 < Pack::parts; ++k) r.v[k] = shifted<true>(a.v[k], a.v[k + 1]);
-    r.v[Pack::parts - 1] = shifted<true>(a.v[Pack::parts - 1], Pack::Doubles{});
-    return r;
-}
-
-/// Lane l of lane l − 1, where the segment comes from; 0 in the first.
-[[gnu::always_inline]] inline Pack from_last(const Pack& a) {
-    Pack r;
-    r.v[0] = shifted<false>(Pack::Doubles{}, a.v[0]);
-    for (int k = 1; k < Pack::parts; ++k) r.v[k] = shifted<false>(a.v[k - 1], a.v[k]);
-    return r;
-}
-
-/// The inverse of the matrix of the segments' last links: symmetric, a row a pack.
-struct LastLinks {
-    Pack inverse[lanes];
-
-    /// Of the diagonal, and of what is beside it in row l, column l − 1, its sign turned.
-    [[gnu::always_inline]] LastLinks(const Pack& diagonal, const Pack& beside) {
-        static constexpr double unit[2 * lanes - 1] = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
-        double pivot[lanes], share[lanes];
-        pivot[0] = diagonal[0];
-        share[0] = 0;
-        inverse[0] = Pack::load(unit + lanes - 1);
-        for (int i = 1; i < lanes; ++i) {
-            share[i] = beside[i] / pivot[i - 1];
-            pivot[i] = diagonal[i] - share[i] * beside[i];
-            inverse[i] = Pack::load(unit + lanes - 1 - i) + Pack(share[i]) * inverse[i - 1];
-        }
-        for (int i = lanes - 1; i >= 0; --i) {
-            inverse[i] /= Pack(pivot[i]);
-            if (i + 1 < lanes) inverse[i] += Pack(share[i + 1]) * inverse[i + 1];
-        }
-    }
-
-    [[gnu::always_inline]] Pack solve(const Pack& right) const {
-        alignas(64) double all[lanes];
-        right.store(all);
-        Pack sum[4];
-        for (int i = 0; i < 4; ++i) sum[i] = inverse[i] * Pack(all[i]) + inverse[i + 4] * Pack(all[i + 4]);
-        return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    }
-};
-
 struct Recurrence {
     const View& chain;
     Pack sin0, cos0;  // of the first rod of each segment
 
     [[gnu::always_inline]] void run(const double* y) {
         start(y);
-        const LastLinks last = factor();
+        const LastLinks<Pack> last = factor();
         for (int k = 0; k < chain.order; ++k) {
-            if (k % group == 0)
+            if (k > 0 && k % group == 0)
                 for (int b = 0; b < chain.blocks; ++b) add_known(chain.term(b), k, chain.sums[b]);
             for (int b = 0; b < chain.blocks; ++b)
                 multiply(chain.rods[b], chain.term(b), k, chain.sums[b], chain.work[b]);
@@ -144,7 +84,7 @@ struct Recurrence {
     }
 
     /// The matrix of the tensions, and its factors.
-    [[gnu::always_inline]] LastLinks factor() const {
+    [[gnu::always_inline]] LastLinks<Pack> factor() const {
         const int last = chain.blocks - 1;
         for (int b = 0; b <= last; ++b) {
             Rod& rod = chain.rods[b];
@@ -169,7 +109,7 @@ struct Recurrence {
             pivot = load(chain.rods[b + 1].both) - share * c;
             spike = share * spike;
         }
-        return LastLinks(pivot - from_next(taken), spike);
+        return LastLinks<Pack>(pivot - from_next(taken), spike);
     }
 
     /// sums ← Σ_j r_j ω_{k+1−j} and Σ_j r_j · F_{k−j} of what is known before order `first`, for it and the next ones.
@@ -188,12 +128,10 @@ struct Recurrence {
                     across[g] += one * Register::load(with.across.of + l) + other * Register::load(with.along.of + l);
                 }
             };
-            if (first > 0) {
-                add.template operator()<1>(1);
-                add.template operator()<2>(2);
-                add.template operator()<3>(3);
-                for (int j = 4; j <= first + 1; ++j) add.template operator()<4>(j);
-            }
+            add.template operator()<1>(1);
+            add.template operator()<2>(2);
+            add.template operator()<3>(3);
+            for (int j = 4; j <= first + 1; ++j) add.template operator()<4>(j);
             for (int g = 0; g < group; ++g) {
                 x[g].store(sums[g].x.of + l);
                 y[g].store(sums[g].y.of + l);
@@ -207,8 +145,7 @@ struct Recurrence {
     [[gnu::always_inline]] void multiply(const Rod& rod, Term* term, int k, const std::array<Sums, group>& sums,
                                          Work& work) const {
         const int g = k % group, first = k - g;
-        const Sums& known = sums[static_cast<std::size_t>(g)];
-        Pack x = load(known.x), y = load(known.y), across = load(known.across);
+        Pack x(0), y(0), across(0);
         const auto add = [&](int j) __attribute__((always_inline)) {
             const Pack one = load(term[j].x), other = load(term[j].y), rate = load(term[k + 1 - j].rate);
             x += one * rate;
@@ -218,6 +155,10 @@ struct Recurrence {
         if (first == 0) {
             for (int j = 1; j <= k + 1; ++j) add(j);
         } else {
+            const Sums& known = sums[static_cast<std::size_t>(g)];
+            x = load(known.x);
+            y = load(known.y);
+            across = load(known.across);
             for (int j = 1; j <= g; ++j) add(j);
             for (int j = first + 2; j <= k + 1; ++j) add(j);
         }
@@ -229,7 +170,7 @@ struct Recurrence {
     }
 
     /// F_k along.
-    [[gnu::always_inline]] void solve(int k, const LastLinks& last_links) const {
+    [[gnu::always_inline]] void solve(int k, const LastLinks<Pack>& last_links) const {
         const int last = chain.blocks - 1;
         Work* const work = chain.work;
         if (k == 0) work[0].along.of[0] -= chain.gravity * cos0[0];
