@@ -3,6 +3,7 @@
 #include "integrate/force_series.hpp"
 #include "integrate/rod_bundle.hpp"
 #include "integrate/taylor_series.hpp"
+#include "numeric/subnormals.hpp"
 #include "physics/mechanism.hpp"
 
 #include <algorithm>
@@ -52,6 +53,7 @@ public:
     }
 
     void expand(const State& y) {
+        const NoSubnormals here;
         const auto n = here_.size();
         places_[0] = y.head(n);
         places_[1] = rates_[0] = y.tail(n);
@@ -67,6 +69,7 @@ public:
     }
 
     void move(const Scalar& h, State& change) {
+        const NoSubnormals here;
         check_path(h);
         const auto n = here_.size();
         auto moved = change.head(n), faster = change.tail(n);

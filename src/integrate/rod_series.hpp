@@ -3,6 +3,7 @@
 #include "integrate/rod_bundle.hpp"
 #include "integrate/stabilise.hpp"
 #include "integrate/taylor_series.hpp"
+#include "numeric/subnormals.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <algorithm>
@@ -47,6 +48,7 @@ public:
     }
 
     void expand(const State& y) {
+        const NoSubnormals here;
         rates_[0] = y.tail(2 * links_);
         for (Eigen::Index c = 0; c < 2 * links_; ++c) rods_[c] = relative(y, c);
         set_rods(1, rates_[0], Scalar(1));
@@ -60,6 +62,7 @@ public:
     }
 
     void move(const Scalar& h, State& change) const {
+        const NoSubnormals here;
         const Eigen::Index n = 2 * links_, some = 64;  // a few components at a time: they stay in the cache
         for (Eigen::Index first = 0; first < n; first += some) {
             const auto size = std::min(some, n - first);

@@ -2,6 +2,7 @@
 
 #include "integrate/taylor_series.hpp"
 #include "integrate/widths.hpp"
+#include "numeric/subnormals.hpp"
 
 #include <cmath>
 
@@ -38,7 +39,13 @@ SegmentSeries::View SegmentSeries::view() const {
             terms_.get(), sums_.get(), work_.get(), inverse_.get(), greatest_.get()};
 }
 
+void SegmentSeries::move_by(double h, double* change) const {
+    const NoSubnormals here;
+    kernel_.move(view(), h, change);
+}
+
 void SegmentSeries::expand_about(const double* y) {
+    const NoSubnormals here;
     kernel_.expand(view(), y);
     amount_ = greatest_[0] + std::sqrt(greatest_[1]);
 }

@@ -29,7 +29,7 @@ public:
     }
     template <class State>
     void move(double h, State& change) const {
-        kernel_.move(view(), h, change.data());
+        move_by(h, change.data());
     }
     double size(int k) const { return amount_ == 0 ? 0 : greatest_[static_cast<std::size_t>(k)] / amount_; }
     double longest_step() const { return longest_step_; }
@@ -83,6 +83,7 @@ public:
 
 private:
     void expand_about(const double* y);
+    void move_by(double h, double* change) const;
     View view() const;
 
     int links_, blocks_, order_;
