@@ -39,11 +39,11 @@ public:
     };
     /// Of the links of a block, during a step.
     struct Rod {
-        Row between, both;         // 1/m_i, 0 for the last link; 1/m_{i−1} + 1/m_i
-        Row length, by_length;     // m, 1/m
-        Row s, c;                  // sin and cos of the angle to the next rod, over m_i, 1/kg
-        Row share, inverse;        // of the row above that is taken away; 1 over the pivot
-        Row spike, inverse_spike;  // what the last link of the segment above adds; the same over the pivot
+        Row between, both;      // 1/m_i, 0 for the last link; 1/m_{i−1} + 1/m_i
+        Row length, by_length;  // m, 1/m
+        Row s, c;               // sin and cos of the angle to the next rod, over m_i, 1/kg
+        Row share, inverse;     // of the row above that is taken away; 1 over the pivot
+        Row inverse_spike;      // what the last link of the segment above adds, over the pivot
     };
     /// Coefficients of one order in a block, in the frame of the rods at the start of the step: across and along.
     struct Term {

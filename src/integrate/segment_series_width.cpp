@@ -101,7 +101,6 @@ struct Recurrence {
             if (b == last) break;
             const Pack inverse = Pack(1) / pivot, inverse_spike = inverse * spike;
             inverse.store(rod.inverse.of);
-            spike.store(rod.spike.of);
             inverse_spike.store(rod.inverse_spike.of);
             taken += spike * inverse_spike;
             c = load(rod.c);
