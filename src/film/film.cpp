@@ -231,7 +231,7 @@ void Simulation::work(const Scene& scene, long last, bool with_pictures, const s
                 for (long k = before; k < tick; ++k) members->advance(stop);
                 for (std::size_t k = 0; k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
             }
-            cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+            cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID) + pair.other_cpu_s();
             {
                 const std::lock_guard hold(mutex_);
                 efforts_ = {pair.effort_a(), pair.effort_b()};

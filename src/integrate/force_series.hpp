@@ -12,6 +12,20 @@
 
 namespace doppel {
 
+/// sum ← sum + one · p for particle a, − other · p for what is at b
+template <class Scalar, class Vector>
+void add_to_ends(std::size_t a, const End<Scalar>& b, const Place<Scalar>& p, const Scalar& one, const Scalar& other,
+                 Vector& sum) {
+    const auto i = 2 * static_cast<Eigen::Index>(a);
+    sum[i] += one * p[0];
+    sum[i + 1] += one * p[1];
+    if (const auto* particle = std::get_if<std::size_t>(&b)) {
+        const auto j = 2 * static_cast<Eigen::Index>(*particle);
+        sum[j] -= other * p[0];
+        sum[j + 1] -= other * p[1];
+    }
+}
+
 /// The series of r = q_a − q_b, from a particle a back to another or to a fixed place.
 template <class Scalar>
 class SeparationSeries {
@@ -64,14 +78,7 @@ public:
     /// sum ← sum + one · p for particle a, − other · p for what is at b
     template <class Vector>
     void add(const Place<Scalar>& p, const Scalar& one, const Scalar& other, Vector& sum) const {
-        const auto i = 2 * static_cast<Eigen::Index>(a_);
-        sum[i] += one * p[0];
-        sum[i + 1] += one * p[1];
-        if (const auto* particle = std::get_if<std::size_t>(&b_)) {
-            const auto j = 2 * static_cast<Eigen::Index>(*particle);
-            sum[j] -= other * p[0];
-            sum[j + 1] -= other * p[1];
-        }
+        add_to_ends(a_, b_, p, one, other, sum);
     }
 
 private:

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "integrate/force_series.hpp"
+#include "integrate/rod_bundle.hpp"
 #include "integrate/taylor_series.hpp"
+#include "numeric/subnormals.hpp"
 #include "physics/mechanism.hpp"
 
 #include <algorithm>
@@ -37,7 +39,8 @@ public:
           here_(places_[0]),
           gradients_(model_.set_.blank_gradients()),
           checked_gradients_(gradients_),
-          ahead_(gradients_) {
+          ahead_(gradients_),
+          rods_(order) {
         for (int k = 0; k < order + 2; ++k) inverse_.push_back(Scalar(1) / Scalar(std::max(k, 1)));
         for (std::size_t i = 0; i < model_.forces_.size(); ++i)
             std::visit([&](const auto& force) { add(force, name_of(model_.forces_, i)); }, model_.forces_[i]);
@@ -50,10 +53,11 @@ public:
     }
 
     void expand(const State& y) {
+        const NoSubnormals here;
         const auto n = here_.size();
         places_[0] = y.head(n);
         places_[1] = rates_[0] = y.tail(n);
-        for (auto& rod : rods_) rod.r.start(places_[0]);
+        rods_.start(places_[0]);
         for (auto& force : forces_) force.start(places_[0]);
         take(1);
         model_.set_.update(places_[0], gradients_);
@@ -65,14 +69,12 @@ public:
     }
 
     void move(const Scalar& h, State& change) {
+        const NoSubnormals here;
         check_path(h);
         const auto n = here_.size();
-        for (Eigen::Index c = 0; c < n; ++c) {
-            change[c] = place_change(c, h);
-            Scalar rate(0);
-            for (std::size_t k = rates_.size() - 1; k > 0; --k) rate = (rate + rates_[k][c]) * h;
-            change[n + c] = rate;
-        }
+        auto moved = change.head(n), faster = change.tail(n);
+        sum_up(places_, h, moved);
+        sum_up(rates_, h, faster);
     }
 
     /// The forces count as well: at the end of a straight way into its other end a spring turns over, and nothing else
@@ -91,21 +93,9 @@ private:
     using Gradients = typename Model::Gradients;
     using Central = CentralForceSeries<Scalar>;
 
-    /// A rod, its row, and the series of its λ.
-    struct RodPart {
-        SeparationSeries<Scalar> r;
-        Scalar share_a, share_b;
-        Eigen::Index row;
-        std::vector<Scalar> lambda;
-    };
-
     void add(const Rod<Scalar>& rod, Eigen::Index row) {
         const auto& w = model_.masses_.w;
-        rods_.push_back({{rod.a, rod.b, order_ + 2},
-                         w[static_cast<Eigen::Index>(rod.a)],
-                         share_of(rod.b, w),
-                         row,
-                         std::vector<Scalar>(static_cast<std::size_t>(order_), Scalar(0))});
+        rods_.add(rod.a, rod.b, w[static_cast<Eigen::Index>(rod.a)], share_of(rod.b, w), row);
         reach_ += plain_value(rod.length);
     }
 
@@ -142,16 +132,13 @@ private:
         for (auto& force : forces_) force.accelerate(k, a);
         auto& lambda = model_.lambda_;
         lambda.setZero();
-        for (const auto& rod : rods_) {
-            rod.r.add(rod.r.product(rod.lambda, 1, k), rod.share_a, rod.share_b, a);
-            lambda[rod.row] = Scalar((k + 1) * (k + 2)) * Scalar(0.5) * rod.r.inner_square(k + 2);
-        }
+        rods_.multiply(k, a, lambda);
 
         model_.set_.add_constraint_velocity(gradients_, a, lambda);
         lambda = -lambda;
         model_.matrix_.solve(lambda);
         model_.set_.add_pull(gradients_, model_.masses_.w, lambda, a);
-        for (auto& rod : rods_) rod.lambda[n] = lambda[rod.row];
+        rods_.pull(k, lambda);
 
         a *= inverse_[n + 1];
         places_[n + 2] = a * inverse_[n + 2];
@@ -160,7 +147,7 @@ private:
 
     /// Coefficient k of all places, in rods and forces too
     void take(int k) {
-        for (auto& rod : rods_) rod.r.take(k, places_[static_cast<std::size_t>(k)]);
+        rods_.take(k, places_[static_cast<std::size_t>(k)]);
         for (auto& force : forces_) force.take(k, places_[static_cast<std::size_t>(k)]);
     }
 
@@ -185,7 +172,8 @@ private:
     /// Whether nothing can be between the place last passed and that at time h. Throws if something seems to be and
     /// this is the last attempt.
     bool is_clear(const Scalar& h, bool last) {
-        for (Eigen::Index c = 0; c < here_.size(); ++c) here_[c] = places_[0][c] + place_change(c, h);
+        sum_up(places_, h, here_);
+        here_ += places_[0];
         model_.set_.update(here_, ahead_);
         if (!Model::alike(ahead_, checked_gradients_)) return last;
         const auto row = factor(ahead_, checked_gradients_);
@@ -214,10 +202,15 @@ private:
         amount_ = greatest(0) + std::sqrt(greater(square, acceleration * length));
     }
 
-    Scalar place_change(Eigen::Index c, const Scalar& h) const {
-        Scalar change(0);
-        for (std::size_t k = places_.size() - 1; k > 0; --k) change = (change + places_[k][c]) * h;
-        return change;
+    /// sum ← Σ_{k≥1} c_k h^k, a few components at a time: they stay in the cache.
+    template <class Vector>
+    static void sum_up(const std::vector<Half>& c, const Scalar& h, Vector& sum) {
+        constexpr Eigen::Index some = 64;
+        for (Eigen::Index first = 0; first < sum.size(); first += some) {
+            auto part = sum.segment(first, std::min(some, sum.size() - first));
+            part.setZero();
+            for (std::size_t k = c.size() - 1; k > 0; --k) part = (part + c[k].segment(first, part.size())) * h;
+        }
     }
 
     /// The greatest coefficient k of the velocities, m/s^(k+1).
@@ -234,7 +227,6 @@ private:
     Model model_;
     std::vector<Half> places_, rates_;  // q_k and q′_k, order by order
     std::vector<Scalar> inverse_;       // 1/k
-    std::vector<RodPart> rods_;
     std::vector<Central> forces_;
     Scalar gravity_ = Scalar(0);
     double reach_ = 0;  // m, of all rods in a line
@@ -243,6 +235,7 @@ private:
     Scalar checked_ = Scalar(0);                       // how far the way has been checked, s
     Half here_;                                        // q there
     Gradients gradients_, checked_gradients_, ahead_;  // J at the start, at checked_, further on
+    RodBundle<Scalar> rods_;
 };
 
 template <class Scalar>

@@ -1,10 +1,14 @@
 #pragma once
 
+#include "integrate/rod_bundle.hpp"
 #include "integrate/stabilise.hpp"
 #include "integrate/taylor_series.hpp"
+#include "numeric/subnormals.hpp"
 #include "physics/rod_chain.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 namespace doppel {
@@ -30,11 +34,13 @@ public:
           links_(model.w.size()),
           w_(model.w),
           g_(model.g),
-          rods_(static_cast<std::size_t>(order + 2), Half::Zero(2 * links_)),
-          rates_(static_cast<std::size_t>(order + 1), rods_[0]),
-          lambda_(static_cast<std::size_t>(order), Multipliers::Zero(links_)),
-          pull_(rods_[0]),
+          rods_(Half::Zero(2 * links_)),
+          products_(order, static_cast<std::size_t>(links_)),
+          rates_(static_cast<std::size_t>(order + 1), rods_),
+          lambda_(Multipliers::Zero(links_)),
+          pull_(rods_),
           matrix_(links_) {
+        for (int k = 1; k < order + 3; ++k) inverse_.push_back(Scalar(1) / Scalar(k));
         using std::sqrt;
         Scalar sum(0);
         for (Eigen::Index i = 0; i < links_; ++i) sum += sqrt(model.l2[i]);
@@ -42,14 +48,13 @@ public:
     }
 
     void expand(const State& y) {
-        for (Eigen::Index c = 0; c < 2 * links_; ++c) {
-            rates_[0][c] = y[2 * links_ + c];
-            rods_[0][c] = relative(y, c);
-            rods_[1][c] = relative(rates_[0], c);
-        }
+        const NoSubnormals here;
+        rates_[0] = y.tail(2 * links_);
+        for (Eigen::Index c = 0; c < 2 * links_; ++c) rods_[c] = relative(y, c);
+        set_rods(1, rates_[0], Scalar(1));
         for (Eigen::Index i = 0; i < links_; ++i) {
-            matrix_.diagonal[i] = dot(0, i, 0, i) * (i == 0 ? w_[0] : Scalar(w_[i - 1] + w_[i]));
-            if (i + 1 < links_) matrix_.upper[i] = matrix_.lower[i] = -(dot(0, i, 0, i + 1) * w_[i]);
+            matrix_.diagonal[i] = dot(i, i) * (i == 0 ? w_[0] : Scalar(w_[i - 1] + w_[i]));
+            if (i + 1 < links_) matrix_.upper[i] = matrix_.lower[i] = -(dot(i, i + 1) * w_[i]);
         }
         matrix_.factor();
         for (int k = 0; k < order_; ++k) next(k);
@@ -57,15 +62,19 @@ public:
     }
 
     void move(const Scalar& h, State& change) const {
-        for (Eigen::Index c = 0; c < 2 * links_; ++c) {
-            Scalar place(0), rate(0);
+        const NoSubnormals here;
+        const Eigen::Index n = 2 * links_, some = 64;  // a few components at a time: they stay in the cache
+        for (Eigen::Index first = 0; first < n; first += some) {
+            const auto size = std::min(some, n - first);
+            auto place = change.segment(first, size), rate = change.segment(n + first, size);
+            place.setZero();
+            rate.setZero();
             for (int k = order_; k > 0; --k) {
-                const Scalar& v = rates_[static_cast<std::size_t>(k)][c];
-                place = (place + v / Scalar(k + 1)) * h;
+                const auto v = rates_[static_cast<std::size_t>(k)].segment(first, size);
+                place = (place + v * inverse(k + 1)) * h;
                 rate = (rate + v) * h;
             }
-            change[c] = (place + rates_[0][c]) * h;
-            change[2 * links_ + c] = rate;
+            place = (place + rates_[0].segment(first, size)) * h;
         }
     }
 
@@ -79,35 +88,34 @@ private:
 
     /// λ_k, q′_{k+1} and r_{k+2} from all before.
     void next(int k) {
-        Multipliers& lambda = lambda_[static_cast<std::size_t>(k)];
         Half& rates = rates_[static_cast<std::size_t>(k + 1)];
-        pull_.setConstant(Scalar(0));
-        for (int j = 1; j <= k; ++j) add_pull(j, k - j);
+        products_.multiply(k);
+        for (Eigen::Index i = 0; i < links_; ++i)
+            pull_.template segment<2>(2 * i) = products_.pull(static_cast<std::size_t>(i));
         accelerate(k);
 
-        const Scalar factor = Scalar((k + 1) * (k + 2)) / Scalar(2);
+        const Scalar factor = Scalar((k + 1) * (k + 2)) * Scalar(0.5);
         for (Eigen::Index i = 0; i < links_; ++i) {
-            Scalar sum(0), along(0);
-            for (int j = 1; j <= k + 1; ++j) sum += dot(j, i, k + 2 - j, i);
-            for (Eigen::Index c = 2 * i; c < 2 * i + 2; ++c) along += rods_[0][c] * relative(rates, c);
-            lambda[i] = -(along + factor * sum);
+            const Scalar along = rods_[2 * i] * relative(rates, 2 * i) + rods_[2 * i + 1] * relative(rates, 2 * i + 1);
+            lambda_[i] = -(along + factor * products_.square(static_cast<std::size_t>(i)));
         }
-        matrix_.solve(lambda);
+        matrix_.solve(lambda_);
+        for (Eigen::Index i = 0; i < links_; ++i) {
+            products_.set_pull(k, static_cast<std::size_t>(i), lambda_[i]);
+            pull_[2 * i] += rods_[2 * i] * lambda_[i];
+            pull_[2 * i + 1] += rods_[2 * i + 1] * lambda_[i];
+        }
 
-        add_pull(0, k);
         accelerate(k);
-        if (k + 1 < order_) {
-            auto& rods = rods_[static_cast<std::size_t>(k + 2)];
-            for (Eigen::Index c = 0; c < 2 * links_; ++c) rods[c] = relative(rates, c) / Scalar((k + 1) * (k + 2));
-        }
-        rates /= Scalar(k + 1);
+        rates *= inverse(k + 1);
+        if (k + 1 < order_) set_rods(k + 2, rates, inverse(k + 2));
     }
 
-    /// pull ← pull + r_j λ_k, each rod on the particle below it
-    void add_pull(int j, int k) {
-        const auto& r = rods_[static_cast<std::size_t>(j)];
-        const auto& lambda = lambda_[static_cast<std::size_t>(k)];
-        for (Eigen::Index c = 0; c < 2 * links_; ++c) pull_[c] += r[c] * lambda[c / 2];
+    /// r_k, from coefficient k − 1 of the velocities and 1/k.
+    void set_rods(int k, const Half& rates, const Scalar& share) {
+        for (Eigen::Index i = 0; i < links_; ++i)
+            products_.set_rod(k, static_cast<std::size_t>(i), relative(rates, 2 * i) * share,
+                              relative(rates, 2 * i + 1) * share);
     }
 
     /// q″_k from the pulls of the rods, where q′_{k+1} will be
@@ -127,10 +135,10 @@ private:
         return c < 2 ? v[c] : Scalar(v[c] - v[c - 2]);
     }
 
-    Scalar dot(int j, Eigen::Index a, int k, Eigen::Index b) const {
-        const auto &one = rods_[static_cast<std::size_t>(j)], &other = rods_[static_cast<std::size_t>(k)];
-        return one[2 * a] * other[2 * b] + one[2 * a + 1] * other[2 * b + 1];
+    Scalar dot(Eigen::Index a, Eigen::Index b) const {
+        return rods_[2 * a] * rods_[2 * b] + rods_[2 * a + 1] * rods_[2 * b + 1];
     }
+    const Scalar& inverse(int k) const { return inverse_[static_cast<std::size_t>(k - 1)]; }
 
     /// The greatest coefficient k of the velocities, m/s^(k+1).
     double greatest(int k) const {
@@ -144,10 +152,12 @@ private:
     Eigen::Index links_;
     Multipliers w_;
     Scalar g_;
-    double reach_ = 0;                 // m
-    std::vector<Half> rods_;           // r_k, order by order
-    std::vector<Half> rates_;          // q′_k
-    std::vector<Multipliers> lambda_;  // λ_k
+    double reach_ = 0;  // m
+    Half rods_;         // r_0
+    RodProducts<Scalar, N == Eigen::Dynamic && std::is_same_v<Scalar, double> ? 8 : 1> products_;
+    std::vector<Half> rates_;      // q′_k, order by order
+    std::vector<Scalar> inverse_;  // 1/k
+    Multipliers lambda_;           // λ_k
     Half pull_;
     Tridiagonal<Scalar, N> matrix_;
     double amount_ = 0;  // of the velocities, m/s

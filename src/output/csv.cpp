@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -14,7 +14,8 @@ namespace doppel {
 
 Csv::Csv(const FilePlace& place, std::vector<std::string> columns, const std::vector<std::string>& written)
     : file_(place), columns_(std::move(columns)) {
-    for (const auto& name : columns_) is_written_.push_back(std::ranges::find(written, name) != written.end());
+    const std::set<std::string_view> names(written.begin(), written.end());
+    for (const auto& name : columns_) is_written_.push_back(names.contains(name));
     for (const std::string& name : columns_) add(name);
     end_row();
     row_ = 0;

@@ -36,6 +36,8 @@ public:
     }
 
     Index rows() const { return static_cast<Index>(envelope_.size()); }
+    /// Numbers kept of the matrix itself.
+    Index entries() const { return lower_.size() + diagonal_.size() + upper_.size(); }
 
     void clear() {
         lower_.setZero();

@@ -5,6 +5,7 @@
 #include "physics/constraint_set.hpp"
 #include "physics/mechanism_assembly.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -269,10 +270,10 @@ private:
             if (abs(share[j]) > largest) largest = abs(share[j]);
         for (Eigen::Index j = 0; j < row; ++j) {
             const auto other = set_.owner(j);
-            if (abs(share[j]) > Scalar(1e-6) * largest && other != found.constraint &&
-                (found.others.empty() || found.others.back() != other))
-                found.others.push_back(other);
+            if (abs(share[j]) > Scalar(1e-6) * largest && other != found.constraint) found.others.push_back(other);
         }
+        std::ranges::sort(found.others);
+        found.others.erase(std::ranges::unique(found.others).begin(), found.others.end());
         return found;
     }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace doppel {
 
@@ -134,12 +135,13 @@ Place<Quad> place(const QuadPair& xy) {
 class ParticleNames {
 public:
     ParticleNames(std::vector<std::string> names, const Assembly<Quad>& assembly)
-        : names_(std::move(names)), assembly_(assembly) {}
+        : names_(std::move(names)), assembly_(assembly) {
+        for (std::size_t i = 0; i < names_.size(); ++i) indices_.emplace(names_[i], i);
+    }
 
     /// Of the particle that an entry, `what`, names.
     std::size_t index(const std::string& what, const std::string& name) const {
-        const auto found = std::find(names_.begin(), names_.end(), name);
-        if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
+        if (const auto found = indices_.find(name); found != indices_.end()) return found->second;
         const auto meant = nearest(name, std::vector<std::string_view>(names_.begin(), names_.end()));
         throw bad_input("{} names the particle \"{}\", which is not there{}", what, name,
                         meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
@@ -160,6 +162,7 @@ public:
 
 private:
     std::vector<std::string> names_;
+    std::map<std::string, std::size_t> indices_;  // by name
     const Assembly<Quad>& assembly_;
 };
 

@@ -173,14 +173,15 @@ Bobs<Scalar> compared_bobs(const Scene& scene, const Bobs<Scalar>& bobs) {
 /// number that makes it so. Exit 2 at the start, exit 3 later.
 void check_distance(const Scene& scene, const PairState& state);
 
-/// Steps the pair from sample to sample.
+/// Steps the pair from sample to sample: large sides at the same time, on two threads.
 class PairRun {
 public:
     explicit PairRun(const Scene& scene)
         : scene_(scene),
           ticks_per_sample_(scene.frames.ticks_per_sample),
           a_(scene, scene.a, 'a'),
-          b_(scene, scene.b, 'b') {}
+          b_(scene, scene.b, 'b'),
+          are_large_(std::min(scene.a.mass.size(), scene.b.mass.size()) >= large) {}
 
     /// Sample 0, then 1, 2, … Throws as SideRun does.
     PairState next(const std::atomic<bool>& stop);
@@ -188,11 +189,19 @@ public:
 
     Effort effort_a() const { return a_.effort(); }
     Effort effort_b() const { return b_.effort(); }
+    /// What other threads than the caller's have spent, s.
+    double other_cpu_s() const { return other_cpu_s_; }
 
 private:
+    static constexpr std::size_t large = 256;  // masses; a sample takes longer than to start a thread
+
+    void advance_sides(long tick, const std::atomic<bool>& stop, PairState& now);
+
     const Scene& scene_;
     long ticks_per_sample_;
     SideRun a_, b_;
+    bool are_large_;
+    double other_cpu_s_ = 0;
     long tick_ = -1;
 };
 

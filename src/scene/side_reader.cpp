@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <string>
 
@@ -50,6 +51,9 @@ template <class Spec, class Read>
 void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& entries, const Read& read) {
     const auto tables = table.read_tables(key);
     std::set<std::string> given;
+    std::map<std::string, std::size_t> indices;  // of the entries with a name
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        if (!entries[i].name.empty()) indices.emplace(entries[i].name, i);
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.{}]] {}", table.bare_name(), key, i + 1));
         std::string name;
@@ -57,10 +61,10 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
         if (!name.empty() && !given.insert(name).second)
             entry.refuse(entry.fault("name", "must differ from those before it; \"{}\" is there already", name),
                          "name");
-        auto same = std::find_if(entries.begin(), entries.end(),
-                                 [&](const Spec& spec) { return !name.empty() && spec.name == name; });
-        const bool is_new = same == entries.end();
-        if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : *same, is_new)) entry.finish();
+        const auto same = indices.find(name);
+        const bool is_new = same == indices.end();
+        if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : entries[same->second], is_new))
+            entry.finish();
     }
 }
 

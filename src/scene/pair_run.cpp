@@ -1,0 +1,82 @@
+#include "analysis/difference.hpp"
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "base/threads.hpp"
+#include "scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+#include <thread>
+
+namespace doppel {
+
+PairState PairRun::next(const std::atomic<bool>& stop) {
+    return advance_to(tick_ < 0 ? 0 : (tick_ / ticks_per_sample_ + 1) * ticks_per_sample_, stop);
+}
+
+void PairRun::advance_sides(long tick, const std::atomic<bool>& stop, PairState& now) {
+    const auto advance_b = [&] { now.b = b_.advance_to(tick, stop); };
+    std::exception_ptr fault;
+    std::vector<std::jthread> other;
+    if (are_large_)
+        other = start_threads(1, [&] {
+            try {
+                advance_b();
+            } catch (...) {
+                fault = std::current_exception();
+            }
+            other_cpu_s_ += seconds_of(CLOCK_THREAD_CPUTIME_ID);
+        });
+    const bool is_alone = other.empty();
+    now.a = a_.advance_to(tick, stop);
+    if (is_alone) return advance_b();
+    other.clear();
+    if (fault) std::rethrow_exception(fault);
+}
+
+PairState PairRun::advance_to(long tick, const std::atomic<bool>& stop) {
+    PairState now;
+    now.tick = tick_ = tick;
+    now.sample = tick / ticks_per_sample_;
+    advance_sides(tick, stop, now);
+    now.energy_error_a = a_.energy_error(now.a);
+    now.energy_error_b = b_.energy_error(now.b);
+    const bool exact = !now.a.exact.empty() && !now.b.exact.empty();
+    const auto distance = [&](const auto& a, const auto& b) {
+        if (!differ_in_kind(scene_.preset.a, scene_.preset.b)) return static_cast<double>(state_space_distance(a, b));
+        return static_cast<double>(state_space_distance(compared_bobs(scene_, a), compared_bobs(scene_, b)));
+    };
+    now.distance = exact ? distance(now.a.exact, now.b.exact) : distance(now.a.bobs, now.b.bobs);
+    return now;
+}
+
+void check_distance(const Scene& scene, const PairState& state) {
+    if (std::isfinite(state.distance)) return;
+    struct Number {
+        std::string what;
+        double a = 0, b = 0;
+    } worst;
+    const auto all_a = compared_bobs(scene, state.a.bobs), all_b = compared_bobs(scene, state.b.bobs);
+    for (std::size_t i = 0; i < all_a.size(); ++i) {
+        const auto &a = all_a[i], &b = all_b[i];
+        const auto look = [&](const char* what, double of_a, double of_b) {
+            if (std::abs(of_a - of_b) > std::abs(worst.a - worst.b))
+                worst = {fmt::format("{} of mass {}", what, i + 1), of_a, of_b};
+        };
+        look("the mass, kg,", a.mass, b.mass);
+        look("the place in x, m,", a.x, b.x);
+        look("the place in y, m,", a.y, b.y);
+        look("the velocity in x, m/s,", a.vx, b.vx);
+        look("the velocity in y, m/s,", a.vy, b.vy);
+    }
+    const bool of_b = std::abs(worst.b) > std::abs(worst.a);
+    throw Error(state.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,
+                fmt::format("{}: side {}: {} is {:.6g} at t = {} s, and {:.6g} on the other side: the square of their "
+                            "difference is out of range, beyond 1.8e308",
+                            scene.preset.name, of_b ? 'b' : 'a', worst.what, of_b ? worst.b : worst.a,
+                            scene.time(state.sample), of_b ? worst.a : worst.b));
+}
+
+}  // namespace doppel
