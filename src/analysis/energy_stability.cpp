@@ -73,9 +73,10 @@ double released_energy(const Pendulum<double>& release) {
     // Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …), without the cancellation of the levels
     double vx = 0, vy = 0, height = 0, sum = 0;
     for (std::size_t i = 0; i < release.links(); ++i) {
-        const double l = release.length[i], theta = release.angle[i], half = std::sin(theta / 2);
-        vx += l * release.rate[i] * std::cos(theta);
-        vy += l * release.rate[i] * std::sin(theta);
+        const double l = release.length[i], theta = release.angle[i], half = SinCos<double>(theta / 2).sin;
+        const SinCos<double> turn(theta);
+        vx += l * release.rate[i] * turn.cos;
+        vy += l * release.rate[i] * turn.sin;
         height += 2 * l * half * half;
         sum += release.mass[i] * ((vx * vx + vy * vy) / 2 + release.gravity * height);
     }

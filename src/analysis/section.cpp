@@ -111,13 +111,14 @@ std::vector<Pendulum<double>> releases_of_energy(const Pendulum<double>& p, doub
     for (int k = 0; k < count; ++k) {
         const auto [u, v] = spread(k);
         const double theta2 = widest * (2 * u - 1);
-        const double kinetic = energy_J - weight * (1 - std::cos(theta2));
+        const SinCos<double> turn(theta2);
+        const double kinetic = energy_J - weight * (1 - turn.cos);
         const double p2 = std::sqrt(2 * inertia * kinetic) * (2 * v - 1);
-        const double sin2 = std::sin(theta2);
+        const double sin2 = turn.sin;
         const double omega1 = std::sqrt(2 * (kinetic - p2 * p2 / (2 * inertia)) / (m1 + m2 * sin2 * sin2)) / l1;
         releases.push_back(p);
         releases.back().angle = {0, theta2};
-        releases.back().rate = {omega1, p2 / inertia - l1 / l2 * omega1 * std::cos(theta2)};
+        releases.back().rate = {omega1, p2 / inertia - l1 / l2 * omega1 * turn.cos};
     }
     return releases;
 }

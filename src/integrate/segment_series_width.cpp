@@ -4,6 +4,7 @@
 
 #include "integrate/segment_lanes.hpp"
 #include "integrate/segment_series.hpp"
+#include "numeric/sin_cos.hpp"
 
 namespace doppel {
 namespace {
@@ -53,17 +54,9 @@ struct Recurrence {
         Pack most(0);
         for (int b = 0; b < chain.blocks; ++b) {
             const Pack angle = gather(y, b), rate = gather(y + chain.links, b);
-            Pack s, c;
-            if (all_of(abs(angle) <= Pack(1e5))) {
-                const LanesSinCos<Pack> turn(angle);
-                s = turn.sin;
-                c = turn.cos;
-            } else {
-                s = sin(angle);
-                c = cos(angle);
-            }
-            s.store(chain.work[b].sin.of);
-            c.store(chain.work[b].cos.of);
+            const SinCos<Pack> turn(angle);
+            turn.sin.store(chain.work[b].sin.of);
+            turn.cos.store(chain.work[b].cos.of);
             Term* term = chain.term(b);
             Pack(1).store(term[0].x.of);
             Pack(0).store(term[0].y.of);

@@ -68,7 +68,7 @@ std::string hash_of(const std::string& method, Model model, std::size_t links) {
 
 std::string hash_of_exponents() {
     Hash hash;
-    const auto exponent = largest_exponent(released(2), {.transient_s = 5, .duration_s = 50}, never);
+    const auto exponent = largest_exponent(released(2), {.duration_s = 50, .transient_s = 5}, never);
     hash.add(exponent.value);
     hash.add(exponent.uncertainty);
     for (const auto& sample : lyapunov_spectrum(released(2), {.duration_s = 40, .samples = 40}, never))

@@ -121,7 +121,7 @@ std::string simulation(const Kept& kept) {
             lanes.push_back({fmt::format("{}, {}", method_words, words)});
             for (const int width : widths)
                 lanes.back().push_back(
-                    two_digits(1e9 * kept.counter(fmt::format("lanes/{}/{}/width_{}", method, name, width), "ns")));
+                    two_digits(kept.counter(fmt::format("lanes/{}/{}/width_{}", method, name, width), "ns")));
         }
     std::vector<Cells> chains{{"links"}, {"a step of `taylor` at order 24, µs"}, {"the same a link, µs"}};
     for (int links = 8; links <= 1024; links *= 2) {
