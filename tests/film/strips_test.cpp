@@ -72,7 +72,7 @@ TEST(Strips, TheHorizonIsSaidWhereNoLineCrossesTheWords) {
     EXPECT_EQ(words("[480, 270]", 120), false);              // no room there: above
     EXPECT_EQ(words("[480, 270]", 34 * 120), std::nullopt);  // until they part, which is said there
     // a box clears the grid beneath
-    const auto scene = scene_of("horizon", {"video.size=[720, 406]"});
+    const auto scene = scene_of("horizon", {"video.size=[960, 540]"});
     const auto label = *label_of(labels_of(scene, 0), "predictable to 3");
     const auto picture = frame_of(scene, 0);
     const int y = static_cast<int>(label.anchor.y) - static_cast<int>(0.3f * label.size);
