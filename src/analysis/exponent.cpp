@@ -104,7 +104,7 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
         }
     if (whole > 0 && last > whole) error *= last / whole;
     const double finite_time = portable_log(spec.duration_s / spec.transient_s) / (spec.duration_s - spec.transient_s);
-    return {mean, std::sqrt(1.25) * std::hypot(error, finite_time)};
+    return {mean, std::sqrt(1.25 * (error * error + finite_time * finite_time))};
 }
 
 template <class Model>

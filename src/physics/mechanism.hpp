@@ -272,8 +272,8 @@ private:
             const auto other = set_.owner(j);
             if (abs(share[j]) > Scalar(1e-6) * largest && other != found.constraint) found.others.push_back(other);
         }
-        std::ranges::sort(found.others);
-        found.others.erase(std::ranges::unique(found.others).begin(), found.others.end());
+        std::sort(found.others.begin(), found.others.end());
+        found.others.erase(std::unique(found.others.begin(), found.others.end()), found.others.end());
         return found;
     }
 
