@@ -42,13 +42,9 @@ bool Batch::serves(std::string_view method) {
 }
 
 Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string_view method, double step, int width) {
-    if (members.empty()) throw bad_input("a batch needs at least one pendulum");
-    const std::size_t links = members.front().links();
-    for (const auto& member : members)
-        if (member.links() != links)
-            throw bad_input("the pendulums of a batch have as many links each: not {} and {}", links, member.links());
+    const BatchTable table(members);
     auto* make = make_lone_block;
-    if (links <= batch_links) {
+    if (table.links <= batch_links) {
         width_ = chosen_width(width);
         block_ = static_cast<std::size_t>(batch_block(width_));
         make = at_width(width_, []<int chosen>() { return make_batch_block<chosen>; });
@@ -56,9 +52,8 @@ Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string
     if (!serves(method))
         throw bad_input("\"{}\" does not step many pendulums side by side; these do: {}", method,
                         fmt::join(method_names, ", "));
-    const BatchTable table(members);
     const BatchRequest request{.members = members.size(),
-                               .links = links,
+                               .links = table.links,
                                .mass = table.mass.data(),
                                .length = table.length.data(),
                                .angle = table.angle.data(),

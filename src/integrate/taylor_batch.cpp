@@ -13,20 +13,15 @@ TaylorLanes::~TaylorLanes() = default;
 
 TaylorBatch::TaylorBatch(std::span<const Pendulum<double>> members, double tolerance, double interval, int width)
     : members_(members.size()) {
-    if (members.empty()) throw bad_input("a batch needs at least one pendulum");
-    const std::size_t links = members.front().links();
-    for (const auto& member : members)
-        if (member.links() != links)
-            throw bad_input("the pendulums of a batch have as many links each: not {} and {}", links, member.links());
-    if (!serves(Model::angles, links))
-        throw bad_input("Taylor series step pendulums of two or three links side by side, not of {}", links);
+    const BatchTable table(members);
+    if (!serves(Model::angles, table.links))
+        throw bad_input("Taylor series step pendulums of two or three links side by side, not of {}", table.links);
     if (!(tolerance >= least_tolerance))
         throw bad_input("taylor: tolerance = {:.3g} cannot be met in double; the finest is {:.1g}", tolerance,
                         least_tolerance);
-    const BatchTable table(members);
     const TaylorBatchRequest request{
         .members = members.size(),
-        .links = links,
+        .links = table.links,
         .mass = table.mass.data(),
         .length = table.length.data(),
         .angle = table.angle.data(),
@@ -36,7 +31,7 @@ TaylorBatch::TaylorBatch(std::span<const Pendulum<double>> members, double toler
         .order = std::clamp(taylor_order(tolerance), watched_coefficients + 1, most_batch_orders),
         .interval = interval};
     lanes_.reset(at_width(chosen_width(width), []<int chosen>() { return make_taylor_lanes<chosen>; })(request));
-    numbers_ = 2 * links;
+    numbers_ = 2 * table.links;
     states_.resize(static_cast<std::size_t>(window) * members_ * numbers_);
     compute();
 }
