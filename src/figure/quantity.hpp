@@ -40,9 +40,9 @@ struct QuantityWords {
 /// does, in place of a choice of the method for every pair. It costs less than the rough methods.
 void step_by_series(Preset& pair);
 
-/// Finds one quantity of pairs. Where all can be stepped side by side, in lanes: the mean, distances and energies by
-/// explicit methods of fixed step and Taylor series (two or three links in angles) in double on chains, flips of two links by Taylor series whatever the integrator. The
-/// rest one by one.
+/// Finds one quantity of pairs. Where all can be stepped side by side, in lanes: the mean, distances and energies of chains
+/// in double by explicit methods of fixed step, or by Taylor series (two or three links in angles); flips of two links by
+/// Taylor series whatever the integrator. The rest one by one.
 ///
 /// The numbers of a pair: the quantity; of an exponent its uncertainty too. NaN where the motion broke down, or the two
 /// never part; infinite where there is no flip.

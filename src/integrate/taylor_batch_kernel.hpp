@@ -43,7 +43,10 @@ TaylorLanes* make_taylor_lanes<8>(const TaylorBatchRequest& request);
 
 inline constexpr int most_batch_orders = 32;
 
-/// The series of AngleSeries for chains side by side, one a lane.
+/// The series of chains side by side, one a lane, with r_i = l_i (cosθ_i, sinθ_i) across the rods and
+/// F_i = Σ_{j≥i} m_j (q_j″ + g ŷ): of order k R_k = Σ_{j≥1} r_j ω_{k+1−j}, and a = (k + 1) ω_{k+1} solves
+///     M_0 a = −( r_0 · F_k[R] + Σ_{j=1}^k r_j · F_{k−j} ) .
+/// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
 template <class Pack, int N>
 struct LanesOfSeries {
     using Half = State<Pack, N>;
@@ -98,7 +101,7 @@ struct LanesOfSeries {
     }
 
 private:
-    /// ω_{k+1}, r_{k+2} and F_k from all before (AngleSeries::next).
+    /// ω_{k+1}, r_{k+2} and F_k from all before.
     [[gnu::always_inline]] void next(int k) {
         Pack x[N], y[N], moment_x[N], moment_y[N];
         for (int i = 0; i < N; ++i) {

@@ -222,13 +222,6 @@ inline double rough_log2(double a) {
     return static_cast<double>(std::bit_cast<std::int64_t>(a)) * 0x1p-52 - (1023 - rough_log2_deviation);
 }
 
-/// 2^a within 0.3 % for |a| < 1000.
-inline double rough_exp2(double a) {
-    const double whole = std::floor(a), part = a - whole;
-    const auto power = std::bit_cast<double>((static_cast<std::int64_t>(whole) + 1023) << 52);
-    return power * (1 + part * (0.6565 + 0.3435 * part));
-}
-
 /// The greater of two numbers, lane by lane of many; NaN where either is NaN.
 template <class Scalar>
 [[gnu::always_inline]] inline Scalar greater(const Scalar& a, const Scalar& b) {
