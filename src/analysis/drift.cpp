@@ -47,10 +47,8 @@ public:
     explicit WatchedMotion(const MotionSpec& spec) : motion_(make_motion(spec)), interval_(spec.sample_interval) {
         const auto chain = spec.chain->cast<double>();
         const auto start = motion_->observe();
-        double kinetic = 0;
-        for (const auto& bob : start.bobs) kinetic += 0.5 * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
         energy_scale_ = energy_scale(start.energy, chain.potential_range());
-        largest_energy_ = 10 * (chain.potential_range() + std::abs(start.energy) + kinetic);
+        largest_energy_ = 10 * (chain.potential_range() + std::abs(start.energy) + start.kinetic_energy);
         reach_ = chain.reach();
     }
 

@@ -136,6 +136,7 @@ std::string part_kind(const FieldTable& table) {
 Json with_keys(const FieldTable& table) {
     Json keys = Json::object();
     for (const auto& field : table.fields) keys[std::string(field.key)] = Json::object();
+    for (const auto& inner : table.tables) keys[std::string(inner.key())] = Json::object();
     return {{"properties", std::move(keys)}, {"additionalProperties", false}};
 }
 
@@ -176,6 +177,8 @@ Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
     auto particle = table_schema(film[3]);
     particle["required"] = needed_keys(film[3]);
     schema["properties"]["particle"] = list_schema(particle, 0, 0);
+    for (const auto& entries : film)
+        if (entries.name == torque_table) schema["properties"]["torque"] = list_schema(table_schema(entries), 0, 0);
     for (const auto* key : {"constraint", "force"})
         schema["properties"][key] = list_schema(entry_schema(film, key, may_change), 0, 0);
     return schema;
@@ -200,7 +203,7 @@ Json kind_schema(std::string_view kind) {
     for (const auto& table : tables_of(kind)) {
         auto keys = with_keys(table);
         const bool is_side = table.key() == "a" || table.key() == "b";
-        for (const auto* entries : {"particle", "constraint", "force"})
+        for (const auto* entries : {"particle", "torque", "constraint", "force"})
             if (is_side) keys["properties"][entries] = Json::object();
         const bool differs = is_side || table.key() == "scene" || table.key() == "chart" ||
                              (table.key() == "system" && table.name == "[system]");

@@ -42,7 +42,7 @@ void add(MotionBounds& seen, const Scene& scene, const PairState& state, const O
     const auto link = static_cast<std::size_t>(scene.preset.video.phase_link - 1);
     if (link < side.bobs.size()) seen.fastest = std::max(seen.fastest, std::abs(side.bobs[link].omega));
     for (const double force : side.tension) include(seen.rod_force, force);
-    const double kinetic = kinetic_energy(side.bobs);
+    const double kinetic = side.kinetic_energy;
     auto& energies = seen.energies[&side == &state.a ? 0 : 1];
     for (const double energy : {kinetic, side.energy - kinetic, side.energy}) include(energies, energy);
     if (scene.a.has_angles && scene.b.has_angles)

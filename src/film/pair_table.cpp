@@ -61,7 +61,7 @@ void PairTable::add(const PairState& state, double start_distance) {
     csv_.add(log_ratio(state.distance, start_distance));
     for (const auto* seen : {&state.a, &state.b}) {
         if (!scene_.preset.energy_columns) break;
-        const double kinetic = kinetic_energy(seen->bobs);
+        const double kinetic = seen->kinetic_energy;
         csv_.add(kinetic);
         csv_.add(seen->energy - kinetic);
     }

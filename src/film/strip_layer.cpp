@@ -98,7 +98,7 @@ std::vector<StripValue> StripLayer::values() const {
                 {state_.side(side).conserves_energy ? std::optional(error) : std::nullopt, color, widths[side]});
         }
         if (strip_.kind == (side == 0 ? StripKind::energies_a : StripKind::energies_b)) {
-            const double kinetic = kinetic_energy(seen.bobs);
+            const double kinetic = seen.kinetic_energy;
             values.push_back({kinetic, color, 0.8 * width, "kinetic"});
             values.push_back({seen.energy - kinetic, mixed(color, theme_.background, 0.45f), 0.8 * width, "potential"});
             values.push_back({seen.energy, theme_.text, 0.64 * width, "total"});

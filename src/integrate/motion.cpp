@@ -5,6 +5,7 @@
 #include "integrate/stepper.hpp"
 #include "integrate/turns.hpp"
 #include "physics/mechanism.hpp"
+#include "physics/physical_forces.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <algorithm>
@@ -34,11 +35,16 @@ public:
     explicit Simulation(const MotionSpec& spec)
         : stepper_(make_stepper(spec)), model_(spec.model), adaptive_(find_method(spec.method)->adaptive) {
         if (spec.chain) pendulum_ = spec.chain->cast<Scalar>();
+        if (spec.physical) {
+            physical_ = spec.physical->cast<Scalar>();
+            const auto links = static_cast<Eigen::Index>(spec.chain->links());
+            layout_.emplace(*physical_, model_ == Model::angles ? links : 2 * links);
+        }
         if (model_ == Model::mechanism) mechanism_.emplace(spec.parts->cast<Scalar>());
         if (spec.wants_tension && model_ == Model::mechanism) weighed_.emplace(spec.parts->cast<double>());
         wants_tension_ = spec.wants_tension;
         stepper_->read(y_);
-        const auto bobs = bobs_of(y_);
+        const auto bobs = bobs_of(chain_state(y_));
         const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
         if (adaptive_) {
             const double interval = spec.sample_interval.value();
@@ -54,8 +60,8 @@ public:
             step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
         }
         if (follows_turns) turns_ = Turns(pendulum_->template cast<double>().angle);
-        turns_.update(y_, 0);
-        start_energy_ = energy_of(y_, bobs);
+        turns_.update(chain_state(y_), 0);
+        start_energy_ = energies_of(y_, bobs, pivot_of(y_)).total;
     }
 
     void advance(const std::atomic<bool>& stop) override {
@@ -79,19 +85,21 @@ public:
 
     Observation observe() const override {
         const auto y = stepper_->state();
-        auto bobs = bobs_of(y);
+        auto bobs = bobs_of(chain_state(y));
         turns_.add_to(bobs);
-        const Scalar energy = energy_of(y, bobs);
+        const double length_error = length_error_of(y, bobs);
+        const auto pivot = pivot_of(y);
+        if (physical_) shift(bobs, pivot);
+        const auto energy = energies_of(y, bobs, pivot);
         Observation seen{.bobs = {},
                          .exact = {},
-                         .energy = static_cast<double>(energy),
-                         .energy_change = static_cast<double>(Scalar(energy - start_energy_)),
-                         .length_error = length_error_of(y, bobs)};
-        for (const auto& bob : bobs) {
-            const auto in_double = [](const Scalar& x) { return static_cast<double>(x); };
-            seen.bobs.push_back({in_double(bob.mass), in_double(bob.x), in_double(bob.y), in_double(bob.vx),
-                                 in_double(bob.vy), in_double(bob.theta), in_double(bob.omega)});
-        }
+                         .pivot = in_double(pivot),
+                         .energy = static_cast<double>(energy.total),
+                         .kinetic_energy = static_cast<double>(energy.kinetic),
+                         .work = layout_ ? static_cast<double>(layout_->work_of(y)) : 0,
+                         .energy_change = static_cast<double>(Scalar(energy.total - start_energy_)),
+                         .length_error = length_error};
+        for (const auto& bob : bobs) seen.bobs.push_back(in_double(bob));
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
         if (wants_tension_)
             seen.tension = weighed_ ? weighed_->tensions(particles_of(seen.bobs))
@@ -125,8 +133,49 @@ private:
         if (model_ == Model::angles) return bobs_of_angles(*pendulum_, y);
         return pendulum_ ? bobs_of_particles(*pendulum_, y) : mechanism_->bobs(y);
     }
-    Scalar energy_of(const State& y, const Bobs<Scalar>& bobs) const {
-        return mechanism_ ? mechanism_->energy(y) : energy(bobs, pendulum_->gravity);
+    struct EnergyParts {
+        Scalar total, kinetic;
+    };
+    EnergyParts energies_of(const State& y, const Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) const {
+        if (physical_) {
+            const auto parts = energies(*physical_, bobs, pivot);
+            return {Scalar(parts.kinetic + parts.potential), parts.kinetic};
+        }
+        return {mechanism_ ? mechanism_->energy(y) : energy(bobs, pendulum_->gravity), kinetic_energy(bobs)};
+    }
+    /// Of a physical pendulum the pivot, which may move.
+    Bob<Scalar> pivot_of(const State& y) const {
+        if (!physical_) return {};
+        const PivotPlace<Scalar> at(physical_->pivot, layout_->time_of(y));
+        return {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y};
+    }
+    /// Of a physical pendulum the state of its links alone, places and velocities relative to the pivot's.
+    State chain_state(const State& y) const {
+        if (!physical_) return y;
+        State alone = layout_->of_links(y);
+        if (model_ == Model::angles || !physical_->pivot.moves()) return alone;
+        const auto pivot = pivot_of(y);
+        const auto half = alone.size() / 2;
+        for (Eigen::Index i = 0; i < half; i += 2) {
+            alone[i] -= pivot.x;
+            alone[i + 1] -= pivot.y;
+            alone[half + i] -= pivot.vx;
+            alone[half + i + 1] -= pivot.vy;
+        }
+        return alone;
+    }
+    static void shift(Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
+        for (auto& bob : bobs) {
+            bob.x += pivot.x;
+            bob.y += pivot.y;
+            bob.vx += pivot.vx;
+            bob.vy += pivot.vy;
+        }
+    }
+    static Bob<double> in_double(const Bob<Scalar>& bob) {
+        const auto plain = [](const Scalar& x) { return static_cast<double>(x); };
+        return {plain(bob.mass), plain(bob.x),     plain(bob.y),    plain(bob.vx),
+                plain(bob.vy),   plain(bob.theta), plain(bob.omega)};
     }
     double length_error_of(const State& y, const Bobs<Scalar>& bobs) const {
         if (model_ == Model::angles) return 0;
@@ -150,13 +199,15 @@ private:
     void follow_turns(double seconds) {
         if (!turns_.followed()) return;
         stepper_->read(y_);
-        turns_.update(y_, seconds);
+        turns_.update(chain_state(y_), seconds);
     }
 
     std::unique_ptr<Stepper<Scalar>> stepper_;
     Model model_;
     bool adaptive_, wants_tension_ = false;
     std::optional<Pendulum<Scalar>> pendulum_;
+    std::optional<PhysicalPendulum<Scalar>> physical_;
+    std::optional<PhysicalLayout> layout_;  // of the state of a physical pendulum
     std::optional<Mechanism<Scalar>> mechanism_;
     mutable std::optional<Mechanism<double>> weighed_;           // for the forces in rods; computes in space of its own
     long portions_ = 1;                                          // of a sample, of an adaptive method

@@ -19,8 +19,9 @@ enum class Stabilise { none, baumgarte, projection };
 
 /// What moves, and how it is stepped; everything exact, so that quad means 34 digits of what was written.
 struct MotionSpec {
-    std::optional<Pendulum<Quad>> chain;  // of every model but a mechanism that is none
-    std::optional<Assembly<Quad>> parts;  // of a mechanism; those of the chain first, where it has one
+    std::optional<Pendulum<Quad>> chain;             // of every model but a mechanism that is none
+    std::optional<PhysicalPendulum<Quad>> physical;  // the same chain, where its links are more than point masses
+    std::optional<Assembly<Quad>> parts;             // of a mechanism; those of the chain first, where it has one
     Model model = Model::angles;
     std::string method = "euler";
     Precision precision = Precision::in_double;
@@ -35,11 +36,14 @@ struct MotionSpec {
 
 /// The state at one sample, the same for every model.
 struct Observation {
-    Bobs<double> bobs;         // angles unwrapped
-    Bobs<Quad> exact;          // the same, turns too, to all digits, where the precision is quad; else empty
-    double energy = 0;         // J
-    double energy_change = 0;  // J, since the start; in quad the difference is taken in quad
-    double length_error = 0;   // of the worst rod, m
+    Bobs<double> bobs;          // angles unwrapped
+    Bobs<Quad> exact;           // the same, turns too, to all digits, where the precision is quad; else empty
+    Bob<double> pivot{};        // of a chain, where it is and how fast it moves
+    double energy = 0;          // J
+    double kinetic_energy = 0;  // J
+    double work = 0;            // J, of friction and drive on a physical pendulum since the start
+    double energy_change = 0;   // J, since the start; in quad the difference is taken in quad
+    double length_error = 0;    // of the worst rod, m
     /// In each rod, N, > 0 where it pulls, where it was wanted: in the chain's order, or in that of the mechanism's
     /// constraints that are rods. NaN where a constraint depends on others.
     std::vector<double> tension;

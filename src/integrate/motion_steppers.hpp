@@ -6,6 +6,7 @@
 #include "integrate/stabilise.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/mechanism.hpp"
+#include "physics/physical_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 namespace doppel {
@@ -49,6 +50,11 @@ std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
     const auto made = [&]<class Model>(std::type_identity<Model>) {
         return stepper_on(Model(p), Model::start(p), spec);
     };
+    if (spec.physical) {
+        const auto physical = spec.physical->cast<Scalar>();
+        using Model = PhysicalChain<Scalar>;
+        return stepper_on(Model(physical), Model::start(physical), spec);
+    }
     if (p.links() == 2) return made(std::type_identity<DoublePendulum<Scalar>>());
     if constexpr (std::is_same_v<Scalar, double>)
         if (p.links() == 3) return made(std::type_identity<AngleChain<Scalar, 3>>());

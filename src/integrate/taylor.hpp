@@ -6,6 +6,7 @@
 #include "integrate/methods.hpp"
 #include "integrate/rod_series.hpp"
 #include "integrate/stepper.hpp"
+#include "integrate/taped_series.hpp"
 #include "numeric/roots.hpp"
 
 #include <algorithm>
@@ -129,7 +130,7 @@ private:
         ++steps_;
     }
 
-    double chosen_step() const {
+    double chosen_step() {
         double exponent = 900;  // log2 h
         for (int k = order_ - watched_coefficients + 1; k <= order_; ++k) {
             const double size = series_.size(k);
@@ -138,8 +139,13 @@ private:
             exponent = std::min(exponent, rough_log2(tolerance_ / size) / k);
         }
         const double longest = series_.longest_step();
-        return std::min(
-            {power_of_two(std::max(exponent, -900.0)), longest, steps_ == 0 ? longest : growth * plain_value(step_)});
+        const double h =
+            std::min({power_of_two(std::max(exponent, -900.0)), longest, steps_ == 0 ? longest : growth * free_step_});
+        free_step_ = h;
+        if constexpr (requires { series_.first_event(h); })
+            return series_.first_event(h);
+        else
+            return h;
     }
 
     /// 2^a within 0.3 % for |a| < 1000.
@@ -163,6 +169,7 @@ private:
     State base_, lost_;                                    // where the step starts, and what rounding took from it
     State change_, out_;                                   // the state at the output time
     Scalar step_ = Scalar(0), smallest_ = Scalar(0);       // s
+    double free_step_ = 0;                                 // s, what the step would be but for events
     Scalar offset_ = Scalar(0), offset_lost_ = Scalar(0);  // s, from the start of the step to the output time
     long steps_ = 0;
 };

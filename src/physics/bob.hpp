@@ -1,7 +1,7 @@
 #pragma once
 
 #include "numeric/portable_math.hpp"
-#include "physics/pendulum.hpp"
+#include "physics/physical_pendulum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,6 +69,39 @@ Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>
         above = bob;
     }
     return bobs;
+}
+
+/// Σ ½ m v², J
+template <class Scalar>
+Scalar kinetic_energy(const Bobs<Scalar>& bobs) {
+    Scalar sum(0);
+    for (const auto& bob : bobs) sum += Scalar(0.5) * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
+    return sum;
+}
+
+/// Kinetic and potential energy, J.
+template <class Scalar>
+struct Energies {
+    Scalar kinetic, potential;
+};
+
+/// Of rigid bodies whose ends are the bobs; the potential is 0 where all centres of mass are level with the origin. The body
+/// between the places p and q, with s = a/l, has its centre at p + s (q − p) and turns at |q′ − p′| / l.
+template <class Scalar>
+Energies<Scalar> energies(const PhysicalPendulum<Scalar>& p, const Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
+    Energies<Scalar> sum{Scalar(0), Scalar(0)};
+    const auto* above = &pivot;
+    for (std::size_t i = 0; i < bobs.size(); ++i) {
+        const auto& end = bobs[i];
+        const Scalar part = p.center[i] / p.chain.length[i];
+        const Scalar ux = end.vx - above->vx, uy = end.vy - above->vy;
+        const Scalar vx = above->vx + part * ux, vy = above->vy + part * uy;
+        const Scalar turn = (ux * ux + uy * uy) / (p.chain.length[i] * p.chain.length[i]);
+        sum.kinetic += Scalar(0.5) * (p.chain.mass[i] * (vx * vx + vy * vy) + p.inertia[i] * turn);
+        sum.potential += p.chain.mass[i] * p.chain.gravity * (above->y + part * (end.y - above->y));
+        above = &end;
+    }
+    return sum;
 }
 
 /// The rod that is furthest from its length, m.

@@ -111,6 +111,8 @@ std::vector<FieldTable> film_tables() {
     VideoSpec webm;
     webm.format = FilmFormat::webm;
     FieldTable top{"title, subtitle"}, scene{"[scene]"}, system{"[system], [a], [b]"}, video{"[video]"};
+    FieldTable torque{std::string(torque_table),
+                      "A motor at a joint of a chain: amplitude · cos(2π · frequency · t + phase).\n"};
     FieldTable particle{
         "[[system.particle]]",
         "In place of a chain, a system may have particles; constraints and forces may stand on top of a chain, too, "
@@ -120,7 +122,11 @@ std::vector<FieldTable> film_tables() {
     scene(kind_field, std::string(pair_kind));
     clock_fields(scene, preset);
     column_fields(scene, preset);
+    FieldTable with_rods{"[system]"};
     chain_fields(system, side);
+    chain_fields(with_rods, side, not_negative);
+    system.widen(with_rods);
+    physical_fields(system, side.physical);
     FieldTable gravity{"[system]"}, other_gravity = gravity;
     gravity_field(gravity, side);
     gravity_field(other_gravity, static_cast<const SideSpec&>(mechanism));
@@ -133,6 +139,8 @@ std::vector<FieldTable> film_tables() {
     particle.fields.push_back(
         {"name", "text", "", "by which constraints and forces call it", std::string(must_be_given)});
     part_fields(particle, released);
+    torque.fields.push_back({"name", "text", "", "by which `[a]` and `[b]` change it", "none"});
+    part_fields(torque, static_cast<const TorqueSpec&>(TorqueSpec()));
     video(size_field, preset.video.size);
     video(preview_field, false);
     FieldTable format{"[video]"}, other_format = format;
@@ -146,6 +154,7 @@ std::vector<FieldTable> film_tables() {
     std::vector<FieldTable> tables{top, scene, system, particle};
     add_part_tables<ConstraintSpec>("constraint", tables);
     add_part_tables<ForceSpec>("force", tables);
+    tables.push_back(torque);
     tables.push_back(side_text_table());
     tables.push_back(video);
     return tables;

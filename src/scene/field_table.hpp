@@ -104,8 +104,11 @@ private:
 /// The keys that [a] and [b] of a film have besides those of [system].
 FieldTable side_text_table();
 
+/// Name of the table of motors.
+inline constexpr std::string_view torque_table = "[[system.torque]]";
+
 /// All tables of a film's preset: the keys outside of tables; [scene]; [system], [a], [b]; particles; the kinds of
-/// constraints and of forces; side_text_table(); [video].
+/// constraints and of forces; motors; side_text_table(); [video].
 std::vector<FieldTable> film_tables();
 
 }  // namespace doppel

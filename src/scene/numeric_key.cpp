@@ -29,6 +29,8 @@ public:
         }
     }
     static bool from_command_line(std::string_view) { return false; }
+    template <class Visit>
+    static void table(std::string_view, const Visit&) {}  // visit_side() goes there itself
 
     bool found() const { return found_; }
     const std::vector<std::string_view>& names() const { return names_; }
@@ -94,7 +96,10 @@ Spec* entry_named(std::vector<Spec>& entries, std::string_view name) {
 template <class Visitor>
 void visit_side(SideSpec& side, const Place& place, Visitor& visit) {
     if (place.table.empty()) {
-        if (side.particles.empty()) chain_fields(visit, side);
+        if (side.particles.empty()) {
+            chain_fields(visit, side);
+            physical_fields(visit, side.physical);
+        }
         gravity_field(visit, side);
         if (side.accuracy)
             visit(accuracy_field, side.accuracy);
@@ -109,15 +114,18 @@ void visit_side(SideSpec& side, const Place& place, Visitor& visit) {
     };
     if (place.table == "constraint") visit_part(side.constraints);
     if (place.table == "force") visit_part(side.forces);
+    if (place.table == "pivot") pivot_fields(visit, side.physical.pivot);
+    if (place.table == "torque")
+        if (auto* torque = entry_named(side.physical.torques, place.entry)) part_fields(visit, *torque);
     if (place.table == "particle")
         if (auto* particle = entry_named(side.particles, place.entry)) part_fields(visit, *particle);
 }
 
 /// The unit at the end of a key, "_N_per_m", goes.
 std::string words_of(std::string_view key) {
-    constexpr std::array<std::string_view, 10> units{"_m3_per_kg_s2", "_N_s_per_m", "_deg_per_s", "_m_per_s2",
-                                                     "_N_per_m",      "_m_per_s",   "_per_s",     "_deg",
-                                                     "_kg",           "_m"};
+    constexpr std::array<std::string_view, 16> units{
+        "_m3_per_kg_s2", "_N_s2_per_m2", "_N_s_per_m", "_deg_per_s", "_m_per_s2", "_N_per_m", "_m_per_s", "_per_s",
+        "_N_m_s2",       "_N_m_s",       "_N_m",       "_kg_m2",     "_deg",      "_kg",      "_hz",      "_m"};
     for (const auto unit : units)
         if (key.ends_with(unit)) {
             key.remove_suffix(unit.size());

@@ -96,6 +96,47 @@ struct ForceSpec {
     std::variant<SpringSpec, AttractionSpec, DropletSpec> part;
 };
 
+/// [system.pivot]: a pivot that moves to and fro, at amplitude · cos(2π · frequency · t + phase).
+struct PivotSpec {
+    Quad direction_deg = 90;  // from the x axis: 90 = up
+    Quad amplitude_m = 0, frequency_hz = 1, phase_deg = 0;
+
+    friend bool operator==(const PivotSpec&, const PivotSpec&) = default;
+};
+
+/// [[system.torque]]: a motor at a joint, amplitude · cos(2π · frequency · t + phase).
+struct TorqueSpec {
+    std::string name;
+    int joint = 1;  // 1 = at the pivot
+    Quad amplitude_N_m = 0, frequency_hz = 1, phase_deg = 0;
+
+    friend bool operator==(const TorqueSpec&, const TorqueSpec&) = default;
+};
+
+/// What a real chain has that an ideal one lacks: links with mass, friction, a drive. One number a link.
+struct PhysicalSpec {
+    std::vector<Quad> rod_mass_kg{0, 0}, inertia_kg_m2{0, 0};
+    std::vector<Quad> center_m;  // none: at the ends
+    std::vector<Quad> joint_viscous_N_m_s{0, 0}, joint_coulomb_N_m{0, 0};
+    Quad joint_coulomb_width_deg_per_s = Quad(1) / 10;
+    std::vector<Quad> arm_drag_linear_N_m_s{0, 0}, arm_drag_quadratic_N_m_s2{0, 0};
+    std::vector<Quad> drag_linear_N_s_per_m{0, 0}, drag_quadratic_N_s2_per_m2{0, 0};
+    PivotSpec pivot;
+    std::vector<TorqueSpec> torques;
+
+    friend bool operator==(const PhysicalSpec&, const PhysicalSpec&) = default;
+
+    /// All the lists with a number a link but center_m.
+    auto lists() {
+        return std::array{&rod_mass_kg,           &inertia_kg_m2,
+                          &joint_viscous_N_m_s,   &joint_coulomb_N_m,
+                          &arm_drag_linear_N_m_s, &arm_drag_quadratic_N_m_s2,
+                          &drag_linear_N_s_per_m, &drag_quadratic_N_s2_per_m2};
+    }
+    /// Whether any of it is there.
+    bool is_none() const;
+};
+
 template <class Spec>
 std::string_view kind_name(const Spec& spec) {
     return Spec::kinds[spec.part.index()];
@@ -118,7 +159,8 @@ struct SideSpec {
     bool accuracy_from_command_line = false;
     Precision precision = Precision::in_double;
     Stabilise stabilise = Stabilise::none;
-    Quad stabilise_rate_per_s = 10;       // Baumgarte's α = β
+    Quad stabilise_rate_per_s = 10;  // Baumgarte's α = β
+    PhysicalSpec physical;
     std::vector<ParticleSpec> particles;  // in place of a chain
     std::vector<ConstraintSpec> constraints;
     std::vector<ForceSpec> forces;

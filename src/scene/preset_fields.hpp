@@ -43,21 +43,78 @@ void column_fields(Visit& visit, Scene& preset) {
 
 /// The links of a chain and their sizes.
 template <class Visit, class Side>
-void link_fields(Visit& visit, Side& side) {
+void link_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
     auto links = static_cast<int>(side.links());
     visit({"links", "links of the chain", "", from_to(1, 10'000)}, links);
     if constexpr (!std::is_const_v<Side>) side.set_links(static_cast<std::size_t>(links));
-    visit({"mass_kg", "masses at the ends of the links", "kg", positive, "", {}, "one a link"}, side.mass_kg);
+    visit({.key = "mass_kg",
+           .help = "masses at the ends of the links; may be 0 beside rod_mass_kg",
+           .unit = "kg",
+           .bounds = masses,
+           .each = "one a link",
+           .otherwise = not_negative},
+          side.mass_kg);
     visit({"length_m", "lengths of the links", "m", positive, "", {}, "one a link"}, side.length_m);
 }
 
 template <class Visit, class Side>
-void chain_fields(Visit& visit, Side& side) {
-    link_fields(visit, side);
+void chain_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
+    link_fields(visit, side, masses);
     constexpr Bounds turns{.low = -1e6, .high = 1e6, .why = "more leaves no digits to move by"};
     constexpr std::string_view from_vertical = "at the start, from the downward vertical, counter-clockwise";
     visit({"angle_deg", from_vertical, "deg", turns, "", {}, "one a link"}, side.angle_deg);
     visit({"omega_deg_per_s", "rates at the start", "deg/s", {}, "", {}, "one a link"}, side.omega_deg_per_s);
+}
+
+/// [system.pivot]
+template <class Visit, class Pivot>
+void pivot_fields(Visit& visit, Pivot& pivot) {
+    visit({"direction_deg", "of the motion, from the x axis: 90 = up", "deg"}, pivot.direction_deg);
+    visit({"amplitude_m", "half the way to and fro; 0 = the pivot stays where it is", "m", not_negative},
+          pivot.amplitude_m);
+    visit({"frequency_hz", "swings a second", "Hz", positive}, pivot.frequency_hz);
+    visit({"phase_deg", "of the cosine at t = 0", "deg"}, pivot.phase_deg);
+}
+
+/// [[system.torque]], without `name`.
+template <class Visit, class Torque>
+void part_fields(Visit& visit, Torque& torque) requires std::is_same_v<std::remove_const_t<Torque>, TorqueSpec> {
+    visit({"joint", "where: 1 is the pivot, 2 the end of link 1; the link above takes the opposite", "",
+           from_to(1, 10'000)},
+          torque.joint);
+    visit({"amplitude_N_m", "torque", "N m"}, torque.amplitude_N_m);
+    visit({"frequency_hz", "swings a second", "Hz", not_negative}, torque.frequency_hz);
+    visit({"phase_deg", "of the cosine at t = 0", "deg"}, torque.phase_deg);
+}
+
+/// What a real chain has besides, but torques.
+template <class Visit, class Physical>
+void physical_fields(Visit& visit, Physical& physical) {
+    const auto list = [&](std::string_view key, std::string_view help, std::string_view unit, auto& values) {
+        visit({key, help, unit, not_negative, "", {}, "one a link"}, values);
+    };
+    list("rod_mass_kg", "mass of each rod, evenly along it, besides mass_kg", "kg", physical.rod_mass_kg);
+    visit({"center_m",
+           "of a link whose mass_kg is a body: from its joint to the centre of mass",
+           "m",
+           not_negative,
+           "at the end",
+           {.holds = !physical.center_m.empty()},
+           "one a link"},
+          physical.center_m);
+    list("inertia_kg_m2", "of such a body, about its centre of mass", "kg m²", physical.inertia_kg_m2);
+    list("joint_viscous_N_m_s", "friction at each joint, by its rate", "N m s", physical.joint_viscous_N_m_s);
+    list("joint_coulomb_N_m", "friction at each joint, whatever its rate (Coulomb)", "N m", physical.joint_coulomb_N_m);
+    visit({"joint_coulomb_width_deg_per_s", "of the rates over which it changes its sign: ω / √(ω² + width²)", "deg/s",
+           positive},
+          physical.joint_coulomb_width_deg_per_s);
+    list("arm_drag_linear_N_m_s", "drag on each link, by its own rate", "N m s", physical.arm_drag_linear_N_m_s);
+    list("arm_drag_quadratic_N_m_s2", "the same, by the square of its rate", "N m s²",
+         physical.arm_drag_quadratic_N_m_s2);
+    list("drag_linear_N_s_per_m", "drag on each end of a link, by its speed", "N s/m", physical.drag_linear_N_s_per_m);
+    list("drag_quadratic_N_s2_per_m2", "the same, by the square of its speed", "N s²/m²",
+         physical.drag_quadratic_N_s2_per_m2);
+    visit.table("pivot", [&](auto& table) { pivot_fields(table, physical.pivot); });
 }
 
 /// Of [a] and [b] of a film.

@@ -62,7 +62,7 @@ namespace {
 
 template <class Fields>
 std::string table_text(const std::string& name, const Fields& fields) {
-    TomlWriter writer;
+    TomlWriter writer(name.substr(1, name.size() - 2));
     fields(writer);
     return fmt::format("\n{}\n{}", name, writer.text());
 }
@@ -78,12 +78,18 @@ std::string side_toml(const std::string& name, const SideSpec& side) {
         const auto& all = complete;
         side_text_fields(writer, all);
         if (all.particles.empty()) chain_fields(writer, all);
+        if (!all.physical.is_none()) physical_fields(writer, all.physical);
         gravity_field(writer, all);
         writer(model_field, all.model);
         writer(accuracy_field, all.accuracy);
         if (!all.accuracy) method_fields(writer, all);
         precision_fields(writer, all);
     });
+    for (const auto& torque : side.physical.torques)
+        text += table_text(fmt::format("[[{}.torque]]", name), [&](TomlWriter& writer) {
+            writer({.key = "name"}, torque.name);
+            part_fields(writer, torque);
+        });
     for (const auto& particle : side.particles)
         text += table_text(fmt::format("[[{}.particle]]", name), [&](TomlWriter& writer) {
             writer.add("name", toml_text(particle.name));

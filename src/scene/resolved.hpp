@@ -52,6 +52,9 @@ std::string toml_value(const T& value) {
 /// Writes a table key by key: writer(field, member). Keys that do not count, and what is not given, are left out.
 class TomlWriter {
 public:
+    /// `name` = that of the table, "video".
+    explicit TomlWriter(std::string name = "") : name_(std::move(name)) {}
+
     template <class T>
     void operator()(const Field& field, const T& value) {
         if (!field.only.holds) return;
@@ -64,19 +67,19 @@ public:
         }
     }
     void add(std::string_view key, const std::string& value) { text_ += fmt::format("{} = {}\n", key, value); }
-    /// The fields of [video.key], after all others; nothing where it is empty.
+    /// The fields of [NAME.key], after all others; nothing where it is empty.
     template <class Visit>
     void table(std::string_view key, const Visit& visit) {
         TomlWriter inside;
         visit(inside);
-        if (!inside.text_.empty()) tables_ += fmt::format("\n[video.{}]\n{}", key, inside.text_);
+        if (!inside.text_.empty()) tables_ += fmt::format("\n[{}.{}]\n{}", name_, key, inside.text_);
     }
     static bool from_command_line(std::string_view) { return false; }
 
     std::string text() const { return text_ + tables_; }
 
 private:
-    std::string text_, tables_;
+    std::string name_, text_, tables_;
 };
 
 /// The preset as it was understood, every key with its value: TOML that read_preset() reads back to the same scene.

@@ -176,18 +176,12 @@ std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char nam
 
 }  // namespace
 
-double kinetic_energy(const Bobs<double>& bobs) {
-    double sum = 0;
-    for (const auto& bob : bobs) sum += 0.5 * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
-    return sum;
-}
-
 SideRun::SideRun(const Scene& scene, const Side& side, char name)
     : scene_(scene), side_(side), name_(name), motion_(motion_of(scene, side, name)) {
     const auto start = motion_->observe();
     energy_scale_ = doppel::energy_scale(start.energy, side.energy_unit);
     // ten times all the energy there is: no true motion gains that
-    largest_energy_ = 10 * (side.energy_unit + std::abs(start.energy) + kinetic_energy(start.bobs));
+    largest_energy_ = 10 * (side.energy_unit + std::abs(start.energy) + start.kinetic_energy);
     longest_rod_ = side.reach;
 }
 

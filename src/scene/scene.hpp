@@ -75,7 +75,9 @@ struct Side {
     double gravity = 0;        // m/s²
     double energy_unit = 0;    // J, what an error of its energy is measured by in pictures (the potential range)
     double reach = 0;          // m, from the pivot to the end of the outstretched chain; of a mechanism, its size_of()
-    bool conserves_energy = true;      // no spring is damped
+    bool conserves_energy = true;      // no friction, no drive
+    bool is_driven = false;            // by a motor or a pivot that moves
+    double pivot_reach = 0;            // m, how far the pivot moves from the origin
     std::vector<MechanismLine> lines;  // what is drawn besides the bobs
 };
 
@@ -84,6 +86,8 @@ std::vector<std::string_view> models_of(const MethodEntry& method);
 
 /// The chain as written, in radians.
 Pendulum<Quad> chain_of(const SideSpec& spec);
+/// The same with what a real chain has besides.
+PhysicalPendulum<Quad> physical_of(const SideSpec& spec);
 
 /// The particles of a side (those of its chain, "bob1", "bob2" …, where it names none), its constraints and forces, and
 /// gravity. Throws Error (exit 2) where a part names a particle that is not there.
@@ -130,9 +134,6 @@ struct BreakDown : Error {
     char side;    // 'a' or 'b'
     long sample;  // the first that is wrong
 };
-
-/// ½ Σ m v², J.
-double kinetic_energy(const Bobs<double>& bobs);
 
 /// Steps one side from sample to sample, and watches it.
 class SideRun {

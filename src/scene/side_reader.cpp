@@ -115,6 +115,21 @@ bool read_part(TomlReader& entry, Spec& spec, bool is_new) {
     return true;
 }
 
+/// What a real chain has besides.
+void read_physical(TomlReader& table, SideSpec& side) {
+    if (table.has("center_m")) side.physical.center_m.resize(side.links());
+    physical_fields(table, side.physical);
+    read_entries(table, "torque", side.physical.torques, [&](TomlReader& entry, TorqueSpec& torque, bool) {
+        part_fields(entry, torque);
+        entry.check_together([&] {
+            if (static_cast<std::size_t>(torque.joint) > side.links())
+                throw entry.fault("joint", "must be 1 to {}, the number of links; it is {}", side.links(),
+                                  torque.joint);
+        });
+        return true;
+    });
+}
+
 void read_mechanism(TomlReader& table, SideSpec& side) {
     read_entries(table, "particle", side.particles, read_particle);
     read_entries(table, "constraint", side.constraints, read_part<ConstraintSpec>);
@@ -127,8 +142,22 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
                          key);
 }
 
+/// What a real chain cannot be together with, and what it must have.
+void check_physical(TomlReader& table, const SideSpec& side) {
+    const auto& physical = side.physical;
+    if (physical.is_none()) return;
+    if (side.is_mechanism())
+        throw table.fault("",
+                          "links with mass, friction and a drive are for chains; further particles, constraints or "
+                          "forces cannot be beside them");
+    for (std::size_t i = 0; i < side.links(); ++i)
+        if (side.mass_kg[i] + physical.rod_mass_kg[i] == 0)
+            throw table.fault("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
+}
+
 /// What the keys say together must be possible.
 void check_choices(TomlReader& table, const SideSpec& side) {
+    check_physical(table, side);
     if (side.is_mechanism() && side.model != ModelChoice::automatic && side.model != ModelChoice::mechanism)
         throw table.fault("model",
                           "must be \"mechanism\" or \"auto\" with particles, constraints or forces; it is \"{}\"",
@@ -167,6 +196,18 @@ void SideSpec::set_links(std::size_t links) {
     length_m.assign(links, 1);
     angle_deg.assign(links, 90);
     omega_deg_per_s.assign(links, 0);
+    for (auto* list : physical.lists()) list->assign(links, 0);
+    physical.center_m.clear();
+}
+
+bool PhysicalSpec::is_none() const {
+    const auto is_zero = [](const std::vector<Quad>& list) {
+        return std::all_of(list.begin(), list.end(), [](const Quad& value) { return value == 0; });
+    };
+    auto copy = *this;
+    const auto lists = copy.lists();
+    return center_m.empty() && torques.empty() && pivot.amplitude_m == 0 &&
+           std::all_of(lists.begin(), lists.end(), [&](const auto* list) { return is_zero(*list); });
 }
 
 bool differ_in_kind(const SideSpec& a, const SideSpec& b) {
@@ -182,7 +223,11 @@ void read_release(TomlReader& table, SideSpec& side) {
 
 void read_side(TomlReader& table, SideSpec& side, bool has_text) {
     if (has_text) side_text_fields(table, side);
-    chain_fields(table, side);
+    const auto& rods = side.physical.rod_mass_kg;
+    const bool has_rods =
+        table.has("rod_mass_kg") || std::any_of(rods.begin(), rods.end(), [](const Quad& mass) { return mass > 0; });
+    chain_fields(table, side, has_rods ? not_negative : positive);
+    read_physical(table, side);
     read_mechanism(table, side);
     gravity_field(table, side);
     table(model_field, side.model);

@@ -1,0 +1,115 @@
+#pragma once
+
+#include "integrate/taylor_series.hpp"
+#include "numeric/tape.hpp"
+#include "physics/physical_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace doppel {
+
+/// The Taylor series of a model from its right-hand side alone, as a tape takes it down at the start of each step.
+/// `Model` is one over plain numbers, `TapedModel` the same over Taped<Scalar>.
+///
+/// What the right-hand side compares (the sign of a rate, a friction that no longer holds) may change on the way: a step
+/// ends just behind the first such change, by so little that what it errs there, its third power, is below rounding.
+template <class Model, class TapedModel>
+class TapedSeries {
+public:
+    using Scalar = typename Model::Scalar;
+    using State = typename Model::State;
+
+    TapedSeries(const Model& model, int order)
+        : order_(order),
+          layout_(model.layout),
+          model_(model.pendulum.template cast<Taped<Scalar>>()),
+          tape_(order + 1),
+          longest_(
+              longest_chain_step(plain_value(model.pendulum.chain.reach()), plain_value(model.pendulum.chain.gravity))),
+          y_(2 * layout_.half),
+          rate_(y_) {}
+
+    void expand(const State& y) {
+        tape_.clear();
+        for (Eigen::Index i = 0; i < y.size(); ++i) y_[i] = Taped<Scalar>::argument(y[i], tape_);
+        model_.rate(y_, rate_);
+        tape_.finish();
+        for (Eigen::Index i = 0; i < y.size(); ++i) tape_.term(y_[i].node(), 0) = y[i];
+        for (int k = 0; k <= order_; ++k) {
+            tape_.compute(k);
+            const Scalar by_next = Scalar(1) / Scalar(k + 1);
+            for (Eigen::Index i = 0; i < y.size(); ++i) {
+                const int node = rate_[i].node();
+                const Scalar rate = node >= 0 ? tape_.term(node, k) : k == 0 ? rate_[i].value : Scalar(0);
+                tape_.term(y_[i].node(), k + 1) = rate * by_next;
+            }
+        }
+        amount_ = greatest(0) + std::sqrt(greatest(1));
+    }
+
+    void move(const Scalar& h, State& change) const {
+        for (Eigen::Index i = 0; i < change.size(); ++i) change[i] = value(series(i), order_ + 1, h, false);
+    }
+
+    double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
+    double longest_step() const { return longest_; }
+
+    /// At most `h`, s: just behind the first change of what the right-hand side compares.
+    double first_event(double h) const {
+        const double beyond = 0.1 * std::cbrt(plain_value(std::numeric_limits<Scalar>::epsilon())) * h;
+        double first = h;
+        for (const int node : tape_.events()) {
+            const auto* x = tape_.series(node);
+            if (std::all_of(x, x + order_ + 1, [](const Scalar& c) { return c == Scalar(0); })) continue;
+            const auto at = [&](double t) { return plain_value(value(x, order_, Scalar(t), true)); };
+            const double start = plain_value(x[0]);
+            if (start == 0) return beyond;
+            constexpr int parts = 16;
+            for (double low = 0, part = first / parts; low < first; low += part) {
+                if ((at(low + part) < 0) == (start < 0)) continue;
+                double high = low + part;
+                for (int i = 0; i < 60 && high - low > 0.5 * beyond; ++i) {
+                    const double middle = 0.5 * (low + high);
+                    ((at(middle) < 0) == (start < 0) ? low : high) = middle;
+                }
+                first = std::min(first, high + beyond);
+                break;
+            }
+        }
+        return first;
+    }
+
+private:
+    /// Σ_{k=first}^{last} c_k h^k, where first is 0 or 1.
+    static Scalar value(const Scalar* c, int last, const Scalar& h, bool with_first) {
+        Scalar sum(0);
+        for (int k = last; k > 0; --k) sum = (sum + c[k]) * h;
+        return with_first ? Scalar(sum + c[0]) : sum;
+    }
+    const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
+    /// The greatest |ω_k|.
+    double greatest(int k) const {
+        double most = 0;
+        for (Eigen::Index i = 0; i < layout_.coordinates; ++i)
+            most = greater(most, std::abs(plain_value(series(layout_.half + i)[k])));
+        return most;
+    }
+
+    int order_;
+    PhysicalLayout layout_;
+    TapedModel model_;
+    Tape<Scalar> tape_;
+    double longest_, amount_ = 0;  // s, rad/s
+    typename TapedModel::State y_, rate_;
+};
+
+template <class Scalar>
+struct SeriesOf<PhysicalChain<Scalar>> {
+    using type = TapedSeries<PhysicalChain<Scalar>, PhysicalChain<Taped<Scalar>>>;
+};
+
+}  // namespace doppel

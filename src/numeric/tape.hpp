@@ -1,0 +1,227 @@
+#pragma once
+
+#include "numeric/sin_cos.hpp"
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+namespace doppel {
+
+/// The operations by which a function was computed at one point, in their order, so that the Taylor series of its results
+/// follow from those of its arguments, order by order. A comparison is noted as well: the function is as recorded until the
+/// difference of what was compared changes its sign.
+/// Source  Griewank & Walther, Evaluating Derivatives, §13.2; Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
+template <class S>
+class Tape {
+public:
+    using Scalar = S;
+
+    /// Series to that order.
+    explicit Tape(int order) : terms_(static_cast<std::size_t>(order) + 1) {
+        for (int k = 0; k <= order; ++k) inverse_.push_back(Scalar(1) / Scalar(std::max(k, 1)));
+    }
+
+    void clear() {
+        nodes_.clear();
+        events_.clear();
+    }
+    /// The nodes are there; their series may be written.
+    void finish() { coefficients_.assign(nodes_.size() * terms_, Scalar(0)); }
+
+    Scalar& term(int node, int k) {
+        return coefficients_[static_cast<std::size_t>(node) * terms_ + static_cast<std::size_t>(k)];
+    }
+    const Scalar* series(int node) const { return &coefficients_[static_cast<std::size_t>(node) * terms_]; }
+    const std::vector<int>& events() const { return events_; }
+
+    enum class Operation : unsigned char { argument, sum, difference, product, ratio, root, sine, cosine };
+    /// A node's operands; −1 is the constant.
+    struct Node {
+        Operation operation;
+        int a = -1, b = -1;
+        Scalar constant = Scalar(0);
+    };
+
+    int add(Operation operation, int a = -1, int b = -1, const Scalar& constant = Scalar(0)) {
+        nodes_.push_back({operation, a, b, constant});
+        return static_cast<int>(nodes_.size()) - 1;
+    }
+    void note_event(int node) {
+        if (events_.empty() || events_.back() != node) events_.push_back(node);
+    }
+
+    /// Coefficient k of every node that is no argument, from those of the arguments to k and all before.
+    void compute(int k) {
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (nodes_[i].operation == Operation::argument) continue;
+            const int node = static_cast<int>(i);
+            const Scalar value = coefficient(nodes_[i], node, k);
+            term(node, k) = value;
+        }
+    }
+
+private:
+    Scalar operand(int node, const Scalar& constant, int k) {
+        return node >= 0 ? term(node, k) : k == 0 ? constant : Scalar(0);
+    }
+    /// Σ_{j=first}^{last} a_j b_{k−j}
+    Scalar convolution(int a, int b, int k, int first, int last) const {
+        const Scalar *x = series(a), *y = series(b);
+        Scalar sum(0);
+        for (int j = first; j <= last; ++j) sum += x[j] * y[k - j];
+        return sum;
+    }
+    /// Σ_{j=1}^k j/k a_j b_{k−j}
+    Scalar slope(int a, int b, int k) const {
+        const Scalar *x = series(a), *y = series(b);
+        Scalar sum(0);
+        for (int j = 1; j <= k; ++j) sum += Scalar(j) * x[j] * y[k - j];
+        return sum * inverse_[static_cast<std::size_t>(k)];
+    }
+
+    Scalar coefficient(const Node& node, int self, int k) {
+        const auto& [operation, a, b, constant] = node;
+        switch (operation) {
+            case Operation::argument:
+                break;
+            case Operation::sum:
+                return operand(a, constant, k) + operand(b, constant, k);
+            case Operation::difference:
+                return operand(a, constant, k) - operand(b, constant, k);
+            case Operation::product:
+                if (a < 0) return constant * term(b, k);
+                if (b < 0) return term(a, k) * constant;
+                return convolution(a, b, k, 0, k);
+            case Operation::ratio: {
+                if (b < 0) return term(a, k) / constant;
+                const Scalar sum = operand(a, constant, k) - convolution(b, self, k, 1, k);
+                return sum / term(b, 0);
+            }
+            case Operation::root: {
+                using std::sqrt;
+                if (k == 0) return sqrt(term(a, 0));
+                const Scalar rest = term(a, k) - convolution(self, self, k, 1, k - 1);
+                return rest / (Scalar(2) * term(self, 0));
+            }
+            case Operation::sine:  // its cosine is the next node
+                return k == 0 ? SinCos<Scalar>(term(a, 0)).sin : slope(a, self + 1, k);
+            case Operation::cosine:
+                return k == 0 ? SinCos<Scalar>(term(a, 0)).cos : Scalar(-slope(a, self - 1, k));
+        }
+        return Scalar(0);
+    }
+
+    std::size_t terms_;
+    std::vector<Node> nodes_;
+    std::vector<int> events_;
+    std::vector<Scalar> coefficients_, inverse_;
+};
+
+/// A number whose operations a tape takes down. One without a tape is a constant.
+template <class S>
+class Taped {
+public:
+    using Scalar = S;
+    using Operation = typename Tape<Scalar>::Operation;
+
+    Scalar value;
+
+    Taped() : Taped(Scalar(0)) {}
+    Taped(const Scalar& constant) : value(constant) {}
+    template <class Number>
+    requires(std::is_arithmetic_v<Number> && !std::is_same_v<Number, Scalar>) Taped(Number constant)
+        : value(Scalar(constant)) {}
+    Taped(const Scalar& now, Tape<Scalar>& tape, int node) : value(now), tape_(&tape), node_(node) {}
+
+    static Taped argument(const Scalar& now, Tape<Scalar>& tape) { return {now, tape, tape.add(Operation::argument)}; }
+
+    /// −1 of a constant.
+    int node() const { return node_; }
+
+    friend Taped operator+(const Taped& a, const Taped& b) { return of(Operation::sum, a.value + b.value, a, b); }
+    friend Taped operator-(const Taped& a, const Taped& b) {
+        return of(Operation::difference, a.value - b.value, a, b);
+    }
+    friend Taped operator*(const Taped& a, const Taped& b) { return of(Operation::product, a.value * b.value, a, b); }
+    friend Taped operator/(const Taped& a, const Taped& b) { return of(Operation::ratio, a.value / b.value, a, b); }
+    friend Taped operator+(const Taped& a) { return a; }
+    friend Taped operator-(const Taped& a) { return Taped(Scalar(0)) - a; }
+    Taped& operator+=(const Taped& b) { return *this = *this + b; }
+    Taped& operator-=(const Taped& b) { return *this = *this - b; }
+    Taped& operator*=(const Taped& b) { return *this = *this * b; }
+    Taped& operator/=(const Taped& b) { return *this = *this / b; }
+
+    friend Taped sqrt(const Taped& a) {
+        using std::sqrt;
+        const Scalar root = sqrt(a.value);
+        return a.tape_ ? Taped(root, *a.tape_, a.tape_->add(Operation::root, a.node_)) : Taped(root);
+    }
+    friend Taped abs(const Taped& a) { return a < Taped(Scalar(0)) ? -a : a; }
+
+    friend bool operator<(const Taped& a, const Taped& b) { return noted(a, b), a.value < b.value; }
+    friend bool operator<=(const Taped& a, const Taped& b) { return noted(a, b), a.value <= b.value; }
+    friend bool operator>(const Taped& a, const Taped& b) { return noted(a, b), a.value > b.value; }
+    friend bool operator>=(const Taped& a, const Taped& b) { return noted(a, b), a.value >= b.value; }
+    friend bool operator==(const Taped& a, const Taped& b) { return noted(a, b), a.value == b.value; }
+    friend bool operator!=(const Taped& a, const Taped& b) { return noted(a, b), a.value != b.value; }
+
+    Tape<Scalar>* tape() const { return tape_; }
+
+private:
+    static Taped of(Operation operation, const Scalar& now, const Taped& a, const Taped& b) {
+        auto* tape = a.tape_ ? a.tape_ : b.tape_;
+        if (!tape) return Taped(now);
+        return {now, *tape, tape->add(operation, a.node_, b.node_, a.tape_ ? b.value : a.value)};
+    }
+    static void noted(const Taped& a, const Taped& b) {
+        if (!a.tape_ && !b.tape_) return;
+        const auto difference = a - b;
+        difference.tape_->note_event(difference.node_);
+    }
+
+    Tape<Scalar>* tape_ = nullptr;
+    int node_ = -1;
+};
+
+template <class S>
+struct SinCos<Taped<S>> {
+    Taped<S> sin, cos;
+
+    explicit SinCos(const Taped<S>& angle) {
+        using Operation = typename Tape<S>::Operation;
+        const SinCos<S> now(angle.value);
+        sin = Taped<S>(now.sin);
+        cos = Taped<S>(now.cos);
+        if (auto* tape = angle.tape()) {
+            const int node = tape->add(Operation::sine, angle.node());
+            tape->add(Operation::cosine, angle.node());
+            sin = Taped<S>(now.sin, *tape, node);
+            cos = Taped<S>(now.cos, *tape, node + 1);
+        }
+    }
+};
+
+}  // namespace doppel
+
+/// The range and the precision of its value.
+template <class S>
+struct std::numeric_limits<doppel::Taped<S>> : std::numeric_limits<S> {};
+
+template <class S>
+struct Eigen::NumTraits<doppel::Taped<S>> : Eigen::GenericNumTraits<doppel::Taped<S>> {
+    enum {
+        IsComplex = 0,
+        IsInteger = 0,
+        IsSigned = 1,
+        RequireInitialization = 1,
+        ReadCost = 3,
+        AddCost = 20,
+        MulCost = 20
+    };
+    static int digits10() { return NumTraits<S>::digits10(); }
+};

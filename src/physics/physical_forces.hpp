@@ -1,0 +1,143 @@
+#pragma once
+
+#include "physics/physical_pendulum.hpp"
+#include "physics/rod_pulls.hpp"
+
+#include <cmath>
+
+namespace doppel {
+
+/// How the state (q, v) of a physical pendulum is laid out: the coordinates of its links; then, of a driven one, the time t,
+/// whose rate is 1; then, where energy is not kept, a number whose rate is the work W done on it so far, J, by friction
+/// and drive, so that the energy less W is constant. Every method steps them like coordinates.
+struct PhysicalLayout {
+    Eigen::Index coordinates, time = -1, work = -1, half;  // `half`: of q; −1 where there is none
+
+    template <class Scalar>
+    PhysicalLayout(const PhysicalPendulum<Scalar>& p, Eigen::Index of_links) : coordinates(of_links), half(of_links) {
+        if (p.is_driven()) time = half++;
+        if (!p.conserves_energy()) work = half++;
+    }
+
+    /// Of y = (q, v): the time, s, and the work, J.
+    template <class State>
+    auto time_of(const State& y) const {
+        return time < 0 ? typename State::Scalar(0) : y[time];
+    }
+    template <class State>
+    auto work_of(const State& y) const {
+        return work < 0 ? typename State::Scalar(0) : y[half + work];
+    }
+    template <class State>
+    void start(State& y) const {
+        if (time >= 0) y[time] = typename State::Scalar(0), y[half + time] = typename State::Scalar(1);
+        if (work >= 0) y[work] = y[half + work] = typename State::Scalar(0);
+    }
+    template <class State>
+    void rate(const State& y, const typename State::Scalar& power, State& dydt) const {
+        using Scalar = typename State::Scalar;
+        if (time >= 0) dydt[time] = y[half + time], dydt[half + time] = Scalar(0);
+        if (work >= 0) dydt[work] = y[half + work], dydt[half + work] = power;
+    }
+    /// (q, v) of the links alone.
+    template <class Vector>
+    auto of_links(const Vector& y) const {
+        State<typename Vector::Scalar, Eigen::Dynamic> alone(2 * coordinates);
+        alone.head(coordinates) = y.head(coordinates);
+        alone.tail(coordinates) = y.segment(half, coordinates);
+        return alone;
+    }
+};
+
+/// Where the pivot is at time t, how fast it is, and how fast that changes: m, m/s, m/s².
+template <class Scalar>
+struct PivotPlace {
+    Planar<Scalar> place{Scalar(0), Scalar(0)}, velocity = place, acceleration = place;
+
+    PivotPlace() = default;
+    PivotPlace(const PivotMotion<Scalar>& motion, const Scalar& t) {
+        if (!motion.moves()) return;
+        const auto& nu = motion.frequency;
+        const SinCos<Scalar> turn(Scalar(nu * t + motion.phase));
+        const Planar<Scalar> amplitude{motion.x, motion.y};
+        place = amplitude * turn.cos;
+        velocity = amplitude * Scalar(-(nu * turn.sin));
+        acceleration = amplitude * Scalar(-(nu * nu * turn.cos));
+    }
+};
+
+/// The torques on the arms, N m, and forces on their ends, N, by friction and motors, and their power, W.
+template <class S>
+class PhysicalForces {
+public:
+    using Scalar = S;
+    using Half = State<Scalar, Eigen::Dynamic>;
+
+    Half torque;                       // on each link
+    std::vector<Planar<Scalar>> drag;  // on each link's end; empty where there is none
+    Scalar power{0};
+
+    explicit PhysicalForces(const PhysicalPendulum<Scalar>& p)
+        : torque(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))), friction_(p.friction), motors_(p.torques) {
+        if (friction_.has_drag()) drag.resize(p.chain.links());
+    }
+
+    /// At the rates ω of the links and the time t. A joint that is `held` is left out of Coulomb's friction.
+    template <class Rates, class Held>
+    void update(const Rates& omega, const Scalar& t, const Held& held) {
+        power = Scalar(0);
+        torque.setZero();
+        for (Eigen::Index i = 0; i < torque.size(); ++i) {
+            const Scalar rate = i == 0 ? Scalar(omega[0]) : Scalar(omega[i] - omega[i - 1]);
+            Scalar at_joint(0);
+            if (!friction_.viscous.empty()) at_joint -= of(friction_.viscous, i) * rate;
+            if (!friction_.coulomb.empty() && !held(i)) at_joint -= of(friction_.coulomb, i) * smooth_sign(rate);
+            for (const auto& motor : motors_)
+                if (static_cast<Eigen::Index>(motor.joint) == i)
+                    at_joint += motor.amplitude * SinCos<Scalar>(Scalar(motor.frequency * t + motor.phase)).cos;
+            add(i, at_joint, rate);
+            if (!friction_.arm_linear.empty()) on_arm(i, Scalar(-(of(friction_.arm_linear, i) * omega[i])), omega[i]);
+            if (!friction_.arm_quadratic.empty())
+                on_arm(i, Scalar(-(of(friction_.arm_quadratic, i) * (size(omega[i]) * omega[i]))), omega[i]);
+        }
+    }
+    /// On the end of link i, at its velocity.
+    void update_drag(Eigen::Index i, const Planar<Scalar>& v) {
+        using std::sqrt;
+        auto& force = drag[static_cast<std::size_t>(i)];
+        force = {Scalar(0), Scalar(0)};
+        if (!friction_.drag_linear.empty()) force = force - v * of(friction_.drag_linear, i);
+        const Scalar square = dot(v, v);
+        if (!friction_.drag_quadratic.empty() && square != Scalar(0))  // sqrt has no slope at 0
+            force = force - v * Scalar(of(friction_.drag_quadratic, i) * sqrt(square));
+        power += dot(force, v);
+    }
+
+private:
+    static const Scalar& of(const std::vector<Scalar>& list, Eigen::Index i) {
+        return list[static_cast<std::size_t>(i)];
+    }
+    static Scalar size(const Scalar& x) {
+        using std::abs;
+        return abs(x);
+    }
+    /// x / √(x² + w²)
+    Scalar smooth_sign(const Scalar& x) const {
+        using std::sqrt;
+        return x / sqrt(Scalar(x * x + friction_.width * friction_.width));
+    }
+    void add(Eigen::Index joint, const Scalar& at_joint, const Scalar& rate) {
+        torque[joint] += at_joint;
+        if (joint > 0) torque[joint - 1] -= at_joint;
+        power += at_joint * rate;
+    }
+    void on_arm(Eigen::Index i, const Scalar& on_it, const Scalar& rate) {
+        torque[i] += on_it;
+        power += on_it * rate;
+    }
+
+    Friction<Scalar> friction_;
+    std::vector<JointTorque<Scalar>> motors_;
+};
+
+}  // namespace doppel

@@ -1,0 +1,116 @@
+#pragma once
+
+#include "physics/pendulum.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace doppel {
+
+/// What slows a chain down. A joint is where a link hangs: joint 1 at the pivot, joint i at the end of link i − 1; its rate
+/// is that of its link less that of the link above. Each list has one number a link, ≥ 0, or is empty: none.
+///
+///     at a joint       −b ω − c ω / √(ω² + w²)          torque on its link, the opposite on the link above
+///     on an arm        −k1 ω − k2 |ω| ω                 torque, by the arm's own rate
+///     on a link's end  −d1 v − d2 |v| v                 force, by its velocity
+///
+/// The second term is Coulomb's friction, smoothed over the width w. Below c, a joint at rest stays at rest exactly.
+template <class Scalar>
+struct Friction {
+    std::vector<Scalar> viscous;            // b, N m s
+    std::vector<Scalar> coulomb;            // c, N m
+    Scalar width = Scalar(1) / Scalar(10);  // w, rad/s, > 0
+    std::vector<Scalar> arm_linear;         // k1, N m s
+    std::vector<Scalar> arm_quadratic;      // k2, N m s²
+    std::vector<Scalar> drag_linear;        // d1, N s/m
+    std::vector<Scalar> drag_quadratic;     // d2, N s²/m²
+
+    friend bool operator==(const Friction&, const Friction&) = default;
+
+    bool has_drag() const { return !drag_linear.empty() || !drag_quadratic.empty(); }
+    /// Whether its derivatives are continuous.
+    bool is_smooth() const { return coulomb.empty() && arm_quadratic.empty() && drag_quadratic.empty(); }
+    bool is_none() const {
+        return viscous.empty() && coulomb.empty() && arm_linear.empty() && arm_quadratic.empty() && !has_drag();
+    }
+};
+
+/// A pivot that moves: its place is a cos(ν t + φ) along one direction, from the origin.
+template <class Scalar>
+struct PivotMotion {
+    Scalar x = Scalar(0), y = Scalar(0);  // of the amplitude, m
+    Scalar frequency = Scalar(0);         // ν, rad/s
+    Scalar phase = Scalar(0);             // φ, rad
+
+    friend bool operator==(const PivotMotion&, const PivotMotion&) = default;
+
+    bool moves() const { return x != Scalar(0) || y != Scalar(0); }
+};
+
+/// A motor at a joint: the torque q cos(ν t + φ) on its link, the opposite on the link above.
+template <class Scalar>
+struct JointTorque {
+    std::size_t joint = 0;         // from 0
+    Scalar amplitude = Scalar(0);  // q, N m
+    Scalar frequency = Scalar(0);  // ν, rad/s
+    Scalar phase = Scalar(0);      // φ, rad
+
+    friend bool operator==(const JointTorque&, const JointTorque&) = default;
+};
+
+/// A chain of rigid bodies (a physical or compound pendulum), with friction and a drive. `chain.mass` is that of the bodies.
+/// Its ideal form, all centres at the ends and no inertia, is the chain itself.
+template <class Scalar>
+struct PhysicalPendulum {
+    Pendulum<Scalar> chain;
+    std::vector<Scalar> center;   // m, from a link's joint to its centre of mass, along the link
+    std::vector<Scalar> inertia;  // kg m², ≥ 0, about the centre of mass
+    Friction<Scalar> friction;
+    PivotMotion<Scalar> pivot;
+    std::vector<JointTorque<Scalar>> torques;
+
+    friend bool operator==(const PhysicalPendulum&, const PhysicalPendulum&) = default;
+
+    bool is_driven() const { return pivot.moves() || !torques.empty(); }
+    bool conserves_energy() const { return friction.is_none() && !is_driven(); }
+
+    /// Between hanging straight down and standing straight up, J.
+    Scalar potential_range() const {
+        Scalar range(0), reach(0);
+        for (std::size_t i = 0; i < chain.links(); ++i) {
+            range += Scalar(2) * chain.mass[i] * chain.gravity * (reach + center[i]);
+            reach += chain.length[i];
+        }
+        return range;
+    }
+
+    /// The same in another scalar.
+    template <class To>
+    PhysicalPendulum<To> cast() const {
+        const auto one = [](const Scalar& x) { return static_cast<To>(x); };
+        const auto all = [&](const std::vector<Scalar>& values) {
+            std::vector<To> made(values.size());
+            std::transform(values.begin(), values.end(), made.begin(), one);
+            return made;
+        };
+        const auto& f = friction;
+        PhysicalPendulum<To> made{chain.template cast<To>(),
+                                  all(center),
+                                  all(inertia),
+                                  {all(f.viscous), all(f.coulomb), one(f.width), all(f.arm_linear),
+                                   all(f.arm_quadratic), all(f.drag_linear), all(f.drag_quadratic)},
+                                  {one(pivot.x), one(pivot.y), one(pivot.frequency), one(pivot.phase)},
+                                  {}};
+        for (const auto& t : torques)
+            made.torques.push_back({t.joint, one(t.amplitude), one(t.frequency), one(t.phase)});
+        return made;
+    }
+};
+
+/// A chain of point masses on massless rods, as one.
+template <class Scalar>
+PhysicalPendulum<Scalar> physical(const Pendulum<Scalar>& chain) {
+    return {chain, chain.length, std::vector<Scalar>(chain.links(), Scalar(0)), {}, {}, {}};
+}
+
+}  // namespace doppel
