@@ -168,10 +168,16 @@ MotionSpec some_roundings_away(MotionSpec spec) {
         number *= 1 + change;
         change = -change;
     };
-    if (spec.chain) {
-        for (auto* numbers : {&spec.chain->angle, &spec.chain->rate, &spec.chain->length, &spec.chain->mass})
+    const auto move_chain = [&](Pendulum<Quad>& chain) {
+        for (auto* numbers : {&chain.angle, &chain.rate, &chain.length, &chain.mass})
             for (auto& number : *numbers) move(number);
-        move(spec.chain->gravity);
+        move(chain.gravity);
+    };
+    if (spec.chain) move_chain(*spec.chain);
+    if (spec.physical) {
+        move_chain(spec.physical->chain);
+        for (auto& number : spec.physical->center) move(number);
+        for (auto& number : spec.physical->inertia) move(number);
     }
     if (spec.parts) {
         // places and velocities stay: constraints hold them
@@ -189,7 +195,11 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
     Effort effort;
     auto own = own_trajectory(spec, samples, reach, enough, stop, effort);
     const auto bodies = static_cast<double>(spec.parts ? spec.parts->particles.size() : spec.chain->links());
-    const bool affordable = static_cast<double>(effort.evaluations) * bodies <= most_work;
+    // series by a tape take as long as those of so many ideal links; where joints stick, steps are tiny
+    constexpr double of_tape = 30;
+    const bool sticks = spec.physical && !spec.physical->friction.coulomb.empty();
+    const bool affordable =
+        !sticks && static_cast<double>(effort.evaluations) * bodies * (spec.physical ? of_tape : 1) <= most_work;
     if (spec.precision == Precision::in_quad || !affordable) return own;
     return wide_trajectory(spec, samples, reach, enough, stop);
 }

@@ -165,7 +165,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     if (is_of_distance(quantity) && differ_in_kind(a, pair.b))
         throw table.fault(key, "\"{}\" takes sides of as many masses", name_of(quantity));
     const auto scene = make_scene(pair);
-    if (quantity == Quantity::energy_error && !scene.a.conserves_energy)
+    if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
         throw table.fault(key, "\"energy_error\" takes a system that keeps its energy; a spring is damped");
     flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.links() == 2;
     if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));

@@ -45,6 +45,7 @@ void add(MotionBounds& seen, const Scene& scene, const PairState& state, const O
     const double kinetic = side.kinetic_energy;
     auto& energies = seen.energies[&side == &state.a ? 0 : 1];
     for (const double energy : {kinetic, side.energy - kinetic, side.energy}) include(energies, energy);
+    include(seen.total_energy, side.energy);
     if (scene.a.has_angles && scene.b.has_angles)
         for (const auto k : shown_links(side.bobs.size())) {
             include(seen.angles, side.bobs[k].theta * 180 / pi);
@@ -136,7 +137,7 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
             add(seen, scene, state, state.b);
             if (start_distance > 0 || 50 * state.sample >= scene.samples) seen.distance.add(state.distance);
             for (const auto& [side, now] : {std::pair{&scene.a, &state.a}, {&scene.b, &state.b}}) {
-                if (side->conserves_energy) seen.energy_error.add(std::abs(now->energy_change) / scene.energy_range());
+                if (side->has_energy_error) seen.energy_error.add(std::abs(now->energy_change) / scene.energy_range());
                 seen.rod_error.add(now->length_error);
             }
             if (const auto exponent = exponent_so_far(scene, state, start_distance)) include(seen.exponent, *exponent);
@@ -151,7 +152,8 @@ std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<
 /// The circle that the outstretched chain reaches; of a mechanism, the places that it visits.
 View fitted_view(const Scene& scene, const std::optional<MotionBounds>& seen) {
     if (has_circle(scene)) {
-        const double across = 2 * std::max(chain_length(scene.preset.a), chain_length(scene.preset.b));
+        const double across = 2 * std::max(chain_length(scene.preset.a) + scene.a.pivot_reach,
+                                           chain_length(scene.preset.b) + scene.b.pivot_reach);
         return {.width = across, .height = across};
     }
     double left = seen->left, right = seen->right, bottom = seen->bottom, top = seen->top;
@@ -181,6 +183,8 @@ Range fitted_range(StripKind kind, const std::optional<MotionBounds>& seen) {
         case StripKind::energies_a:
         case StripKind::energies_b:
             return padded(seen ? seen->energies[kind == StripKind::energies_a ? 0 : 1] : Range{});
+        case StripKind::total_energy:
+            return padded(seen ? seen->total_energy : Range{});
         case StripKind::angles:
             return padded(seen ? seen->angles : Range{});
         case StripKind::rates:

@@ -31,6 +31,7 @@ struct MotionBounds {
     Range exponent{0, 0};             // 1/s, so far
     Range rod_force{0, 0};            // N, where it was asked for
     std::array<Range, 2> energies{{{0, 0}, {0, 0}}};  // J, kinetic, potential and total of each side
+    Range total_energy{0, 0};                         // J, of both
     Range angles{0, 0}, rates{0, 0};                  // degrees, degrees/s, of all links that strips show
 };
 

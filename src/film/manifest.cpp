@@ -29,8 +29,8 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     json["steps"] = record.effort.steps;
     json["evaluations"] = record.effort.evaluations;
     json["smallest_step_s"] = record.effort.smallest_step;
-    json["conserves_energy"] = side.conserves_energy;
-    const auto of_energy = [&](double worst) { return side.conserves_energy ? Json(worst) : Json(nullptr); };
+    json["conserves_energy"] = side.has_energy_error && !side.has_work;
+    const auto of_energy = [&](double worst) { return side.has_energy_error ? Json(worst) : Json(nullptr); };
     json["worst_energy_error"] = of_energy(record.energy_error);
     json["worst_energy_change_J"] = of_energy(record.energy_change);
     json["energy_range_J"] = scene.energy_range();
@@ -58,7 +58,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const RunRecord& record
     std::vector<std::string> warnings;
     for (const auto& [name, side, seen] : {std::tuple('a', &scene.a, &record.a), {'b', &scene.b, &record.b}}) {
         const double error = seen->energy_change / scene.energy_range();
-        if (side->conserves_energy && error > most)
+        if (side->has_energy_error && error > most)
             warnings.push_back(fmt::format(
                 "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse "
                 "for these {:g} s; accuracy = 1e-3 chooses what is not",

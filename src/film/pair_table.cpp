@@ -30,6 +30,12 @@ std::vector<std::string> columns_of(const Scene& scene) {
     names.insert(names.end(), {"distance", "log_ratio"});
     if (scene.preset.energy_columns)
         names.insert(names.end(), {"a_kinetic_J", "a_potential_J", "b_kinetic_J", "b_potential_J"});
+    for (const auto* side : {&scene.a, &scene.b}) {
+        const char letter = side == &scene.a ? 'a' : 'b';
+        if (side->has_work) names.push_back(fmt::format("{}_work_J", letter));
+        if (side->pivot_reach > 0)
+            for (const char axis : {'x', 'y'}) names.push_back(fmt::format("{}_pivot_{}_m", letter, axis));
+    }
     return names;
 }
 
@@ -64,6 +70,10 @@ void PairTable::add(const PairState& state, double start_distance) {
         const double kinetic = seen->kinetic_energy;
         csv_.add(kinetic);
         csv_.add(seen->energy - kinetic);
+    }
+    for (const auto& [side, seen] : {std::pair{&scene_.a, &state.a}, {&scene_.b, &state.b}}) {
+        if (side->has_work) csv_.add(seen->work);
+        if (side->pivot_reach > 0) csv_.add(seen->pivot.x), csv_.add(seen->pivot.y);
     }
     csv_.end_row();
 }

@@ -26,7 +26,7 @@ public:
     PendulumLayer(const FilmState& state, const PendulumPanel& panel)
         : Layer(state),
           panel_(panel),
-          heaviest_(std::max(std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass))),
+          heaviest_(std::max({std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass), 1e-300})),
           paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {}
 
     void backdrop(DisplayList& list) const override;
@@ -58,10 +58,11 @@ private:
     Color member_hue(std::size_t k, float opacity) const;
     float member_trail_width() const;
     void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
+    Point place_at(std::size_t side, const Place<double>& place) const;
     void draw_tracks(std::size_t side, DisplayList& list) const;
     void draw_pivots(std::size_t side, DisplayList& list) const;
     void draw_disc(Point at, float radius, Color color, DisplayList& list, float glow = 0) const;
-    float bob_radius(const Bob<double>& bob) const;
+    float bob_radius(std::size_t side, std::size_t bob) const;
     Point at(const Bob<double>& bob) const { return panel_.at(bob.x, bob.y); }
     Point at(const Place<double>& place) const { return panel_.at(place[0], place[1]); }
 
@@ -114,7 +115,8 @@ void PendulumLayer::frame(DisplayList& list) const {
         const Color ghost =
             state_.scene.preset.video.transparent ? hue.with_alpha(0.4f) : mixed(theme_.panel, hue, 0.26f);
         draw_lines(other, state_.seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
-        for (const auto& bob : state_.seen(other).bobs) draw_disc(at(bob), bob_radius(bob), ghost, list);
+        const auto& bobs = state_.seen(other).bobs;
+        for (std::size_t i = 0; i < bobs.size(); ++i) draw_disc(at(bobs[i]), bob_radius(other, i), ghost, list);
     }
     for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side)
         paths_[*side].trail.draw(panel_.area, state_.time(), at(state_.seen(*side).bobs.back()), list);
@@ -139,9 +141,10 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
     const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme_.sides[side], share); };
     draw_lines(side, bobs, layout_.rod_radius, hued(theme_.rod, 0.55f), list);
     draw_pivots(side, list);
-    for (const auto& bob : bobs) {
-        const bool last = &bob == &bobs.back();
-        const float radius = last ? std::max(bob_radius(bob), layout_.last_bob_radius) : bob_radius(bob);
+    for (std::size_t i = 0; i < bobs.size(); ++i) {
+        const auto& bob = bobs[i];
+        const bool last = i + 1 == bobs.size();
+        const float own = bob_radius(side, i), radius = last ? std::max(own, layout_.last_bob_radius) : own;
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
         if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme_.panel, list);
         draw_disc(at(bob), radius, last ? theme_.sides[side] : hued(theme_.bob, 0.4f), list, last ? style_.glow : 0);
@@ -175,14 +178,15 @@ void PendulumLayer::draw_members(DisplayList& list) const {
     draw_pivots(0, list);
     if (few) return;
     for (std::size_t k = members.size(); k-- > 0;)
-        draw_disc(at(members[k].back()), bob_radius(members[k].back()), member_hue(k, 1).with_alpha(1), list);
+        draw_disc(at(members[k].back()), bob_radius(0, members[k].size() - 1), member_hue(k, 1).with_alpha(1), list);
 }
 
 void PendulumLayer::draw_member_bobs(std::size_t k, DisplayList& list) const {
     const auto& bobs = state_.snapshot.members[k];
-    for (const auto& bob : bobs) {
-        const bool last = &bob == &bobs.back();
-        const float radius = bob_radius(bob), rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
+    for (std::size_t i = 0; i < bobs.size(); ++i) {
+        const auto& bob = bobs[i];
+        const bool last = i + 1 == bobs.size();
+        const float radius = bob_radius(0, i), rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
         const auto color = member_hue(k, 1);
         if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme_.panel, list);
         draw_disc(at(bob), radius, last ? color : mixed(theme_.bob, color, 0.4f), list, last ? style_.glow : 0);
@@ -194,14 +198,14 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
                                DisplayList& list) const {
     const auto end_at = [&](const End<double>& end) {
         if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs[*bob]);
-        return at(std::get<Place<double>>(end));
+        return place_at(side, std::get<Place<double>>(end));
     };
     const auto draw = [&](Point from, Point to, float width) {
         if (const auto seen = clipped(from, to, panel_.area))
             list.push_back(Capsule{seen->first, seen->second, width, color});
     };
     for (const auto& line : state_.side(side).lines) {
-        if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), radius);
+        if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), line.width * radius);
         if (line.kind != MechanismLine::Kind::spring) continue;
         constexpr int turns = 16;
         const Point from = end_at(line.from), to = end_at(line.to), along{to.x - from.x, to.y - from.y};
@@ -237,6 +241,12 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
     }
 }
 
+/// A fixed end; of a chain the pivot, which may move.
+Point PendulumLayer::place_at(std::size_t side, const Place<double>& place) const {
+    const auto& pivot = state_.seen(side).pivot;
+    return panel_.at(place[0] + pivot.x, place[1] + pivot.y);
+}
+
 /// Where the fixed ends are.
 void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
     const float radius = std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
@@ -246,7 +256,7 @@ void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
         const bool one_end = line.kind == Kind::anchor;
         for (const auto* end : {&line.from, one_end ? nullptr : &line.to})
             if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr)
-                draw_disc(at(*place), radius, theme_.pivot, list);
+                draw_disc(place_at(side, *place), radius, theme_.pivot, list);
     }
 }
 
@@ -257,9 +267,11 @@ void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& 
 }
 
 /// Area by mass, but never too small to see; px.
-float PendulumLayer::bob_radius(const Bob<double>& bob) const {
-    const auto share = static_cast<float>(std::sqrt(bob.mass / heaviest_));
-    return std::max(layout_.bob_radius * share, 1.6f * layout_.rod_radius);
+float PendulumLayer::bob_radius(std::size_t side, std::size_t bob) const {
+    const auto& drawn = state_.side(side);
+    const auto share = static_cast<float>(std::sqrt(drawn.mass[bob] / heaviest_));
+    const float thickest = drawn.lines.empty() ? 1.0f : std::ranges::max(drawn.lines, {}, &MechanismLine::width).width;
+    return std::max(layout_.bob_radius * share, (thickest > 1 ? 0.5f * thickest : 1.6f) * layout_.rod_radius);
 }
 
 }  // namespace

@@ -75,6 +75,7 @@ float share_of(StripKind kind) {
         case StripKind::energies_b:
         case StripKind::angles:
         case StripKind::rates:
+        case StripKind::total_energy:
             return 0.18f;
         case StripKind::energy:
         case StripKind::rod_error:

@@ -95,8 +95,9 @@ std::vector<StripValue> StripLayer::values() const {
             // where damping takes energy no change of it is an error
             const double error = std::abs(seen.energy_change) / state_.scene.energy_range();
             values.push_back(
-                {state_.side(side).conserves_energy ? std::optional(error) : std::nullopt, color, widths[side]});
+                {state_.side(side).has_energy_error ? std::optional(error) : std::nullopt, color, widths[side]});
         }
+        if (strip_.kind == StripKind::total_energy) values.push_back({seen.energy, color, widths[side]});
         if (strip_.kind == (side == 0 ? StripKind::energies_a : StripKind::energies_b)) {
             const double kinetic = seen.kinetic_energy;
             values.push_back({kinetic, color, 0.8 * width, "kinetic"});
@@ -235,7 +236,7 @@ float StripLayer::draw_values(const std::vector<StripValue>& now, DisplayList& l
         say(fmt::format("{:.2f}", *now[0].value), now[0].color, (short_ ? brief_value_room : value_room) * t);
     else if (strip_.kind == StripKind::exponent && state_.start_distance == 0)
         say("none: both start alike", theme_.quiet_text, 0);
-    else if (strip_.kind == StripKind::energy && !scene.a.conserves_energy && !scene.b.conserves_energy)
+    else if (strip_.kind == StripKind::energy && !scene.a.has_energy_error && !scene.b.has_energy_error)
         say("none: damping takes energy", theme_.quiet_text, 0);
     else if (!rest_.empty() && strip_.kind != StripKind::exponent)
         say(rest_, theme_.quiet_text, 0);

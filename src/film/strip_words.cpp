@@ -52,7 +52,7 @@ CaptionWidths caption_widths(const Layout& layout, const Scene& scene, StripKind
         second = std::max(brief_value_room * t + width(words.how), none);
     }
     if (kind == StripKind::energy) {
-        const bool damped = !scene.a.conserves_energy && !scene.b.conserves_energy;
+        const bool damped = !scene.a.has_energy_error && !scene.b.has_energy_error;
         value = damped ? width("none: damping takes energy") : 0;
         second = damped ? value : width(words.how);
     }
@@ -80,6 +80,8 @@ StripWords strip_words(StripKind kind, const Scene& scene) {
             return {"Lyapunov exponent", "so far, 1/s"};
         case StripKind::energy:
             return {"energy error", "of the potential range"};
+        case StripKind::total_energy:
+            return {"energy, J", ""};
         case StripKind::rod_error:
             return {"worst rod error, m", ""};
         case StripKind::energies_a:

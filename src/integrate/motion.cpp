@@ -91,13 +91,14 @@ public:
         const auto pivot = pivot_of(y);
         if (physical_) shift(bobs, pivot);
         const auto energy = energies_of(y, bobs, pivot);
+        const Scalar work = layout_ ? layout_->work_of(y) : Scalar(0);
         Observation seen{.bobs = {},
                          .exact = {},
                          .pivot = in_double(pivot),
                          .energy = static_cast<double>(energy.total),
                          .kinetic_energy = static_cast<double>(energy.kinetic),
-                         .work = layout_ ? static_cast<double>(layout_->work_of(y)) : 0,
-                         .energy_change = static_cast<double>(Scalar(energy.total - start_energy_)),
+                         .work = static_cast<double>(work),
+                         .energy_change = static_cast<double>(Scalar(energy.total - start_energy_ - work)),
                          .length_error = length_error};
         for (const auto& bob : bobs) seen.bobs.push_back(in_double(bob));
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;

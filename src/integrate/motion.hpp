@@ -42,7 +42,7 @@ struct Observation {
     double energy = 0;          // J
     double kinetic_energy = 0;  // J
     double work = 0;            // J, of friction and drive on a physical pendulum since the start
-    double energy_change = 0;   // J, since the start; in quad the difference is taken in quad
+    double energy_change = 0;   // J, since the start, less `work`; in quad the difference is taken in quad
     double length_error = 0;    // of the worst rod, m
     /// In each rod, N, > 0 where it pulls, where it was wanted: in the chain's order, or in that of the mechanism's
     /// constraints that are rods. NaN where a constraint depends on others.

@@ -64,17 +64,17 @@ public:
         double first = h;
         for (const int node : tape_.events()) {
             const auto* x = tape_.series(node);
-            if (std::all_of(x, x + order_ + 1, [](const Scalar& c) { return c == Scalar(0); })) continue;
+            const auto* lead = std::find_if(x, x + order_ + 1, [](const Scalar& c) { return c != Scalar(0); });
+            if (lead == x + order_ + 1) continue;
             const auto at = [&](double t) { return plain_value(value(x, order_, Scalar(t), true)); };
-            const double start = plain_value(x[0]);
-            if (start == 0) return beyond;
+            const bool starts_below = *lead < Scalar(0);
             constexpr int parts = 16;
             for (double low = 0, part = first / parts; low < first; low += part) {
-                if ((at(low + part) < 0) == (start < 0)) continue;
+                if ((at(low + part) < 0) == starts_below) continue;
                 double high = low + part;
                 for (int i = 0; i < 60 && high - low > 0.5 * beyond; ++i) {
                     const double middle = 0.5 * (low + high);
-                    ((at(middle) < 0) == (start < 0) ? low : high) = middle;
+                    ((at(middle) < 0) == starts_below ? low : high) = middle;
                 }
                 first = std::min(first, high + beyond);
                 break;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -39,7 +40,7 @@ public:
     const Scalar* series(int node) const { return &coefficients_[static_cast<std::size_t>(node) * terms_]; }
     const std::vector<int>& events() const { return events_; }
 
-    enum class Operation : unsigned char { argument, sum, difference, product, ratio, root, sine, cosine };
+    enum class Operation : unsigned char { argument, sum, difference, product, ratio, root, sine, cosine, size, norm };
     /// A node's operands; −1 is the constant.
     struct Node {
         Operation operation;
@@ -112,8 +113,34 @@ private:
                 return k == 0 ? SinCos<Scalar>(term(a, 0)).sin : slope(a, self + 1, k);
             case Operation::cosine:
                 return k == 0 ? SinCos<Scalar>(term(a, 0)).cos : Scalar(-slope(a, self - 1, k));
+            case Operation::size: {
+                const Scalar sign = series(a)[first_term(a, k)] < Scalar(0) ? Scalar(-1) : Scalar(1);
+                return sign * term(a, k);
+            }
+            case Operation::norm:
+                return norm(a, b, self, k);
         }
         return Scalar(0);
+    }
+    /// The first of the terms to k that is not 0; k where all are.
+    int first_term(int node, int k) const {
+        int first = 0;
+        while (first < k && series(node)[first] == Scalar(0)) ++first;
+        return first;
+    }
+    /// √(a² + b²) =: c. Where all of it starts from 0, c² starts with t², and c_k follows from a and b to k all the same.
+    Scalar norm(int a, int b, int self, int k) const {
+        using std::sqrt;
+        const auto squares = [&](int order) {
+            const int first = order > k ? 1 : 0, last = order - first;
+            return Scalar(convolution(a, a, order, first, last) + convolution(b, b, order, first, last));
+        };
+        const Scalar* c = series(self);
+        if (k == 0) return sqrt(squares(0));
+        if (c[0] != Scalar(0)) return (squares(k) - convolution(self, self, k, 1, k - 1)) / (Scalar(2) * c[0]);
+        if (k == 1) return sqrt(squares(2));
+        return c[1] == Scalar(0) ? c[1]
+                                 : (squares(k + 1) - convolution(self, self, k + 1, 2, k - 1)) / (Scalar(2) * c[1]);
     }
 
     std::size_t terms_;
@@ -161,7 +188,22 @@ public:
         const Scalar root = sqrt(a.value);
         return a.tape_ ? Taped(root, *a.tape_, a.tape_->add(Operation::root, a.node_)) : Taped(root);
     }
-    friend Taped abs(const Taped& a) { return a < Taped(Scalar(0)) ? -a : a; }
+    /// Until it changes its sign.
+    friend Taped abs(const Taped& a) {
+        using std::abs;
+        if (!a.tape_) return Taped(Scalar(abs(a.value)));
+        const Taped size(abs(a.value), *a.tape_, a.tape_->add(Operation::size, a.node_));
+        a.tape_->note_event(size.node_);
+        return size;
+    }
+    /// √(a² + b²), until it vanishes: neither is a constant.
+    friend Taped norm(const Taped& a, const Taped& b) {
+        using std::sqrt;
+        const Taped size(sqrt(Scalar(a.value * a.value + b.value * b.value)), *a.tape_,
+                         a.tape_->add(Operation::norm, a.node_, b.node_));
+        a.tape_->note_event(size.node_);
+        return size;
+    }
 
     friend bool operator<(const Taped& a, const Taped& b) { return noted(a, b), a.value < b.value; }
     friend bool operator<=(const Taped& a, const Taped& b) { return noted(a, b), a.value <= b.value; }

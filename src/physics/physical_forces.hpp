@@ -101,16 +101,24 @@ public:
                 on_arm(i, Scalar(-(of(friction_.arm_quadratic, i) * (size(omega[i]) * omega[i]))), omega[i]);
         }
     }
-    /// On the end of link i, at its velocity.
-    void update_drag(Eigen::Index i, const Planar<Scalar>& v) {
-        using std::sqrt;
+    /// On the end of link i, at its velocity and speed.
+    void update_drag(Eigen::Index i, const Planar<Scalar>& v, const Scalar& speed) {
         auto& force = drag[static_cast<std::size_t>(i)];
         force = {Scalar(0), Scalar(0)};
         if (!friction_.drag_linear.empty()) force = force - v * of(friction_.drag_linear, i);
-        const Scalar square = dot(v, v);
-        if (!friction_.drag_quadratic.empty() && square != Scalar(0))  // sqrt has no slope at 0
-            force = force - v * Scalar(of(friction_.drag_quadratic, i) * sqrt(square));
+        if (!friction_.drag_quadratic.empty()) force = force - v * Scalar(of(friction_.drag_quadratic, i) * speed);
         power += dot(force, v);
+    }
+
+    /// |v|, whose derivatives at 0 are 0.
+    static Scalar speed_of(const Planar<Scalar>& v) {
+        using std::sqrt;
+        if constexpr (requires { norm(v.x, v.y); }) {
+            return norm(v.x, v.y);
+        } else {
+            const Scalar square = dot(v, v);
+            return square == Scalar(0) ? Scalar(0) : Scalar(sqrt(square));
+        }
     }
 
 private:

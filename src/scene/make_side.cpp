@@ -69,11 +69,18 @@ std::vector<MechanismLine> lines_of(const Pendulum<double>& chain) {
     return lines;
 }
 
+/// What of a link's mass is at its end, kg: that of a body is along it.
+double end_mass(const SideSpec& spec, std::size_t link) {
+    const auto& physical = spec.physical;
+    const bool is_body = !physical.center_m.empty() || physical.inertia_kg_m2[link] != 0;
+    return is_body ? 0 : static_cast<double>(spec.mass_kg[link]);
+}
+
 /// What pictures and errors are measured by, in double.
-void measure(Side& side) {
+void measure(const SideSpec& spec, Side& side) {
     if (side.motion.chain) {
         const auto chain = side.motion.chain->cast<double>();
-        side.mass = chain.mass;
+        for (std::size_t i = 0; i < chain.links(); ++i) side.mass.push_back(end_mass(spec, i));
         side.gravity = chain.gravity;
         side.energy_unit = chain.potential_range();
         side.reach = chain.reach();
@@ -83,15 +90,17 @@ void measure(Side& side) {
     if (side.motion.physical) {
         const auto physical = side.motion.physical->cast<double>();
         side.energy_unit = physical.potential_range();
-        side.conserves_energy = physical.conserves_energy();
-        side.is_driven = physical.is_driven();
+        side.has_work = !physical.conserves_energy();
         side.pivot_reach = std::hypot(physical.pivot.x, physical.pivot.y);
+        constexpr float heavy = 3.2f;  // a body is drawn as broad as that
+        for (std::size_t i = 0; i < side.lines.size(); ++i)
+            if (physical.chain.mass[i] > end_mass(spec, i)) side.lines[i].width = heavy;
     }
     if (!side.motion.parts) return;
     const auto parts = side.motion.parts->cast<double>();
     check(parts);
     side.lines = lines_of(parts);
-    side.conserves_energy = parts.conserves_energy();
+    side.has_energy_error = parts.conserves_energy();
     if (side.has_angles) return;
     // no chain: its energies are those of falling as far as it is large, and those of its start
     side.reach = size_of(parts);
@@ -151,7 +160,7 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
     if (spec.particles.empty()) motion.chain = chain_of(spec);
     if (!spec.physical.is_none()) motion.physical = physical_of(spec);
     if (motion.model == Model::mechanism) motion.parts = assembly_of(spec);
-    measure(side);
+    measure(spec, side);
     return side;
 }
 

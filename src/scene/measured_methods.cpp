@@ -119,6 +119,8 @@ std::vector<MeasuredMethod> measured_methods(const SideSpec& spec, double accura
     auto all = methods_in_table(links, std::max(accuracy, finest_in_table));
     std::erase_if(all, [&](const MeasuredMethod& measured) {
         const bool is_mechanism = measured.model == Model::mechanism;
+        if (!spec.physical.is_none() && spec.model == ModelChoice::automatic && measured.model != Model::angles)
+            return true;
         if (is_mechanism ? !spec.is_mechanism() && spec.model != ModelChoice::mechanism : spec.is_mechanism())
             return true;
         if (spec.stabilise != Stabilise::none &&

@@ -120,6 +120,7 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
         member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
         members.push_back(in_ticks(scene.a.motion, scene.frames.ticks_per_sample));
         members.back().chain = chain_of(member);
+        if (members.back().physical) members.back().physical = physical_of(member);
         members.back().wants_tension = false;
     }
     return members;
@@ -140,6 +141,13 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     const auto wanted = [&](StripKind kind) {
         return std::find(preset.video.strips.begin(), preset.video.strips.end(), kind) != preset.video.strips.end();
     };
+    if (scene.a.has_work || scene.b.has_work)
+        std::replace(scene.preset.video.strips.begin(), scene.preset.video.strips.end(), StripKind::energy,
+                     StripKind::total_energy);
+    if (wanted(StripKind::rod_force) && (scene.a.motion.physical || scene.b.motion.physical))
+        throw bad_input("{}: [video] panels: \"rod-force\" is the force in massless rods; links with mass, friction or a "
+                        "drive have none such",
+                        preset.name);
     scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
     check_precision(scene);
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
@@ -186,7 +194,7 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
 }
 
 std::optional<double> SideRun::energy_error(const Observation& seen) const {
-    if (!side_.conserves_energy) return std::nullopt;
+    if (!side_.has_energy_error) return std::nullopt;
     return seen.energy_change / energy_scale_;
 }
 

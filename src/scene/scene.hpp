@@ -58,6 +58,7 @@ struct MechanismLine {
     Kind kind;
     End<double> from, to;
     double radius = 0;  // m, of a circular slot
+    float width = 1;    // of a rod, in those of a massless one
 };
 
 /// What a picture needs besides the particles: the constraints in their order, then the springs in theirs.
@@ -75,8 +76,8 @@ struct Side {
     double gravity = 0;        // m/s²
     double energy_unit = 0;    // J, what an error of its energy is measured by in pictures (the potential range)
     double reach = 0;          // m, from the pivot to the end of the outstretched chain; of a mechanism, its size_of()
-    bool conserves_energy = true;      // no friction, no drive
-    bool is_driven = false;            // by a motor or a pivot that moves
+    bool has_energy_error = true;      // no spring is damped: what else changes the energy is known, Observation::work
+    bool has_work = false;             // by friction or drive on a chain
     double pivot_reach = 0;            // m, how far the pivot moves from the origin
     std::vector<MechanismLine> lines;  // what is drawn besides the bobs
 };

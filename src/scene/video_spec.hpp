@@ -32,17 +32,30 @@ inline constexpr auto names_of<Arrangement> = std::to_array<std::string_view>({"
                                                                                "phase", "portrait"});
 
 /// What a strip below the pendulums shows over time.
-/// "energy" is the error of the energy; "energies" are kinetic, potential and total.
-enum class StripKind { distance, exponent, energy, rod_error, rod_force, energies_a, energies_b, angles, rates };
-inline constexpr std::size_t strip_kinds = 9;
+/// "energy" is the error of the energy, or total_energy where friction or a drive changes it (make_scene()); "energies" are
+/// kinetic, potential and total.
+enum class StripKind {
+    distance,
+    exponent,
+    energy,
+    rod_error,
+    rod_force,
+    energies_a,
+    energies_b,
+    angles,
+    rates,
+    total_energy
+};
+inline constexpr std::size_t strip_kinds = 10;
 template <>
 inline constexpr auto names_of<StripKind> = std::to_array<std::string_view>({"distance", "exponent", "energy",
                                                                              "rod-error", "rod-force", "energies-a",
-                                                                             "energies-b", "angles", "rates"});
+                                                                             "energies-b", "angles", "rates", "total-energy"});
 /// The keys of their axes.
 inline constexpr std::array<std::string_view, strip_kinds> range_keys{
     "distance_range",   "exponent_range",   "energy_range", "rod_error_range", "rod_force_range",
-    "energies_a_range", "energies_b_range", "angles_range", "rates_range"};
+    "energies_a_range", "energies_b_range", "angles_range", "rates_range",
+    "total_energy_range"};
 /// Those whose axis goes by powers of ten.
 constexpr bool is_logarithmic(StripKind kind) {
     return kind == StripKind::distance || kind == StripKind::energy || kind == StripKind::rod_error;

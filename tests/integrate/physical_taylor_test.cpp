@@ -1,0 +1,208 @@
+#include "integrate/support.hpp"
+#include "integrate/taylor.hpp"
+#include "physics/physical_chain.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+template <class Scalar>
+auto after(const PhysicalPendulum<Scalar>& p, double seconds, double tolerance) {
+    using Model = PhysicalChain<Scalar>;
+    Model model(p);
+    TaylorStepper<Model> stepper(model, Model::start(p), Scalar(tolerance));
+    stepper.advance(Scalar(seconds));
+    return typename Model::State(stepper.state());
+}
+
+/// One with everything that has derivatives.
+PhysicalPendulum<double> smooth() {
+    auto p = physical(Pendulum<double>{{1.1, 0.6, 0.8}, {0.7, 0.9, 0.5}, {2.0, 1.4, -0.4}, {0.5, 0.2, -1.0}});
+    p.center = {0.4, 0.3, 0.5};
+    p.inertia = {0.05, 0.1, 0.02};
+    p.friction.viscous = {0.05, 0.02, 0.03};
+    p.friction.arm_linear = {0.01, 0, 0.02};
+    p.friction.drag_linear = {0.02, 0.03, 0};
+    p.pivot = {0.05, 0.1, 7, 0.4};
+    p.torques = {{1, 0.7, 2, 0.3}};
+    return p;
+}
+
+MotionSpec spec_of(const PhysicalPendulum<double>& p, std::string_view method, long rate) {
+    auto spec = stepping(Model::angles, method, p.chain, rate);
+    spec.physical = p.cast<Quad>();
+    spec.tolerance = Quad(1) / 1'000'000'000'000 / 1000;
+    return spec;
+}
+
+TEST(PhysicalTaylor, AnEvenRodSwingsWithItsPeriod) {
+    // T = 4 √(J / (m g a)) K(sin θ0/2), J = m l²/3, a = l/2
+    const double length = 1.3, amplitude = 2.5;
+    auto p = physical(Pendulum<double>{{0.7}, {length}, {amplitude}, {0}});
+    p.center = {length / 2};
+    p.inertia = {0.7 * length * length / 12};
+    const double period = 4 * std::sqrt(2 * length / (3 * 9.8)) * std::comp_ellint_1(std::sin(amplitude / 2));
+    const auto y = after(p, period / 4, 1e-15);
+    EXPECT_NEAR(y[0], 0, 1e-14);                                     // measured 1e-15
+    EXPECT_NEAR(after(p, 10 * period, 1e-15)[0], amplitude, 1e-12);  // measured 1e-14
+}
+
+TEST(PhysicalTaylor, SmallSwingsFadeAsTheLinearSystemDoes) {
+    // M θ″ + B θ′ + K θ = 0, of rods with friction at the joints and on the arms: exact but for the cube of the amplitude
+    const double small = 1e-6;
+    auto p = physical(Pendulum<double>{{1.2, 0.5}, {0.8, 1.1}, {small, -2 * small}, {0, 0}});
+    p.center = {0.4, 0.55};
+    p.inertia = {0.06, 0.05};
+    p.friction.viscous = {0.1, 0.2};
+    p.friction.arm_linear = {0.03, 0.01};
+    const double s1 = 1.2 * 0.4 + 0.8 * 0.5, s2 = 0.5 * 0.55;
+    Eigen::Matrix2d mass, friction, spring;
+    mass << 0.06 + 1.2 * 0.16 + 0.64 * 0.5, 0.8 * s2, 0.8 * s2, 0.05 + 0.5 * 0.55 * 0.55;
+    friction << 0.1 + 0.2 + 0.03, -0.2, -0.2, 0.2 + 0.01;
+    spring << 9.8 * s1, 0, 0, 9.8 * s2;
+    Eigen::Matrix4d system = Eigen::Matrix4d::Zero();
+    system.topRightCorner<2, 2>().setIdentity();
+    system.bottomLeftCorner<2, 2>() = -mass.inverse() * spring;
+    system.bottomRightCorner<2, 2>() = -mass.inverse() * friction;
+    const Eigen::EigenSolver<Eigen::Matrix4d> modes(system);
+    for (const double t : {0.5, 2.0, 5.0}) {
+        const Eigen::Vector4cd start = modes.eigenvectors().inverse() * Eigen::Vector4d(small, -2 * small, 0, 0);
+        const Eigen::Vector4cd end =
+            modes.eigenvectors() * ((modes.eigenvalues() * t).array().exp() * start.array()).matrix();
+        const auto y = after(p, t, 1e-15);
+        EXPECT_NEAR(y[0] / small, end[0].real() / small, 1e-10) << t;  // measured 5e-12: 1e-12 of the cube
+        EXPECT_NEAR(y[1] / small, end[1].real() / small, 1e-10) << t;
+    }
+}
+
+TEST(PhysicalTaylor, EnergyLessWorkIsConstant) {
+    auto all = smooth();
+    all.friction.arm_quadratic = {0.01, 0.02, 0.03};
+    all.friction.drag_quadratic = {0.02, 0.05, 0.01};
+    for (const auto& p : {smooth(), all}) {
+        Course course(spec_of(p, "taylor", 10));
+        const double start = course.observe().energy;
+        const auto end = course.advance(100);
+        EXPECT_GT(std::abs(end.work), 0.5);
+        EXPECT_NEAR(end.energy - end.work, start, 1e-12 * p.potential_range());  // measured 5e-14
+    }
+}
+
+TEST(PhysicalTaylor, AgreesWithItselfInQuad) {
+    auto p = smooth();
+    p.friction.drag_quadratic = {0.02, 0.05, 0.01};
+    p.friction.arm_quadratic = {0.01, 0.02, 0.03};
+    const auto fine = after(p.cast<Quad>(), 1, 1e-30), finer = after(p.cast<Quad>(), 1, 1e-32);
+    EXPECT_LE(static_cast<double>((fine - finer).norm()), 1e-28);         // measured 2e-30
+    EXPECT_LE((after(p, 1, 1e-15) - fine.cast<double>()).norm(), 1e-13);  // measured 4e-15
+}
+
+TEST(PhysicalTaylor, IsWhatOtherMethodsConvergeTo) {
+    auto p = smooth();
+    p.friction.drag_quadratic = {0.02, 0.05, 0.01};
+    p.friction.coulomb = {0.1, 0, 0.05};
+    const auto expected = Course(spec_of(p, "taylor", 2)).advance(2);
+    for (const auto* method : {"rk4", "dop853", "adams"}) {
+        const long rate = std::string_view(method) == "dop853" ? 2 : 20'000;
+        const auto seen = Course(spec_of(p, method, rate)).advance(rate);
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_NEAR(seen.bobs[i].theta, expected.bobs[i].theta, 2e-8) << method;  // measured 4e-9 by rk4
+    }
+}
+
+/// Of small deviations from the upright over one period of the pivot: the trace of the map.
+double trace_of_period(double amplitude, double frequency) {
+    double trace = 0;
+    for (int i = 0; i < 2; ++i) {
+        const double small = 1e-8;
+        auto p = physical(Pendulum<double>{{1}, {1}, {pi + (i == 0 ? small : 0)}, {i == 1 ? small : 0}});
+        p.pivot = {0, amplitude, frequency, 0};
+        const auto y = after(p, 2 * pi / frequency, 1e-15);
+        trace += (i == 0 ? y[0] - pi : y[y.size() / 2]) / small;
+    }
+    return trace;
+}
+
+/// The least amplitude of the pivot that holds the upright.
+double least_amplitude(double frequency) {
+    double low = 0.5 * std::sqrt(2 * 9.8) / frequency, high = 4 * low;
+    for (int i = 0; i < 30; ++i) {
+        const double middle = 0.5 * (low + high);
+        (trace_of_period(middle, frequency) > 2 ? low : high) = middle;
+    }
+    return high;
+}
+
+TEST(PhysicalTaylor, TheUprightIsHeldWhereKapitzaAndMathieuSay) {
+    // Kapitza: a² ν² > 2 g l. Mathieu's edge: 4 g / (l ν²) = q²/2 − 7 q⁴/128 + 29 q⁶/2304 − 68687 q⁸/18874368, q = 2 a / l
+    // Source  Abramowitz & Stegun, 20.2.25
+    const double fast = least_amplitude(80);
+    EXPECT_NEAR(fast * 80 / std::sqrt(2 * 9.8), 1, 0.01);  // measured 1.0007
+    for (const double frequency : {15.0, 25.0}) {
+        const double q = 2 * least_amplitude(frequency), q2 = q * q;
+        const double edge =
+            q2 / 2 - 7 * q2 * q2 / 128 + 29 * std::pow(q2, 3) / 2304 - 68687 * std::pow(q2, 4) / 18874368;
+        EXPECT_NEAR(edge / (4 * 9.8 / (frequency * frequency)), 1, 1e-3) << frequency;  // measured below
+    }
+}
+
+TEST(PhysicalTaylor, ADriveHoldsTwoLinksUpright) {
+    auto p = physical(Pendulum<double>{{1, 1}, {0.2, 0.2}, {radians(178), radians(181)}, {0, 0}});
+    p.friction.viscous = {0.002, 0.002};
+    const auto furthest = [&] {
+        Course course(spec_of(p, "taylor", 100));
+        double most = 0;
+        for (int i = 0; i < 1000; ++i)
+            for (const auto& bob : course.advance(1).bobs) most = std::max(most, std::abs(bob.theta - pi));
+        return most;
+    };
+    EXPECT_GT(furthest(), 1);
+    p.pivot = {0, 0.02, 2 * pi * 50, 0};
+    EXPECT_LT(furthest(), radians(5));  // measured 3.0°
+}
+
+TEST(PhysicalTaylor, CoulombsFrictionTakesAsMuchOfEverySwing) {
+    // of a small one: 2 c / (m g l) of the amplitude at each turn, until it sticks, and then for ever
+    const double c = 1e-3, start = 0.0103, each = 2 * c / 9.8;
+    auto p = physical(Pendulum<double>{{1}, {1}, {start}, {0}});
+    p.friction.coulomb = {c};
+    p.friction.width = 1e-7;
+    Course course(spec_of(p, "taylor", 1000));
+    double before = 0, turned = start;
+    int turns = 0;
+    for (int i = 0; i < 60'000; ++i) {
+        const auto now = course.advance(1).bobs[0];
+        if (before * now.omega < 0) {
+            EXPECT_NEAR(std::abs(now.theta), turned - each, 4e-6) << turns;  // measured 1e-6
+            turned -= each;
+            ++turns;
+        }
+        before = now.omega;
+    }
+    EXPECT_EQ(turns, 49);  // at the next, 0.47 of what one takes is left: less than c holds it
+    EXPECT_EQ(before, 0);
+    EXPECT_NEAR(std::abs(course.observe().bobs[0].theta), start - 50 * each, 4e-6);
+}
+
+TEST(PhysicalTaylor, WhatSticksStaysWhereItIs) {
+    auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {pi / 3, pi / 3}, {0, 0}});
+    p.friction.coulomb = {3, 1};
+    for (const auto* method : {"taylor", "rk4", "euler", "dopri5", "dop853", "semi-implicit-euler"}) {
+        auto spec = spec_of(p, method, 10);
+        spec.steps_per_sample = 3000;
+        Course course(spec);
+        const auto stuck = course.advance(90), later = course.advance(50);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(later.bobs[i].omega, 0) << method;
+            EXPECT_EQ(later.bobs[i].theta, stuck.bobs[i].theta) << method;
+            EXPECT_LT(std::abs(stuck.bobs[i].theta), 0.2) << method;
+        }
+        EXPECT_LT(later.energy - later.work, p.potential_range());
+    }
+}
+
+}  // namespace
+}  // namespace doppel

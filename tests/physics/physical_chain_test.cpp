@@ -1,0 +1,208 @@
+#include "physics/physical_chain.hpp"
+
+#include "numeric/dual.hpp"
+#include "physics/angle_chain.hpp"
+#include "physics/bob.hpp"
+#include "physics/pendulums.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace {
+
+using Chain = PhysicalChain<double>;
+
+/// Nothing equal, at a state drawn from a seed: bodies, and nothing besides.
+PhysicalPendulum<double> random_bodies(std::mt19937& random, std::size_t links) {
+    std::uniform_real_distribution<double> part(0.2, 1.4);
+    auto p = physical(random_pendulum(random, links));
+    for (std::size_t i = 0; i < links; ++i) {
+        p.center[i] *= part(random);
+        p.inertia[i] = part(random) * p.chain.mass[i] * p.chain.length[i] * p.chain.length[i];
+    }
+    return p;
+}
+
+/// θ″ of the links.
+Eigen::VectorXd accelerations(const PhysicalPendulum<double>& p) {
+    Chain chain(p);
+    const auto y = Chain::start(p);
+    auto rate = y;
+    chain.rate(y, rate);
+    return rate.segment(chain.layout.half, chain.layout.coordinates);
+}
+
+/// M_ij = K_ij cos(θ_i − θ_j) and f_i = −Σ K_ij sin(θ_i − θ_j) ω_j² − g S_i sinθ_i, with S_i = m_i a_i + l_i Σ_{k>i} m_k,
+/// K_ij = l_i S_j (i < j), K_ii = I_i + m_i a_i² + l_i² Σ_{k>i} m_k: Lagrange's equations, solved by elimination.
+Eigen::VectorXd by_elimination(const PhysicalPendulum<double>& p) {
+    const auto n = static_cast<Eigen::Index>(p.chain.links());
+    Eigen::MatrixXd k(n, n), m(n, n);
+    Eigen::VectorXd s(n), f(n);
+    double below = 0;
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+        const auto u = static_cast<std::size_t>(i);
+        const double mass = p.chain.mass[u], length = p.chain.length[u], center = p.center[u];
+        s[i] = mass * center + length * below;
+        k(i, i) = p.inertia[u] + mass * center * center + length * length * below;
+        below += mass;
+    }
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = i + 1; j < n; ++j) k(i, j) = k(j, i) = p.chain.length[static_cast<std::size_t>(i)] * s[j];
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const double angle = p.chain.angle[static_cast<std::size_t>(i)];
+        f[i] = -p.chain.gravity * s[i] * std::sin(angle);
+        for (Eigen::Index j = 0; j < n; ++j) {
+            const auto v = static_cast<std::size_t>(j);
+            const double apart = angle - p.chain.angle[v];
+            m(i, j) = k(i, j) * std::cos(apart);
+            f[i] -= k(i, j) * std::sin(apart) * p.chain.rate[v] * p.chain.rate[v];
+        }
+    }
+    return m.ldlt().solve(f);
+}
+
+TEST(PhysicalChain, OfPointMassesIsTheChainOfThem) {
+    std::mt19937 random(1);
+    for (std::size_t links = 1; links <= 6; ++links) {
+        const auto p = random_pendulum(random, links);
+        using Ideal = AngleChain<double, Eigen::Dynamic>;
+        Ideal ideal(p);
+        const auto y = Ideal::start(p);
+        auto rate = y;
+        ideal.rate(y, rate);
+        const Eigen::VectorXd expected = rate.tail(y.size() / 2);
+        EXPECT_LE((accelerations(physical(p)) - expected).norm(), 1e-13 * expected.norm()) << links;  // measured 9e-15
+    }
+}
+
+TEST(PhysicalChain, OfBodiesSolvesLagrangesEquations) {
+    std::mt19937 random(2);
+    for (int i = 0; i < 60; ++i) {
+        const auto p = random_bodies(random, 1 + static_cast<std::size_t>(i % 6));
+        const auto expected = by_elimination(p);
+        EXPECT_LE((accelerations(p) - expected).norm(), 1e-11 * expected.norm()) << i;  // measured 3e-13
+    }
+}
+
+TEST(PhysicalChain, AnEvenRodIsManySmallMassesOnIt) {
+    // n masses m/n at the middles of n equal parts: centre l/2, inertia m l²/12 (1 − 1/n²); so what differs shrinks like 1/n²
+    Pendulum<double> chain{{1.3, 0.7}, {0.9, 1.1}, {2.0, -0.5}, {0.3, 1.4}};
+    const auto rods = [&](double shrunk) {
+        auto p = physical(chain);
+        for (std::size_t i = 0; i < 2; ++i) {
+            p.center[i] = chain.length[i] / 2;
+            p.inertia[i] = chain.mass[i] * chain.length[i] * chain.length[i] / 12 * shrunk;
+        }
+        return p;
+    };
+    const auto masses = [&](int n) {
+        double sum = 0;
+        for (int i = 0; i < n; ++i) sum += std::pow((i + 0.5) / n - 0.5, 2) / n;
+        return 12 * sum;
+    };
+    const auto even = accelerations(rods(1));
+    double before = 0;
+    for (const int n : {10, 20, 40, 80}) {
+        const double error = (accelerations(rods(masses(n))) - even).norm();
+        if (before > 0) {
+            EXPECT_NEAR(std::log2(before / error), 2, 0.02) << n;  // measured 2.002
+        }
+        before = error;
+    }
+}
+
+TEST(PhysicalChain, FrictionContractsThePhaseSpaceAsItsTraceSays) {
+    // for one link the divergence of (θ′, ω′) is −b/J
+    auto p = physical(Pendulum<double>{{1.2}, {0.8}, {2.0}, {1.0}});
+    p.inertia[0] = 0.1;
+    p.friction.viscous = {0.3};
+    using Number = Dual<double, 2>;
+    PhysicalChain<Number> chain(p.cast<Number>());
+    auto y = PhysicalChain<Number>::start(p.cast<Number>());
+    const auto half = chain.layout.half;
+    y[0] = Number::variable(p.chain.angle[0], 0);
+    y[half] = Number::variable(p.chain.rate[0], 1);
+    auto rate = y;
+    chain.rate(y, rate);
+    const double divergence = rate[0].tangent[0] + rate[half].tangent[1];
+    EXPECT_NEAR(divergence, -0.3 / (0.1 + 1.2 * 0.8 * 0.8), 1e-15);  // measured 0
+}
+
+TEST(PhysicalChain, AtRestBelowCoulombsTorqueStaysAtRestExactly) {
+    auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {0.3, 0.2}, {0, 0}});
+    p.friction.coulomb = {10, 5};  // held take 7.7 and 1.9 N m
+    Chain chain(p);
+    const auto y = Chain::start(p);
+    auto rate = y;
+    chain.rate(y, rate);
+    EXPECT_EQ(rate.norm(), 0);
+
+    p.friction.coulomb = {10, 1.9};
+    Chain slips(p);
+    slips.rate(y, rate);
+    EXPECT_EQ(rate[2 + 1], 0);  // the first joint holds
+    EXPECT_LT(rate[3 + 1], -1);
+}
+
+TEST(PhysicalChain, AHeldJointTurnsWithTheLinkAbove) {
+    // both joints at rest relative to each other, the pivot without friction: one rigid body
+    auto p = physical(Pendulum<double>{{1.1, 0.6}, {0.7, 0.9}, {1.0, 1.4}, {0.5, 0.5}});
+    p.friction.coulomb = {0, 1e3};
+    const auto alpha = accelerations(p);
+    EXPECT_EQ(alpha[0], alpha[1]);
+    const double x1 = 0.7 * std::sin(1.0), y1 = -0.7 * std::cos(1.0);
+    const double x2 = x1 + 0.9 * std::sin(1.4), y2 = y1 - 0.9 * std::cos(1.4);
+    const double inertia = 1.1 * (x1 * x1 + y1 * y1) + 0.6 * (x2 * x2 + y2 * y2);
+    EXPECT_NEAR(alpha[0], -9.8 * (1.1 * x1 + 0.6 * x2) / inertia, 1e-13);  // measured 2e-15
+}
+
+TEST(PhysicalChain, ASlowJointComesToRestWhereItCanBeHeld) {
+    auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {0.3, 0.2}, {1e-3, 0}});
+    p.friction.coulomb = {10, 5};
+    p.friction.width = 2e-3;
+    Chain chain(p);
+    auto y = Chain::start(p);
+    chain.project(y);
+    EXPECT_EQ(y[2 + 1], 0);
+    EXPECT_EQ(y[3 + 1], 0);
+
+    p.friction.coulomb = {1, 5};  // the first slips, with the second at rest on it
+    Chain slips(p);
+    y = Chain::start(p);
+    slips.project(y);
+    EXPECT_EQ(y[2 + 1], 1e-3);
+    EXPECT_EQ(y[3 + 1], 1e-3);
+}
+
+TEST(PhysicalChain, WorkIsTheChangeOfEnergy) {
+    // dE/dt by finite differences of the energy along the motion
+    std::mt19937 random(5);
+    for (int i = 0; i < 20; ++i) {
+        auto p = random_bodies(random, 3);
+        p.friction = {{0.3, 0.1, 0.2}, {}, 0.1, {0.1, 0, 0.2}, {0.02, 0.03, 0}, {0.1, 0.2, 0.3}, {0.05, 0.1, 0.02}};
+        p.pivot = {0.1, 0.2, 3, 0.4};
+        p.torques = {{1, 0.7, 2, 0.3}};
+        Chain chain(p);
+        const auto y = Chain::start(p);
+        auto rate = y;
+        chain.rate(y, rate);
+        const auto energy = [&](double h) {
+            const Eigen::VectorXd moved = y + h * rate;
+            const PivotPlace<double> pivot(p.pivot, chain.layout.time_of(moved));
+            auto bobs = bobs_of_angles(p.chain, Eigen::VectorXd(chain.layout.of_links(moved)));
+            for (auto& bob : bobs) {
+                bob.x += pivot.place.x;
+                bob.y += pivot.place.y;
+                bob.vx += pivot.velocity.x;
+                bob.vy += pivot.velocity.y;
+            }
+            const auto parts = energies(p, bobs, {0, pivot.place.x, pivot.place.y, pivot.velocity.x, pivot.velocity.y});
+            return parts.kinetic + parts.potential;
+        };
+        const double h = 1e-5, slope = (energy(h) - energy(-h)) / (2 * h), power = rate[chain.layout.half + 4];
+        EXPECT_NEAR(power, slope, 1e-7 * (1 + std::abs(slope))) << i;  // measured 1e-8
+    }
+}
+
+}  // namespace
+}  // namespace doppel
