@@ -35,7 +35,8 @@ public:
           cos_(sin_),
           rates_(sin_),
           alpha_(sin_),
-          held_(p.chain.links(), false) {}
+          held_(p.chain.links(), false),
+          slip_(p.chain.links(), 0) {}
 
     static State start(const PhysicalPendulum<Scalar>& p) {
         const PhysicalLayout layout(p, links(p));
@@ -135,7 +136,9 @@ private:
     }
 
     void take_forces(const Scalar& t, const Planar<Scalar>& pivot_velocity) {
-        forces_.update(rates_, t, [&](Eigen::Index i) { return held_[at(i)]; });
+        forces_.update(rates_, t, [&](Eigen::Index i, const Scalar& rate) {
+            return !has_coulomb(i) || held_[at(i)] ? 0 : rate > Scalar(0) ? 1 : rate < Scalar(0) ? -1 : slip_[at(i)];
+        });
         if (forces_.drag.empty()) return;
         Planar<Scalar> v = pivot_velocity;
         for (Eigen::Index i = 0; i < sin_.size(); ++i) {
@@ -176,6 +179,7 @@ private:
         }
         if (most > Scalar(1)) {
             held_[at(joints[at(worst)])] = false;
+            slip_[at(joints[at(worst)])] = torque[worst] > Scalar(0) ? -1 : 1;
             return false;
         }
         for (Eigen::Index k = 0; k < m; ++k) add_torque(joints[at(k)], torque[k], forces_.torque);
@@ -190,6 +194,7 @@ private:
     ArticulatedBodies<Scalar> bodies_;
     Half sin_, cos_, rates_, alpha_;
     std::vector<bool> held_;
+    std::vector<int> slip_;  // the sign of the rate with which a joint at rest begins to turn that cannot be held
 };
 
 }  // namespace doppel

@@ -82,16 +82,18 @@ public:
         if (friction_.has_drag()) drag.resize(p.chain.links());
     }
 
-    /// At the rates ω of the links and the time t. A joint that is `held` is left out of Coulomb's friction.
-    template <class Rates, class Held>
-    void update(const Rates& omega, const Scalar& t, const Held& held) {
+    /// At the rates ω of the links and the time t. sign(i, rate) is that of joint i in Coulomb's law; 0 where it is held.
+    template <class Rates, class Sign>
+    void update(const Rates& omega, const Scalar& t, const Sign& sign) {
         power = Scalar(0);
         torque.setZero();
         for (Eigen::Index i = 0; i < torque.size(); ++i) {
             const Scalar rate = i == 0 ? Scalar(omega[0]) : Scalar(omega[i] - omega[i - 1]);
             Scalar at_joint(0);
             if (!friction_.viscous.empty()) at_joint -= of(friction_.viscous, i) * rate;
-            if (!friction_.coulomb.empty() && !held(i)) at_joint -= of(friction_.coulomb, i) * smooth_sign(rate);
+            if (!friction_.coulomb.empty()) {
+                if (const int s = sign(i, rate); s != 0) at_joint -= Scalar(s) * of(friction_.coulomb, i);
+            }
             for (const auto& motor : motors_)
                 if (static_cast<Eigen::Index>(motor.joint) == i)
                     at_joint += motor.amplitude * SinCos<Scalar>(Scalar(motor.frequency * t + motor.phase)).cos;
@@ -128,11 +130,6 @@ private:
     static Scalar size(const Scalar& x) {
         using std::abs;
         return abs(x);
-    }
-    /// x / √(x² + w²)
-    Scalar smooth_sign(const Scalar& x) const {
-        using std::sqrt;
-        return x / sqrt(Scalar(x * x + friction_.width * friction_.width));
     }
     void add(Eigen::Index joint, const Scalar& at_joint, const Scalar& rate) {
         torque[joint] += at_joint;

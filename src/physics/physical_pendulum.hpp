@@ -10,16 +10,17 @@ namespace doppel {
 /// What slows a chain down. A joint is where a link hangs: joint 1 at the pivot, joint i at the end of link i − 1; its rate
 /// is that of its link less that of the link above. Each list has one number a link, ≥ 0, or is empty: none.
 ///
-///     at a joint       −b ω − c ω / √(ω² + w²)          torque on its link, the opposite on the link above
+///     at a joint       −b ω − c sign ω                  torque on its link, the opposite on the link above
 ///     on an arm        −k1 ω − k2 |ω| ω                 torque, by the arm's own rate
 ///     on a link's end  −d1 v − d2 |v| v                 force, by its velocity
 ///
-/// The second term is Coulomb's friction, smoothed over the width w. Below c, a joint at rest stays at rest exactly.
+/// The second term is Coulomb's friction: it holds a joint at rest as long as a torque of at most c does. A step that ends
+/// with a rate of at most w ends at rest where the joint can be held so.
 template <class Scalar>
 struct Friction {
     std::vector<Scalar> viscous;            // b, N m s
     std::vector<Scalar> coulomb;            // c, N m
-    Scalar width = Scalar(1) / Scalar(10);  // w, rad/s, > 0
+    Scalar width = Scalar(1) / Scalar(1000);  // w, rad/s, > 0
     std::vector<Scalar> arm_linear;         // k1, N m s
     std::vector<Scalar> arm_quadratic;      // k2, N m s²
     std::vector<Scalar> drag_linear;        // d1, N s/m
