@@ -104,12 +104,14 @@ private:
 };
 
 /// Solves J1 M⁻¹ J0ᵀ λ = x of the rods of such a chain, r_k = q_k − q_{k−1}, in O(N), from its end to the pivot and back.
-/// With w = M⁻¹ J0ᵀ λ, node k feels of all below it (c_k: what couples k − 1 and k)
-///     A w_k + c_k w_{k−1} + b = r0 λ_k ,     r1·(w_k − w_{k−1}) = x_k ,
-/// so that, with e = r1·A⁻¹ r0, g0 = r0 + c A⁻¹ r0, g1 = r1 + c A⁻ᵀ r1 and z = x_k + r1·A⁻¹ b,
-///     λ_k = (z + g1·w_{k−1}) / e ,     w_k = A⁻¹ (r0 λ_k − c w_{k−1} − b) ,
-/// and node k − 1 feels M_{k−1} − c² A⁻¹ + g0 g1ᵀ / e in place of A and g0 z / e − c A⁻¹ b in place of b.
-/// No pivoting: while q1 is near q0, A and e are positive.
+/// With w = M⁻¹ J0ᵀ λ and c_k for what couples k − 1 and k, rod k + 1 and all below leave of the equations
+///     A w_k + c_k w_{k−1} + b = r0_k λ_k − u0 λ_{k+1} ,     e λ_{k+1} = z + u1·w_k ,     r1_k·(w_k − w_{k−1}) = x_k .
+/// Without w_k, the second is, with d = e + u1·A⁻¹u0,
+///     d λ_{k+1} = z − u1·A⁻¹b + (u1·A⁻¹r0) λ_k − c u1·A⁻¹w_{k−1} ,
+/// and without λ_{k+1}, too, with B = A⁻¹ − (A⁻¹u0)(u1 A⁻¹) / d and f = A⁻¹b + A⁻¹u0 (z − u1·A⁻¹b) / d, next are
+///     M_{k−1} − c² B ,  −c f ,  u0 = r0 + c B r0 ,  u1 = r1 + c Bᵀ r1 ,  e = r1·B r0 ,  z = x_k + r1·f .
+/// In this order a light end between heavy ones costs no digits: A is nowhere greater than M, and of point masses (c = 0) it
+/// is the elimination of RodChain. No pivoting: A, d and e are positive while q1 is near q0.
 template <class S>
 class RodPullsOfBodies {
 public:
@@ -121,50 +123,66 @@ public:
     /// rod(k) gives r0 and r1 of rod k.
     template <class Rod, class Multipliers>
     void solve(const EndMasses<Scalar>& masses, const Rod& rod, Multipliers& x) {
-        Matrix a{masses.own[masses.size() - 1], Scalar(0), Scalar(0), masses.own[masses.size() - 1]};
-        Vector b{Scalar(0), Scalar(0)};
+        const Vector none{Scalar(0), Scalar(0)};
+        Matrix a = Matrix::of(masses.own[masses.size() - 1]);
+        Vector b = none, u0 = none, u1 = none;
+        Scalar e(1), z(0);
         for (Eigen::Index k = masses.size() - 1; k >= 0; --k) {
             auto& link = links_[static_cast<std::size_t>(k)];
             const auto [r0, r1] = rod(k);
             const Scalar& c = masses.coupled[k];
-            link.inverse = a.inverse();
-            link.r0 = r0;
-            link.b = b;
-            const Vector b_free = link.inverse.times(b), pulled = link.inverse.times(r0);
-            const Vector g0 = r0 + pulled * c;
-            link.g1 = r1 + link.inverse.transposed().times(r1) * c;
-            link.by_e = Scalar(1) / dot(r1, pulled);
-            link.z = x[k] + dot(r1, b_free);
+            const Matrix inverse = a.inverse();
+            const Vector column = inverse.times(u0), row = inverse.transposed().times(u1), free = inverse.times(b);
+            link.by_d = Scalar(1) / Scalar(e + dot(u1, column));
+            link.z = z - dot(u1, free);
+            link.by_rod = dot(row, r0);
+            link.inverse = inverse;
+            link.row = row;
+            link.r0 = r0, link.u0 = u0, link.b = b;
+            const Matrix rest = inverse.less(column * link.by_d, row);  // B
+            const Vector f = free + column * Scalar(link.z * link.by_d);
+            const Vector pulled = rest.times(r0);
+            e = dot(r1, pulled);
+            z = x[k] + dot(r1, f);
             if (k == 0) break;
-            const Scalar& above = masses.own[k - 1];
-            const Vector h = g0 * link.by_e;
-            const Scalar c2 = c * c;
-            a = {above - c2 * link.inverse.xx + h.x * link.g1.x, h.x * link.g1.y - c2 * link.inverse.xy,
-                 h.y * link.g1.x - c2 * link.inverse.yx, above - c2 * link.inverse.yy + h.y * link.g1.y};
-            b = h * link.z - b_free * c;
+            u0 = r0 + pulled * c;
+            u1 = r1 + rest.transposed().times(r1) * c;
+            b = f * Scalar(-c);
+            a = rest.from(masses.own[k - 1], Scalar(c * c));
         }
-        Vector w{Scalar(0), Scalar(0)};
-        for (Eigen::Index k = 0; k < masses.size(); ++k) {
+        Vector w = none;
+        x[0] = z / e;
+        for (Eigen::Index k = 0; k + 1 < masses.size(); ++k) {
             const auto& link = links_[static_cast<std::size_t>(k)];
-            x[k] = (link.z + dot(link.g1, w)) * link.by_e;
-            w = link.inverse.times(link.r0 * x[k] - w * masses.coupled[k] - link.b);
+            const Vector led = w * masses.coupled[k];
+            x[k + 1] = (link.z + link.by_rod * x[k] - dot(link.row, led)) * link.by_d;
+            w = link.inverse.times(link.r0 * x[k] - link.u0 * x[k + 1] - led - link.b);
         }
     }
 
 private:
     struct Matrix {
         Scalar xx, xy, yx, yy;
+        static Matrix of(const Scalar& m) { return {m, Scalar(0), Scalar(0), m}; }
         Vector times(const Vector& v) const { return {xx * v.x + xy * v.y, yx * v.x + yy * v.y}; }
         Matrix transposed() const { return {xx, yx, xy, yy}; }
         Matrix inverse() const {
             const Scalar by_determinant = Scalar(1) / Scalar(xx * yy - xy * yx);
             return {yy * by_determinant, -(xy * by_determinant), -(yx * by_determinant), xx * by_determinant};
         }
+        /// Less column rowᵀ.
+        Matrix less(const Vector& column, const Vector& row) const {
+            return {xx - column.x * row.x, xy - column.x * row.y, yx - column.y * row.x, yy - column.y * row.y};
+        }
+        /// m less factor times this.
+        Matrix from(const Scalar& m, const Scalar& factor) const {
+            return {m - factor * xx, -(factor * xy), -(factor * yx), m - factor * yy};
+        }
     };
     struct Link {
-        Matrix inverse{};  // A⁻¹
-        Vector r0{}, g1{}, b{};
-        Scalar by_e{}, z{};
+        Matrix inverse{};               // A⁻¹
+        Vector r0{}, u0{}, row{}, b{};  // row: u1 A⁻¹
+        Scalar by_d{}, z{}, by_rod{};   // by_rod: u1·A⁻¹r0
     };
     std::vector<Link> links_;
 };
