@@ -4,6 +4,7 @@
 #include "integrate/methods.hpp"
 #include "integrate/stepper.hpp"
 #include "physics/canonical.hpp"
+#include "physics/physical_canonical.hpp"
 
 #include <algorithm>
 #include <array>
@@ -49,9 +50,10 @@ private:
 };
 
 /// Gauss collocation at fixed step in canonical variables z = (θ, p), where it is symplectic: energy stays near its
-/// start for ever. The stages are found by fixed-point iteration, from a guess that continues the slopes of the steps
-/// before, until rounding hides what is left to gain. z is summed with compensation. What all this leaves over is
-/// rounding without a bias, so that the error of the energy walks at random instead of drifting.
+/// start for ever (with friction or a drive it is a method of its order, no more). The stages are found by fixed-point
+/// iteration, from a guess that continues the slopes of the steps before, until rounding hides what is left to gain. z is
+/// summed with compensation. What all this leaves over is rounding without a bias, so that the error of the energy walks
+/// at random instead of drifting.
 /// Errors  exit 3 where the iteration does not converge: the step is too long.
 /// Source  Hairer, McLachlan & Razakarivony 2008, Achieving Brouwer's law with implicit Runge–Kutta methods;
 ///         Hairer, Lubich & Wanner, Geometric Numerical Integration, §VIII.6.
@@ -202,13 +204,15 @@ private:
 };
 
 struct Gauss4 {
-    static constexpr Method method{"gauss4", "Gauss collocation 4", 4, false, "implicit, symplectic, time-reversible"};
+    static constexpr Method method{"gauss4", "Gauss collocation 4", 4, false,
+                                   "implicit; symplectic and time-reversible without friction"};
     template <Hamiltonian Model>
     using Stepper = GaussCollocation<Model, 2, method>;
 };
 
 struct Gauss6 {
-    static constexpr Method method{"gauss6", "Gauss collocation 6", 6, false, "implicit, symplectic, time-reversible"};
+    static constexpr Method method{"gauss6", "Gauss collocation 6", 6, false,
+                                   "implicit; symplectic and time-reversible without friction"};
     template <Hamiltonian Model>
     using Stepper = GaussCollocation<Model, 3, method>;
 };

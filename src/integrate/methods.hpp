@@ -17,7 +17,7 @@ struct Method {
 /// A method with the models it can step.
 struct MethodEntry : Method {
     bool angles, constraints, mechanism;
-    bool stabilised;  // constraints that are held otherwise (integrate/stabilise.hpp)
+    bool stabilised;  // constraints that are held otherwise (integrate/stabilise.hpp): its steps end by project()
 };
 
 /// All of them, in the order of integrate/registry.hpp.

@@ -44,7 +44,7 @@ public:
         if (spec.wants_tension && model_ == Model::mechanism) weighed_.emplace(spec.parts->cast<double>());
         wants_tension_ = spec.wants_tension;
         stepper_->read(y_);
-        const auto bobs = bobs_of(chain_state(y_));
+        auto bobs = bobs_of(chain_state(y_));
         const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
         if (adaptive_) {
             const double interval = spec.sample_interval.value();
@@ -61,7 +61,9 @@ public:
         }
         if (follows_turns) turns_ = Turns(pendulum_->template cast<double>().angle);
         turns_.update(chain_state(y_), 0);
-        start_energy_ = energies_of(y_, bobs, pivot_of(y_)).total;
+        const auto pivot = pivot_of(y_);
+        if (physical_) shift(bobs, pivot);
+        start_energy_ = energies_of(y_, bobs, pivot).total;
     }
 
     void advance(const std::atomic<bool>& stop) override {
@@ -229,6 +231,11 @@ std::unique_ptr<Motion> make_motion(const MotionSpec& spec) {
         throw bad_input("in angles the rods keep their length by themselves; there is nothing to stabilise");
     if (spec.stabilise != Stabilise::none && !method->stabilised)
         throw bad_input("the method \"{}\" keeps the constraints itself; there is nothing to stabilise", spec.method);
+    if (spec.physical && spec.wants_tension)
+        throw bad_input(
+            "the force in a rod is that of point masses on massless rods; with links that have mass, friction or a "
+            "drive "
+            "there is none to tell");
     if (spec.precision == Precision::in_quad) return std::make_unique<Simulation<Quad>>(spec);
     return std::make_unique<Simulation<double>>(spec);
 }

@@ -31,7 +31,7 @@ struct MotionSpec {
     Stabilise stabilise = Stabilise::none;
     Quad stabilise_rate = 0;     // Baumgarte's α = β, 1/s
     bool follows_turns = true;   // false: angles of particles only up to whole turns, and none followed between samples
-    bool wants_tension = false;  // the forces in the rods observed as well
+    bool wants_tension = false;  // the forces in the rods observed as well; of point masses alone
 };
 
 /// The state at one sample, the same for every model.
@@ -67,7 +67,8 @@ public:
 };
 
 /// Throws Error (exit 2) where no method has that name, the method cannot step the model, a stabilisation has nothing
-/// to do (in angles, or with a method that keeps the constraints itself), or the system is faulty.
+/// to do (in angles, or with a method that keeps the constraints itself), forces are wanted in rods that have none (of a
+/// physical pendulum), or the system is faulty.
 std::unique_ptr<Motion> make_motion(const MotionSpec& spec);
 
 }  // namespace doppel

@@ -185,7 +185,8 @@ private:
 };
 
 struct Rattle {
-    static constexpr Method method{"rattle", "RATTLE", 2, false, "symplectic, time-reversible, keeps rods"};
+    static constexpr Method method{"rattle", "RATTLE", 2, false,
+                                   "keeps rods; symplectic and time-reversible without friction"};
     template <Unstabilised Model>
     struct Stepper : ComposedRattle<Model> {
         Stepper(Model& model, const typename Model::State& start, const typename Model::Scalar& step)
@@ -197,7 +198,7 @@ struct Rattle {
 /// of a step lies), the one whose largest step, the middle one of 0.7985, is smallest; solved to 40 digits.
 struct Rattle6 {
     static constexpr Method method{"rattle6", "RATTLE composed to order 6", 6, false,
-                                   "symplectic, time-reversible, keeps rods"};
+                                   "keeps rods; symplectic and time-reversible without friction"};
     static constexpr std::array<std::string_view, 4> fractions{
         "0.3921614440073141392756553300383809325954", "0.3325991367893594386042721253257905699416",
         "-0.7062461725576393598098453372227639944854", "0.08221359629355080023044270533411341434285"};

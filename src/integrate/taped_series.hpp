@@ -3,6 +3,7 @@
 #include "integrate/taylor_series.hpp"
 #include "numeric/tape.hpp"
 #include "physics/physical_chain.hpp"
+#include "physics/physical_rods.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,7 @@ private:
         return with_first ? Scalar(sum + c[0]) : sum;
     }
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
-    /// The greatest |ω_k|.
+    /// The greatest coefficient k of the rates of angles or places.
     double greatest(int k) const {
         double most = 0;
         for (Eigen::Index i = 0; i < layout_.coordinates; ++i)
@@ -103,13 +104,17 @@ private:
     PhysicalLayout layout_;
     TapedModel model_;
     Tape<Scalar> tape_;
-    double longest_, amount_ = 0;  // s, rad/s
+    double longest_, amount_ = 0;  // s; rad/s or m/s
     typename TapedModel::State y_, rate_;
 };
 
 template <class Scalar>
 struct SeriesOf<PhysicalChain<Scalar>> {
     using type = TapedSeries<PhysicalChain<Scalar>, PhysicalChain<Taped<Scalar>>>;
+};
+template <class Scalar>
+struct SeriesOf<PhysicalRods<Scalar>> {
+    using type = TapedSeries<PhysicalRods<Scalar>, PhysicalRods<Taped<Scalar>>>;
 };
 
 }  // namespace doppel

@@ -22,7 +22,8 @@ public:
     using Half = State<Scalar, Eigen::Dynamic>;
     using Vector = Planar<Scalar>;
 
-    explicit ArticulatedBodies(const PhysicalPendulum<Scalar>& p) : links_(p.chain.links()) {
+    explicit ArticulatedBodies(const PhysicalPendulum<Scalar>& p)
+        : links_(p.chain.links()), still_(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))) {
         for (std::size_t i = 0; i < links_.size(); ++i) {
             auto& link = links_[i];
             link.mass = p.chain.mass[i];
@@ -82,10 +83,7 @@ public:
     }
 
     /// a ← M⁻¹ f: the rates that belong to momenta f, or the accelerations by torques f alone.
-    void solve_mass(const Half& f, Half& a) {
-        const Half still = Half::Zero(f.size());
-        accelerate(f, {}, still, Scalar(0), {Scalar(0), Scalar(0)}, a);
-    }
+    void solve_mass(const Half& f, Half& a) { accelerate(f, {}, still_, Scalar(0), {Scalar(0), Scalar(0)}, a); }
 
     struct Link {
         Scalar mass, length, first, second;  // m, l, m a, J
@@ -96,6 +94,7 @@ public:
 
 private:
     std::vector<Link> links_;
+    Half still_;  // no rates
     Scalar xx_{0}, xy_{0}, yy_{0};
 };
 

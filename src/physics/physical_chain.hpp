@@ -82,10 +82,17 @@ public:
         take_sin_cos(y, sin_, cos_);
         bodies_.factor(sin_, cos_);
     }
-    const Half& sines() const { return sin_; }
-    const Half& cosines() const { return cos_; }
     void solve_mass(const Half& f, Half& a) { bodies_.solve_mass(f, a); }
-    PhysicalForces<Scalar>& forces() { return forces_; }
+    /// Without Coulomb's friction.
+    const PhysicalForces<Scalar>& forces_at(const Half& omega, const Scalar& t, const Planar<Scalar>& pivot_velocity) {
+        rates_ = omega;
+        take_forces(t, pivot_velocity);
+        return forces_;
+    }
+    /// With which the pivot holds the chain, N, at those rates and forces.
+    Planar<Scalar> pivot_force(const Planar<Scalar>& acceleration) {
+        return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity, acceleration, alpha_);
+    }
     const std::vector<typename ArticulatedBodies<Scalar>::Link>& bodies() const { return bodies_.links(); }
 
 private:

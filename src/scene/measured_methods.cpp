@@ -123,6 +123,9 @@ std::vector<MeasuredMethod> measured_methods(const SideSpec& spec, double accura
             return true;
         if (is_mechanism ? !spec.is_mechanism() && spec.model != ModelChoice::mechanism : spec.is_mechanism())
             return true;
+        if (spec.physical.has_coulomb() &&
+            (measured.model != Model::angles || !find_method(measured.method)->stabilised))
+            return true;
         if (spec.stabilise != Stabilise::none &&
             (measured.model == Model::angles || !find_method(measured.method)->angles))
             return true;

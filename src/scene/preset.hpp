@@ -135,6 +135,7 @@ struct PhysicalSpec {
     }
     /// Whether any of it is there.
     bool is_none() const;
+    bool has_coulomb() const;
 };
 
 template <class Spec>

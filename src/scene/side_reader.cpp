@@ -142,6 +142,19 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
                          key);
 }
 
+/// Joints with Coulomb's friction come to rest at the end of a step, by methods whose steps end so, in angles.
+void check_sticking(TomlReader& table, const SideSpec& side) {
+    if (!side.physical.has_coulomb()) return;
+    constexpr std::string_view why = "such joints come to rest, which is computed in angles";
+    if (side.model == ModelChoice::constraints)
+        throw table.fault("model", "\"constraints\" cannot be with joint_coulomb_N_m: {}", why);
+    if (side.stabilise != Stabilise::none)
+        throw table.fault("stabilise", "is for constraints, which cannot be with joint_coulomb_N_m: {}", why);
+    if (!side.accuracy && !find_method(side.integrator)->stabilised)
+        throw table.fault("integrator", "\"{}\" cannot end a step at rest, as joints with joint_coulomb_N_m come to",
+                          side.integrator);
+}
+
 /// What a real chain cannot be together with, and what it must have.
 void check_physical(TomlReader& table, const SideSpec& side) {
     const auto& physical = side.physical;
@@ -150,6 +163,11 @@ void check_physical(TomlReader& table, const SideSpec& side) {
         throw table.fault("",
                           "links with mass, friction and a drive are for chains; further particles, constraints or "
                           "forces cannot be beside them");
+    if (side.model == ModelChoice::mechanism)
+        throw table.fault("model",
+                          "\"mechanism\" has no links with mass, friction or drive; \"angles\" and "
+                          "\"constraints\" have them");
+    check_sticking(table, side);
     for (std::size_t i = 0; i < side.links(); ++i)
         if (side.mass_kg[i] + physical.rod_mass_kg[i] == 0)
             throw table.fault("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
@@ -200,10 +218,19 @@ void SideSpec::set_links(std::size_t links) {
     physical.center_m.clear();
 }
 
+namespace {
+
+bool is_zero(const std::vector<Quad>& list) {
+    return std::all_of(list.begin(), list.end(), [](const Quad& value) { return value == 0; });
+}
+
+}  // namespace
+
+bool PhysicalSpec::has_coulomb() const {
+    return !is_zero(joint_coulomb_N_m);
+}
+
 bool PhysicalSpec::is_none() const {
-    const auto is_zero = [](const std::vector<Quad>& list) {
-        return std::all_of(list.begin(), list.end(), [](const Quad& value) { return value == 0; });
-    };
     auto copy = *this;
     const auto lists = copy.lists();
     return center_m.empty() && torques.empty() && pivot.amplitude_m == 0 &&
