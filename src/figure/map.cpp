@@ -9,6 +9,46 @@
 namespace doppel {
 namespace {
 
+enum class Edge { none, kapitza, mathieu };
+
+}  // namespace
+template <>
+inline constexpr auto names_of<Edge> = std::to_array<std::string_view>({"none", "kapitza", "mathieu"});
+namespace {
+
+/// Where a pivot that moves up and down begins to hold one link upright, and where it shakes it over: lines of the
+/// amplitude a over the frequency. With l = J/(m c) the length of the ideal pendulum that swings alike, and ν = 2π f,
+///     Kapitza    a² ν² = 2 g l ,    for a much less than l
+///     Mathieu    −4 g / (l ν²) = a₀(q) and b₁(q) ,   q = 2 a / l ,
+/// from the power series of the characteristic values, good to 1e-3 for q ≤ 1.2.
+/// Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
+std::vector<Curve> edges_of(Edge edge, const PhysicalPendulum<double>& p) {
+    const double mass = p.chain.mass[0], center = p.center[0], gravity = p.chain.gravity;
+    const double length = (p.inertia[0] + mass * center * center) / (mass * center);
+    std::vector<Curve> curves;
+    const auto add = [&](const char* label, double first, double last, const auto& characteristic) {
+        Curve curve{.label = label, .hue = 1};
+        constexpr int parts = 400;
+        for (int i = 0; i <= parts; ++i) {
+            const double q = first * std::pow(last / first, static_cast<double>(i) / parts);
+            const double below = -characteristic(q);  // 4 g / (l ν²)
+            if (!(below > 0)) continue;
+            curve.x.push_back(std::sqrt(4 * gravity / (length * below)) / (2 * pi));
+            curve.y.push_back(q * length / 2);
+        }
+        curves.push_back(std::move(curve));
+    };
+    if (edge == Edge::kapitza) add("Kapitza", 1e-3, 2, [](double q) { return -q * q / 2; });
+    if (edge != Edge::mathieu) return curves;
+    add("Mathieu", 1e-3, 1.2, [](double q) {
+        const double s = q * q;
+        return s * (-1.0 / 2 + s * (7.0 / 128 + s * (-29.0 / 2304 + s * 68687 / 18874368)));
+    });
+    add("", 0.9, 1.2,
+        [](double q) { return 1 - q * (1 + q * (1.0 / 8 - q * (1.0 / 64 - q * (1.0 / 1536 + q * (11.0 / 36864))))); });
+    return curves;
+}
+
 /// A quantity of pairs over two parameters.
 class Map final : public MapFigure {
 public:
@@ -31,6 +71,13 @@ public:
                              exponent_spec_);
         make_scene(twins(frame_.y.count - 1, frame_.x.count - 1));  // reports faults now
         make_frame(table);
+        const bool is_shaken = x_name_ == "system.pivot.frequency_hz" && y_name_ == "system.pivot.amplitude_m" &&
+                               pair_.a.particles.empty() && pair_.a.links() == 1 &&
+                               pair_.a.physical.pivot.direction_deg == 90;
+        if (edge_ != Edge::none && !is_shaken)
+            throw table.fault("edge",
+                              "is of one link whose pivot moves up and down, over system.pivot.frequency_hz and "
+                              "system.pivot.amplitude_m");
         const Parameter* const parameters[] = {&x_, &y_};
         subtitle_ = varied_subtitle(pair_, parameters, std::array{Quad(frame_.x.middle(0)), Quad(frame_.y.middle(0))},
                                     difference_, measurement_->words());
@@ -51,6 +98,7 @@ public:
         visit({"rows", "cells upwards", "", cells}, frame_.y.count);
         visit({"difference", "of x_parameter between the two of a pair"}, difference_);
         visit({"quantity", quantity_help}, quantity_);
+        visit({"edge", "lines where such a pivot holds one link upright, by theory"}, edge_);
         visit({"color_range", "of the colours, [lowest, highest]", "", {}, "that of the numbers"}, color_range_);
         visit({"exponent_duration_s",
                "of the motion that an exponent is found by",
@@ -59,6 +107,13 @@ public:
                "",
                {.holds = quantity_ == Quantity::exponent, .hides = true}},
               exponent_spec_.duration_s);
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        MapFigure::draw(numbers, figure);
+        if (edge_ == Edge::none) return;
+        for (auto& curve : edges_of(edge_, physical_of(pair_.a).cast<double>()))
+            figure.panels.back().curves.push_back(std::move(curve));
     }
 
     std::string unit() const override { return "pairs"; }
@@ -145,6 +200,7 @@ private:
     Parameter x_, y_;
     Quad difference_ = 0;
     Quantity quantity_ = Quantity::flip_time;
+    Edge edge_ = Edge::none;
     std::optional<Range> color_range_;
     ExponentSpec exponent_spec_;
     std::optional<Measurement> measurement_;

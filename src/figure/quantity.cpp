@@ -49,6 +49,12 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
                     .none = "broke down",
                     .none_is_bad = true,
                     .is_of_side_a = true};
+        case Quantity::deviation:
+            return {.label = fmt::format("how far an angle goes from its start within {} s, °", seconds),
+                    .columns = {"deviation_deg"},
+                    .none = "broke down",
+                    .none_is_bad = true,
+                    .is_of_side_a = true};
         case Quantity::parting_time:
             return {.label = "time at which the two part, s",
                     .columns = {"parting_time_s"},
@@ -64,8 +70,8 @@ std::optional<TwinRun> lanes_of(const Scene& scene) {
     const auto take = [](const Side& side, TwinSide& into) {
         const auto& motion = side.motion;
         into = {motion.model, motion.method, motion.steps_per_sample, static_cast<double>(motion.tolerance)};
-        if (side.choice || motion.model == Model::mechanism || motion.precision != Precision::in_double ||
-            motion.stabilise != Stabilise::none)
+        if (side.choice || motion.physical || motion.model == Model::mechanism ||
+            motion.precision != Precision::in_double || motion.stabilise != Stabilise::none)
             return false;
         if (motion.method == "taylor")
             return TaylorBatch::serves(motion.model, motion.chain->links()) &&
@@ -138,7 +144,7 @@ private:
 void step_by_series(Preset& pair) {
     constexpr double most_exact = 1e-13;  // rad, that a swing in double keeps
     const auto serves = [&](const SideSpec& side) {
-        return side.accuracy && *side.accuracy >= Quad(most_exact) && !side.is_mechanism() &&
+        return side.physical.is_none() && side.accuracy && *side.accuracy >= Quad(most_exact) && !side.is_mechanism() &&
                (side.model == ModelChoice::automatic || side.model == ModelChoice::angles) &&
                side.precision == Precision::in_double && TaylorBatch::serves(Model::angles, side.links());
     };
@@ -160,6 +166,10 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     const auto& a = pair.a;
     if (quantity == Quantity::exponent && a.is_mechanism())
         throw table.fault(key, "is that of a plain chain, without forces and constraints of its own");
+    if (quantity == Quantity::exponent && !a.physical.is_none())
+        throw table.fault(key, "is that of point masses, without friction and drive");
+    if (quantity == Quantity::deviation && !a.particles.empty())
+        throw table.fault(key, "\"deviation\" is of a chain, whose rods have angles");
     if (quantity == Quantity::flip_time && !a.particles.empty())
         throw table.fault(key, "\"flip_time\" is of a chain, whose rods have angles");
     if (is_of_distance(quantity) && differ_in_kind(a, pair.b))
@@ -167,9 +177,10 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     const auto scene = make_scene(pair);
     if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
         throw table.fault(key, "\"energy_error\" takes a system that keeps its energy; a spring is damped");
-    flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.links() == 2;
+    flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.physical.is_none() && a.links() == 2;
     if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));
-    if (alike && quantity != Quantity::exponent && quantity != Quantity::flip_time) run_ = lanes_of(scene);
+    if (alike && quantity != Quantity::exponent && quantity != Quantity::flip_time && quantity != Quantity::deviation)
+        run_ = lanes_of(scene);
     if (run_ && !is_of_distance(quantity)) run_->b = run_->a;
 }
 
@@ -246,13 +257,18 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
         }
         SideRun run(scene, scene.a, 'a');
         FlipWatch flips;
-        double worst = 0;
+        Bobs<double> start;
+        double worst = 0, furthest = 0;
         for (long n = 0; n <= scene.samples; ++n) {
             const auto seen = run.next(stop);
+            if (n == 0) start = seen.bobs;
+            for (std::size_t i = 0; i < start.size(); ++i)
+                furthest = std::max(furthest, std::abs(seen.bobs[i].theta - start[i].theta));
             worst = std::max(worst, std::abs(seen.energy_change));
             if (quantity_ != Quantity::flip_time) continue;
             if (const auto time = flips.add(scene.time(n), seen.bobs)) return *time;
         }
+        if (quantity_ == Quantity::deviation) return furthest * (180 / pi);
         return quantity_ == Quantity::flip_time ? never : worst / scene.a.energy_unit;
     } catch (const BreakDown&) {
         return NAN;

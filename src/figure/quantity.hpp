@@ -15,15 +15,15 @@
 namespace doppel {
 
 /// What sweeps and maps find of each pair.
-enum class Quantity { divergence, exponent, flip_time, distance_at_end, energy_error, parting_time };
+enum class Quantity { divergence, exponent, flip_time, distance_at_end, energy_error, parting_time, deviation };
 template <>
 inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>({"divergence", "exponent", "flip_time",
                                                                             "distance_at_end", "energy_error",
-                                                                            "parting_time"});
+                                                                            "parting_time", "deviation"});
 inline constexpr std::string_view quantity_help =
     "what is found of each pair: the mean of ln(d/d₀), or the distance at the end; when they part; of side a the "
     "largest "
-    "Lyapunov exponent, the time of the first flip, or the largest energy error";
+    "Lyapunov exponent, the time of the first flip, the largest energy error, or how far an angle goes from its start";
 
 /// What figures say of a quantity.
 struct QuantityWords {

@@ -34,6 +34,8 @@ std::string title_words(const std::string& name, const SideSpec& side, const Rat
 
 /// The release of a chain or mechanism as a problem. Throws Error (exit 2) where the system is faulty.
 WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational& duration) {
+    if (!spec.physical.is_none())
+        throw bad_input("{}: methods are compared on point masses, without friction and drive", name);
     const bool plain = !spec.is_mechanism();
     spec.model = plain ? ModelChoice::automatic : ModelChoice::mechanism;
     spec.integrator = "taylor";

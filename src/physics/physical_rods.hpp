@@ -189,14 +189,19 @@ private:
             const Vector r = along(q, k, pivot.place), u = along(v, k, pivot.velocity);
             rates_[k] = (r.x * u.y - r.y * u.x) / dot(r, r);
         }
-        forces_.update(rates_, layout.time_of(q), [](Eigen::Index) { return false; });
+        forces_.update(rates_, layout.time_of(q), [](Eigen::Index, const Scalar&) { return 0; });
         for (Eigen::Index k = 0; k < constraints(); ++k) {
             const Vector r = along(q, k, pivot.place);
             const Vector couple = Vector{Scalar(-r.y), r.x} * Scalar(forces_.torque[k] / dot(r, r));
             put(push_, 2 * k, at(push_, 2 * k) + couple);
             if (k > 0) put(push_, 2 * k - 2, at(push_, 2 * k - 2) - couple);
             if (forces_.drag.empty()) continue;
-            forces_.update_drag(k, at(v, 2 * k));
+            using std::abs;
+            const Vector velocity = at(v, 2 * k);
+            const bool on_circle = k == 0 && !pendulum.pivot.moves();  // as in PhysicalChain
+            forces_.update_drag(k, velocity,
+                                on_circle ? Scalar(abs(rates_[0]) * pendulum.chain.length[0])
+                                          : forces_.speed_of(velocity));
             put(push_, 2 * k, at(push_, 2 * k) + forces_.drag[static_cast<std::size_t>(k)]);
         }
     }

@@ -12,9 +12,9 @@ namespace doppel {
 
 /// `kind` of [scene]: of a film, and of the figures (figure/kinds.cpp).
 inline constexpr std::string_view pair_kind = "pair";
-inline constexpr std::array<std::string_view, 14> scene_kinds{
-    pair_kind,  "sweep", "curves",         "convergence", "spectrum", "section",  "map",
-    "flip-map", "links", "work-precision", "stability",   "drift",    "encoders", "audit"};
+inline constexpr std::array<std::string_view, 15> scene_kinds{
+    pair_kind, "sweep",       "curves",         "convergence", "spectrum", "section",  "map",  "flip-map",
+    "links",   "bifurcation", "work-precision", "stability",   "drift",    "encoders", "audit"};
 
 // The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and FieldTable visit:
 // visit(field, member), visit.table(name, list). A table may be const. The reader checks what keys say together.
@@ -105,8 +105,8 @@ void physical_fields(Visit& visit, Physical& physical) {
     list("inertia_kg_m2", "of such a body, about its centre of mass", "kg m²", physical.inertia_kg_m2);
     list("joint_viscous_N_m_s", "friction at each joint, by its rate", "N m s", physical.joint_viscous_N_m_s);
     list("joint_coulomb_N_m", "friction at each joint, whatever its rate (Coulomb)", "N m", physical.joint_coulomb_N_m);
-    visit({"joint_coulomb_width_deg_per_s", "the rate below which a joint comes to rest where that friction holds it", "deg/s",
-           positive},
+    visit({"joint_coulomb_width_deg_per_s", "the rate below which a joint comes to rest where that friction holds it",
+           "deg/s", positive},
           physical.joint_coulomb_width_deg_per_s);
     list("arm_drag_linear_N_m_s", "drag on each link, by its own rate", "N m s", physical.arm_drag_linear_N_m_s);
     list("arm_drag_quadratic_N_m_s2", "the same, by the square of its rate", "N m s²",

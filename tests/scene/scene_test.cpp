@@ -367,8 +367,8 @@ stiffness_N_per_m = 20
 name = "spring"
 damping_N_s_per_m = 2
 )");
-    EXPECT_TRUE(scene.a.conserves_energy);
-    EXPECT_FALSE(scene.b.conserves_energy);
+    EXPECT_TRUE(scene.a.has_energy_error);
+    EXPECT_FALSE(scene.b.has_energy_error);
     PairRun pair(scene);
     const std::atomic<bool> never = false;
     PairState last;
