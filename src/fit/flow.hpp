@@ -74,19 +74,18 @@ public:
         return true;
     }
 
-    /// Of one arm, 0 or 1, at a time in the last step, or a little outside.
-    template <class Add>
-    void angle_at(std::size_t arm, double t, const Add& add) const {
-        const AngleWeights w(t - static_cast<double>(done_ - 1) * step_, step_);
-        add(w.angle, w.rate,
-            std::array<const Scalar*, 6>{&before_[arm], &before_[arm + 2], &slope_before_[arm + 2], &after_[arm],
-                                         &after_[arm + 2], &slope_after_[arm + 2]});
+    /// For a time in the last step, or a little outside.
+    AngleWeights weights(double t) const { return {t - static_cast<double>(done_ - 1) * step_, step_}; }
+    /// What these weights weigh, of one arm, 0 or 1.
+    std::array<const Scalar*, 6> nodes(std::size_t arm) const {
+        return {&before_[arm], &before_[arm + 2], &slope_before_[arm + 2],
+                &after_[arm],  &after_[arm + 2],  &slope_after_[arm + 2]};
     }
-    double angle(std::size_t arm, double t) const requires std::is_same_v<Scalar, double> {
-        double sum = 0;
-        angle_at(arm, t, [&](const auto& weights, const auto&, const auto& nodes) {
-            for (std::size_t k = 0; k < 6; ++k) sum += weights[k] * *nodes[k];
-        });
+    Scalar angle(std::size_t arm, double t) const {
+        const auto of = weights(t);
+        const auto values = nodes(arm);
+        Scalar sum(0);
+        for (std::size_t k = 0; k < 6; ++k) sum += of.angle[k] * *values[k];
         return sum;
     }
 

@@ -199,7 +199,7 @@ ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic
         start.model = plan.model;
         for (std::size_t k = index_of(viscous_1); k < dynamic_count; ++k)
             if (!fits(plan.model, static_cast<FitParameter>(k))) start.parameters[k] = 0;
-        rung.fit = fit_model(track, segments, start, {.relative = roughly, .jobs = jobs}, stop);
+        rung.fit = fit_model(track, segments, start, {.step_share = 0.2, .relative = roughly, .jobs = jobs}, stop);
         leave_out(track, ladder.division, rung, jobs, stop);
         rung.parameters = rung.fit.free().size();
         start = rung.fit;

@@ -51,11 +51,9 @@ Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
     Json ratios = Json::object();
     for (const auto parameter : rung.model.fitted) {
         const bool held = std::count(rung.fit.at_bound.begin(), rung.fit.at_bound.end(), parameter) > 0;
-        Json value = {{"value", rung.fit.parameters[index_of(parameter)]}};
-        if (held)
-            value["at_bound"] = true;
-        else
-            value["standard_error"] = uncertainty.standard_error(parameter);
+        Json value = {{"value", rung.fit.parameters[index_of(parameter)]},
+                      {"standard_error", uncertainty.standard_error(parameter)}};
+        if (held) value["at_bound"] = true;
         ratios[std::string(words_of(parameter).key)] = value;
     }
     Json names = Json::array(), correlations = Json::array();
@@ -113,8 +111,6 @@ std::string parameter_words_of(const Fit& fit, const Uncertainty& uncertainty, F
     const auto& words = words_of(parameter);
     const double value = fit.parameters[index_of(parameter)];
     const auto unit = words.unit.empty() ? std::string() : fmt::format(" {}", words.unit);
-    if (std::count(fit.at_bound.begin(), fit.at_bound.end(), parameter) > 0)
-        return fmt::format("{} = 0 (bound)", words.symbol);
     const double error = uncertainty.standard_error(parameter);
     const int decimals = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
     return fmt::format("{} = {:.{}f} ± {:.{}f}{}", words.symbol, value, decimals, error, decimals, unit);

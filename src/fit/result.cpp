@@ -62,9 +62,14 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
     const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     FitResult result{.track = std::move(track)};
     auto& ladder = result.ladder = climb(result.track, question.bodies, jobs, stop, report);
+    result.models_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     demand_description(result.track, ladder);
     const auto& segments = ladder.division.segments;
+    constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer
     const auto finish = [&](FittedModel& rung) {
+        rung.fit = fit_model(result.track, segments, rung.fit, {.step_share = of_errors, .jobs = jobs}, stop);
+        auto uncertainty = uncertainty_of(result.track, segments, rung.fit, jobs);
+        if (!uncertainty.is_white) return uncertainty;
         rung.fit = fit_model(result.track, segments, rung.fit, {.jobs = jobs}, stop);
         return uncertainty_of(result.track, segments, rung.fit, jobs);
     };

@@ -19,7 +19,7 @@ struct FitResult {
     std::optional<Horizon>
         horizon;                // nothing where it is not known how pieces follow one another, or they are too short
     PhysicalPendulum pendulum;  // of the preset's model
-    double cpu_s = 0;           // of fitting all models
+    double models_cpu_s = 0, cpu_s = 0;  // of the ladder; of all
 
     const FittedModel& chosen() const { return ladder.rungs[ladder.chosen]; }
     const FittedModel& of_preset() const { return ladder.rungs[ladder.for_preset]; }

@@ -76,7 +76,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
         parts.finished(name + ".png");
         auto manifest = fit_json(result);
         manifest["threads"] = jobs;
-        manifest["time"] = {{"fit_cpu_s", result.cpu_s}};
+        manifest["time"] = {{"models_cpu_s", result.models_cpu_s}, {"fit_cpu_s", result.cpu_s}};
         manifest["libraries"] = {{"gl", renderer.description()}, {"compiler", __VERSION__}};
         write_manifest(parts, name + ".json", std::move(manifest));
         throw_if_set(stop);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace doppel {
 namespace {
@@ -33,23 +34,31 @@ Arms<Dual<double, N>> dual_arms(const ModelSpec& model, const Parameters& parame
     return arms;
 }
 
-/// The derivative of what an encoder shows by the parameters of reading it.
-template <class Row>
-void set_reading(Row& row, const ModelSpec& model, std::size_t arm, double angle, double rate, double scale) {
-    Eigen::Index column = 4;
-    for (const auto parameter : model.fitted) {
-        if (!is_dynamic(parameter)) {
-            if (parameter == FitParameter::lag) {
-                row[column] = arm == 1 ? scale * rate : 0;
-            } else if (parameter == FitParameter::offset_1 || parameter == FitParameter::offset_2) {
-                row[column] = (parameter == FitParameter::offset_1) == (arm == 0) ? 1 : 0;
-            } else {
-                row[column] = (parameter == FitParameter::scale_1) == (arm == 0) ? angle : 0;
-            }
+/// Where the parameters of reading stand in a row of derivatives, after starts and motion; −1: not fitted.
+struct ReadingColumns {
+    std::array<Eigen::Index, 2> offset{-1, -1}, scale{-1, -1};
+    Eigen::Index lag = -1;
+
+    explicit ReadingColumns(const ModelSpec& model) {
+        Eigen::Index column = 4;
+        for (const auto parameter : model.fitted) {
+            if (parameter == FitParameter::offset_1) offset[0] = column;
+            if (parameter == FitParameter::offset_2) offset[1] = column;
+            if (parameter == FitParameter::lag) lag = column;
+            if (parameter == FitParameter::scale_1) scale[0] = column;
+            if (parameter == FitParameter::scale_2) scale[1] = column;
+            ++column;
         }
-        ++column;
     }
-}
+
+    /// Of what an encoder shows, by them.
+    template <class Row>
+    void set(Row& row, std::size_t arm, double angle, double shown_rate) const {
+        if (offset[arm] >= 0) row[offset[arm]] = 1;
+        if (scale[arm] >= 0) row[scale[arm]] = angle;
+        if (lag >= 0 && arm == 1) row[lag] = shown_rate;
+    }
+};
 
 template <int N>
 class Evaluation {
@@ -66,7 +75,9 @@ public:
           parameters_(parameters),
           segment_(segment),
           number_(number),
-          extras_(extras) {
+          extras_(extras),
+          reading_(model) {
+        if (extras_.residuals) extras_.residuals->reserve(2 * segment.size());
         matrix_.setZero();
         slope_.setZero();
     }
@@ -76,14 +87,18 @@ public:
         for (std::size_t q = 0; q < 4; ++q) state[q] = Number::variable(start[q], static_cast<Eigen::Index>(q));
         Flow<Number> flow(dual_arms<N>(model_, parameters_), state, rules_.step_s);
         const double begin = piece_.time_s[segment_.first];
-        for (std::size_t sample = segment_.first; sample < segment_.last; ++sample)
+        for (std::size_t sample = segment_.first; sample < segment_.last; ++sample) {
+            const double t = piece_.time_s[sample] - begin;
+            next_block(t);
+            std::optional<AngleWeights> weights;
             for (std::size_t arm = 0; arm < 2; ++arm) {
                 if (piece_.is_outlier[arm][sample]) continue;
-                const double at = piece_.time_s[sample] - begin + (arm == 1 ? lag() : 0);
+                const double at = t + (arm == 1 ? lag() : 0);
                 if (!flow.reach(at)) return failed();
-                next_block(piece_.time_s[sample] - begin);
-                add(flow, sample, arm, at);
+                if (!weights || lag() != 0) weights = flow.weights(at);
+                add(flow, sample, arm, *weights);
             }
+        }
         if (!std::isfinite(sums_.cost)) return failed();
         return finished();
     }
@@ -91,31 +106,22 @@ public:
 private:
     double lag() const { return parameters_[index_of(FitParameter::lag)]; }
 
-    void add(const Flow<Number>& flow, std::size_t sample, std::size_t arm, double at) {
+    void add(const Flow<Number>& flow, std::size_t sample, std::size_t arm, const AngleWeights& weights) {
         const double offset = parameters_[index_of(FitParameter::offset_1) + arm];
         const double scale = parameters_[index_of(FitParameter::scale_1) + arm];
         double angle = 0, rate = 0;
         Row row = Row::Zero();
-        flow.angle_at(arm, at, [&](const auto& weights, const auto& rates, const auto& nodes) {
-            auto head = row.template head<N>();
-            for (std::size_t k = 0; k < 6; ++k) {
-                angle += weights[k] * nodes[k]->value;
-                rate += rates[k] * nodes[k]->value;
-                head += (scale * weights[k]) * nodes[k]->tangent;
-            }
-        });
-        place_columns(row);
-        set_reading(row, model_, arm, angle, rate, scale);
+        const auto nodes = flow.nodes(arm);
+        auto head = row.template head<N>();
+        for (std::size_t k = 0; k < 6; ++k) {
+            angle += weights.angle[k] * nodes[k]->value;
+            rate += weights.rate[k] * nodes[k]->value;
+            head += (scale * weights.angle[k]) * nodes[k]->tangent;
+        }
+        reading_.set(row, arm, angle, scale * rate);
         const double measured = piece_.angle[arm][sample], residual = measured - (offset + scale * angle);
         weigh(row, residual, arm);
         if (extras_.residuals) extras_.residuals->push_back({number_, sample, arm, measured, residual});
-    }
-
-    /// Duals number the fitted parameters of the motion; rows number all that are fitted. They differ only where
-    /// parameters of the motion follow one of reading, which no model has; the rest of the row is made free.
-    void place_columns(Row& row) const {
-        const auto dynamic = std::count_if(model_.fitted.begin(), model_.fitted.end(), is_dynamic);
-        row.tail(most - 4 - dynamic).setZero();
     }
 
     void weigh(const Row& row, double residual, std::size_t arm) {
@@ -168,6 +174,7 @@ private:
     const TrackSegment& segment_;
     std::size_t number_;
     const SegmentExtras& extras_;
+    ReadingColumns reading_;
     SegmentSums sums_;
     Eigen::Matrix<double, most, most> matrix_;
     Row slope_;

@@ -240,8 +240,8 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
         evaluate_fit(track, segments, fit, effort.jobs);
         if (!std::isfinite(fit.cost)) throw method_failed("fit: the motion of the start does not stay finite");
     };
-    constexpr int rounds = 10;
-    constexpr double least_step = 0.0005, share = 0.2, settled = 0.1, roughly = 1e-4;
+    constexpr int rounds = 20;
+    constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
     evaluate();
     bool is_settled = !effort.finds_scale;
     if (const auto before = fit.rules.scale; effort.finds_scale) {  // too small a scale is slow
@@ -256,7 +256,7 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
                 std::max(effort.most_passes - fit.passes, 2), effort.jobs, stop);
         const double noise = std::min(fit.rules.scale[0], fit.rules.scale[1]);
         const bool is_coarse = is_settled && effort.finds_step && fit.rules.step_s > least_step &&
-                               step_error(track, segments, fit) > share * noise;
+                               step_error(track, segments, fit) > effort.step_share * noise;
         if (is_coarse) fit.rules.step_s /= 2;
         const bool was_settled = is_settled;
         if (effort.finds_scale && (!is_settled || is_coarse)) {

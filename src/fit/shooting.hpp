@@ -28,8 +28,9 @@ struct Fit {
 struct FitEffort {
     int most_passes = 30;
     bool finds_scale = true;  // of the residuals, from what the model leaves; else that of the start is kept
-    bool finds_step = true;   // small enough for the residuals
-    double relative = 1e-6;   // ends where a step gains less than this share of the cost
+    bool finds_step = true;   // small enough that the motion errs by less than `step_share` of the residuals' scale
+    double step_share = 0.02;
+    double relative = 1e-6;  // ends where a step gains less than this share of the cost
     int jobs = 1;
 };
 

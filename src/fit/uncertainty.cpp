@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 namespace doppel {
 namespace {
@@ -83,9 +85,11 @@ double Uncertainty::standard_error(FitParameter parameter) const {
 }
 
 Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs) {
-    Uncertainty result{.parameters = fit.free(), .covariance = {}};
-    const auto places = fit.free_places();
-    const auto count = static_cast<Eigen::Index>(places.size());
+    // those at a bound, too: that they could be more makes the others less certain
+    Uncertainty result{.parameters = fit.model.fitted, .covariance = {}};
+    const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
+    std::vector<Eigen::Index> places(static_cast<std::size_t>(count));
+    std::iota(places.begin(), places.end(), 0);
     // whether successive residuals know of each other
     constexpr std::size_t lags = 10, furthest = 400;
     constexpr double limit = 29.6;  // χ² of ten at 99.9 %

@@ -7,9 +7,9 @@
 
 namespace doppel {
 
-/// How well the free parameters of a fit are told, and what its residuals look like.
+/// How well the fitted parameters are told, and what its residuals look like.
 struct Uncertainty {
-    std::vector<FitParameter> parameters;  // the free ones
+    std::vector<FitParameter> parameters;  // the fitted ones, those at a bound, too
     Eigen::MatrixXd covariance;            // of these
     bool is_white = true;                  // residuals like noise: each independent of those before
     std::array<double, 2> neighbour{};     // correlation of successive residuals, by arm
@@ -18,7 +18,7 @@ struct Uncertainty {
 
     double standard_error(std::size_t k) const;
     double correlation(std::size_t j, std::size_t k) const;
-    /// Of a parameter; 0 where it is not free.
+    /// Of a parameter; 0 where it is not fitted.
     double standard_error(FitParameter parameter) const;
 };
 
