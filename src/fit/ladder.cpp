@@ -178,9 +178,27 @@ Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments) {
         matrix += part.matrix;
         slope += part.slope;
     }
+    // friction that would be less than 0 is 0, and the others follow
     const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd even = scale.asDiagonal() * matrix * scale.asDiagonal();
-    const Eigen::VectorXd change = scale.asDiagonal() * even.ldlt().solve(scale.asDiagonal() * slope);
+    Eigen::MatrixXd even = scale.asDiagonal() * matrix * scale.asDiagonal();
+    Eigen::VectorXd right = scale.asDiagonal() * slope, change;
+    for (bool again = true; again;) {
+        again = false;
+        change = scale.asDiagonal() * even.ldlt().solve(right);
+        for (Eigen::Index k = 0; k < count; ++k) {
+            const auto parameter = fit.model.fitted[static_cast<std::size_t>(places[static_cast<std::size_t>(k)])];
+            const double value = fit.parameters[index_of(parameter)];
+            constexpr double margin = 1e-9;
+            if (!is_friction(parameter) || value + change[k] >= -margin * value) continue;
+            const double to_zero = -value / scale[k];
+            right -= even.col(k) * to_zero;
+            even.row(k).setZero();
+            even.col(k).setZero();
+            even(k, k) = 1;
+            right[k] = to_zero;
+            again = true;
+        }
+    }
     return moved(fit, places, change);
 }
 

@@ -37,6 +37,20 @@ void demand_description(const Track& track, const ModelLadder& ladder) {
         track.pieces.front().name, best.name, best.left_out_rms, spread);
 }
 
+/// Exchanged, the arms obey the same equations, but for friction. No body, however, hangs by its own weight the wrong
+/// way: D1 − C D2/B is the first arm's own moment, m1 a1 g and more, where B/(m2 a2) ≥ a2.
+void demand_order(const Track& track, const ModelLadder& ladder) {
+    constexpr double least = 1.01;
+    const auto& p = ladder.rungs[ladder.best].fit.parameters;
+    const auto of = [&](FitParameter parameter) { return p[index_of(parameter)]; };
+    const double moment = of(FitParameter::gravity_1) / (of(FitParameter::coupling) * of(FitParameter::gravity_2));
+    if (moment >= least) return;
+    throw bad_input(
+        "{}: theta1_rad and theta2_rad seem to be swapped: as they are, the first arm has no weight of its own "
+        "(D1 B/(C D2) is {:.3f}, and more than 1 of any two bodies in order); theta1 is the arm at the pivot",
+        track.pieces.front().name, moment);
+}
+
 void put_on_one_clock(FitResult& result, const FitQuestion& question) {
     auto& track = result.track;
     if (!track.start_s.empty() && !question.every_s) return;
@@ -63,6 +77,7 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
     FitResult result{.track = std::move(track)};
     auto& ladder = result.ladder = climb(result.track, question.bodies, jobs, stop, report);
     result.models_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
+    demand_order(result.track, ladder);
     demand_description(result.track, ladder);
     const auto& segments = ladder.division.segments;
     constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer

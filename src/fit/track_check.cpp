@@ -108,17 +108,12 @@ void demand_motion(const Track& track) {
 /// Another way to take the columns.
 struct Reading {
     double unit = 1;  // of the angles, rad
-    bool swapped = false, relative = false, mirrored = false;
+    bool relative = false, mirrored = false;
     std::array<int, 2> quarters{};  // of a turn to subtract
 };
 
 std::vector<Glimpse> read_as(std::vector<Glimpse> glimpses, const Reading& reading) {
     for (auto& g : glimpses) {
-        if (reading.swapped) {
-            std::swap(g.angle[0], g.angle[1]);
-            std::swap(g.rate[0], g.rate[1]);
-            std::swap(g.acceleration[0], g.acceleration[1]);
-        }
         for (std::size_t arm = 0; arm < 2; ++arm) {
             const double unit = arm == 1 && reading.mirrored ? -reading.unit : reading.unit;
             g.angle[arm] = unit * g.angle[arm] - reading.quarters[arm] * std::numbers::pi / 2;
@@ -141,7 +136,7 @@ double unexplained(const std::vector<Glimpse>& glimpses, const Reading& reading)
 
 std::vector<Reading> other_readings() {
     constexpr double degree = std::numbers::pi / 180;
-    std::vector<Reading> all{{.unit = degree}, {.swapped = true}, {.unit = degree, .swapped = true}};
+    std::vector<Reading> all{{.unit = degree}};
     for (const bool relative : {false, true})
         for (const bool mirrored : {false, true})
             for (int first = -1; first <= 2; ++first)
@@ -173,10 +168,10 @@ void convert(Track& track, const Reading& reading) {
 /// Where the angles taken as they are obey no double pendulum's equations, but do when taken in another way: refuses
 /// what is a mistake, and takes so what is a convention.
 void check_convention(Track& track) {
-    constexpr double obeys = 0.1, much_better = 0.3;
+    constexpr double well = 0.003, obeys = 0.1, much_better = 0.3;
     const auto glimpses = glimpses_of(track);
     const double as_it_is = unexplained(glimpses, {});
-    if (as_it_is < obeys) return;
+    if (as_it_is < well) return;
     Reading best;
     double least = as_it_is;
     for (const auto& reading : other_readings())
@@ -184,7 +179,7 @@ void check_convention(Track& track) {
     if (least > std::min(obeys, much_better * as_it_is)) {
         constexpr double most_turns = 60;  // rad: ten turns and a half
         const auto range = range_of(track, 0), other = range_of(track, 1);
-        if (std::max(range[1] - range[0], other[1] - other[0]) > most_turns)
+        if (as_it_is > obeys && std::max(range[1] - range[0], other[1] - other[0]) > most_turns)
             throw bad_input(
                 "{}: the angles go from {:.3g} to {:.3g}, and obey no double pendulum's equations: are they "
                 "in degrees? Radians are wanted (degrees × π/180)",
@@ -195,11 +190,7 @@ void check_convention(Track& track) {
     const auto evidence =
         fmt::format("taken so, {:.0f} % of the forces are unexplained, else {:.0f} %", 100 * least, 100 * as_it_is);
     if (best.unit != 1)
-        throw bad_input("{}: the angles are in degrees{}; radians are wanted (degrees × π/180): {}", name,
-                        best.swapped ? ", and theta1 and theta2 swapped" : "", evidence);
-    if (best.swapped)
-        throw bad_input("{}: theta1_rad and theta2_rad are swapped; theta1 is the arm at the pivot: {}", name,
-                        evidence);
+        throw bad_input("{}: the angles are in degrees; radians are wanted (degrees × π/180): {}", name, evidence);
     convert(track, best);
 }
 
