@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/regression.hpp"
+#include "numeric/portable_math.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -101,7 +102,7 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
     double sum = 0, squares = 0;
     const auto count = static_cast<double>(rung.left_out.size());
     for (std::size_t u = 0; u < rung.left_out.size(); ++u) {
-        const double ratio = std::log(rung.left_out[u] / best.left_out[u]);
+        const double ratio = portable_log(rung.left_out[u] / best.left_out[u]);
         sum += ratio;
         squares += ratio * ratio;
     }

@@ -59,11 +59,11 @@ inline constexpr std::array<ParameterWords, parameter_count> parameter_words{{
     {"coulomb_2_per_s2", "c2/B", "1/s²"},
     {"quadratic_1", "k1/B", ""},
     {"quadratic_2", "k2/B", ""},
-    {"offset_1_rad", "offset 1", "rad"},
-    {"offset_2_rad", "offset 2", "rad"},
+    {"offset_1_rad", "offset 1", "rad"},
+    {"offset_2_rad", "offset 2", "rad"},
     {"lag_s", "lag", "s"},
-    {"scale_1", "scale 1", ""},
-    {"scale_2", "scale 2", ""},
+    {"scale_1", "scale 1", ""},
+    {"scale_2", "scale 2", ""},
 }};
 constexpr const ParameterWords& words_of(FitParameter parameter) {
     return parameter_words[index_of(parameter)];

@@ -99,7 +99,7 @@ Plot residual_plot(const FitResult& result) {
 
 /// The error on pieces left out over the number of parameters.
 Plot ladder_plot(const FitResult& result) {
-    Plot plot{.title = "The ladder of models", .needs_no_legend = false};
+    Plot plot{.title = "The ladder of models", .needs_no_legend = true};
     plot.x = {.label = "parameters fitted", .every = 1};
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};
     constexpr double rad = 1e3;
@@ -109,13 +109,12 @@ Plot ladder_plot(const FitResult& result) {
         const bool chosen = k == result.ladder.chosen;
         least = std::min(least, rungs[k].parameters);
         most = std::max(most, rungs[k].parameters);
-        plot.curves.push_back(
-            {.label = chosen ? fmt::format("{}, chosen", k + 1) : fmt::format("{} {}", k + 1, rungs[k].name),
-             .x = {static_cast<double>(rungs[k].parameters)},
-             .y = {rad * rungs[k].left_out_rms},
-             .mark = Mark::points,
-             .hue = chosen ? 1 : 0,
-             .quiet = !chosen});
+        plot.curves.push_back({.label = fmt::format("{}{}", k + 1, chosen ? ", chosen" : ""),
+                               .x = {static_cast<double>(rungs[k].parameters)},
+                               .y = {rad * rungs[k].left_out_rms},
+                               .mark = Mark::points,
+                               .hue = chosen ? 1 : 0,
+                               .quiet = !chosen});
     }
     plot.x.low = static_cast<double>(least) - 1;
     plot.x.high = static_cast<double>(most) + 1;
@@ -171,7 +170,10 @@ Figure fit_page(const FitResult& result, const std::string& name) {
     std::string numbers;
     for (const auto parameter : rung.model.fitted)
         numbers += (numbers.empty() ? "" : ",  ") + parameter_words_of(rung.fit, result.uncertainty, parameter);
-    figure.captions = {numbers + ".", residual_sentence(result) + " " + horizon_sentence(result)};
+    std::string ladder;
+    for (std::size_t k = 0; k < result.ladder.rungs.size(); ++k)
+        ladder += fmt::format("{}{} {}", k == 0 ? "Models: " : "; ", k + 1, result.ladder.rungs[k].name);
+    figure.captions = {ladder + ".", numbers + ".", residual_sentence(result) + " " + horizon_sentence(result)};
     return figure;
 }
 

@@ -1,5 +1,7 @@
 #include "fit/regression.hpp"
 
+#include "numeric/portable_math.hpp"
+
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -38,7 +40,7 @@ double window_of(const Track& track) {
     const double interval = piece.duration() / static_cast<double>(piece.size() - 1);
     const double noise = std::max(track.noise[0], track.noise[1]);
     // the acceleration errs by about 27 noise/(window² √samples): to be some tenths of rad/s²
-    const double quiet = std::pow(27 * noise * std::sqrt(interval) / 0.5, 0.4);
+    const double quiet = portable_pow(27 * noise * std::sqrt(interval) / 0.5, 0.4);
     return std::clamp(std::max(quiet, samples * interval), shortest, longest);
 }
 
@@ -89,11 +91,11 @@ Regression regress(const std::vector<Glimpse>& glimpses) {
     Eigen::VectorXd right(count), driven(count);
     for (Eigen::Index i = 0; i < count; ++i) {
         const auto& [angle, rate, acceleration] = glimpses[static_cast<std::size_t>(i)];
-        const double between = angle[0] - angle[1], cosine = std::cos(between), sine = std::sin(between);
-        second.row(i) << cosine * acceleration[0] - sine * rate[0] * rate[0], std::sin(angle[1]), rate[1] - rate[0];
+        const SinCos<double> between(angle[0] - angle[1]), turn1(angle[0]), turn2(angle[1]);
+        second.row(i) << between.cos * acceleration[0] - between.sin * rate[0] * rate[0], turn2.sin, rate[1] - rate[0];
         right[i] = -acceleration[1];
-        first.row(i) << acceleration[0], std::sin(angle[0]), rate[0];
-        driven[i] = -(cosine * acceleration[1] + sine * rate[1] * rate[1]);
+        first.row(i) << acceleration[0], turn1.sin, rate[0];
+        driven[i] = -(between.cos * acceleration[1] + between.sin * rate[1] * rate[1]);
     }
     const Eigen::VectorXd of_second = second.colPivHouseholderQr().solve(right);
     const double coupling = of_second[0];

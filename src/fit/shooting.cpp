@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
+#include "numeric/portable_math.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -262,8 +263,8 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
         if (effort.finds_scale && (!is_settled || is_coarse)) {
             const auto before = fit.rules.scale;
             find_scale(fit);
-            is_settled = std::abs(std::log(fit.rules.scale[0] / before[0])) +
-                             std::abs(std::log(fit.rules.scale[1] / before[1])) <
+            is_settled = std::abs(portable_log(fit.rules.scale[0] / before[0])) +
+                             std::abs(portable_log(fit.rules.scale[1] / before[1])) <
                          settled;
         }
         if (fit.passes >= effort.most_passes || (was_settled && !is_coarse)) break;

@@ -1,5 +1,7 @@
 #include "fit/uncertainty.hpp"
 
+#include "numeric/portable_math.hpp"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -127,7 +129,9 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
     const Eigen::VectorXd wider = (white.array() / sandwich.diagonal().array()).max(1).sqrt();
     result.covariance = wider.asDiagonal() * sandwich * wider.asDiagonal();
     const Eigen::ArrayXd ratio = (result.covariance.diagonal().array() / white.array()).sqrt();
-    result.inflation = std::exp(ratio.log().mean());
+    double logarithms = 0;
+    for (const double wider_by : ratio) logarithms += portable_log(wider_by);
+    result.inflation = portable_exp(logarithms / static_cast<double>(count));
     return result;
 }
 
