@@ -152,6 +152,8 @@ std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
 Horizon measure_horizon(const Track& track, const Division& division, const Fit& fit, const Uncertainty& uncertainty,
                         int jobs, const std::atomic<bool>& stop) {
     Horizon horizon;
+    constexpr double noises = 5;  // so that no single sample's noise ends a prediction
+    horizon.limit = std::max(horizon.limit, noises * std::max(track.noise[0], track.noise[1]));
     const auto units = division.units.size();
     std::vector<std::optional<Prediction>> all(units);
     parallel_for(units, jobs, [&](std::size_t u) {

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
-#include "fit/regression.hpp"
+#include "fit/beginning.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <Eigen/Cholesky>
@@ -110,33 +110,40 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
     return mean <= std::max(negligible, std::sqrt(variance / count));
 }
 
-/// Parameters and starts to begin with: equations of motion regressed, then a fit of short stretches, which follow
-/// them more easily than long ones.
-Fit first_fit(const Track& track, const Division& division, const ModelSpec& model, int jobs,
-              const std::atomic<bool>& stop) {
-    constexpr double short_s = 0.5;
-    const auto regression = regress(glimpses_of(track));
-    if (!regression.is_physical)
-        throw method_failed(
-            "no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
-            100 * regression.unexplained);
-    auto pieces = divide(track, short_s).segments;
-    Fit fit{.model = model, .parameters = regression.parameters};
-    auto& p = fit.parameters;
-    const double most_coupling = 0.95 * std::sqrt(p[index_of(inertia)]);
-    p[index_of(coupling)] = std::min(p[index_of(coupling)], most_coupling);
-    for (const auto& segment : pieces) fit.starts.push_back(guessed_start(track, segment));
-    fit.rules.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
-    fit = fit_model(track, pieces, fit, {.most_passes = 12, .finds_step = false, .relative = 1e-3, .jobs = jobs}, stop);
-    // the starts of long segments are among those of short ones
-    Fit whole{.model = model, .rules = fit.rules, .parameters = fit.parameters};
-    for (const auto& segment : division.segments)
-        for (std::size_t k = 0; k < pieces.size(); ++k)
-            if (pieces[k].piece == segment.piece && pieces[k].first == segment.first)
-                whole.starts.push_back(fit.starts[k]);
-    while (whole.starts.size() < division.segments.size())
-        whole.starts.push_back(guessed_start(track, division.segments[whole.starts.size()]));
-    return whole;
+/// The nearer of two places to start from: where the model before ended, and where all began.
+Fit nearer_start(const Track& track, const std::vector<TrackSegment>& segments, const ModelSpec& model,
+                 const Fit& before, const Fit& first, int jobs) {
+    const auto placed = [&](Fit fit) {
+        fit.model = model;
+        for (std::size_t k = index_of(viscous_1); k < dynamic_count; ++k)
+            if (!fits(model, static_cast<FitParameter>(k))) fit.parameters[k] = 0;
+        fit.parameters = completed(model, fit.parameters);
+        fit.sums.clear();
+        return fit;
+    };
+    auto one = placed(first);
+    if (before.starts.empty() || before.model.point_masses != model.point_masses) return one;
+    auto other = placed(before);
+    if (!fits(model, coulomb_1)) return other;
+    one.rules = other.rules;
+    evaluate_fit(track, segments, one, jobs);
+    evaluate_fit(track, segments, other, jobs);
+    return one.cost < other.cost ? one : other;
+}
+
+/// Whether samples scatter about the model no more than from one to the next.
+bool like_noise(const Track& track, const FittedModel& rung) {
+    constexpr double about = 1.3;
+    const double noise = std::sqrt(0.5 * (track.noise[0] * track.noise[0] + track.noise[1] * track.noise[1]));
+    return rung.fit.rms < about * noise;
+}
+
+/// Whether its residuals are no larger than fewer parameters explain, where they are noise: by the ratio of
+/// likelihoods, at some 99.9 %.
+bool is_as_likely(const FittedModel& rung, const FittedModel& best) {
+    const auto samples = static_cast<double>(rung.fit.residuals.size());
+    const double more = static_cast<double>(best.parameters) - static_cast<double>(rung.parameters);
+    return 2 * samples * portable_log(rung.fit.rms / best.fit.rms) < 10 + 2 * std::max(more, 0.0);
 }
 
 }  // namespace
@@ -205,24 +212,21 @@ Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments) {
 
 ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic<bool>& stop,
                   const std::function<void(std::size_t done, std::size_t of)>& report) {
-    ModelLadder ladder{.division = divide(track)};
-    const auto& [segments, units] = ladder.division;
+    ModelLadder ladder;
     const auto plans = plans_of(bodies);
-    constexpr double roughly = 1e-4;  // enough to compare
-    const auto first = first_fit(track, ladder.division, model_of(false, 0, Drag::own, 0), jobs, stop);
-    Fit start = first;
+    constexpr double roughly = 5e-4;  // enough to compare
+    auto [division, first] = begin_fit(track, jobs, stop);
+    ladder.division = std::move(division);
+    const auto& segments = ladder.division.segments;
+    Fit before{};
     for (const auto& plan : plans) {
         throw_if_set(stop);
         FittedModel rung{.name = plan.name, .model = plan.model};
-        if (plan.model.point_masses != start.model.point_masses) start = first;
-        start.model = plan.model;
-        for (std::size_t k = index_of(viscous_1); k < dynamic_count; ++k)
-            if (!fits(plan.model, static_cast<FitParameter>(k))) start.parameters[k] = 0;
+        const auto start = nearer_start(track, segments, plan.model, before, first, jobs);
         rung.fit = fit_model(track, segments, start, {.step_share = 0.2, .relative = roughly, .jobs = jobs}, stop);
         leave_out(track, ladder.division, rung, jobs, stop);
         rung.parameters = rung.fit.free().size();
-        start = rung.fit;
-        start.sums.clear();
+        before = rung.fit;
         ladder.rungs.push_back(std::move(rung));
         report(ladder.rungs.size(), plans.size());
     }
@@ -232,7 +236,9 @@ ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic
         for (std::size_t k = 0; k < rungs.size(); ++k)
             if (may(rungs[k]) && (!may(rungs[best]) || rungs[k].left_out_rms < rungs[best].left_out_rms)) best = k;
         for (std::size_t k = 0; k < rungs.size(); ++k)
-            if (may(rungs[k]) && serves(rungs[k], rungs[best])) return std::pair(k, best);
+            if (may(rungs[k]) && serves(rungs[k], rungs[best]) &&
+                (!like_noise(track, rungs[best]) || is_as_likely(rungs[k], rungs[best])))
+                return std::pair(k, best);
         return std::pair(best, best);
     };
     std::tie(ladder.chosen, ladder.best) = choose([](const FittedModel&) { return true; });

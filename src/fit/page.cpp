@@ -150,7 +150,7 @@ Plot horizon_plot(const FitResult& result) {
     const auto left = std::count_if(horizon.predictions.begin(), horizon.predictions.end(),
                                     [](const auto& p) { return p.left_s.has_value(); });
     plot.note = fmt::format("{} of {} left, in colour", left, horizon.predictions.size());
-    plot.rules.push_back({Rule::Orientation::horizontal, horizon.limit, fmt::format("{} rad", horizon.limit)});
+    plot.rules.push_back({Rule::Orientation::horizontal, horizon.limit, fmt::format("{:.2g} rad", horizon.limit)});
     if (horizon.median_s)
         plot.rules.push_back(
             {Rule::Orientation::vertical, *horizon.median_s, fmt::format("median {:.1f} s", *horizon.median_s)});

@@ -131,7 +131,7 @@ std::string horizon_sentence(const FitResult& result) {
     const auto left = h.left_by[0] + h.left_by[1] + h.left_by[2];
     const auto words = h.median_s ? fmt::format("for {:.1f} s (median)", *h.median_s)
                                   : fmt::format("for longer than the track shows, {:.1f} s", h.longest_s);
-    auto sentence = fmt::format("Predictions stay within {} rad {}", h.limit, words);
+    auto sentence = fmt::format("Predictions stay within {:.2g} rad {}", h.limit, words);
     if (left == 0) return sentence + fmt::format("; none of {} left.", h.predictions.size());
     constexpr std::array<const char*, 3> names{"the model", "the start", "the parameters"};
     std::string because;

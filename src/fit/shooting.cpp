@@ -211,6 +211,8 @@ Fit moved(const Fit& fit, const std::vector<Eigen::Index>& places, const Eigen::
         all.starts.push_back(inverse_of_start(sums, 0) * (sums.start_slope - sums.mixed * all.parameters));
     Fit result = fit;
     apply(result, all);
+    result.sums.clear();
+    result.residuals.clear();
     return result;
 }
 
@@ -239,11 +241,14 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
     fit.parameters = completed(fit.model, fit.parameters);
     const auto evaluate = [&] {
         evaluate_fit(track, segments, fit, effort.jobs);
-        if (!std::isfinite(fit.cost)) throw method_failed("fit: the motion of the start does not stay finite");
+        if (!std::isfinite(fit.cost))
+            throw method_failed(
+                "{}: no double pendulum moves like this: from its own angles and rates the motion does not stay finite",
+                track.pieces.front().name);
     };
     constexpr int rounds = 20;
     constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
-    evaluate();
+    if (fit.sums.size() != segments.size() || fit.residuals.empty()) evaluate();
     bool is_settled = !effort.finds_scale;
     if (const auto before = fit.rules.scale; effort.finds_scale) {  // too small a scale is slow
         find_scale(fit);

@@ -35,7 +35,8 @@ struct FitEffort {
 };
 
 /// Minimises Huber's loss of all residuals over starts and parameters: Gauss–Newton steps damped as Levenberg and
-/// Marquardt do, the starts eliminated segment by segment, friction kept ≥ 0. `start` has model, parameters and starts.
+/// Marquardt do, the starts eliminated segment by segment, friction kept ≥ 0. `start` has model, parameters and starts; what
+/// sums it has are those there.
 /// The result is the same bits for any number of jobs. Throws Error: exit 3 where no motion stays finite, 130.
 ///
 /// Source  Bock 1983 (multiple shooting); Nocedal & Wright, Numerical Optimization, §10.3.

@@ -174,16 +174,20 @@ void check_convention(Track& track) {
     if (as_it_is < well) return;
     Reading best;
     double least = as_it_is;
-    for (const auto& reading : other_readings())
+    constexpr double small = 4;  // rad: of degrees, a motion so small is linear, and any such fits
+    const auto first = range_of(track, 0), second = range_of(track, 1);
+    const bool may_be_degrees = std::max(first[1] - first[0], second[1] - second[0]) > small;
+    for (const auto& reading : other_readings()) {
+        if (reading.unit != 1 && !may_be_degrees) continue;
         if (const double value = unexplained(glimpses, reading); value < least) least = value, best = reading;
+    }
     if (least > std::min(obeys, much_better * as_it_is)) {
         constexpr double most_turns = 60;  // rad: ten turns and a half
-        const auto range = range_of(track, 0), other = range_of(track, 1);
-        if (as_it_is > obeys && std::max(range[1] - range[0], other[1] - other[0]) > most_turns)
+        if (as_it_is > obeys && std::max(first[1] - first[0], second[1] - second[0]) > most_turns)
             throw bad_input(
                 "{}: the angles go from {:.3g} to {:.3g}, and obey no double pendulum's equations: are they "
                 "in degrees? Radians are wanted (degrees × π/180)",
-                track.pieces.front().name, range[0], range[1]);
+                track.pieces.front().name, first[0], first[1]);
         return;  // the fit will tell
     }
     const auto& name = track.pieces.front().name;
