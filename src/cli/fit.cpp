@@ -63,7 +63,7 @@ void add_fit(CLI::App& app) {
         "  doppel fit piece-*.csv --name lab --out fits\n"
         "  doppel fit piece-*.csv --every 5.334      pieces that begin so many seconds apart, each with a clock of its "
         "own\n"
-        "  doppel fit swing.csv --gravity 9.81 --second-mass 0.138");
+        "  doppel fit swing.csv --gravity 9.81 --mass 0.138");
     command.add_option("TRACK", options->tracks, "CSV files, in the order of time")->required();
     command.add_option("--model", options->model, "Bodies: auto, point (masses on massless rods) or compound")
         ->type_name("KIND")
@@ -78,7 +78,7 @@ void add_fit(CLI::App& app) {
         ->type_name("G")
         ->check(CLI::Range(1e-3, 1e4))
         ->capture_default_str();
-    command.add_option("--second-mass", options->mass, "Of the second arm in the preset, kg: angles do not tell it")
+    command.add_option("--mass", options->mass, "Of the second arm in the preset, kg: angles do not tell it")
         ->type_name("KG")
         ->check(CLI::Range(1e-9, 1e9))
         ->capture_default_str();

@@ -72,6 +72,7 @@ std::vector<Part> joined(const Track& track, const Fit& fit, const std::vector<P
 Fit fitted(const Track& track, std::vector<Part>& parts, Fit fit, int jobs, const std::atomic<bool>& stop) {
     std::vector<TrackSegment> segments;
     fit.starts.clear();
+    fit.sums.clear();  // of another division, or another model
     for (const auto& part : parts) {
         segments.push_back(part.segment);
         fit.starts.push_back(part.start);

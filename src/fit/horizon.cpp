@@ -58,7 +58,7 @@ struct Run {
 /// Goes along one unit after the data. False where the error is well beyond the limit.
 bool follow(const Track& track, const TrackSegment& segment, std::size_t first_piece, double limit, Run& run,
             Prediction& prediction) {
-    constexpr double kept_every_s = 0.02, gap_s = 0.1, far = 10;  // limits
+    constexpr double kept_every_s = 0.02, gap_s = 0.1, afterwards_s = 10, far = 10;  // far: limits
     const auto& piece = track.pieces[segment.piece];
     auto &times = prediction.time_s, &errors = prediction.error;
     for (std::size_t i = segment.first; i < segment.last; ++i) {
@@ -79,7 +79,7 @@ bool follow(const Track& track, const TrackSegment& segment, std::size_t first_p
             times.push_back(t);
             errors.push_back(*error);
         }
-        if (*error > far * limit) return false;
+        if (*error > far * limit || (prediction.left_s && t > *prediction.left_s + afterwards_s)) return false;
     }
     return true;
 }

@@ -63,9 +63,30 @@ void find_noise(Track& track) {
     }
 }
 
+bool is_short(const TrackPiece& piece) {
+    return piece.size() < least_of_piece || piece.duration() < least_of_piece_s;
+}
+
+/// Leaves out crumbs between gaps; a whole file that is too short is left, to be refused.
+void drop_crumbs(Track& track) {
+    std::size_t dropped = 0;
+    for (std::size_t k = track.pieces.size(); k-- > 0;) {
+        const auto& piece = track.pieces[k];
+        const auto of_file = std::count_if(track.pieces.begin(), track.pieces.end(),
+                                           [&](const auto& other) { return other.name == piece.name; });
+        if (!is_short(piece) || of_file == 1) continue;
+        track.pieces.erase(track.pieces.begin() + static_cast<std::ptrdiff_t>(k));
+        if (!track.start_s.empty()) track.start_s.erase(track.start_s.begin() + static_cast<std::ptrdiff_t>(k));
+        ++dropped;
+    }
+    if (dropped > 0)
+        track.notes.push_back(fmt::format("{} stretches between gaps, of less than {} samples or {} s, were left out",
+                                          dropped, least_of_piece, least_of_piece_s));
+}
+
 void demand_length(const Track& track) {
     for (const auto& piece : track.pieces)
-        if (piece.size() < least_of_piece || piece.duration() < least_of_piece_s)
+        if (is_short(piece))
             throw bad_input(
                 "{}: the piece from {} s on is too short: {} samples in {:.3g} s; at least {} in {} s are wanted",
                 piece.name, piece.time_s.front(), piece.size(), piece.duration(), least_of_piece, least_of_piece_s);
@@ -201,6 +222,7 @@ void check_convention(Track& track) {
 }  // namespace
 
 void check_track(Track& track) {
+    drop_crumbs(track);
     demand_length(track);
     find_noise(track);
     demand_motion(track);

@@ -162,6 +162,18 @@ TEST(FitTrack, CutsAtGapsAndNumbersAndJoinsTurns) {
         EXPECT_LT(std::abs(joined.pieces[0].angle[0][i] - joined.pieces[0].angle[0][i - 1]), 1);
 }
 
+TEST(FitTrack, LeavesCrumbsBetweenGapsOut) {
+    const auto piece = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 8}).pieces[0];
+    std::string text = "time_s,theta1_rad,theta2_rad\n";
+    for (std::size_t i = 0; i < piece.size(); ++i)
+        if (i < 400 || (i > 440 && i < 446) || i > 480)
+            text += fmt::format("{},{},{}\n", piece.time_s[i], piece.angle[0][i], piece.angle[1][i]);
+    const auto track = read({text});
+    ASSERT_EQ(track.pieces.size(), 2u);
+    EXPECT_EQ(track.start_s, (std::vector{0, 4.81}));
+    EXPECT_EQ(track.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
+}
+
 TEST(FitTrack, LeavesWildSamplesOut) {
     auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 1e-3});
     for (const std::size_t i : {50, 120, 333}) track.pieces[0].angle[1][i] += 0.3;
