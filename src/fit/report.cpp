@@ -84,6 +84,20 @@ Json pendulum_json(const PhysicalPendulum& p) {
             {"arm_drag_quadratic_N_m_s2", p.quadratic}};
 }
 
+/// Where each segment of the chosen model's fit begins.
+Json starts_json(const FitResult& result) {
+    Json all = Json::array();
+    const auto& segments = result.ladder.division.segments;
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+        const auto& y = result.chosen().fit.starts[k];
+        all.push_back({{"piece", segments[k].piece},
+                       {"time_s", result.track.pieces[segments[k].piece].time_s[segments[k].first]},
+                       {"angle_rad", {y[0], y[1]}},
+                       {"rate_rad_per_s", {y[2], y[3]}}});
+    }
+    return all;
+}
+
 Json horizon_json(const FitResult& result) {
     if (!result.horizon) return {{"sentence", horizon_sentence(result)}};
     const auto& horizon = *result.horizon;
@@ -170,6 +184,7 @@ Json fit_json(const FitResult& result) {
                    {"left_out_angles", track.outliers()},
                    {"notes", track.notes}}},
                  {"model", model_json(result.chosen(), result.uncertainty)},
+                 {"starts", starts_json(result)},
                  {"ladder", ladder_json(result)},
                  {"residuals",
                   {{"like_noise", result.uncertainty.is_white},
