@@ -216,7 +216,7 @@ Candidates candidates(CLI::App& app, const std::vector<std::string>& words) {
         const auto name = option->get_name();
         if (name == "PRESET") add_presets(words[0], all);
         if (option->get_type_name().find('{') == std::string::npos)
-            add_files(word, name == "PRESET" || name == "FILE" ? ".toml" : "", all);
+            add_files(word, name == "PRESET" || name == "FILE" ? ".toml" : name == "TRACK" ? ".csv" : "", all);
     }
     if (!word.starts_with('-')) std::erase_if(all, [](const Candidate& one) { return one.text.starts_with('-'); });
     return all;

@@ -85,6 +85,7 @@ int run_program(int argc, char** argv) {
         add_simulate(app);
         add_still(app);
         add_figure(app);
+        add_fit(app);
         add_compare(app, exit_code);
         add_list(app);
         add_show(app);

@@ -14,6 +14,7 @@ void add_render(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_still(CLI::App& app);
 void add_figure(CLI::App& app);
+void add_fit(CLI::App& app);
 void add_compare(CLI::App& app, int& exit_code);  // the code is 1 where the pictures differ
 void add_list(CLI::App& app);
 void add_show(CLI::App& app);

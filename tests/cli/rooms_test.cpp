@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 // Who may include whom: dependencies run one way.
 //     base ← numeric ← physics ← integrate ← analysis ┐
-//     base ← image ← render ← plot ←──────────────────┼─ scene ← film ← figure ← cli ← main
+//     base ← image ← render ← plot ←──────────────────┼─ scene ← film ← figure, fit ← cli ← main
 //     base ← image ← output ← vector (and render) ←───┘
 const std::map<std::string, std::set<std::string>> needs{
     {"base", {}},
@@ -33,9 +33,12 @@ const std::map<std::string, std::set<std::string>> needs{
     {"figure",
      {"film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image",
       "base"}},
+    {"fit",
+     {"film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image",
+      "base"}},
     {"cli",
-     {"figure", "film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render",
-      "image", "base"}},
+     {"figure", "fit", "film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot",
+      "render", "image", "base"}},
 };
 
 /// Calls visit(file, room or system header) for every include in src.

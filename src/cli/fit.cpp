@@ -1,0 +1,95 @@
+#include "base/error.hpp"
+#include "cli/options.hpp"
+#include "cli/program.hpp"
+#include "cli/terminal.hpp"
+#include "fit/run.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace doppel {
+namespace {
+
+struct FitCommandOptions {
+    std::vector<std::string> tracks;
+    std::string model = "auto", out = "out", progress = "auto", name, gl = "auto";
+    double gravity = Convention{}.gravity, mass = Convention{}.second_mass, every_s = 0;
+    int jobs = 0;
+};
+
+void fit(const FitCommandOptions& options) {
+    FitOptions fit_options{.question = {.convention = {options.gravity, options.mass}},
+                           .out = options.out,
+                           .name = options.name,
+                           .jobs = options.jobs,
+                           .gl = gl_named(options.gl)};
+    fit_options.question.bodies = options.model == "point"      ? Bodies::point
+                                  : options.model == "compound" ? Bodies::compound
+                                                                : Bodies::automatic;
+    if (options.every_s > 0) fit_options.question.every_s = options.every_s;
+    outlive_readers();
+    const auto name = options.name.empty() ? fit_name(options.tracks.front()) : options.name;
+    ProgressReport report(progress_style(options.progress), name, "models");
+    try {
+        const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
+        const auto done = run_fit(files, fit_options, watch_interrupts(), std::ref(report));
+        for (const auto& sentence : done.sentences) report.note(sentence);
+        report.done(done.run);
+    } catch (...) {
+        report.clear();
+        throw;
+    }
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app) {
+    auto options = std::make_shared<FitCommandOptions>();
+    auto& command = *app.add_subcommand(
+        "fit", "Fits a double pendulum to a measured track: a preset, errors, and how far it predicts");
+    command.footer(
+        "A track is CSV with time_s and theta1_rad, theta2_rad (from the downward vertical), or x0_px, y0_px, x1_px, "
+        "y1_px,\n"
+        "x2_px, y2_px (pivot, joint and end in a picture, y down); any rate, with gaps, in one or more pieces. Models "
+        "from\n"
+        "point masses without friction to bodies with viscous and dry friction and drag are fitted, and the smallest "
+        "is\n"
+        "chosen that predicts pieces left out as well as any. DIR/NAME/ gets NAME.toml, a preset; NAME.json, all "
+        "numbers\n"
+        "with errors; NAME.csv, the residuals; NAME.png, a page to judge it by.\n"
+        "Examples:\n"
+        "  doppel fit swing.csv\n"
+        "  doppel fit piece-*.csv --name lab --out fits\n"
+        "  doppel fit piece-*.csv --every 5.334      pieces that begin so many seconds apart, each with a clock of its "
+        "own\n"
+        "  doppel fit swing.csv --gravity 9.81 --mass 0.138");
+    command.add_option("TRACK", options->tracks, "CSV files, in the order of time")->required();
+    command.add_option("--model", options->model, "Bodies: auto, point (masses on massless rods) or compound")
+        ->type_name("KIND")
+        ->check(CLI::IsMember({"auto", "point", "compound"}))
+        ->capture_default_str();
+    command.add_option("--name", options->name, "Name of the results; that of the first file where not given")
+        ->type_name("NAME");
+    command.add_option("--every", options->every_s, "Seconds from the beginning of a piece to that of the next")
+        ->type_name("S")
+        ->check(CLI::Range(1e-3, 1e6));
+    command.add_option("--gravity", options->gravity, "Of the preset, m/s²: angles do not tell it")
+        ->type_name("G")
+        ->check(CLI::Range(1e-3, 1e4))
+        ->capture_default_str();
+    command.add_option("--mass", options->mass, "Of the second arm in the preset, kg: angles do not tell it")
+        ->type_name("KG")
+        ->check(CLI::Range(1e-9, 1e9))
+        ->capture_default_str();
+    add_out_options(command, options->out, options->progress);
+    command
+        .add_option("-j,--jobs", options->jobs,
+                    "Threads that compute; one a core where not given. The numbers stay the same")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1024));
+    add_gl_option(command, options->gl);
+    command.callback([options] { fit(*options); });
+}
+
+}  // namespace doppel

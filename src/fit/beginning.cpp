@@ -1,0 +1,131 @@
+#include "fit/beginning.hpp"
+
+#include "base/error.hpp"
+#include "fit/flow.hpp"
+#include "fit/regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+using enum FitParameter;
+
+/// A segment, and the one of the division of which it is a part.
+struct Part {
+    TrackSegment segment;
+    std::size_t whole = 0;
+    ArmState<double> start{};
+};
+
+std::vector<Part> quarters_of(const Track& track, const std::vector<TrackSegment>& segments) {
+    constexpr std::size_t least_samples = 8;
+    constexpr double least_s = 0.15;
+    std::vector<Part> parts;
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+        const auto& times = track.pieces[segments[k].piece].time_s;
+        const double begin = times[segments[k].first], length = times[segments[k].last - 1] - begin;
+        std::size_t count = 4;
+        while (count > 1 &&
+               (length < least_s * static_cast<double>(count) || segments[k].size() < least_samples * count))
+            count /= 2;
+        auto first = segments[k].first;
+        for (std::size_t part = 1; part <= count; ++part) {
+            const double end = begin + length * static_cast<double>(part) / static_cast<double>(count);
+            auto last = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), end) - times.begin());
+            if (part == count) last = segments[k].last;
+            if (last < first + least_samples && part < count) continue;  // a gap
+            parts.push_back({{segments[k].piece, first, last}, k});
+            first = last;
+        }
+    }
+    return parts;
+}
+
+/// Whether the motion of one part ends where the next begins.
+bool meet(const Track& track, const Fit& fit, const Part& one, const Part& next) {
+    constexpr double near = 0.3;  // rad
+    const auto& times = track.pieces[one.segment.piece].time_s;
+    Flow<double> flow(arms_of(fit.model, fit.parameters), one.start, fit.rules.step_s);
+    const double length = times[next.segment.first] - times[one.segment.first];
+    if (!flow.reach(length)) return false;
+    const double rate = std::sqrt(fit.parameters[index_of(gravity_2)]);
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+        if (std::abs(flow.angle(arm, length) - next.start[arm]) > near) return false;
+        if (std::abs(flow.state()[arm + 2] - next.start[arm + 2]) > 2 * near * rate) return false;
+    }
+    return true;
+}
+
+std::vector<Part> joined(const Track& track, const Fit& fit, const std::vector<Part>& parts) {
+    std::vector<Part> result;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        result.push_back(parts[k]);
+        const bool pair = k + 1 < parts.size() && parts[k + 1].whole == parts[k].whole;
+        if (pair && meet(track, fit, parts[k], parts[k + 1])) result.back().segment.last = parts[++k].segment.last;
+    }
+    return result;
+}
+
+/// Fits the parts; their starts move along.
+Fit fitted(const Track& track, std::vector<Part>& parts, Fit fit, int jobs, const std::atomic<bool>& stop) {
+    std::vector<TrackSegment> segments;
+    fit.starts.clear();
+    fit.sums.clear();  // of another division, or another model
+    for (const auto& part : parts) {
+        segments.push_back(part.segment);
+        fit.starts.push_back(part.start);
+    }
+    fit = fit_model(track, segments, std::move(fit),
+                    {.most_passes = 10, .finds_step = false, .relative = 1e-3, .jobs = jobs}, stop);
+    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].start = fit.starts[k];
+    return fit;
+}
+
+Parameters regressed(const Track& track) {
+    const auto regression = regress(glimpses_of(track));
+    if (!regression.is_physical)
+        throw method_failed(
+            "{}: no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
+            track.pieces.front().name, 100 * regression.unexplained);
+    auto p = regression.parameters;
+    const double most_coupling = 0.95 * std::sqrt(p[index_of(inertia)]);
+    p[index_of(coupling)] = std::min(p[index_of(coupling)], most_coupling);
+    return p;
+}
+
+}  // namespace
+
+Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop) {
+    Beginning beginning{.division = divide(track), .fit = {}};
+    auto parts = quarters_of(track, beginning.division.segments);
+    for (auto& part : parts) part.start = guessed_start(track, part.segment);
+    Fit fit{};
+    fit.parameters = regressed(track);
+    fit.rules.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
+    fit.model.fitted = {inertia, coupling, gravity_1, gravity_2, offset_1, offset_2};
+    fit = fitted(track, parts, std::move(fit), jobs, stop);
+    fit.model.fitted = {inertia,   coupling,  gravity_1,   gravity_2,   viscous_1, viscous_2,
+                        coulomb_1, coulomb_2, quadratic_1, quadratic_2, offset_1,  offset_2};
+    for (int level = 0; level < 2; ++level) {
+        fit = fitted(track, parts, std::move(fit), jobs, stop);
+        parts = joined(track, fit, parts);
+    }
+    // units as they were, of the segments as they are
+    auto& division = beginning.division;
+    const bool by_piece = division.units.size() == track.pieces.size() && track.pieces.size() > 1;
+    division.segments.clear();
+    division.units.clear();
+    fit.starts.clear();
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (!by_piece || k == 0 || parts[k].segment.piece != parts[k - 1].segment.piece) division.units.emplace_back();
+        division.units.back().push_back(k);
+        division.segments.push_back(parts[k].segment);
+        fit.starts.push_back(parts[k].start);
+    }
+    beginning.fit = std::move(fit);
+    return beginning;
+}
+
+}  // namespace doppel

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "fit/ladder.hpp"
+
+namespace doppel {
+
+/// Where to begin fitting: the division of a track, and a compound model with all friction that follows it.
+struct Beginning {
+    Division division;
+    Fit fit;
+};
+
+/// The equations of motion are regressed, which needs no start; then stretches of a quarter of the division's are
+/// fitted, which follow the samples from almost any start, and joined as far as one leads to the next. A stretch of
+/// motion so chaotic that its parts do not meet stays cut. Throws Error: exit 3 where no double pendulum moves so, 130.
+Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop);
+
+}  // namespace doppel

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "fit/segment.hpp"
+
+#include <vector>
+
+namespace doppel {
+
+/// Angle, rate and acceleration of both arms at one moment, from a polynomial through the samples around it.
+struct Glimpse {
+    std::array<double, 2> angle, rate, acceleration;
+};
+
+/// At moments half a window apart; the window is as long as the noise asks for.
+std::vector<Glimpse> glimpses_of(const Track& track);
+
+/// Angles and rates at the first sample of a segment, from a polynomial of its first tenth of a second or more.
+ArmState<double> guessed_start(const Track& track, const TrackSegment& segment);
+
+/// The equations of motion, which are linear in the parameters, fitted to glimpses: no start needed, but accelerations
+/// are noisy and so the result is biased. What is unexplained says how well angles taken this way obey any double
+/// pendulum at all.
+struct Regression {
+    Parameters parameters{};
+    double unexplained =
+        1;  // share of the squared forces, of both equations: 0 for noiseless angles, near 1 for others
+    bool is_physical = false;
+};
+Regression regress(const std::vector<Glimpse>& glimpses);
+
+}  // namespace doppel

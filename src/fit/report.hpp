@@ -1,0 +1,27 @@
+#pragma once
+
+#include "fit/result.hpp"
+#include "output/csv.hpp"
+#include "scene/resolved.hpp"
+
+#include <string>
+
+namespace doppel {
+
+/// A preset that swings as the track's first piece does: comments on what was fitted, then [scene], [system] and [b],
+/// the same pendulum released one standard error further. Where presets cannot state the chosen model, it is the best of
+/// those that they can.
+std::string fitted_preset(const FitResult& result, const std::string& name);
+
+/// Everything found, for the manifest.
+Json fit_json(const FitResult& result);
+
+/// Columns and rows of the residuals: piece (from 0), time_s, both angles as they were taken, and measured − model of
+/// both, rad; empty where an angle was left out.
+std::vector<std::string> residual_columns();
+void write_residuals(const FitResult& result, Csv& table);
+
+/// "A/B = 1.7988 ± 0.0007", with as many digits as the error bears.
+std::string parameter_words_of(const Fit& fit, const Uncertainty& uncertainty, FitParameter parameter);
+
+}  // namespace doppel

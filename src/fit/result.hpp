@@ -1,0 +1,45 @@
+#pragma once
+
+#include "fit/horizon.hpp"
+#include "fit/physical.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// All that "doppel fit" finds out of a track.
+struct FitResult {
+    Track track;
+    ModelLadder ladder;
+    Uncertainty uncertainty;         // of the chosen model
+    Uncertainty preset_uncertainty;  // of the one that the preset states
+    std::optional<Period> period;    // of the pieces, where it was found and not given
+    std::optional<Horizon>
+        horizon;                // nothing where it is not known how pieces follow one another, or they are too short
+    PhysicalPendulum pendulum;  // of the preset's model
+    double models_cpu_s = 0, cpu_s = 0;  // of the ladder; of all
+
+    const FittedModel& chosen() const { return ladder.rungs[ladder.chosen]; }
+    const FittedModel& of_preset() const { return ladder.rungs[ladder.for_preset]; }
+};
+
+/// What to fit, and what is known besides.
+struct FitQuestion {
+    Bodies bodies = Bodies::automatic;
+    Convention convention;
+    std::optional<double> every_s;  // between the beginnings of pieces; found where not given
+};
+
+/// Fits all models, chooses one, and measures it. `report` hears how many models are done. Throws Error: exit 3 where no
+/// model describes the track, 130.
+FitResult answer(Track track, const FitQuestion& question, int jobs, const std::atomic<bool>& stop,
+                 const std::function<void(std::size_t done, std::size_t of)>& report);
+
+/// One sentence on the residuals: like noise, or not and why.
+std::string residual_sentence(const FitResult& result);
+/// One on the horizon, and what limits it.
+std::string horizon_sentence(const FitResult& result);
+
+}  // namespace doppel

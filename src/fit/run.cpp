@@ -1,0 +1,90 @@
+#include "fit/run.hpp"
+
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "base/machine.hpp"
+#include "fit/page.hpp"
+#include "fit/report.hpp"
+#include "output/png.hpp"
+
+#include <fmt/format.h>
+
+namespace doppel {
+namespace {
+
+constexpr Size page_size{1600, 1300};
+constexpr const auto& light = themes[1];
+
+void write_text(const FilePlace& place, const std::string& text) {
+    OutputFile file(place);
+    file.write(text);
+    file.close();
+}
+
+std::vector<std::string> sentences_of(const FitResult& result) {
+    const auto& rung = result.chosen();
+    std::vector<std::string> all = result.track.notes;
+    all.push_back(fmt::format("{}, {} parameters: rms {:.2g} rad, {:.2g} on pieces left out.", rung.name,
+                              rung.parameters, rung.fit.rms, rung.left_out_rms));
+    if (result.period)
+        all.push_back(fmt::format("Pieces begin every {:.4f} ± {:.4f} s, by the fit.", result.period->seconds,
+                                  result.period->standard_error));
+    all.push_back(residual_sentence(result));
+    all.push_back(horizon_sentence(result));
+    if (result.ladder.for_preset != result.ladder.chosen)
+        all.push_back(
+            fmt::format("The preset states \"{}\" instead, {:.2g} rad on pieces left out: presets have no drag by "
+                        "the air met.",
+                        result.of_preset().name, result.of_preset().left_out_rms));
+    return all;
+}
+
+}  // namespace
+
+std::string fit_name(const std::filesystem::path& file) {
+    return file.stem().string();
+}
+
+FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions& options,
+               const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
+    const auto name = options.name.empty() ? fit_name(files.front()) : options.name;
+    if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos)
+        throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
+    const int jobs = options.jobs > 0 ? options.jobs : cores();
+    const double start = seconds_of(CLOCK_MONOTONIC);
+    auto track = read_tracks(files);
+    Transaction parts(options.out / name, name);
+    const auto place = [&](const char* ending) { return parts.file(name + ending); };
+    const auto preset = place(".toml"), table = place(".csv"), page = place(".png");
+    const auto result = answer(std::move(track), options.question, jobs, stop, [&](std::size_t done, std::size_t of) {
+        report({static_cast<long>(done), static_cast<long>(of)});
+    });
+    const auto finish = [&] {
+        write_text(preset, fitted_preset(result, name));
+        parts.finished(name + ".toml");
+        Csv rows(table, residual_columns());
+        write_residuals(result, rows);
+        rows.finish();
+        parts.finished(name + ".csv");
+        throw_if_set(stop);
+        const auto list = compose(fit_page(result, name), page_size, light);
+        Renderer renderer(page_size, DisplayList{}, options.gl, stop);
+        const auto picture = renderer.draw(list, stop);
+        throw_if_set(stop);
+        write_png(page, picture,
+                  {.metadata = metadata_of(name, name, fmt::format("how it was made is in {}.json", name))}, stop);
+        parts.finished(name + ".png");
+        auto manifest = fit_json(result);
+        manifest["threads"] = jobs;
+        manifest["time"] = {{"models_cpu_s", result.models_cpu_s}, {"fit_cpu_s", result.cpu_s}};
+        manifest["libraries"] = {{"gl", renderer.description()}, {"compiler", __VERSION__}};
+        write_manifest(parts, name + ".json", std::move(manifest));
+        throw_if_set(stop);
+        return parts.publish();
+    };
+    FitRun done{{.files = parts.keeping_finished(finish)}, sentences_of(result)};
+    done.run.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+    return done;
+}
+
+}  // namespace doppel

@@ -1,0 +1,239 @@
+#include "base/error.hpp"
+#include "fit/regression.hpp"
+#include "fit/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace doppel {
+namespace {
+
+constexpr std::size_t least_samples = 100, least_of_piece = 12;
+constexpr double least_s = 1.5, least_of_piece_s = 0.25;
+
+/// How far a sample is from the cubic through two neighbours on either side.
+std::vector<double> oddness_of(const TrackPiece& piece, std::size_t arm) {
+    const auto &t = piece.time_s, &x = piece.angle[arm];
+    std::vector<double> odd(x.size(), 0);
+    constexpr std::array<std::ptrdiff_t, 4> around{-2, -1, 1, 2};
+    for (std::size_t i = 2; i + 2 < x.size(); ++i) {
+        double cubic = 0;
+        for (const auto a : around) {
+            const auto k = i + static_cast<std::size_t>(a);
+            double weight = 1;
+            for (const auto b : around)
+                if (b != a) {
+                    const auto other = i + static_cast<std::size_t>(b);
+                    weight *= (t[i] - t[other]) / (t[k] - t[other]);
+                }
+            cubic += weight * x[k];
+        }
+        odd[i] = x[i] - cubic;
+    }
+    return odd;
+}
+
+double median_size(std::vector<double> values) {
+    for (auto& value : values) value = std::abs(value);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// The noise, and samples that stand out of it alone: their neighbours deviate the other way.
+void find_noise(Track& track) {
+    constexpr double far = 12, of_cubic = 1.39;  // the deviation of noise of 1 from a cubic of the same noise
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+        std::vector<double> all;
+        for (const auto& piece : track.pieces) {
+            const auto odd = oddness_of(piece, arm);
+            all.insert(all.end(), odd.begin() + 2, odd.end() - 2);
+        }
+        const double size = 1.4826 * median_size(all);
+        track.noise[arm] = size / of_cubic;
+        for (auto& piece : track.pieces) {
+            const auto odd = oddness_of(piece, arm);
+            for (std::size_t i = 2; i + 2 < odd.size(); ++i) {
+                const bool peak = std::abs(odd[i]) > std::abs(odd[i - 1]) && std::abs(odd[i]) > std::abs(odd[i + 1]);
+                const bool alone = odd[i] * odd[i - 1] <= 0 && odd[i] * odd[i + 1] <= 0;
+                if (std::abs(odd[i]) > far * size && size > 0 && peak && alone) piece.is_outlier[arm][i] = 1;
+            }
+        }
+    }
+}
+
+bool is_short(const TrackPiece& piece) {
+    return piece.size() < least_of_piece || piece.duration() < least_of_piece_s;
+}
+
+/// Leaves out crumbs between gaps; a whole file that is too short is left, to be refused.
+void drop_crumbs(Track& track) {
+    std::size_t dropped = 0;
+    for (std::size_t k = track.pieces.size(); k-- > 0;) {
+        const auto& piece = track.pieces[k];
+        const auto of_file = std::count_if(track.pieces.begin(), track.pieces.end(),
+                                           [&](const auto& other) { return other.name == piece.name; });
+        if (!is_short(piece) || of_file == 1) continue;
+        track.pieces.erase(track.pieces.begin() + static_cast<std::ptrdiff_t>(k));
+        if (!track.start_s.empty()) track.start_s.erase(track.start_s.begin() + static_cast<std::ptrdiff_t>(k));
+        ++dropped;
+    }
+    if (dropped > 0)
+        track.notes.push_back(fmt::format("{} stretches between gaps, of less than {} samples or {} s, were left out",
+                                          dropped, least_of_piece, least_of_piece_s));
+}
+
+void demand_length(const Track& track) {
+    for (const auto& piece : track.pieces)
+        if (is_short(piece))
+            throw bad_input(
+                "{}: the piece from {} s on is too short: {} samples in {:.3g} s; at least {} in {} s are wanted",
+                piece.name, piece.time_s.front(), piece.size(), piece.duration(), least_of_piece, least_of_piece_s);
+    if (track.samples() < least_samples || track.duration() < least_s)
+        throw bad_input(
+            "{}: the track is too short: {} samples in {:.3g} s; at least {} in {} s are wanted, some swings "
+            "of both arms",
+            track.pieces.front().name, track.samples(), track.duration(), least_samples, least_s);
+}
+
+std::array<double, 2> range_of(const Track& track, std::size_t arm) {
+    double low = track.pieces[0].angle[arm][0], high = low;
+    for (const auto& piece : track.pieces) {
+        low = std::min(low, *std::min_element(piece.angle[arm].begin(), piece.angle[arm].end()));
+        high = std::max(high, *std::max_element(piece.angle[arm].begin(), piece.angle[arm].end()));
+    }
+    return {low, high};
+}
+
+void demand_motion(const Track& track) {
+    constexpr double least = 0.05;  // rad
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+        double most = 0;
+        for (const auto& piece : track.pieces) {
+            const auto [low, high] = std::minmax_element(piece.angle[arm].begin(), piece.angle[arm].end());
+            most = std::max(most, *high - *low);
+        }
+        if (most < std::max(least, 20 * track.noise[arm]))
+            throw bad_input(
+                "{}: theta{} is flat: it moves by {:.2g} rad with a noise of {:.2g} rad, which tells no model; "
+                "at least {} rad and 20 times the noise are wanted",
+                track.pieces.front().name, arm + 1, most, track.noise[arm], least);
+    }
+    bool same = true;
+    for (const auto& piece : track.pieces) same &= piece.angle[0] == piece.angle[1];
+    if (same)
+        throw bad_input("{}: theta1_rad and theta2_rad are the same numbers: one arm only", track.pieces.front().name);
+}
+
+/// Another way to take the columns.
+struct Reading {
+    double unit = 1;  // of the angles, rad
+    bool relative = false, mirrored = false;
+    std::array<int, 2> quarters{};  // of a turn to subtract
+};
+
+std::vector<Glimpse> read_as(std::vector<Glimpse> glimpses, const Reading& reading) {
+    for (auto& g : glimpses) {
+        for (std::size_t arm = 0; arm < 2; ++arm) {
+            const double unit = arm == 1 && reading.mirrored ? -reading.unit : reading.unit;
+            g.angle[arm] = unit * g.angle[arm] - reading.quarters[arm] * std::numbers::pi / 2;
+            g.rate[arm] *= unit;
+            g.acceleration[arm] *= unit;
+        }
+        if (reading.relative) {
+            g.angle[1] += g.angle[0];
+            g.rate[1] += g.rate[0];
+            g.acceleration[1] += g.acceleration[0];
+        }
+    }
+    return glimpses;
+}
+
+double unexplained(const std::vector<Glimpse>& glimpses, const Reading& reading) {
+    const auto result = regress(read_as(glimpses, reading));
+    return result.is_physical ? result.unexplained : 1;
+}
+
+std::vector<Reading> other_readings() {
+    constexpr double degree = std::numbers::pi / 180;
+    std::vector<Reading> all{{.unit = degree}};
+    for (const bool relative : {false, true})
+        for (const bool mirrored : {false, true})
+            for (int first = -1; first <= 2; ++first)
+                for (int second = -1; second <= 2; ++second)
+                    all.push_back({.relative = relative, .mirrored = mirrored, .quarters = {first, second}});
+    return all;
+}
+
+void convert(Track& track, const Reading& reading) {
+    std::string words;
+    if (reading.mirrored) words += " theta2 counted the other way round;";
+    if (reading.relative) words += " theta2 counted from the first arm;";
+    for (std::size_t arm = 0; arm < 2; ++arm)
+        if (reading.quarters[arm] != 0)
+            words += fmt::format(" theta{} counted from {}° off the downward vertical;", arm + 1,
+                                 90 * reading.quarters[arm]);
+    words.pop_back();
+    track.notes.push_back("only so do the angles obey a double pendulum's equations, and so they were taken:" + words);
+    for (auto& piece : track.pieces)
+        for (std::size_t i = 0; i < piece.size(); ++i) {
+            auto &first = piece.angle[0][i], &second = piece.angle[1][i];
+            if (reading.mirrored) second = -second;
+            first -= reading.quarters[0] * std::numbers::pi / 2;
+            second -= reading.quarters[1] * std::numbers::pi / 2;
+            if (reading.relative) second += first;
+        }
+}
+
+/// Where the angles taken as they are obey no double pendulum's equations, but do when taken in another way: refuses
+/// what is a mistake, and takes so what is a convention.
+void check_convention(Track& track) {
+    constexpr double well = 0.003, obeys = 0.1, much_better = 0.3;
+    const auto glimpses = glimpses_of(track);
+    const double as_it_is = unexplained(glimpses, {});
+    if (as_it_is < well) return;
+    Reading best;
+    double least = as_it_is;
+    constexpr double small = 4;  // rad: of degrees, a motion so small is linear, and any such fits
+    const auto first = range_of(track, 0), second = range_of(track, 1);
+    const bool may_be_degrees = std::max(first[1] - first[0], second[1] - second[0]) > small;
+    for (const auto& reading : other_readings()) {
+        if (reading.unit != 1 && !may_be_degrees) continue;
+        if (const double value = unexplained(glimpses, reading); value < least) least = value, best = reading;
+    }
+    if (least > std::min(obeys, much_better * as_it_is)) {
+        constexpr double most_turns = 60;  // rad: ten turns and a half
+        if (as_it_is > obeys && std::max(first[1] - first[0], second[1] - second[0]) > most_turns)
+            throw bad_input(
+                "{}: the angles go from {:.3g} to {:.3g}, and obey no double pendulum's equations: are they "
+                "in degrees? Radians are wanted (degrees × π/180)",
+                track.pieces.front().name, first[0], first[1]);
+        return;  // the fit will tell
+    }
+    const auto& name = track.pieces.front().name;
+    const auto evidence =
+        fmt::format("taken so, {:.0f} % of the forces are unexplained, else {:.0f} %", 100 * least, 100 * as_it_is);
+    if (best.unit != 1)
+        throw bad_input("{}: the angles are in degrees; radians are wanted (degrees × π/180): {}", name, evidence);
+    convert(track, best);
+}
+
+}  // namespace
+
+void check_track(Track& track) {
+    drop_crumbs(track);
+    demand_length(track);
+    find_noise(track);
+    demand_motion(track);
+    constexpr double most_outliers = 0.1;
+    if (static_cast<double>(track.outliers()) > most_outliers * 2 * static_cast<double>(track.samples()))
+        throw bad_input("{}: {} of {} angles are far off their neighbours; a track is wanted",
+                        track.pieces.front().name, track.outliers(), 2 * track.samples());
+    if (track.outliers() > 0)
+        track.notes.push_back(fmt::format("{} of {} angles are far off their neighbours, and were left out",
+                                          track.outliers(), 2 * track.samples()));
+    check_convention(track);
+}
+
+}  // namespace doppel

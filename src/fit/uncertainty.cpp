@@ -1,0 +1,138 @@
+#include "fit/uncertainty.hpp"
+
+#include "numeric/portable_math.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace doppel {
+namespace {
+
+/// Σ over segments of r_i r_(i+lag) of one arm, and how many terms.
+struct Correlations {
+    std::vector<double> sums;
+    long count = 0;
+};
+
+Correlations correlations_of(const Fit& fit, std::size_t arm, std::size_t lags) {
+    Correlations result{.sums = std::vector<double>(lags + 1, 0)};
+    std::vector<double> series;
+    const auto take = [&] {
+        for (std::size_t lag = 0; lag <= lags && lag < series.size(); ++lag)
+            for (std::size_t i = 0; i + lag < series.size(); ++i) result.sums[lag] += series[i] * series[i + lag];
+        result.count += static_cast<long>(series.size());
+        series.clear();
+    };
+    std::size_t segment = 0;
+    const double most = FitRules::bend * fit.rules.scale[arm];
+    for (const auto& r : fit.residuals) {
+        if (r.segment != segment) take(), segment = r.segment;
+        if (r.arm == arm) series.push_back(std::clamp(r.residual, -most, most));
+    }
+    take();
+    return result;
+}
+
+double mean_interval(const Track& track) {
+    double time = 0, count = 0;
+    for (const auto& piece : track.pieces) time += piece.duration(), count += static_cast<double>(piece.size() - 1);
+    return time / count;
+}
+
+/// The inverse of a positive definite matrix, scaled first.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
+    const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd even = scale.asDiagonal() * matrix * scale.asDiagonal();
+    return scale.asDiagonal() * even.ldlt().solve(Eigen::MatrixXd(scale.asDiagonal()));
+}
+
+/// Σ g gᵀ over stretches of the slope g of the free parameters, starts eliminated.
+Eigen::MatrixXd scatter_of(const Fit& fit, const std::vector<Eigen::Index>& places) {
+    const auto count = static_cast<Eigen::Index>(places.size());
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(count, count);
+    double stretches = 0;
+    for (const auto& sums : fit.sums) {
+        const Eigen::MatrixXd mixed = sums.mixed(Eigen::all, places);
+        const Eigen::MatrixXd through = mixed.transpose() * inverse_of(sums.starts);
+        for (const auto& block : sums.blocks) {
+            const Eigen::VectorXd shared = block.tail(block.size() - 4);
+            const Eigen::VectorXd slope = shared(places) - through * block.head<4>();
+            scatter += slope * slope.transpose();
+            ++stretches;
+        }
+    }
+    const double spent = static_cast<double>(count);
+    return scatter * (stretches / std::max(stretches - spent, 1.0));
+}
+
+}  // namespace
+
+double Uncertainty::standard_error(std::size_t k) const {
+    const auto i = static_cast<Eigen::Index>(k);
+    return std::sqrt(std::max(covariance(i, i), 0.0));
+}
+
+double Uncertainty::correlation(std::size_t j, std::size_t k) const {
+    const double product = standard_error(j) * standard_error(k);
+    return product > 0 ? covariance(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) / product : 0;
+}
+
+double Uncertainty::standard_error(FitParameter parameter) const {
+    const auto found = std::find(parameters.begin(), parameters.end(), parameter);
+    return found == parameters.end() ? 0 : standard_error(static_cast<std::size_t>(found - parameters.begin()));
+}
+
+Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs) {
+    // those at a bound, too: that they could be more makes the others less certain
+    Uncertainty result{.parameters = fit.model.fitted, .covariance = {}};
+    const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
+    std::vector<Eigen::Index> places(static_cast<std::size_t>(count));
+    std::iota(places.begin(), places.end(), 0);
+    // whether successive residuals know of each other
+    constexpr std::size_t lags = 10, furthest = 400;
+    constexpr double limit = 29.6;  // χ² of ten at 99.9 %
+    const double interval = mean_interval(track);
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+        const auto [sums, n] = correlations_of(fit, arm, furthest);
+        double portmanteau = 0;
+        for (std::size_t lag = 1; lag <= lags; ++lag) portmanteau += std::pow(sums[lag] / sums[0], 2);
+        result.is_white &= portmanteau * static_cast<double>(n) < limit;
+        result.neighbour[arm] = sums[1] / sums[0];
+        std::size_t lag = 1;
+        while (lag < furthest && sums[lag] > sums[0] / std::numbers::e) ++lag;
+        result.memory_s[arm] = static_cast<double>(lag) * interval;
+    }
+    // of white residuals
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
+    double bounded = 0, beyond = 0;
+    for (const auto& sums : fit.sums) {
+        matrix += reduced(sums, places).matrix;
+        bounded += sums.bounded;
+    }
+    for (const auto& r : fit.residuals) beyond += std::abs(r.residual) > FitRules::bend * fit.rules.scale[r.arm];
+    const double n = static_cast<double>(fit.residuals.size());
+    const double spent = static_cast<double>(count) + 4 * static_cast<double>(segments.size());
+    const double slope = 1 - beyond / n;  // mean of Huber's ψ′
+    const Eigen::MatrixXd inverse = inverse_of(matrix);
+    result.covariance = inverse * (bounded / (n - spent) / (slope * slope));
+    if (result.is_white) return result;
+    // of others
+    constexpr double shortest_s = 0.3, memories = 4;
+    const double block_s = std::max(shortest_s, memories * std::max(result.memory_s[0], result.memory_s[1]));
+    evaluate_fit(track, segments, fit, jobs, block_s);
+    const Eigen::MatrixXd sandwich = inverse * scatter_of(fit, places) * inverse / (slope * slope);
+    const Eigen::VectorXd white = result.covariance.diagonal();
+    const Eigen::VectorXd wider = (white.array() / sandwich.diagonal().array()).max(1).sqrt();
+    result.covariance = wider.asDiagonal() * sandwich * wider.asDiagonal();
+    const Eigen::ArrayXd ratio = (result.covariance.diagonal().array() / white.array()).sqrt();
+    double logarithms = 0;
+    for (const double wider_by : ratio) logarithms += portable_log(wider_by);
+    result.inflation = portable_exp(logarithms / static_cast<double>(count));
+    return result;
+}
+
+}  // namespace doppel

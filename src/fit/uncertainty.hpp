@@ -1,0 +1,31 @@
+#pragma once
+
+#include "fit/shooting.hpp"
+
+#include <array>
+#include <string>
+
+namespace doppel {
+
+/// How well the fitted parameters are told, and what its residuals look like.
+struct Uncertainty {
+    std::vector<FitParameter> parameters;  // the fitted ones, those at a bound, too
+    Eigen::MatrixXd covariance;            // of these
+    bool is_white = true;                  // residuals like noise: each independent of those before
+    std::array<double, 2> neighbour{};     // correlation of successive residuals, by arm
+    std::array<double, 2> memory_s{};      // after which the correlation has fallen below 1/e
+    double inflation = 1;                  // of standard errors against white residuals; 1 where they are
+
+    double standard_error(std::size_t k) const;
+    double correlation(std::size_t j, std::size_t k) const;
+    /// Of a parameter; 0 where it is not fitted.
+    double standard_error(FitParameter parameter) const;
+};
+
+/// From the curvature of the loss where the residuals are white (Ljung & Box over ten lags, at 99.9 %); else from how
+/// much the slopes of stretches longer than the residuals' memory scatter (a sandwich), and no less than that.
+///
+/// Source  Huber, Robust Statistics, §7.6; Newey & West 1987
+Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs);
+
+}  // namespace doppel

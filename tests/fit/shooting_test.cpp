@@ -1,0 +1,211 @@
+#include "fit/result.hpp"
+#include "fit/support.hpp"
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace shooting_test {
+
+using namespace test;
+
+/// All that can be fitted.
+ModelSpec everything(Drag drag) {
+    auto model = spec(false, 3, drag);
+    model.fitted.insert(model.fitted.end(), {lag, scale_1, scale_2});
+    return model;
+}
+
+TEST(FitShooting, DerivativesAreThoseOfDifferences) {
+    auto truth = lab_arms();
+    at(truth, lag) = 0.001, at(truth, scale_1) = 1.01, at(truth, offset_1) = 0.01;
+    for (const bool point : {false, true})
+        for (const auto drag : {Drag::own, Drag::carried}) {
+            const auto track = simulated(truth, drag, {.pieces = 1, .piece_s = 1});
+            const TrackSegment segment{0, 0, track.samples()};
+            auto model = everything(drag);
+            if (point) {
+                model.point_masses = true;
+                std::erase(model.fitted, gravity_1);
+            }
+            FitRules rules{.step_s = 0.004, .scale = {1e6, 1e6}};  // no residual is beyond the bend
+            auto parameters = completed(model, truth);
+            ArmState<double> start{track.pieces[0].angle[0][0] + 0.01, track.pieces[0].angle[1][0], 1, -1};
+            const auto cost = [&] { return evaluate_segment(track, model, rules, parameters, start, segment).cost; };
+            const auto sums = evaluate_segment(track, model, rules, parameters, start, segment);
+            const auto check = [&](double& value, double slope, std::string_view what) {
+                const double h = 1e-5 * std::max(std::abs(value), 0.1), was = value;
+                const auto at_shift = [&](double shift) {
+                    value = was + shift;
+                    parameters = completed(model, parameters);
+                    return cost();
+                };
+                const double difference = (at_shift(h) - at_shift(-h)) / (2 * h);
+                at_shift(0);
+                EXPECT_NEAR(-difference, slope, 1e-6 * std::abs(slope) + 1e-15) << what;  // measured 1e-7
+            };
+            for (std::size_t q = 0; q < 4; ++q)
+                check(start[q], sums.start_slope[static_cast<Eigen::Index>(q)], "start");
+            for (std::size_t k = 0; k < model.fitted.size(); ++k)
+                check(at(parameters, model.fitted[k]), sums.shared_slope[static_cast<Eigen::Index>(k)],
+                      words_of(model.fitted[k]).key);
+        }
+}
+
+/// Starts eliminated or not, the solution of the normal equations is the same.
+TEST(FitShooting, EliminatesStartsExactly) {
+    const auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .noise = 1e-3});
+    const auto model = spec(false, 1);
+    const TrackSegment segment{0, 0, track.samples()};
+    const auto division = divide(track, 3);
+    auto fit = fit_at(model, lab_arms(), track, division);
+    evaluate_fit(track, {segment}, fit, 1);
+    const auto& sums = fit.sums[0];
+    const auto count = static_cast<Eigen::Index>(model.fitted.size());
+    Eigen::MatrixXd whole(4 + count, 4 + count);
+    whole << sums.starts, sums.mixed, sums.mixed.transpose(), sums.shared;
+    Eigen::VectorXd slope(4 + count);
+    slope << sums.start_slope, sums.shared_slope;
+    const Eigen::VectorXd expected = whole.fullPivLu().solve(slope).tail(count);
+    std::vector<Eigen::Index> places;
+    for (Eigen::Index k = 0; k < count; ++k) places.push_back(k);
+    const auto part = reduced(sums, places);
+    const Eigen::VectorXd change = part.matrix.fullPivLu().solve(part.slope);
+    EXPECT_LT((change - expected).norm(), 1e-6 * expected.norm());  // measured 2e-9
+}
+
+TEST(FitShooting, FindsANoiselessTruth) {
+    auto truth = lab_arms();
+    at(truth, coulomb_1) = at(truth, coulomb_2) = 0;
+    at(truth, offset_1) = 0.003, at(truth, offset_2) = -0.002;
+    const auto track = simulated(truth, Drag::carried, {.hz = 200});
+    auto model = spec(false, 1, Drag::carried);
+    model.fitted = {inertia,   coupling,    gravity_1,   gravity_2, viscous_1,
+                    viscous_2, quadratic_1, quadratic_2, offset_1,  offset_2};
+    auto wrong = truth;
+    for (const auto parameter : model.fitted) at(wrong, parameter) *= 1.05;
+    const auto division = divide(track);
+    const auto fit = fit_model(track, division.segments, fit_at(model, wrong, track, division),
+                               {.most_passes = 60, .relative = 1e-12}, no_stop);
+    for (const auto parameter : model.fitted) {
+        const double expected = at(truth, parameter);
+        EXPECT_NEAR(fit.parameters[index_of(parameter)], expected, 1e-6 * std::max(std::abs(expected), 0.1))
+            << words_of(parameter).key;  // measured 3e-8
+    }
+    EXPECT_LT(fit.rms, 1e-8);
+}
+
+TEST(FitShooting, KeepsFrictionFromBeingNegative) {
+    auto truth = lab_arms(false);
+    at(truth, viscous_1) = -0.05, at(truth, viscous_2) = 0.02;
+    const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
+    const auto division = divide(track);
+    const auto fit =
+        fit_model(track, division.segments, fit_at(spec(false, 1), lab_arms(false), track, division), {}, no_stop);
+    EXPECT_EQ(fit.parameters[index_of(viscous_1)], 0);
+    EXPECT_EQ(fit.at_bound, std::vector{viscous_1});
+}
+
+/// One angle of a hundred is anywhere.
+TEST(FitShooting, DoesNotFollowWildSamples) {
+    auto track = simulated(lab_arms(false), Drag::own, {.noise = 1e-3});
+    for (auto& piece : track.pieces)
+        for (std::size_t i = 7; i < piece.size(); i += 100) piece.angle[i % 2][i] += 0.5;
+    const auto division = divide(track);
+    const auto fit =
+        fit_model(track, division.segments, fit_at(spec(false, 0), lab_arms(false), track, division), {}, no_stop);
+    EXPECT_NEAR(fit.parameters[index_of(inertia)], 1.8, 0.004);  // measured 0.0009; least squares: 0.08
+    EXPECT_NEAR(fit.parameters[index_of(gravity_2)], 50, 0.05);  // measured 0.01
+}
+
+TEST(FitShooting, IsTheSameForAnyNumberOfThreads) {
+    const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
+    const auto division = divide(track);
+    const auto fit = [&](int jobs) {
+        return fit_model(track, division.segments, fit_at(spec(false, 2), lab_arms(), track, division), {.jobs = jobs},
+                         no_stop);
+    };
+    const auto one = fit(1), four = fit(4);
+    EXPECT_EQ(one.parameters, four.parameters);
+    EXPECT_EQ(one.starts, four.starts);
+}
+
+/// What is left out by one step is near what a fit without it finds.
+TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
+    const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
+    const auto division = divide(track);
+    const auto all =
+        fit_model(track, division.segments, fit_at(spec(false, 1), lab_arms(), track, division), {}, no_stop);
+    const auto quick = fit_without(all, {2});
+    auto segments = division.segments;
+    auto rest = all;
+    segments.erase(segments.begin() + 2);
+    rest.starts.erase(rest.starts.begin() + 2);
+    const auto exact = fit_model(track, segments, rest, {.finds_scale = false, .finds_step = false}, no_stop);
+    for (const auto parameter : all.model.fitted) {
+        const auto k = index_of(parameter);
+        const double moved = std::abs(exact.parameters[k] - all.parameters[k]);
+        EXPECT_NEAR(quick.parameters[k], exact.parameters[k], 0.1 * moved + 1e-6) << words_of(parameter).key;
+    }
+}
+
+FitResult answered(const Track& track, Bodies bodies = Bodies::automatic) {
+    return answer(track, {.bodies = bodies}, 2, no_stop, [](std::size_t, std::size_t) {});
+}
+
+TEST(FitLadder, ChoosesWhatMadeTheTrack) {
+    auto compound = lab_arms(false);
+    at(compound, viscous_1) = 0.1, at(compound, viscous_2) = 0.05;
+    auto track = simulated(compound, Drag::own, {.noise = 1e-3});
+    auto result = answered(track);
+    EXPECT_EQ(result.chosen().name, "compound, viscous friction");
+    EXPECT_TRUE(result.uncertainty.is_white);
+    EXPECT_NEAR(result.chosen().left_out_rms, 1e-3, 5e-5);  // measured 1.02e-3
+
+    PhysicalPendulum points{.gravity = 9.8};
+    points.mass = {1.3, 1}, points.length = {0.2, 0.25}, points.center = points.length;
+    track = simulated(ratios_of(points), Drag::own, {.noise = 1e-3});
+    result = answered(track);
+    EXPECT_EQ(result.chosen().name, "point masses, no friction");
+    EXPECT_NEAR(result.pendulum.length[0], 0.2, 1e-3);
+    EXPECT_NEAR(result.pendulum.length[1], 0.25, 1e-3);
+    EXPECT_NEAR(result.pendulum.mass[0], 1.3, 1e-2);
+}
+
+/// Over the top again and again: stretches of three seconds have more than one minimum, short ones do not.
+TEST(FitLadder, FollowsAnEnergeticSwing) {
+    auto truth = lab_arms();
+    const auto track =
+        simulated(truth, Drag::own, {.pieces = 4, .piece_s = 3, .hz = 240, .noise = 2e-3, .amplitude = 3.1, .seed = 8});
+    const auto result = answered(track, Bodies::compound);
+    EXPECT_TRUE(result.uncertainty.is_white);
+    EXPECT_NEAR(result.chosen().fit.rms, 2e-3, 1e-4);  // its noise
+    for (const auto parameter : {inertia, coupling, gravity_1, gravity_2})
+        EXPECT_NEAR(result.chosen().fit.parameters[index_of(parameter)], at(truth, parameter),
+                    4 * result.uncertainty.standard_error(parameter))
+            << words_of(parameter).key;
+}
+
+/// Where the model is the right one, the start's error alone ends predictions; and the pieces' interval is found.
+TEST(FitHorizon, FindsTheIntervalOfPiecesAndHowFarItSees) {
+    auto truth = lab_arms(false);
+    at(truth, viscous_1) = 0.05;
+    const auto track = simulated(truth, Drag::own, {.pieces = 8, .piece_s = 2.5, .noise = 1e-3, .every_s = 5});
+    const auto result = answered(track, Bodies::compound);
+    ASSERT_TRUE(result.period);
+    EXPECT_NEAR(result.period->seconds, 5, 4 * result.period->standard_error + 1e-4);  // measured 5.0000(1)
+    EXPECT_LT(result.period->standard_error, 1e-3);
+    ASSERT_TRUE(result.horizon);
+    EXPECT_EQ(result.horizon->left_by[0], 0);  // never the model
+    EXPECT_GT(result.horizon->longest_s, 5);
+}
+
+TEST(FitHorizon, TakesTheMedianOfTimesCutShort) {
+    EXPECT_FALSE(median_of({{1, false}, {2, false}}));
+    EXPECT_EQ(median_of({{1, true}, {2, true}, {3, true}}), 2);
+    // Kaplan & Meier by hand: 1 − 1/5 = 0.8; × (1 − 1/3) = 0.53; × (1 − 1/2) = 0.27
+    EXPECT_EQ(median_of({{1, true}, {2, false}, {3, true}, {4, true}, {5, false}}), 4);
+}
+
+}  // namespace shooting_test
+}  // namespace doppel

@@ -1,0 +1,188 @@
+#include "base/error.hpp"
+#include "fit/result.hpp"
+#include "fit/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace track_test {
+
+using namespace test;
+using ::testing::HasSubstr;
+
+Track read(const std::vector<std::string>& texts) {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < texts.size(); ++k) names.push_back(fmt::format("{}.csv", char('a' + k)));
+    return tracks_of_texts(names, texts);
+}
+
+/// The exit code and the words with which a text is refused, by the reader or by the fit.
+std::pair<int, std::string> refusal(const std::vector<std::string>& texts) {
+    try {
+        answer(read(texts), {}, 2, no_stop, [](std::size_t, std::size_t) {});
+        return {0, "it was fitted"};
+    } catch (const Error& fault) {
+        return {static_cast<int>(fault.code()), fault.what()};
+    }
+}
+
+void expect_refused(const std::vector<std::string>& texts, int code, const std::string& words) {
+    const auto [seen, message] = refusal(texts);
+    EXPECT_EQ(seen, code) << message;
+    EXPECT_THAT(message, HasSubstr(words));
+}
+
+/// A swing, and what is made of each of its angles.
+std::string changed(const std::function<std::pair<double, double>(double, double, double)>& change) {
+    auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 1e-4, .seed = 3});
+    auto& piece = track.pieces[0];
+    for (std::size_t i = 0; i < piece.size(); ++i)
+        std::tie(piece.angle[0][i], piece.angle[1][i]) = change(piece.time_s[i], piece.angle[0][i], piece.angle[1][i]);
+    return csv_of(piece);
+}
+
+std::string swing() {
+    return changed([](double, double a, double b) { return std::pair(a, b); });
+}
+
+TEST(FitTrack, RefusesWhatIsNoTable) {
+    expect_refused({""}, 2, "a.csv: the file is empty");
+    expect_refused({"time_s,theta1_rad,theta2_rad\n"}, 2, "a.csv: there are no rows");
+    expect_refused({"t,theta1_rad,theta2_rad\n"}, 2, "a.csv:1: there is no column time_s; it has t, theta1_rad");
+    expect_refused({"time_s,a,b\n"}, 2, "there are no angles; theta1_rad and theta2_rad are wanted, or x0_px");
+    expect_refused({"time_s,theta1_rad\n"}, 2, "a.csv:1: there is one arm only, theta1_rad");
+    expect_refused({"time_s,x0_px,y0_px,x1_px,y1_px\n"}, 2, "x2_px, y2_px (end) there are 4 columns");
+    expect_refused({"time_s,theta1_deg,theta2_deg\n"}, 2, "\"theta1_deg\" is in degrees");
+    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1\n"}, 2, "a.csv:2: there are 2 cells, and 3 columns");
+    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n1,x,2\n"}, 2,
+                   "a.csv:3: theta1_rad is \"x\", which is no number");
+    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,nan\n"}, 2,
+                   "a.csv:2: theta2_rad is nan; leave out rows without a measurement");
+    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n0.1,1,2\n0.05,1,2\n"}, 2,
+                   "a.csv:4: time_s goes from 0.1 to 0.05; rows are wanted in the order of time");
+    expect_refused({"time_s,x0_px,y0_px,x1_px,y1_px,x2_px,y2_px\n0,5,5,5,5,9,9\n"}, 2, "a.csv:2: two of pivot, joint");
+}
+
+TEST(FitTrack, RefusesWhatTellsNoModel) {
+    auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 1});
+    expect_refused({csv_of(track.pieces[0])}, 2, "the track is too short: 101 samples in 1 s; at least 100 in 1.5 s");
+    track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 0.1});
+    expect_refused({swing(), csv_of(track.pieces[0])}, 2,
+                   "b.csv: the piece from 0 s on is too short: 11 samples in 0.1 s");
+    expect_refused({changed([](double, double a, double) { return std::pair(a, 0.3); })}, 2, "theta2 is flat");
+    expect_refused({changed([](double, double a, double) { return std::pair(a, a); })}, 2, "one arm only");
+    track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 0.05, .amplitude = 0.01});
+    for (auto& angle : track.pieces[0].angle)
+        for (auto& value : angle) value *= 0.1;
+    expect_refused({csv_of(track.pieces[0])}, 2, "is flat");
+}
+
+TEST(FitTrack, RefusesMistakesOfUnitAndOrder) {
+    constexpr double degree = 180 / std::numbers::pi;
+    expect_refused({changed([](double, double a, double b) { return std::pair(degree * a, degree * b); })}, 2,
+                   "the angles are in degrees; radians are wanted");
+    expect_refused({changed([](double, double a, double b) { return std::pair(b, a); })}, 2,
+                   "theta1_rad and theta2_rad seem to be swapped: as they are, the first arm has no weight of its own");
+    expect_refused({changed([](double, double a, double b) { return std::pair(degree * b, degree * a); })}, 2,
+                   "degrees");
+}
+
+TEST(FitTrack, RefusesWhatNoDoublePendulumDoes) {
+    const auto refused = [](const auto& change) {
+        const auto [code, words] = refusal({changed(change)});
+        EXPECT_TRUE(code == 2 || code == 3) << words;
+        return words;
+    };
+    // two oscillators that know nothing of each other
+    refused([](double t, double, double) { return std::pair(std::sin(7.3 * t), 0.8 * std::cos(4.1 * t)); });
+    // a motion that is driven
+    refused([](double t, double a, double b) { return std::pair(a + 0.5 * std::sin(11 * t), b); });
+    const auto as_it_is = refusal({swing()});
+    EXPECT_EQ(as_it_is.first, 0) << as_it_is.second;
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> step(0, 0.02);
+    double a = 0, b = 0;
+    refused([&](double, double, double) { return std::pair(a += step(random), b += step(random)); });
+}
+
+TEST(FitTrack, TakesOtherConventionsAndSaysSo) {
+    const auto found = [](const auto& change) {
+        const auto track = read({changed(change)});
+        EXPECT_EQ(track.notes.size(), 1u);
+        return track;
+    };
+    const auto straight = read({swing()});
+    EXPECT_TRUE(straight.notes.empty());
+    constexpr double half = std::numbers::pi / 2;
+    for (const auto& track : {found([](double, double a, double b) { return std::pair(a + half, b + half); }),
+                              found([](double, double a, double b) { return std::pair(a - 2 * half, b - 2 * half); }),
+                              found([](double, double a, double b) { return std::pair(a, b - a); }),
+                              found([](double, double a, double b) { return std::pair(a, -b); })})
+        for (std::size_t arm = 0; arm < 2; ++arm)
+            for (std::size_t i = 0; i < track.samples(); i += 50)
+                EXPECT_NEAR(std::remainder(track.pieces[0].angle[arm][i] - straight.pieces[0].angle[arm][i], 4 * half),
+                            0, 1e-8);
+    // both mirrored is as good, and no news
+    EXPECT_TRUE(read({changed([](double, double a, double b) { return std::pair(-a, -b); })}).notes.empty());
+}
+
+TEST(FitTrack, ReadsPlacesInAPicture) {
+    const auto straight = read({swing()});
+    std::string text = "frame,time_s,x0_px,y0_px,x1_px,y1_px,x2_px,y2_px\r\n";
+    const auto& piece = straight.pieces[0];
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+        const double a = piece.angle[0][i], b = piece.angle[1][i];
+        const double x1 = 500 + 200 * std::sin(a), y1 = 300 + 200 * std::cos(a);
+        text += fmt::format("{},{},500,300,{},{},{},{}\r\n", i, piece.time_s[i], x1, y1, x1 + 150 * std::sin(b),
+                            y1 + 150 * std::cos(b));
+    }
+    const auto track = read({text});
+    for (std::size_t arm = 0; arm < 2; ++arm)
+        for (std::size_t i = 0; i < track.samples(); ++i)
+            EXPECT_NEAR(track.pieces[0].angle[arm][i], piece.angle[arm][i], 1e-12);
+}
+
+TEST(FitTrack, CutsAtGapsAndNumbersAndJoinsTurns) {
+    auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6});
+    auto& piece = track.pieces[0];
+    std::string gap = "time_s,theta1_rad,theta2_rad,piece\n", wrapped = "time_s,theta1_rad,theta2_rad\n";
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+        const double a = piece.angle[0][i], b = piece.angle[1][i];
+        if (i < 200 || i > 240)
+            gap += fmt::format("{},{},{},{}\n", i < 400 ? piece.time_s[i] : piece.time_s[i] - 4, a, b, i < 400 ? 1 : 2);
+        wrapped += fmt::format("{},{},{}\n", piece.time_s[i], std::remainder(a + 2.5, 2 * std::numbers::pi) - 2.5, b);
+    }
+    const auto cut = read({gap});
+    ASSERT_EQ(cut.pieces.size(), 3u);  // a gap of 0.42 s, and the number
+    EXPECT_TRUE(cut.start_s.empty());  // the last begins anew
+    EXPECT_EQ(read({swing()}).start_s, std::vector<double>{0});
+    const auto joined = read({wrapped});
+    for (std::size_t i = 1; i < joined.samples(); ++i)
+        EXPECT_LT(std::abs(joined.pieces[0].angle[0][i] - joined.pieces[0].angle[0][i - 1]), 1);
+}
+
+TEST(FitTrack, LeavesCrumbsBetweenGapsOut) {
+    const auto piece = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 8}).pieces[0];
+    std::string text = "time_s,theta1_rad,theta2_rad\n";
+    for (std::size_t i = 0; i < piece.size(); ++i)
+        if (i < 400 || (i > 440 && i < 446) || i > 480)
+            text += fmt::format("{},{},{}\n", piece.time_s[i], piece.angle[0][i], piece.angle[1][i]);
+    const auto track = read({text});
+    ASSERT_EQ(track.pieces.size(), 2u);
+    EXPECT_EQ(track.start_s, (std::vector{0, 4.81}));
+    EXPECT_EQ(track.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
+}
+
+TEST(FitTrack, LeavesWildSamplesOut) {
+    auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 1e-3});
+    for (const std::size_t i : {50, 120, 333}) track.pieces[0].angle[1][i] += 0.3;
+    const auto read_again = read({csv_of(track.pieces[0])});
+    EXPECT_EQ(read_again.outliers(), 3u);
+    for (const std::size_t i : {50, 120, 333}) EXPECT_EQ(read_again.pieces[0].is_outlier[1][i], 1);
+    EXPECT_THAT(read_again.notes.at(0), HasSubstr("3 of 1202 angles are far off their neighbours"));
+    EXPECT_NEAR(read_again.noise[0], 1e-3, 1e-4);  // measured 1.01e-3
+}
+
+}  // namespace track_test
+}  // namespace doppel
