@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -59,6 +60,17 @@ public:
     double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
     double longest_step() const { return longest_; }
 
+    /// log2 of size(k), also where no double holds it: soon after rest, quadratic drag has coefficients like 10^(14 k).
+    double log2_size(int k) const requires(!std::same_as<Scalar, double>) {
+        Scalar most = greatest_of(k);
+        if (!(most - most == Scalar(0))) return std::numeric_limits<double>::infinity();  // infinite, or NaN
+        constexpr int shift = 512;
+        int shifts = 0;
+        for (; most > Scalar(0x1p512); ++shifts) most *= Scalar(0x1p-512);
+        return amount_ == 0 ? -std::numeric_limits<double>::infinity()
+                            : rough_log2(plain_value(most) / amount_) + shift * shifts;
+    }
+
     /// At most `h`, s: just behind the first change of what the right-hand side compares.
     double first_event(double h) const {
         const double beyond = 0.1 * std::cbrt(plain_value(std::numeric_limits<Scalar>::epsilon())) * h;
@@ -93,12 +105,16 @@ private:
     }
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
     /// The greatest coefficient k of the rates of angles or places.
-    double greatest(int k) const {
-        double most = 0;
-        for (Eigen::Index i = 0; i < layout_.coordinates; ++i)
-            most = greater(most, std::abs(plain_value(series(layout_.half + i)[k])));
+    Scalar greatest_of(int k) const {
+        using std::abs;
+        Scalar most(0);
+        for (Eigen::Index i = 0; i < layout_.coordinates; ++i) {
+            const Scalar size = abs(series(layout_.half + i)[k]);
+            if (!(size <= most) && most == most) most = size;  // NaN stays
+        }
         return most;
     }
+    double greatest(int k) const { return plain_value(greatest_of(k)); }
 
     int order_;
     PhysicalLayout layout_;

@@ -133,10 +133,7 @@ private:
     double chosen_step() {
         double exponent = 900;  // log2 h
         for (int k = order_ - watched_coefficients + 1; k <= order_; ++k) {
-            const double size = series_.size(k);
-            if (!(size <= std::numeric_limits<double>::max()))
-                throw method_failed("taylor: coefficient {} of the series is not finite; the motion has blown up", k);
-            exponent = std::min(exponent, rough_log2(tolerance_ / size) / k);
+            exponent = std::min(exponent, log2_step(k));
         }
         const double longest = series_.longest_step();
         const double h =
@@ -146,6 +143,23 @@ private:
             return series_.first_event(h);
         else
             return h;
+    }
+
+    /// Of the step that coefficient k allows, s.
+    double log2_step(int k) const {
+        const auto check = [&](double size) {
+            if (!(size <= std::numeric_limits<double>::max()))
+                throw method_failed("taylor: coefficient {} of the series is not finite; the motion has blown up", k);
+        };
+        if constexpr (requires { series_.log2_size(k); }) {
+            const double size = series_.log2_size(k);
+            check(size);
+            return (rough_log2(tolerance_) - size) / k;
+        } else {
+            const double size = series_.size(k);
+            check(size);
+            return rough_log2(tolerance_ / size) / k;
+        }
     }
 
     /// 2^a within 0.3 % for |a| < 1000.
