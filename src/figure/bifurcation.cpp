@@ -1,6 +1,5 @@
 #include "figure/kinds.hpp"
 #include "figure/parameter.hpp"
-#include "figure/part_file.hpp"
 #include "figure/spacing.hpp"
 #include "scene/captions.hpp"
 
@@ -52,7 +51,7 @@ public:
         visit(parameter_field("parameter", parameter_help), parameter_name_);
         visit({"from", "the first value"}, from_);
         visit({"to", "the last"}, to_);
-        visit({"points", "how many values", "", from_to(2, most_trials)}, points_);
+        visit({"points", "how many values", "", from_to(2, 1'000'000)}, points_);
         visit({"link", "whose rate is shown", "", from_to(1, 10'000)}, link_);
         visit({"transient_periods", "of the drive, that pass first", "", from_to(0, 1'000'000)}, transient_periods_);
         visit({"periods", "of the drive, shown", "", from_to(1, 100'000)}, periods_);

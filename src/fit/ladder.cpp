@@ -242,7 +242,6 @@ ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic
         return std::pair(best, best);
     };
     std::tie(ladder.chosen, ladder.best) = choose([](const FittedModel&) { return true; });
-    ladder.for_preset = choose([](const FittedModel& rung) { return rung.model.drag == Drag::own; }).first;
     return ladder;
 }
 

@@ -42,8 +42,6 @@ struct ModelLadder {
     Division division;
     std::vector<FittedModel> rungs;
     std::size_t chosen = 0, best = 0;
-    /// The smallest such among those that presets can state (drag on the arms' own rates).
-    std::size_t for_preset = 0;
 };
 
 /// Fits nested models, each from the one before. Pieces are left out by one Gauss–Newton step from the fit of all (the

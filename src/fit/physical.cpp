@@ -4,11 +4,11 @@
 
 namespace doppel {
 
-PhysicalPendulum physical(const Parameters& parameters, bool point_masses, const Convention& convention) {
+FittedPendulum fitted_pendulum(const Parameters& parameters, bool point_masses, const Convention& convention) {
     const auto of = [&](FitParameter parameter) { return parameters[index_of(parameter)]; };
     const double a = of(FitParameter::inertia), c = of(FitParameter::coupling);
     const double d1 = of(FitParameter::gravity_1), d2 = of(FitParameter::gravity_2);
-    PhysicalPendulum pendulum{.gravity = convention.gravity};
+    FittedPendulum pendulum{.gravity = convention.gravity};
     auto& [m1, m2] = pendulum.mass;
     auto& [a1, a2] = pendulum.center;
     auto& [i1, i2] = pendulum.inertia;
@@ -41,7 +41,7 @@ PhysicalPendulum physical(const Parameters& parameters, bool point_masses, const
     return pendulum;
 }
 
-Parameters ratios_of(const PhysicalPendulum& pendulum) {
+Parameters ratios_of(const FittedPendulum& pendulum) {
     const auto& [m1, m2] = pendulum.mass;
     const auto& [a1, a2] = pendulum.center;
     const auto& [i1, i2] = pendulum.inertia;

@@ -17,7 +17,7 @@ struct Convention {
 /// out among mass, centre and inertia no angle tells: both arms are uniform rods (I = m a²/3, a to the centre of mass),
 /// or, where point masses were fitted, points at their ends (I = 0). A second arm too light in its first for that is
 /// given less inertia.
-struct PhysicalPendulum {
+struct FittedPendulum {
     double gravity = 0;
     std::array<double, 2> mass{}, length{}, center{}, inertia{};  // kg, m, m from the joint, kg m² about the centre
     std::array<double, 2> viscous{}, coulomb{};                   // of the joints, N m s and N m
@@ -25,9 +25,9 @@ struct PhysicalPendulum {
     double second_inertia = 0;                                    // B, kg m², by which ratios become these
     std::string rule;                                             // the sentence above, as it applied
 };
-PhysicalPendulum physical(const Parameters& parameters, bool point_masses, const Convention& convention);
+FittedPendulum fitted_pendulum(const Parameters& parameters, bool point_masses, const Convention& convention);
 
 /// A, B, C, D1, D2 of it over B: the way back.
-Parameters ratios_of(const PhysicalPendulum& pendulum);
+Parameters ratios_of(const FittedPendulum& pendulum);
 
 }  // namespace doppel

@@ -70,7 +70,12 @@ Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
             {"left_out_rms_rad", rung.left_out_rms}};
 }
 
-Json pendulum_json(const PhysicalPendulum& p) {
+/// By which presets state the drag of that model.
+const char* drag_key(const ModelSpec& model) {
+    return model.drag == Drag::own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2";
+}
+
+Json pendulum_json(const FittedPendulum& p, const ModelSpec& model) {
     return {{"convention", p.rule},
             {"gravity_m_per_s2", p.gravity},
             {"B_kg_m2", p.second_inertia},
@@ -81,7 +86,7 @@ Json pendulum_json(const PhysicalPendulum& p) {
             {"joint_viscous_N_m_s", p.viscous},
             {"joint_coulomb_N_m", p.coulomb},
             {"joint_coulomb_width_deg_per_s", coulomb_width_deg_per_s},
-            {"arm_drag_quadratic_N_m_s2", p.quadratic}};
+            {drag_key(model), p.quadratic}};
 }
 
 /// Where each segment of the chosen model's fit begins.
@@ -131,17 +136,13 @@ std::string parameter_words_of(const Fit& fit, const Uncertainty& uncertainty, F
 }
 
 std::string fitted_preset(const FitResult& result, const std::string& name) {
-    const auto& rung = result.of_preset();
-    const auto& best = result.chosen();
+    const auto& rung = result.chosen();
     const auto& p = result.pendulum;
     std::string text = fmt::format(
         "# Fitted by doppel fit to {}: {}.\n# It errs by {:.2g} rad on pieces left out. Errors, ladder and horizon are "
         "in "
         "{}.json.\n",
         source_words(result.track), rung.name, rung.left_out_rms, name);
-    if (result.ladder.for_preset != result.ladder.chosen)
-        text += fmt::format("# What predicts best, {}, errs by {:.2g} rad; no preset can state it.\n", best.name,
-                            best.left_out_rms);
     text += fmt::format("# Angles tell ratios alone: gravity and the second mass are given, {}.\n", p.rule);
     text += fmt::format("title = {}\n\n[scene]\nduration_s = 30\n\n[system]\n", toml_text(name + ", as measured"));
     const auto add = [&](const char* key, const std::array<double, 2>& values) {
@@ -154,13 +155,10 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
         add("inertia_kg_m2", p.inertia);
     }
     if (any(p.viscous)) add("joint_viscous_N_m_s", p.viscous);
-    if (any(p.coulomb)) {
-        add("joint_coulomb_N_m", p.coulomb);
-        text += fmt::format("joint_coulomb_width_deg_per_s = {}\n", coulomb_width_deg_per_s);
-    }
-    if (any(p.quadratic)) add("arm_drag_quadratic_N_m_s2", p.quadratic);
+    if (any(p.coulomb)) add("joint_coulomb_N_m", p.coulomb);
+    if (any(p.quadratic)) add(drag_key(rung.model), p.quadratic);
     const auto& start = rung.fit.starts.front();
-    const auto errors = start_errors(rung.fit, result.preset_uncertainty);
+    const auto errors = start_errors(rung.fit, result.uncertainty);
     text += fmt::format("gravity_m_per_s2 = {}\n", p.gravity);
     add("angle_deg", {degrees * start[0], degrees * start[1]});
     add("omega_deg_per_s", {degrees * start[2], degrees * start[3]});
@@ -193,8 +191,7 @@ Json fit_json(const FitResult& result) {
                    {"inflation", result.uncertainty.inflation},
                    {"sentence", residual_sentence(result)}}},
                  {"horizon", horizon_json(result)},
-                 {"preset_model", model_json(result.of_preset(), result.preset_uncertainty)},
-                 {"pendulum", pendulum_json(result.pendulum)}};
+                 {"pendulum", pendulum_json(result.pendulum, result.chosen().model)}};
     if (result.period)
         json["track"]["period"] = {{"seconds", result.period->seconds},
                                    {"standard_error", result.period->standard_error}};

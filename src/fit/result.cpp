@@ -89,16 +89,14 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
         return uncertainty_of(result.track, segments, rung.fit, jobs);
     };
     result.uncertainty = finish(ladder.rungs[ladder.chosen]);
-    result.preset_uncertainty =
-        ladder.for_preset == ladder.chosen ? result.uncertainty : finish(ladder.rungs[ladder.for_preset]);
     put_on_one_clock(result, question);
     if (!result.track.start_s.empty()) {
         auto horizon =
             measure_horizon(result.track, ladder.division, result.chosen().fit, result.uncertainty, jobs, stop);
         if (!horizon.predictions.empty()) result.horizon = std::move(horizon);
     }
-    const auto& stated = result.of_preset();
-    result.pendulum = physical(stated.fit.parameters, stated.model.point_masses, question.convention);
+    const auto& stated = result.chosen();
+    result.pendulum = fitted_pendulum(stated.fit.parameters, stated.model.point_masses, question.convention);
     result.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     return result;
 }

@@ -14,15 +14,13 @@ struct FitResult {
     Track track;
     ModelLadder ladder;
     Uncertainty uncertainty;         // of the chosen model
-    Uncertainty preset_uncertainty;  // of the one that the preset states
     std::optional<Period> period;    // of the pieces, where it was found and not given
     std::optional<Horizon>
         horizon;                // nothing where it is not known how pieces follow one another, or they are too short
-    PhysicalPendulum pendulum;  // of the preset's model
+    FittedPendulum pendulum;  // of the preset's model
     double models_cpu_s = 0, cpu_s = 0;  // of the ladder; of all
 
     const FittedModel& chosen() const { return ladder.rungs[ladder.chosen]; }
-    const FittedModel& of_preset() const { return ladder.rungs[ladder.for_preset]; }
 };
 
 /// What to fit, and what is known besides.

@@ -31,11 +31,6 @@ std::vector<std::string> sentences_of(const FitResult& result) {
                                   result.period->standard_error));
     all.push_back(residual_sentence(result));
     all.push_back(horizon_sentence(result));
-    if (result.ladder.for_preset != result.ladder.chosen)
-        all.push_back(
-            fmt::format("The preset states \"{}\" instead, {:.2g} rad on pieces left out: presets have no drag by "
-                        "the air met.",
-                        result.of_preset().name, result.of_preset().left_out_rms));
     return all;
 }
 

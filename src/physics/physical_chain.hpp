@@ -151,7 +151,9 @@ private:
         for (Eigen::Index i = 0; i < sin_.size(); ++i) {
             using std::abs;
             const Scalar own = pendulum.chain.length[at(i)] * rates_[i];
-            v = v + Planar<Scalar>{cos_[i], sin_[i]} * own;
+            const Planar<Scalar> across{cos_[i], sin_[i]};
+            forces_.update_air(i, across, v, rates_[i]);
+            v = v + across * own;
             // on a circle the speed vanishes again and again, and its root says so no more: |ω| does
             const bool on_circle = i == 0 && !pendulum.pivot.moves();
             forces_.update_drag(i, v, on_circle ? Scalar(abs(own)) : forces_.speed_of(v));

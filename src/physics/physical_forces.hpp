@@ -75,11 +75,16 @@ public:
 
     Half torque;                       // on each link
     std::vector<Planar<Scalar>> drag;  // on each link's end; empty where there is none
+    Planar<Scalar> at_pivot{Scalar(0), Scalar(0)};  // on the first link at its joint
     Scalar power{0};
 
     explicit PhysicalForces(const PhysicalPendulum<Scalar>& p)
         : torque(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))), friction_(p.friction), motors_(p.torques) {
         if (friction_.has_drag()) drag.resize(p.chain.links());
+        for (std::size_t i = 0; i < p.chain.links(); ++i) {
+            const Scalar first = p.chain.mass[i] * p.center[i];
+            by_arm_.push_back(first / (p.inertia[i] + first * p.center[i]));
+        }
     }
 
     /// At the rates ω of the links and the time t. sign(i, rate) is that of joint i in Coulomb's law; 0 where it is held.
@@ -87,6 +92,8 @@ public:
     void update(const Rates& omega, const Scalar& t, const Sign& sign) {
         power = Scalar(0);
         torque.setZero();
+        at_pivot = {Scalar(0), Scalar(0)};
+        for (auto& force : drag) force = at_pivot;
         for (Eigen::Index i = 0; i < torque.size(); ++i) {
             const Scalar rate = i == 0 ? Scalar(omega[0]) : Scalar(omega[i] - omega[i - 1]);
             Scalar at_joint(0);
@@ -105,11 +112,21 @@ public:
     }
     /// On the end of link i, at its velocity and speed.
     void update_drag(Eigen::Index i, const Planar<Scalar>& v, const Scalar& speed) {
-        auto& force = drag[static_cast<std::size_t>(i)];
-        force = {Scalar(0), Scalar(0)};
+        Planar<Scalar> force{Scalar(0), Scalar(0)};
         if (!friction_.drag_linear.empty()) force = force - v * of(friction_.drag_linear, i);
         if (!friction_.drag_quadratic.empty()) force = force - v * Scalar(of(friction_.drag_quadratic, i) * speed);
         power += dot(force, v);
+        add_force(i, force);
+    }
+    /// Of the air that link i meets, across which t is, and whose joint has that velocity.
+    void update_air(Eigen::Index i, const Planar<Scalar>& across, const Planar<Scalar>& joint, const Scalar& rate) {
+        if (friction_.air_quadratic.empty()) return;
+        const Scalar& by_arm = by_arm_[static_cast<std::size_t>(i)];
+        const Scalar met = rate + by_arm * dot(across, joint);
+        const Scalar on_it = -(of(friction_.air_quadratic, i) * (size(met) * met));
+        torque[i] += on_it;
+        power += on_it * met;
+        add_force(i - 1, across * Scalar(on_it * by_arm));
     }
 
     /// |v|, whose derivatives at 0 are 0.
@@ -136,6 +153,11 @@ private:
         if (joint > 0) torque[joint - 1] -= at_joint;
         power += at_joint * rate;
     }
+    /// On the end of a link, or where its number is −1 at the pivot.
+    void add_force(Eigen::Index end, const Planar<Scalar>& force) {
+        auto& sum = end < 0 ? at_pivot : drag[static_cast<std::size_t>(end)];
+        sum = sum + force;
+    }
     void on_arm(Eigen::Index i, const Scalar& on_it, const Scalar& rate) {
         torque[i] += on_it;
         power += on_it * rate;
@@ -143,6 +165,7 @@ private:
 
     Friction<Scalar> friction_;
     std::vector<JointTorque<Scalar>> motors_;
+    std::vector<Scalar> by_arm_;  // m a / J of each link, 1/m
 };
 
 }  // namespace doppel

@@ -12,9 +12,11 @@ namespace doppel {
 ///
 ///     at a joint       −b ω − c sign ω                  torque on its link, the opposite on the link above
 ///     on an arm        −k1 ω − k2 |ω| ω                 torque, by the arm's own rate
+///     of the air met   −k3 |u| u , u = ω + t·p′ m a / J  torque about the joint p and, m a / J times it along t, force
 ///     on a link's end  −d1 v − d2 |v| v                 force, by its velocity
 ///
-/// The second term is Coulomb's friction: it holds a joint at rest as long as a torque of at most c does. A step that ends
+/// The third of them acts where an arm meets the air broadside: at its centre of oscillation, J / (m a) from the joint,
+/// with the speed u J / (m a), t across the arm and J its inertia about the joint. The second term is Coulomb's friction: it holds a joint at rest as long as a torque of at most c does. A step that ends
 /// with a rate of at most w ends at rest where the joint can be held so.
 template <class Scalar>
 struct Friction {
@@ -23,12 +25,14 @@ struct Friction {
     Scalar width = Scalar(1) / Scalar(1000);  // w, rad/s, > 0
     std::vector<Scalar> arm_linear;         // k1, N m s
     std::vector<Scalar> arm_quadratic;      // k2, N m s²
+    std::vector<Scalar> air_quadratic;      // k3, N m s²
     std::vector<Scalar> drag_linear;        // d1, N s/m
     std::vector<Scalar> drag_quadratic;     // d2, N s²/m²
 
     friend bool operator==(const Friction&, const Friction&) = default;
 
-    bool has_drag() const { return !drag_linear.empty() || !drag_quadratic.empty(); }
+    /// Whether forces act on the links' ends.
+    bool has_drag() const { return !drag_linear.empty() || !drag_quadratic.empty() || !air_quadratic.empty(); }
     /// Whether its derivatives are continuous.
     bool is_smooth() const { return coulomb.empty() && arm_quadratic.empty() && drag_quadratic.empty(); }
     bool is_none() const {
@@ -99,7 +103,7 @@ struct PhysicalPendulum {
                                   all(center),
                                   all(inertia),
                                   {all(f.viscous), all(f.coulomb), one(f.width), all(f.arm_linear),
-                                   all(f.arm_quadratic), all(f.drag_linear), all(f.drag_quadratic)},
+                                   all(f.arm_quadratic), all(f.air_quadratic), all(f.drag_linear), all(f.drag_quadratic)},
                                   {one(pivot.x), one(pivot.y), one(pivot.frequency), one(pivot.phase)},
                                   {}};
         for (const auto& t : torques)

@@ -190,12 +190,21 @@ private:
             rates_[k] = (r.x * u.y - r.y * u.x) / dot(r, r);
         }
         forces_.update(rates_, layout.time_of(q), [](Eigen::Index, const Scalar&) { return 0; });
+        if (!pendulum.friction.air_quadratic.empty())
+            for (Eigen::Index k = 0; k < constraints(); ++k) {
+                using std::sqrt;
+                const Vector r = along(q, k, pivot.place);
+                const Vector across = Vector{Scalar(-r.y), r.x} * Scalar(Scalar(1) / sqrt(dot(r, r)));
+                forces_.update_air(k, across, k == 0 ? pivot.velocity : at(v, 2 * k - 2), rates_[k]);
+            }
         for (Eigen::Index k = 0; k < constraints(); ++k) {
             const Vector r = along(q, k, pivot.place);
             const Vector couple = Vector{Scalar(-r.y), r.x} * Scalar(forces_.torque[k] / dot(r, r));
             put(push_, 2 * k, at(push_, 2 * k) + couple);
             if (k > 0) put(push_, 2 * k - 2, at(push_, 2 * k - 2) - couple);
-            if (forces_.drag.empty()) continue;
+        }
+        if (forces_.drag.empty()) return;
+        for (Eigen::Index k = 0; k < constraints(); ++k) {
             using std::abs;
             const Vector velocity = at(v, 2 * k);
             const bool on_circle = k == 0 && !pendulum.pivot.moves();  // as in PhysicalChain
@@ -209,7 +218,7 @@ private:
     /// With which the pivot holds the chain, N, where its ends are accelerated so: what momentum needs besides weight and
     /// drag.
     Vector pivot_force(const Half& a, const Vector& acceleration, const Vector& fall) const {
-        Vector force = masses_.momentum(a) + acceleration * masses_.at_pivot - fall * masses_.total;
+        Vector force = masses_.momentum(a) + acceleration * masses_.at_pivot - fall * masses_.total - forces_.at_pivot;
         for (const auto& drag : forces_.drag) force = force - drag;
         return force;
     }

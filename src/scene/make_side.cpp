@@ -23,6 +23,7 @@ std::string physical_words(const PhysicalSpec& physical) {
         words.push_back("links with mass");
     if (has(physical.joint_viscous_N_m_s) || has(physical.joint_coulomb_N_m)) words.push_back("friction");
     if (has(physical.arm_drag_linear_N_m_s) || has(physical.arm_drag_quadratic_N_m_s2) ||
+        has(physical.air_drag_quadratic_N_m_s2) ||
         has(physical.drag_linear_N_s_per_m) || has(physical.drag_quadratic_N_s2_per_m2))
         words.push_back("drag");
     if (physical.pivot.amplitude_m != 0) words.push_back("a moving pivot");
@@ -315,6 +316,7 @@ PhysicalPendulum<Quad> physical_of(const SideSpec& spec) {
                      from.joint_coulomb_width_deg_per_s * degree,
                      given(from.arm_drag_linear_N_m_s),
                      given(from.arm_drag_quadratic_N_m_s2),
+                     given(from.air_drag_quadratic_N_m_s2),
                      given(from.drag_linear_N_s_per_m),
                      given(from.drag_quadratic_N_s2_per_m2)};
     if (from.pivot.amplitude_m != 0) {

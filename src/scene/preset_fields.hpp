@@ -111,6 +111,9 @@ void physical_fields(Visit& visit, Physical& physical) {
     list("arm_drag_linear_N_m_s", "drag on each link, by its own rate", "N m s", physical.arm_drag_linear_N_m_s);
     list("arm_drag_quadratic_N_m_s2", "the same, by the square of its rate", "N m s²",
          physical.arm_drag_quadratic_N_m_s2);
+    list("air_drag_quadratic_N_m_s2",
+         "drag on each link, by the square of the rate with which its centre of oscillation meets the air broadside",
+         "N m s²", physical.air_drag_quadratic_N_m_s2);
     list("drag_linear_N_s_per_m", "drag on each end of a link, by its speed", "N s/m", physical.drag_linear_N_s_per_m);
     list("drag_quadratic_N_s2_per_m2", "the same, by the square of its speed", "N s²/m²",
          physical.drag_quadratic_N_s2_per_m2);

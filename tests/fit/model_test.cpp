@@ -37,7 +37,7 @@ Arms<double> arms(const Parameters& p, Drag drag) {
 const ArmState<double> somewhere{0.7, -1.1, 2.3, -3.1};
 
 TEST(FitModel, PointMassesMoveAsThePhysicsRoomHasIt) {
-    PhysicalPendulum points{.gravity = 9.8};
+    FittedPendulum points{.gravity = 9.8};
     points.mass = {1.3, 0.7}, points.length = {0.4, 0.6}, points.center = points.length;
     const auto p = ratios_of(points);
     Pendulum<double> pendulum{.mass = {1.3, 0.7}, .length = {0.4, 0.6}, .gravity = 9.8};
@@ -104,7 +104,7 @@ TEST(FitPhysical, RatiosGoThereAndBack) {
     for (const double mass : {1.0, 0.138})
         for (const double gravity : {9.8, 1.62}) {
             const auto p = lab_arms();
-            const auto pendulum = physical(p, false, {gravity, mass});
+            const auto pendulum = fitted_pendulum(p, false, {gravity, mass});
             const auto back = ratios_of(pendulum);
             for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
             EXPECT_EQ(pendulum.mass[1], mass);
@@ -116,9 +116,9 @@ TEST(FitPhysical, RatiosGoThereAndBack) {
 }
 
 TEST(FitPhysical, PointMassesStayPoints) {
-    PhysicalPendulum points{.gravity = 9.8};
+    FittedPendulum points{.gravity = 9.8};
     points.mass = {1.3, 1}, points.length = {0.4, 0.6}, points.center = points.length;
-    const auto back = physical(ratios_of(points), true, {});
+    const auto back = fitted_pendulum(ratios_of(points), true, {});
     for (std::size_t k = 0; k < 2; ++k) {
         EXPECT_NEAR(back.mass[k], points.mass[k], 1e-12);
         EXPECT_NEAR(back.length[k], points.length[k], 1e-12);
@@ -130,7 +130,7 @@ TEST(FitPhysical, PointMassesStayPoints) {
 TEST(FitPhysical, MakesTheSecondArmCompactWhereItMust) {
     auto p = lab_arms(false);
     at(p, inertia) = 1.2 * 0.88 * 0.88;
-    const auto pendulum = physical(p, false, {});
+    const auto pendulum = fitted_pendulum(p, false, {});
     EXPECT_GT(pendulum.inertia[0], 0);
     EXPECT_GT(pendulum.mass[0], 0);
     const auto back = ratios_of(pendulum);

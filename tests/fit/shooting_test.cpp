@@ -162,7 +162,7 @@ TEST(FitLadder, ChoosesWhatMadeTheTrack) {
     EXPECT_TRUE(result.uncertainty.is_white);
     EXPECT_NEAR(result.chosen().left_out_rms, 1e-3, 5e-5);  // measured 1.02e-3
 
-    PhysicalPendulum points{.gravity = 9.8};
+    FittedPendulum points{.gravity = 9.8};
     points.mass = {1.3, 1}, points.length = {0.2, 0.25}, points.center = points.length;
     track = simulated(ratios_of(points), Drag::own, {.noise = 1e-3});
     result = answered(track);
