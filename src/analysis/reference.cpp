@@ -173,6 +173,7 @@ MotionSpec some_roundings_away(MotionSpec spec) {
             for (auto& number : *numbers) move(number);
         move(spec.chain->gravity);
     }
+    if (spec.physical) spec.physical->chain = *spec.chain;
     if (spec.parts) {
         // places and velocities stay: constraints hold them
         for (auto& particle : spec.parts->particles) move(particle.mass);

@@ -36,8 +36,9 @@ Ends ends_of_fine_runs(const Side& side, const ReferenceTrajectory& reference, l
     return ends;
 }
 
-/// A chain with no parts but its own.
+/// A chain of point masses with no parts but its own.
 bool is_plain_chain(const MotionSpec& motion) {
+    if (motion.physical) return false;
     if (!motion.chain || !motion.parts) return motion.chain.has_value();
     return motion.parts->constraints.size() == motion.chain->links() && motion.parts->forces.size() <= 1;
 }
