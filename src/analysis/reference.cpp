@@ -179,6 +179,7 @@ MotionSpec some_roundings_away(MotionSpec spec) {
         for (auto& number : spec.physical->center) move(number);
         for (auto& number : spec.physical->inertia) move(number);
     }
+    if (spec.physical) spec.physical->chain = *spec.chain;
     if (spec.parts) {
         // places and velocities stay: constraints hold them
         for (auto& particle : spec.parts->particles) move(particle.mass);

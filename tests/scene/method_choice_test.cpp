@@ -47,7 +47,7 @@ private:
 /// Unequal links, and what moves them.
 SideSpec chain_by(Lot& lot, std::size_t links, double fastest) {
     SideSpec side;
-    for (auto* values : {&side.mass_kg, &side.length_m, &side.angle_deg, &side.omega_deg_per_s}) values->resize(links);
+    side.set_links(links);
     for (std::size_t i = 0; i < links; ++i) {
         side.mass_kg[i] = lot.between(0.2, 3);
         side.length_m[i] = lot.between(0.3, 2);
