@@ -168,18 +168,16 @@ MotionSpec some_roundings_away(MotionSpec spec) {
         number *= 1 + change;
         change = -change;
     };
-    const auto move_chain = [&](Pendulum<Quad>& chain) {
-        for (auto* numbers : {&chain.angle, &chain.rate, &chain.length, &chain.mass})
+    if (spec.chain) {
+        for (auto* numbers : {&spec.chain->angle, &spec.chain->rate, &spec.chain->length, &spec.chain->mass})
             for (auto& number : *numbers) move(number);
-        move(chain.gravity);
-    };
-    if (spec.chain) move_chain(*spec.chain);
-    if (spec.physical) {
-        move_chain(spec.physical->chain);
-        for (auto& number : spec.physical->center) move(number);
-        for (auto& number : spec.physical->inertia) move(number);
+        move(spec.chain->gravity);
     }
-    if (spec.physical) spec.physical->chain = *spec.chain;
+    if (spec.physical) {
+        spec.physical->chain = *spec.chain;
+        for (auto* numbers : {&spec.physical->center, &spec.physical->inertia})
+            for (auto& number : *numbers) move(number);
+    }
     if (spec.parts) {
         // places and velocities stay: constraints hold them
         for (auto& particle : spec.parts->particles) move(particle.mass);
