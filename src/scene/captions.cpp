@@ -120,6 +120,7 @@ std::vector<Statement> statements(const Scene& scene, bool of_b) {
         say_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
         say_links("l", spec.length_m, other.length_m, " m", false, all);
     }
+    for (auto& text : physical_differences(spec.physical, other.physical)) all.push_back({std::move(text)});
     say_particles(scene.preset.a, scene.preset.b, of_b, all);
     const auto place = [](const QuadPair& xy) { return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1])); };
     const auto is_droplet = [](const ForceSpec& force) { return std::holds_alternative<DropletSpec>(force.part); };
@@ -255,7 +256,9 @@ std::string scene_caption(const Scene& scene, Wording wording) {
     const auto systems = differ_in_kind(scene.preset.a, scene.preset.b)
                              ? fmt::format("a {} and a {}", one(scene.preset.a), one(scene.preset.b))
                              : fmt::format("{} {}", number, system_words(scene.preset.a));
-    return fmt::format("{}{}{}{}", systems,
+    const auto physical = physical_words(scene.preset.a.physical);
+    const bool alike = !physical.empty() && physical == physical_words(scene.preset.b.physical);
+    return fmt::format("{}{}{}{}{}", systems, alike ? " with " + physical : "",
                        at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));
 }

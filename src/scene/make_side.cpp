@@ -1,9 +1,8 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "physics/mechanism.hpp"
+#include "scene/captions.hpp"
 #include "scene/scene.hpp"
-
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,24 +11,6 @@
 namespace doppel {
 
 namespace {
-
-/// What a chain has besides point masses: "links with mass, friction".
-std::string physical_words(const PhysicalSpec& physical) {
-    std::vector<std::string> words;
-    const auto has = [](const std::vector<Quad>& list) {
-        return std::any_of(list.begin(), list.end(), [](const Quad& value) { return value != 0; });
-    };
-    if (has(physical.rod_mass_kg) || has(physical.inertia_kg_m2) || !physical.center_m.empty())
-        words.push_back("links with mass");
-    if (has(physical.joint_viscous_N_m_s) || has(physical.joint_coulomb_N_m)) words.push_back("friction");
-    if (has(physical.arm_drag_linear_N_m_s) || has(physical.arm_drag_quadratic_N_m_s2) ||
-        has(physical.air_drag_quadratic_N_m_s2) ||
-        has(physical.drag_linear_N_s_per_m) || has(physical.drag_quadratic_N_s2_per_m2))
-        words.push_back("drag");
-    if (physical.pivot.amplitude_m != 0) words.push_back("a moving pivot");
-    if (!physical.torques.empty()) words.push_back("motors");
-    return fmt::format("{}", fmt::join(words, ", "));
-}
 
 /// The smallest model that serves, and why.
 std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEntry& method) {
@@ -284,51 +265,6 @@ Assembly<Quad> parts_of(const Pendulum<Quad>& chain) {
 }
 
 }  // namespace
-
-Pendulum<Quad> chain_of(const SideSpec& spec) {
-    Pendulum<Quad> chain{spec.mass_kg, spec.length_m, {}, {}, spec.gravity_m_per_s2};
-    for (std::size_t i = 0; i < chain.links(); ++i) chain.mass[i] += spec.physical.rod_mass_kg[i];
-    const Quad degree = pi_of<Quad>() / 180;
-    for (const auto& angle : spec.angle_deg) chain.angle.push_back(angle * degree);
-    for (const auto& rate : spec.omega_deg_per_s) chain.rate.push_back(rate * degree);
-    return chain;
-}
-
-PhysicalPendulum<Quad> physical_of(const SideSpec& spec) {
-    const auto& from = spec.physical;
-    const Quad degree = pi_of<Quad>() / 180, turn = 2 * pi_of<Quad>();
-    auto made = doppel::physical(chain_of(spec));
-    for (std::size_t i = 0; i < made.chain.links(); ++i) {
-        // the body and the rod as one, about their common centre
-        const auto &body = spec.mass_kg[i], &rod = from.rod_mass_kg[i], &length = spec.length_m[i];
-        const Quad at = from.center_m.empty() ? length : from.center_m[i], middle = length / 2;
-        const Quad center = (body * at + rod * middle) / (body + rod);
-        made.center[i] = center;
-        made.inertia[i] = from.inertia_kg_m2[i] + body * (at - center) * (at - center) + rod * length * length / 12 +
-                          rod * (middle - center) * (middle - center);
-    }
-    const auto given = [](const std::vector<Quad>& list) {
-        const bool is_none = std::all_of(list.begin(), list.end(), [](const Quad& value) { return value == 0; });
-        return is_none ? std::vector<Quad>() : list;
-    };
-    made.friction = {given(from.joint_viscous_N_m_s),
-                     given(from.joint_coulomb_N_m),
-                     from.joint_coulomb_width_deg_per_s * degree,
-                     given(from.arm_drag_linear_N_m_s),
-                     given(from.arm_drag_quadratic_N_m_s2),
-                     given(from.air_drag_quadratic_N_m_s2),
-                     given(from.drag_linear_N_s_per_m),
-                     given(from.drag_quadratic_N_s2_per_m2)};
-    if (from.pivot.amplitude_m != 0) {
-        const SinCos<Quad> direction(Quad(from.pivot.direction_deg * degree));
-        made.pivot = {from.pivot.amplitude_m * direction.cos, from.pivot.amplitude_m * direction.sin,
-                      from.pivot.frequency_hz * turn, from.pivot.phase_deg * degree};
-    }
-    for (const auto& motor : from.torques)
-        made.torques.push_back({static_cast<std::size_t>(motor.joint) - 1, motor.amplitude_N_m,
-                                motor.frequency_hz * turn, motor.phase_deg * degree});
-    return made;
-}
 
 Assembly<Quad> assembly_of(const SideSpec& spec) {
     Assembly<Quad> assembly;

@@ -128,10 +128,15 @@ struct PhysicalSpec {
 
     /// All the lists with a number a link but center_m.
     auto lists() {
-        return std::array{&rod_mass_kg,           &inertia_kg_m2,
-                          &joint_viscous_N_m_s,   &joint_coulomb_N_m,
-                          &arm_drag_linear_N_m_s, &arm_drag_quadratic_N_m_s2, &air_drag_quadratic_N_m_s2,
-                          &drag_linear_N_s_per_m, &drag_quadratic_N_s2_per_m2};
+        return std::array{&rod_mass_kg,
+                          &inertia_kg_m2,
+                          &joint_viscous_N_m_s,
+                          &joint_coulomb_N_m,
+                          &arm_drag_linear_N_m_s,
+                          &arm_drag_quadratic_N_m_s2,
+                          &air_drag_quadratic_N_m_s2,
+                          &drag_linear_N_s_per_m,
+                          &drag_quadratic_N_s2_per_m2};
     }
     /// Whether any of it is there.
     bool is_none() const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "integrate/methods.hpp"
+#include "scene/physical_fields.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -64,60 +65,6 @@ void chain_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
     constexpr std::string_view from_vertical = "at the start, from the downward vertical, counter-clockwise";
     visit({"angle_deg", from_vertical, "deg", turns, "", {}, "one a link"}, side.angle_deg);
     visit({"omega_deg_per_s", "rates at the start", "deg/s", {}, "", {}, "one a link"}, side.omega_deg_per_s);
-}
-
-/// [system.pivot]
-template <class Visit, class Pivot>
-void pivot_fields(Visit& visit, Pivot& pivot) {
-    visit({"direction_deg", "of the motion, from the x axis: 90 = up", "deg"}, pivot.direction_deg);
-    visit({"amplitude_m", "half the way to and fro; 0 = the pivot stays where it is", "m", not_negative},
-          pivot.amplitude_m);
-    visit({"frequency_hz", "swings a second", "Hz", positive}, pivot.frequency_hz);
-    visit({"phase_deg", "of the cosine at t = 0", "deg"}, pivot.phase_deg);
-}
-
-/// [[system.torque]], without `name`.
-template <class Visit, class Torque>
-void part_fields(Visit& visit, Torque& torque) requires std::is_same_v<std::remove_const_t<Torque>, TorqueSpec> {
-    visit({"joint", "where: 1 is the pivot, 2 the end of link 1; the link above takes the opposite", "",
-           from_to(1, 10'000)},
-          torque.joint);
-    visit({"amplitude_N_m", "torque", "N m"}, torque.amplitude_N_m);
-    visit({"frequency_hz", "swings a second", "Hz", not_negative}, torque.frequency_hz);
-    visit({"phase_deg", "of the cosine at t = 0", "deg"}, torque.phase_deg);
-}
-
-/// What a real chain has besides, but torques.
-template <class Visit, class Physical>
-void physical_fields(Visit& visit, Physical& physical) {
-    const auto list = [&](std::string_view key, std::string_view help, std::string_view unit, auto& values) {
-        visit({key, help, unit, not_negative, "", {}, "one a link"}, values);
-    };
-    list("rod_mass_kg", "mass of each rod, evenly along it, besides mass_kg", "kg", physical.rod_mass_kg);
-    visit({"center_m",
-           "of a link whose mass_kg is a body: from its joint to the centre of mass",
-           "m",
-           not_negative,
-           "at the end",
-           {.holds = !physical.center_m.empty()},
-           "one a link"},
-          physical.center_m);
-    list("inertia_kg_m2", "of such a body, about its centre of mass", "kg m²", physical.inertia_kg_m2);
-    list("joint_viscous_N_m_s", "friction at each joint, by its rate", "N m s", physical.joint_viscous_N_m_s);
-    list("joint_coulomb_N_m", "friction at each joint, whatever its rate (Coulomb)", "N m", physical.joint_coulomb_N_m);
-    visit({"joint_coulomb_width_deg_per_s", "the rate below which a joint comes to rest where that friction holds it",
-           "deg/s", positive},
-          physical.joint_coulomb_width_deg_per_s);
-    list("arm_drag_linear_N_m_s", "drag on each link, by its own rate", "N m s", physical.arm_drag_linear_N_m_s);
-    list("arm_drag_quadratic_N_m_s2", "the same, by the square of its rate", "N m s²",
-         physical.arm_drag_quadratic_N_m_s2);
-    list("air_drag_quadratic_N_m_s2",
-         "drag on each link, by the square of the rate with which its centre of oscillation meets the air broadside",
-         "N m s²", physical.air_drag_quadratic_N_m_s2);
-    list("drag_linear_N_s_per_m", "drag on each end of a link, by its speed", "N s/m", physical.drag_linear_N_s_per_m);
-    list("drag_quadratic_N_s2_per_m2", "the same, by the square of its speed", "N s²/m²",
-         physical.drag_quadratic_N_s2_per_m2);
-    visit.table("pivot", [&](auto& table) { pivot_fields(table, physical.pivot); });
 }
 
 /// Of [a] and [b] of a film.

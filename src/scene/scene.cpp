@@ -145,9 +145,10 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
         std::replace(scene.preset.video.strips.begin(), scene.preset.video.strips.end(), StripKind::energy,
                      StripKind::total_energy);
     if (wanted(StripKind::rod_force) && (scene.a.motion.physical || scene.b.motion.physical))
-        throw bad_input("{}: [video] panels: \"rod-force\" is the force in massless rods; links with mass, friction or a "
-                        "drive have none such",
-                        preset.name);
+        throw bad_input(
+            "{}: [video] panels: \"rod-force\" is the force in massless rods; links with mass, friction or a "
+            "drive have none such",
+            preset.name);
     scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
     check_precision(scene);
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);

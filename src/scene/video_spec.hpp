@@ -50,12 +50,12 @@ inline constexpr std::size_t strip_kinds = 10;
 template <>
 inline constexpr auto names_of<StripKind> = std::to_array<std::string_view>({"distance", "exponent", "energy",
                                                                              "rod-error", "rod-force", "energies-a",
-                                                                             "energies-b", "angles", "rates", "total-energy"});
+                                                                             "energies-b", "angles", "rates",
+                                                                             "total-energy"});
 /// The keys of their axes.
 inline constexpr std::array<std::string_view, strip_kinds> range_keys{
     "distance_range",   "exponent_range",   "energy_range", "rod_error_range", "rod_force_range",
-    "energies_a_range", "energies_b_range", "angles_range", "rates_range",
-    "total_energy_range"};
+    "energies_a_range", "energies_b_range", "angles_range", "rates_range",     "total_energy_range"};
 /// Those whose axis goes by powers of ten.
 constexpr bool is_logarithmic(StripKind kind) {
     return kind == StripKind::distance || kind == StripKind::energy || kind == StripKind::rod_error;

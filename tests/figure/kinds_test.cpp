@@ -47,6 +47,43 @@ TEST(Spectrum, ComesInPairsThatSumToZero) {
     EXPECT_GT(last[1], 0.5);                                             // 90°/90° is chaotic
 }
 
+TEST(Bifurcation, PeriodsDoubleWhereTheTextbookSays) {
+    // of θ″ + θ′/2 + sinθ = γ cos(2τ/3): one period at 1.35, two at 1.45, four at 1.47, none at 1.15 and 1.5
+    // Source  Baker & Gollub, Chaotic Dynamics, §3.3
+    const double weight = 9.8 * 0.4413;
+    for (const auto& [strength, periods] : {std::pair{1.35, 1}, {1.45, 2}, {1.47, 4}, {1.15, 0}, {1.5, 0}}) {
+        const auto table = table_of(figure_of(
+            "bifurcation", {fmt::format("bifurcation.from={:.6f}", strength * weight),
+                            fmt::format("bifurcation.to={:.6f}", strength * weight + 1e-5), "bifurcation.points=2",
+                            "bifurcation.transient_periods=300", "bifurcation.periods=64"}));
+        std::vector<double> rates;
+        for (std::size_t i = 0; i < 64; ++i) rates.push_back(table.rows[i][3]);
+        std::sort(rates.begin(), rates.end());
+        int distinct = 1;
+        for (std::size_t i = 1; i < rates.size(); ++i) distinct += rates[i] - rates[i - 1] > 1e-3;
+        if (periods > 0) {
+            EXPECT_EQ(distinct, periods) << strength;
+        } else {
+            EXPECT_GT(distinct, 32) << strength;
+        }
+    }
+}
+
+TEST(Map, TheShakenPivotHoldsWhereItsEdgeSays) {
+    // a row of amplitudes on both sides of Mathieu's edge at 4 Hz, 0.177 m
+    const auto found =
+        table_of(figure_of("kapitza-map", {"map.x_from=3.99", "map.x_to=4.01", "map.columns=2", "map.y_from=0.167",
+                                           "map.y_to=0.187", "map.rows=4", "scene.duration_s=15"}));
+    ASSERT_EQ(found.rows.size(), 8u);
+    for (const auto& row : found.rows) {
+        if (row[1] < 0.177) {
+            EXPECT_GT(row[2], 90) << row[1];
+        } else {
+            EXPECT_LT(row[2], 30) << row[1];
+        }
+    }
+}
+
 /// The orbits of a section of one energy, by whether they are grey, and what is said of them.
 struct SectionPage {
     std::vector<std::size_t> grey;

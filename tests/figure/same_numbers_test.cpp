@@ -91,6 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"true-fig2-right", {"sweep.step=5", "scene.duration_s=2"}},
         Case{"fig3-right", {"sweep.to=0.19", "scene.duration_s=2"}}, Case{"fig6", {"scene.duration_s=2"}},
         Case{"flip-map", {"flip_map.columns=40", "flip_map.rows=41", "flip_map.duration_s=3", "flip_map.checked=15"}},
+        Case{"bifurcation", {"bifurcation.points=6", "bifurcation.transient_periods=3", "bifurcation.periods=4"}},
+        Case{"kapitza-map", {"map.columns=5", "map.rows=4", "scene.duration_s=1"}},
         Case{"parting-map", {"map.columns=17", "map.rows=5", "scene.duration_s=1"}},
         Case{"fig4-right",
              {"sweep.points=7", "sweep.parameter=\"system.mass_kg[1]\"", "sweep.spacing=\"logarithmic\"",
