@@ -130,7 +130,8 @@ private:
             take_forces(t, pivot.velocity);
             const auto solve = [&] {
                 return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity,
-                                          pivot.acceleration, alpha_);
+                                          pivot.acceleration, alpha_) -
+                       forces_.at_pivot;
             };
             const auto force = solve();
             if (std::find(held_.begin(), held_.end(), true) == held_.end()) return {force, pivot.velocity};

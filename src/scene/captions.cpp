@@ -259,7 +259,7 @@ std::string scene_caption(const Scene& scene, Wording wording) {
     const auto physical = physical_words(scene.preset.a.physical);
     const bool alike = !physical.empty() && physical == physical_words(scene.preset.b.physical);
     return fmt::format("{}{}{}{}{}", systems, alike ? " with " + physical : "",
-                       at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
+                       !alike && at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));
 }
 

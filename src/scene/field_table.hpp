@@ -78,7 +78,8 @@ struct FieldTable {
     }
     template <class Visit>
     void table(std::string_view key, const Visit& visit) {
-        visit(tables.emplace_back(FieldTable{fmt::format("[{}.{}]", name.substr(1, name.size() - 2), key)}));
+        // of "[system], [a], [b]" the first
+        visit(tables.emplace_back(FieldTable{fmt::format("[{}.{}]", name.substr(1, name.find(']') - 1), key)}));
     }
     static bool from_command_line(std::string_view) { return false; }
 

@@ -54,7 +54,7 @@ std::vector<MechanismLine> lines_of(const Pendulum<double>& chain) {
 /// What of a link's mass is at its end, kg: that of a body is along it.
 double end_mass(const SideSpec& spec, std::size_t link) {
     const auto& physical = spec.physical;
-    const bool is_body = !physical.center_m.empty() || physical.inertia_kg_m2[link] != 0;
+    const bool is_body = !physical.is_none() && (!physical.center_m.empty() || physical.inertia_kg_m2[link] != 0);
     return is_body ? 0 : static_cast<double>(spec.mass_kg[link]);
 }
 

@@ -254,6 +254,10 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
     spread(old.length_m, side.length_m);
     spread(old.angle_deg, side.angle_deg);
     spread(old.omega_deg_per_s, side.omega_deg_per_s);
+    auto before = old.physical;
+    const auto lists = side.physical.lists(), old_lists = before.lists();
+    for (std::size_t i = 0; i < lists.size(); ++i) spread(*old_lists[i], *lists[i]);
+    if (!before.center_m.empty()) spread(before.center_m, side.physical.center_m = side.length_m);
 }
 
 }  // namespace

@@ -160,9 +160,10 @@ void check_physical(TomlReader& table, const SideSpec& side) {
     const auto& physical = side.physical;
     if (physical.is_none()) return;
     if (side.is_mechanism())
-        throw table.fault("",
-                          "links with mass, friction and a drive are for chains; further particles, constraints or "
-                          "forces cannot be beside them");
+        throw table.fault(!side.forces.empty()        ? "force"
+                          : !side.constraints.empty() ? "constraint"
+                                                      : "particle",
+                          "cannot be beside links with mass, friction or a drive, which are for chains alone");
     if (side.model == ModelChoice::mechanism)
         throw table.fault("model",
                           "\"mechanism\" has no links with mass, friction or drive; \"angles\" and "

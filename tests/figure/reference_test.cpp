@@ -50,6 +50,7 @@ TEST(Reference, ListsEveryKeyOfThePresets) {
             if (part == "a" || part == "b") keys.merge(listed_keys(tables, "[a], [b]"));
             keys.merge(listed_keys(tables, "[[system." + part + "]]"));
             keys.merge(listed_keys(tables, "[[" + table + "]]"));
+            keys.merge(listed_keys(tables, "[system." + part + "]"));
             EXPECT_TRUE(keys.contains(match[1]) || match[1] == "kind" || match[1] == "name")
                 << preset.path << ": [" << table << "] " << match[1];
             ++seen;

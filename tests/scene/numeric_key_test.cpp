@@ -101,6 +101,9 @@ TEST(NumericKey, OfLinksKeepsWhatAllLinksHaveInCommon) {
     const auto set = links.with(4);
     EXPECT_EQ(set.a.angle_deg, (std::vector<Quad>(4, 120)));
     EXPECT_EQ(set.a.length_m, (std::vector<Quad>(4, 1)));  // they differed
+    Found rods("system.links", "[system]\nlinks = 2\nrod_mass_kg = 0.5\ncenter_m = 0.3\n");
+    EXPECT_EQ(rods.with(3).a.physical.rod_mass_kg, (std::vector<Quad>(3, Quad(1) / 2)));
+    EXPECT_EQ(rods.with(3).a.physical.center_m, (std::vector<Quad>(3, parse_quad("0.3"))));
 }
 
 TEST(NumericKey, OfAStepTakesTheNearestThatDividesASample) {
@@ -119,7 +122,7 @@ TEST(NumericKey, IsRefusedWithWhatWouldBeRight) {
         EXPECT_TRUE(found.message.starts_with("x.toml:2:1: [sweep] parameter ")) << found.message;
     };
     refused("gravity", "system.gravity_m_per_s2");
-    refused("system.gravity", "there are links, mass_kg, length_m, angle_deg, omega_deg_per_s, gravity_m_per_s2");
+    refused("system.gravity", "there are links, mass_kg, length_m, angle_deg, omega_deg_per_s, rod_mass_kg, ");
     refused("system.model", "is no number");
     refused("system.mass_kg[2]", "whose last is [1]");
     refused("system.mass_kg[x]", "must end like");

@@ -63,7 +63,7 @@ TEST(Physical, CaptionsSayWhatSetsTheSidesApart) {
     const auto words = side_captions(scene);
     EXPECT_EQ(words[0].heading, "no viscous friction, pivot ±0.1 m at 1 Hz");
     EXPECT_EQ(words[1].heading, "viscous friction 0.5/0.5 N m s, pivot ±0.1 m at 3 Hz");
-    EXPECT_EQ(scene_caption(scene_of("driven")).substr(0, 36), "two pendulums with friction, motors,");
+    EXPECT_EQ(scene_caption(scene_of("driven")).substr(0, 36), "two pendulums with friction, motors ");
 }
 
 TEST(Physical, TheEnergyStripShowsEnergyWhereItIsNotKept) {
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedPreset{"[system]\nmass_kg = [0, 1]\nrod_mass_kg = [0, 1]",
                       "presets/x.toml:2:1: [system] mass_kg of link 1 and its rod_mass_kg are both 0; one must be > 0"},
         RefusedPreset{"[system]\njoint_viscous_N_m_s = -1",
-                      "presets/x.toml:2:1: [system] joint_viscous_N_m_s must be ≥ 0; it is -1"},
+                      "presets/x.toml:2:1: [system] joint_viscous_N_m_s[0] must be ≥ 0; it is -1"},
         RefusedPreset{"[[system.torque]]\njoint = 3\namplitude_N_m = 1",
                       "presets/x.toml:2:1: [[system.torque]] 1 joint must be 1 to 2, the number of links; it is 3"},
         RefusedPreset{"[system.pivot]\namplitude_m = 1\nfrequency_hz = 0",
@@ -96,8 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
                       "drive have none such"},
         RefusedPreset{
             "[system]\njoint_viscous_N_m_s = 1\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [0, 1]",
-            "presets/x.toml:1:1: [system] links with mass, friction and a drive are for chains; further "
-            "particles, constraints or forces cannot be beside them"}));
+            "presets/x.toml:3:10: [system] force cannot be beside links with mass, friction or a drive, which are for "
+            "chains alone"}));
 
 /// The angle errors of a preset's run, by the motion of another method.
 double error_at_end(const Preset& preset) {

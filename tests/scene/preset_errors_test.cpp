@@ -88,7 +88,8 @@ TEST(FindPreset, NamesTheNearestOrWhatIsInItsPlace) {
               R"(there is no preset "buterfly"; did you mean "butterfly"?)");
     EXPECT_EQ(error_of([] { find_preset("x/y.toml"); }).second, "x/y.toml: there is no such preset");
     EXPECT_EQ(error_of([] { find_preset("/"); }).second, "/ is a folder; a preset is a TOML file");
-    EXPECT_NE(error_of([] { find_preset("qqqqqqqqqq"); }).second.find("there are audit, butterfly"), std::string::npos);
+    EXPECT_NE(error_of([] { find_preset("qqqqqqqqqq"); }).second.find("there are audit, bifurcation, butterfly"),
+              std::string::npos);
 }
 
 }  // namespace preset_errors_test

@@ -117,7 +117,7 @@ inline const std::vector<RefusedPreset> refused_rates{
                   "presets/x.toml:2:1: [scene] duration_s must be at most 100000000 samples; it is 120000000000000"},
     RefusedPreset{
         "[scene]\nkind = \"trio\"",
-        R"(presets/x.toml:2:1: [scene] kind must be "pair", "sweep", "curves", "convergence", "spectrum", "section", "map", "flip-map", "links", "work-precision", "stability", "drift", "encoders" or "audit"; it is "trio")"},
+        R"(presets/x.toml:2:1: [scene] kind must be "pair", "sweep", "curves", "convergence", "spectrum", "section", "map", "flip-map", "links", "bifurcation", "work-precision", "stability", "drift", "encoders" or "audit"; it is "trio")"},
     RefusedPreset{
         "[video]\nfps = 50",
         "presets/x.toml:2:1: [video] fps must divide sample_hz · speed = 120, so that each frame is a sample; it "
@@ -155,10 +155,10 @@ inline const std::vector<RefusedPreset> refused_video{
                   "presets/x.toml:2:1: [video] side_colors must be an array of strings; 1 is a whole number"},
     RefusedPreset{
         "[video]\npanels = []",
-        R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates")"},
+        R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy")"},
     RefusedPreset{
         "[video]\npanels = [\"phase\"]",
-        R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates"; "phase" is none of them)"},
+        R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "phase" is none of them)"},
     RefusedPreset{"[video]\npanels = \"energy\"",
                   "presets/x.toml:2:1: [video] panels must be an array of strings; it is a string (\"energy\")"},
     RefusedPreset{"[video]\ntrail_s = -1",
@@ -178,7 +178,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   "[video] phase_link must be from 1 to 2, as there are links; it is 3"},
     RefusedPreset{
         "panels = [\"distnce\"]",
-        R"([video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates"; "distnce" is none of them)"},
+        R"([video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "distnce" is none of them)"},
     RefusedPreset{"panels = [\"distance\"]\nlayout = \"overlay\"",
                   R"([video] panels must hold "pendulums" for the layout "overlay")"},
     RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must rise; it is [1, 1]"},
