@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace doppel {
@@ -91,7 +92,8 @@ public:
     }
     /// With which the pivot holds the chain, N, at those rates and forces.
     Planar<Scalar> pivot_force(const Planar<Scalar>& acceleration) {
-        return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity, acceleration, alpha_);
+        return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity, acceleration, alpha_) -
+               forces_.at_pivot;
     }
     const std::vector<typename ArticulatedBodies<Scalar>::Link>& bodies() const { return bodies_.links(); }
 
@@ -125,22 +127,47 @@ private:
         bodies_.factor(sin_, cos_);
         const Scalar t = layout.time_of(y);
         const PivotPlace<Scalar> pivot(pendulum.pivot, t);
-        for (;;) {
-            rest(omega, rates_);
-            take_forces(t, pivot.velocity);
-            const auto solve = [&] {
-                return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity,
-                                          pivot.acceleration, alpha_) -
-                       forces_.at_pivot;
-            };
-            const auto force = solve();
-            if (std::find(held_.begin(), held_.end(), true) == held_.end()) return {force, pivot.velocity};
-            if (!add_holding_torques()) continue;
-            const Pivot held{solve(), pivot.velocity};
-            const Half all = alpha_;
-            rest(all, alpha_);
-            return held;
+        auto tried = attempt(omega, t, pivot);
+        std::vector<std::size_t> let_go;
+        while (tried.slips) {
+            held_[*tried.slips] = false;
+            let_go.push_back(*tried.slips);
+            tried = attempt(omega, t, pivot);
         }
+        // one that was let go may well be held now that others slide
+        for (const auto joint : let_go) {
+            held_[joint] = true;
+            auto again = attempt(omega, t, pivot);
+            if (again.slips) {
+                held_[joint] = false;
+                again = attempt(omega, t, pivot);
+            }
+            tried = again;
+        }
+        return {tried.force, pivot.velocity};
+    }
+
+    /// The accelerations with the joints in held_ at rest.
+    struct Attempt {
+        Planar<Scalar> force;              // of the pivot, N
+        std::optional<std::size_t> slips;  // the joint that takes most in excess of what friction gives
+    };
+    template <class Rates>
+    Attempt attempt(const Rates& omega, const Scalar& t, const PivotPlace<Scalar>& pivot) {
+        rest(omega, rates_);
+        take_forces(t, pivot.velocity);
+        const auto solve = [&] {
+            return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity, pivot.acceleration,
+                                      alpha_) -
+                   forces_.at_pivot;
+        };
+        const auto free = solve();
+        if (std::find(held_.begin(), held_.end(), true) == held_.end()) return {free, std::nullopt};
+        if (const auto slips = add_holding_torques()) return {free, slips};
+        const auto force = solve();
+        const Half all = alpha_;
+        rest(all, alpha_);
+        return {force, std::nullopt};
     }
 
     void take_forces(const Scalar& t, const Planar<Scalar>& pivot_velocity) {
@@ -162,8 +189,8 @@ private:
     }
 
     /// The torques λ that keep the held joints at rest: (D M⁻¹ Dᵀ) λ = −D θ″, where D takes the rates of links to those of
-    /// joints. False where friction cannot give one of them: the joint that exceeds it by most is let go.
-    bool add_holding_torques() {
+    /// joints. None is added where friction cannot give one of them: returns the joint that exceeds it by most.
+    std::optional<std::size_t> add_holding_torques() {
         std::vector<Eigen::Index> joints;
         for (Eigen::Index i = 0; i < alpha_.size(); ++i)
             if (held_[at(i)]) joints.push_back(i);
@@ -188,12 +215,12 @@ private:
             worst = k;
         }
         if (most > Scalar(1)) {
-            held_[at(joints[at(worst)])] = false;
-            slip_[at(joints[at(worst)])] = torque[worst] > Scalar(0) ? -1 : 1;
-            return false;
+            const auto joint = at(joints[at(worst)]);
+            slip_[joint] = torque[worst] > Scalar(0) ? -1 : 1;
+            return joint;
         }
         for (Eigen::Index k = 0; k < m; ++k) add_torque(joints[at(k)], torque[k], forces_.torque);
-        return true;
+        return std::nullopt;
     }
     static void add_torque(Eigen::Index joint, const Scalar& torque, Half& on_links) {
         on_links[joint] += torque;

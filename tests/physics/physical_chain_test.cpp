@@ -156,6 +156,16 @@ TEST(PhysicalChain, AHeldJointTurnsWithTheLinkAbove) {
     EXPECT_NEAR(alpha[0], -9.8 * (1.1 * x1 + 0.6 * x2) / inertia, 1e-13);  // measured 2e-15
 }
 
+TEST(PhysicalChain, AJointIsHeldThatIsHeldWhileAnotherSlides) {
+    // with both at rest the second would take 1.5 N m more than it has; it takes less once the first slides
+    auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {pi / 3, pi / 3}, {0, 0}});
+    p.friction.coulomb = {3, 1};
+    const auto alpha = accelerations(p);
+    EXPECT_EQ(alpha[0], alpha[1]);
+    // one body of inertia 1 + 4 under 3 g sin 60° − 3 N m
+    EXPECT_NEAR(alpha[0], (3 - 3 * 9.8 * std::sin(pi / 3)) / 5, 1e-14);  // measured 9e-16
+}
+
 TEST(PhysicalChain, ASlowJointComesToRestWhereItCanBeHeld) {
     auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {0.3, 0.2}, {1e-3, 0}});
     p.friction.coulomb = {10, 5};
