@@ -76,16 +76,11 @@ const char* drag_key(const ModelSpec& model) {
 }
 
 Json pendulum_json(const FittedPendulum& p, const ModelSpec& model) {
-    return {{"convention", p.rule},
-            {"gravity_m_per_s2", p.gravity},
-            {"B_kg_m2", p.second_inertia},
-            {"mass_kg", p.mass},
-            {"length_m", p.length},
-            {"center_m", p.center},
-            {"inertia_kg_m2", p.inertia},
-            {"joint_viscous_N_m_s", p.viscous},
-            {"joint_coulomb_N_m", p.coulomb},
-            {"joint_coulomb_width_deg_per_s", coulomb_width_deg_per_s},
+    return {{"convention", p.rule},           {"gravity_m_per_s2", p.gravity},
+            {"B_kg_m2", p.second_inertia},    {"mass_kg", p.mass},
+            {"length_m", p.length},           {"center_m", p.center},
+            {"inertia_kg_m2", p.inertia},     {"joint_viscous_N_m_s", p.viscous},
+            {"joint_coulomb_N_m", p.coulomb}, {"joint_coulomb_width_deg_per_s", coulomb_width_deg_per_s},
             {drag_key(model), p.quadratic}};
 }
 

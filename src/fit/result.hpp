@@ -13,10 +13,10 @@ namespace doppel {
 struct FitResult {
     Track track;
     ModelLadder ladder;
-    Uncertainty uncertainty;         // of the chosen model
-    std::optional<Period> period;    // of the pieces, where it was found and not given
+    Uncertainty uncertainty;       // of the chosen model
+    std::optional<Period> period;  // of the pieces, where it was found and not given
     std::optional<Horizon>
-        horizon;                // nothing where it is not known how pieces follow one another, or they are too short
+        horizon;              // nothing where it is not known how pieces follow one another, or they are too short
     FittedPendulum pendulum;  // of the preset's model
     double models_cpu_s = 0, cpu_s = 0;  // of the ladder; of all
 

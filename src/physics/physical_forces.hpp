@@ -73,8 +73,8 @@ public:
     using Scalar = S;
     using Half = State<Scalar, Eigen::Dynamic>;
 
-    Half torque;                       // on each link
-    std::vector<Planar<Scalar>> drag;  // on each link's end; empty where there is none
+    Half torque;                                    // on each link
+    std::vector<Planar<Scalar>> drag;               // on each link's end; empty where there is none
     Planar<Scalar> at_pivot{Scalar(0), Scalar(0)};  // on the first link at its joint
     Scalar power{0};
 

@@ -208,9 +208,9 @@ private:
             using std::abs;
             const Vector velocity = at(v, 2 * k);
             const bool on_circle = k == 0 && !pendulum.pivot.moves();  // as in PhysicalChain
-            forces_.update_drag(k, velocity,
-                                on_circle ? Scalar(abs(rates_[0]) * pendulum.chain.length[0])
-                                          : forces_.speed_of(velocity));
+            forces_.update_drag(
+                k, velocity,
+                on_circle ? Scalar(abs(rates_[0]) * pendulum.chain.length[0]) : forces_.speed_of(velocity));
             put(push_, 2 * k, at(push_, 2 * k) + forces_.drag[static_cast<std::size_t>(k)]);
         }
     }

@@ -87,10 +87,10 @@ TEST(FitProgram, ReplacesItsOwnFilesAlone) {
 
 /// How far the angles of a preset's run are from the first piece of a track that it was fitted to, rad: the worst.
 double worst_of_preset(const fs::path& folder, const std::string& name, const TrackPiece& piece, const char* hz) {
-    const auto run = test::doppel(
-        folder, {"simulate", fmt::format("out/{0}/{0}.toml", name), "--set", "scene.duration_s=2", "--set",
-                 fmt::format("scene.sample_hz={}", hz), "--columns", "time_s,a_theta1_rad,a_theta2_rad", "--progress",
-                 "none", "-o", "runs"});
+    const auto run =
+        test::doppel(folder, {"simulate", fmt::format("out/{0}/{0}.toml", name), "--set", "scene.duration_s=2", "--set",
+                              fmt::format("scene.sample_hz={}", hz), "--columns", "time_s,a_theta1_rad,a_theta2_rad",
+                              "--progress", "none", "-o", "runs"});
     EXPECT_EQ(run.code, 0) << run.err;
     std::istringstream lines(bytes_of(folder / fmt::format("runs/{0}/{0}.csv", name)));
     std::string line;
@@ -124,7 +124,7 @@ TEST(FitProgram, ItsPresetOfBodiesSwingsAsTheRealTrackDid) {
     const auto folder = fresh_folder();
     ASSERT_EQ(test::doppel(folder, fit_of(lab, {"--name", "lab"})).code, 0);
     const auto track = read_tracks(lab);
-    EXPECT_LT(worst_of_preset(folder, "lab", track.pieces[0], "500"), 0.02);
+    EXPECT_LT(worst_of_preset(folder, "lab", track.pieces[0], "500"), 0.02);  // measured below 5e-3
 }
 
 }  // namespace program_test
