@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// How many values apart by more than `apart` of their range there are; the first and last value of an angle are neighbours.
+/// How many values there are that are more than `apart` from the next.
 std::size_t distinct(std::vector<double> values, double apart) {
     std::sort(values.begin(), values.end());
     std::size_t count = values.empty() ? 0 : 1;
@@ -36,10 +36,6 @@ public:
         settings_ = resolved_pair(pair_) + table.finish();
         for (const std::size_t end : {std::size_t(0), trials() - 1}) {
             const auto scene = make_scene(at(end));  // reports faults now
-            if (!scene.a.method.adaptive)
-                throw table.fault("parameter",
-                                  "takes a method with steps of its own, to fall on the drive's periods: "
-                                  "integrator = \"taylor\"");
             period_of(table, scene.preset.a);
         }
         subtitle_ = varied_subtitle(pair_, std::array{&std::as_const(parameter_)}, std::array{from_}, 0,
@@ -123,6 +119,8 @@ private:
         const auto scene = make_scene(at(trial), stop);
         auto spec = scene.a.motion;
         spec.sample_interval = *quotient({1, 1}, *drive_of(scene.preset.a));
+        if (!scene.a.method.adaptive)  // steps that fall on the periods
+            spec.steps_per_sample = std::max(1L, std::lround(spec.sample_interval.value() / scene.a.step.value()));
         TrialNumbers numbers;
         const auto all = 2 * static_cast<std::size_t>(periods_);
         try {
@@ -172,9 +170,9 @@ private:
     }
 
     Preset pair_;
-    std::string parameter_name_ = "system.torque.motor.amplitude_N_m";
+    std::string parameter_name_ = "system.pivot.amplitude_m";
     Parameter parameter_;
-    Quad from_ = 0, to_ = 1;
+    Quad from_ = Quad(1) / 10, to_ = Quad(3) / 10;
     int points_ = 400, link_ = 1, transient_periods_ = 200, periods_ = 100;
     std::string subtitle_;
 };

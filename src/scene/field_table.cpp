@@ -63,6 +63,7 @@ std::string ListedField::example() const {
     if (is(type_words<Rational>())) return bounds.is_open ? "60" : "1";
     if (unit == "cm") return "8.6";  // a column of a journal
     if (is(type_words<double>())) return bounds.is_open ? "1e-6" : "1";
+    if (is(type_words<std::vector<Quad>>())) return "1";
     return "\"\"";
 }
 

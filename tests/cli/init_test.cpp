@@ -91,6 +91,7 @@ TEST(Init, EachKeyOfAFigureCanBeTakenIntoUse) {
     const auto folder = fresh_folder();
     // those that are for other values of other keys, and what the figure gives itself
     std::map<std::string_view, std::set<std::string>> beside{
+        {"bifurcation", {"tolerance"}},
         {"sweep", {"tolerance", "exponent_duration_s", "points"}},
         {"map", {"tolerance", "exponent_duration_s", "color_range"}},
         {"curves", {"tolerance", "check_tolerance"}},
