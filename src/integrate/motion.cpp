@@ -60,7 +60,7 @@ public:
             step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
         }
         if (follows_turns) turns_ = Turns(pendulum_->template cast<double>().angle);
-        turns_.update(chain_state(y_), 0);
+        update_turns(0);
         const auto pivot = pivot_of(y_);
         if (physical_) shift(bobs, pivot);
         start_energy_ = energies_of(y_, bobs, pivot).total;
@@ -202,7 +202,13 @@ private:
     void follow_turns(double seconds) {
         if (!turns_.followed()) return;
         stepper_->read(y_);
-        turns_.update(chain_state(y_), seconds);
+        update_turns(seconds);
+    }
+    void update_turns(double seconds) {
+        if (physical_)
+            turns_.update(chain_state(y_), seconds);
+        else
+            turns_.update(y_, seconds);  // not copied
     }
 
     std::unique_ptr<Stepper<Scalar>> stepper_;

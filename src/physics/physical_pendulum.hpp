@@ -33,8 +33,6 @@ struct Friction {
 
     /// Whether forces act on the links' ends.
     bool has_drag() const { return !drag_linear.empty() || !drag_quadratic.empty() || !air_quadratic.empty(); }
-    /// Whether its derivatives are continuous.
-    bool is_smooth() const { return coulomb.empty() && arm_quadratic.empty() && drag_quadratic.empty(); }
     bool is_none() const {
         return viscous.empty() && coulomb.empty() && arm_linear.empty() && arm_quadratic.empty() && !has_drag();
     }
