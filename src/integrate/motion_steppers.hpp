@@ -53,8 +53,7 @@ std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
     };
     if (spec.physical) {
         const auto physical = spec.physical->cast<Scalar>();
-        using Model = PhysicalChain<Scalar>;
-        return stepper_on(Model(physical), Model::start(physical), spec);
+        return stepper_on(PhysicalChain<Scalar>(physical), PhysicalChain<Scalar>::start(physical), spec);
     }
     if (p.links() == 2) return made(std::type_identity<DoublePendulum<Scalar>>());
     if constexpr (std::is_same_v<Scalar, double>)
