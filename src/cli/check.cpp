@@ -82,7 +82,10 @@ Estimate estimated_side(Scene scene, Side Scene::*which, char name, const std::a
 }
 
 Estimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop) {
-    const auto a = estimated_side(scene, &Scene::a, 'a', stop), b = estimated_side(scene, &Scene::b, 'b', stop);
+    const auto estimated = [&](Side Scene::*side, char name) {
+        return (scene.*side).replay ? Estimate{} : estimated_side(scene, side, name, stop);
+    };
+    const auto a = estimated(&Scene::a, 'a'), b = estimated(&Scene::b, 'b');
     return {a.seconds + b.seconds, a.steps + b.steps, a.at_least || b.at_least};
 }
 
@@ -108,6 +111,7 @@ double estimated_pictures(const Scene& scene) {
 }
 
 void print_side(const char* name, const Side& side) {
+    if (side.replay) return print_line("  {}      {}", name, side.why);
     const auto steps = side.method.adaptive ? std::string("its own steps")
                                             : fmt::format("{} steps a sample", grouped(side.motion.steps_per_sample));
     print_line("  {}      {}, {}, {}, {}", name, name_of(side.motion.model), side.method.title, step_control_text(side),
@@ -185,6 +189,7 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     for (const auto* side : {&scene.a, &scene.b}) {
         const bool is_a = side == &scene.a;
         print_side(is_a ? "a" : "b", *side);
+        if (side->replay) continue;
         if (!estimate.at_least && estimate.seconds < patience) print_forecast(scene, *side, stop);
         if (side->choice) print_rivals(scene, is_a ? scene.preset.a : scene.preset.b, *side, stop);
     }

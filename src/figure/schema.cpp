@@ -171,8 +171,11 @@ Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, boo
 /// [system], or [a] and [b], which change what stands there.
 Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
     auto table = film[2];
-    const auto text = side_text_table().fields;
-    if (may_change) table.fields.insert(table.fields.end(), text.begin(), text.end());
+    const auto text = side_text_table();
+    if (may_change) {
+        table.fields.insert(table.fields.end(), text.fields.begin(), text.fields.end());
+        table.tables.insert(table.tables.end(), text.tables.begin(), text.tables.end());
+    }
     auto schema = table_schema(table);
     auto particle = table_schema(film[3]);
     particle["required"] = needed_keys(film[3]);

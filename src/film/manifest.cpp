@@ -12,6 +12,19 @@
 namespace doppel {
 namespace {
 
+/// Of a side that shows a track.
+Json track_json(const Replay& replay, const TrackSpec& spec) {
+    const auto& piece = replay.samples();
+    const Json measured{{"file", spec.file},
+                        {"sha256", spec.sha256},
+                        {"first_sample_s", piece.time_s.front()},
+                        {"start_s", replay.start_s},
+                        {"samples", piece.size()},
+                        {"noise_rad", replay.track->noise},
+                        {"notes", replay.track->notes}};
+    return {{"measured", measured}};
+}
+
 Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
     if (side.method.adaptive) {
@@ -79,8 +92,8 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
           {"samples_per_frame", scene.frames.ticks.empty() ? Json(scene.frames.stride) : Json(nullptr)},
           {"ticks_per_sample", scene.frames.ticks_per_sample}}},
         {"steps", record.a.effort.steps + record.b.effort.steps},
-        {"a", side_json(scene, scene.a, record.a)},
-        {"b", side_json(scene, scene.b, record.b)},
+        {"a", scene.a.replay ? track_json(*scene.a.replay, scene.preset.a.track) : side_json(scene, scene.a, record.a)},
+        {"b", scene.b.replay ? track_json(*scene.b.replay, scene.preset.b.track) : side_json(scene, scene.b, record.b)},
         {"largest_distance", record.largest_distance},
         {"parted_s", record.parting.since() ? Json(*record.parting.since()) : Json(nullptr)},
         {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "fit/flow.hpp"
-#include "fit/regression.hpp"
+#include "track/regression.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fit/model.hpp"
 #include "integrate/dormand_prince.hpp"
+#include "track/model.hpp"
 
 namespace doppel {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fit/model.hpp"
+#include "track/model.hpp"
 
 #include <array>
 #include <string>

@@ -1,19 +1,13 @@
 #pragma once
 
-#include "fit/model.hpp"
-#include "fit/track.hpp"
+#include "track/model.hpp"
+#include "track/track.hpp"
 
 #include <Eigen/Core>
 
 #include <vector>
 
 namespace doppel {
-
-/// Samples first … last − 1 of a piece, which have a start of their own.
-struct TrackSegment {
-    std::size_t piece = 0, first = 0, last = 0;
-    std::size_t size() const { return last - first; }
-};
 
 /// Which numbers of a model are fitted, and what it is like otherwise.
 struct ModelSpec {

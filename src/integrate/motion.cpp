@@ -62,7 +62,7 @@ public:
         if (follows_turns) turns_ = Turns(pendulum_->template cast<double>().angle);
         update_turns(0);
         const auto pivot = pivot_of(y_);
-        if (physical_) shift(bobs, pivot);
+        if (physical_) move_with(bobs, pivot);
         start_energy_ = energies_of(y_, bobs, pivot).total;
     }
 
@@ -91,7 +91,7 @@ public:
         turns_.add_to(bobs);
         const double length_error = length_error_of(y, bobs);
         const auto pivot = pivot_of(y);
-        if (physical_) shift(bobs, pivot);
+        if (physical_) move_with(bobs, pivot);
         const auto energy = energies_of(y, bobs, pivot);
         const Scalar work = layout_ ? layout_->work_of(y) : Scalar(0);
         Observation seen{.bobs = {},
@@ -166,14 +166,6 @@ private:
             alone[half + i + 1] -= pivot.vy;
         }
         return alone;
-    }
-    static void shift(Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
-        for (auto& bob : bobs) {
-            bob.x += pivot.x;
-            bob.y += pivot.y;
-            bob.vx += pivot.vx;
-            bob.vy += pivot.vy;
-        }
     }
     static Bob<double> in_double(const Bob<Scalar>& bob) {
         const auto plain = [](const Scalar& x) { return static_cast<double>(x); };

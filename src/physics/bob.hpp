@@ -104,6 +104,17 @@ Energies<Scalar> energies(const PhysicalPendulum<Scalar>& p, const Bobs<Scalar>&
     return sum;
 }
 
+/// The bobs of a chain whose pivot is at the origin, as they are with it at `pivot`.
+template <class Scalar>
+void move_with(Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
+    for (auto& bob : bobs) {
+        bob.x += pivot.x;
+        bob.y += pivot.y;
+        bob.vx += pivot.vx;
+        bob.vy += pivot.vy;
+    }
+}
+
 /// The rod that is furthest from its length, m.
 template <class Scalar>
 Scalar length_error(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {

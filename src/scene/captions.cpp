@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -143,6 +144,27 @@ std::vector<Statement> statements(const Scene& scene, bool of_b) {
     return all;
 }
 
+/// "piece-02.csv, 500 Hz"
+std::string track_words(const Side& side, const TrackSpec& spec) {
+    const auto& samples = side.replay->samples();
+    const double rate = static_cast<double>(samples.size() - 1) / samples.duration();
+    return fmt::format("{}, {} Hz", std::filesystem::path(spec.file).filename().string(), roughly(rate));
+}
+
+/// Of a measured pendulum and its computed twin.
+std::array<SideCaptions, 2> captions_of_tracks(const Scene& scene) {
+    std::array<SideCaptions, 2> words;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto& side = i == 0 ? scene.a : scene.b;
+        const auto& spec = i == 0 ? scene.preset.a : scene.preset.b;
+        words[i] = side.replay
+                       ? SideCaptions{"measured", track_words(side, spec.track)}
+                       : SideCaptions{"computed", fmt::format("{}, {}", side.method.title, control_words(side))};
+        words[i] = {spec.label.value_or(words[i].heading), spec.note.value_or(words[i].note)};
+    }
+    return words;
+}
+
 /// Of several, or of one.
 std::string system_words(const SideSpec& side, std::string_view plural = "s") {
     if (!side.particles.empty()) {
@@ -204,6 +226,7 @@ std::string roughly(double value) {
 }
 
 std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
+    if (scene.a.replay || scene.b.replay) return captions_of_tracks(scene);
     const std::array all{statements(scene, false), statements(scene, true)};
     std::array<SideCaptions, 2> words;
     if (differ_in_kind(scene.preset.a, scene.preset.b)) return captions_of_kinds(scene, all);
@@ -238,6 +261,8 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
 
 std::string scene_caption(const Scene& scene, Wording wording) {
     if (scene.preset.subtitle) return *scene.preset.subtitle;
+    if (scene.a.replay && scene.b.replay) return "two measured double pendulums";
+    if (scene.a.replay || scene.b.replay) return "a measured double pendulum and its computed twin";
     const auto at_rest = [](const SideSpec& side) {
         const auto rests = [](const ParticleSpec& particle) {
             return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;

@@ -51,4 +51,29 @@ PhysicalPendulum<Quad> physical_of(const SideSpec& spec) {
     return made;
 }
 
+bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other) {
+    const auto same_joint = [](const TorqueSpec& a, const TorqueSpec& b) { return a.joint == b.joint; };
+    return one.center_m.empty() == other.center_m.empty() &&
+           std::equal(one.torques.begin(), one.torques.end(), other.torques.begin(), other.torques.end(), same_joint);
+}
+
+PhysicalSpec between(const PhysicalSpec& from, const PhysicalSpec& to, const Quad& share) {
+    auto made = from, end = to;
+    const auto move = [&](Quad& number, const Quad& last) { number += share * (last - number); };
+    const auto move_all = [&](std::vector<Quad>& numbers, const std::vector<Quad>& last) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) move(numbers[i], last[i]);
+    };
+    const auto lists = made.lists(), last = end.lists();
+    for (std::size_t k = 0; k < lists.size(); ++k) move_all(*lists[k], *last[k]);
+    move_all(made.center_m, to.center_m);
+    move(made.joint_coulomb_width_deg_per_s, to.joint_coulomb_width_deg_per_s);
+    for (const auto number :
+         {&PivotSpec::direction_deg, &PivotSpec::amplitude_m, &PivotSpec::frequency_hz, &PivotSpec::phase_deg})
+        move(made.pivot.*number, to.pivot.*number);
+    for (std::size_t k = 0; k < made.torques.size(); ++k)
+        for (const auto number : {&TorqueSpec::amplitude_N_m, &TorqueSpec::frequency_hz, &TorqueSpec::phase_deg})
+            move(made.torques[k].*number, to.torques[k].*number);
+    return made;
+}
+
 }  // namespace doppel

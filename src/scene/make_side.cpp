@@ -121,7 +121,25 @@ std::vector<MechanismLine> lines_of(const Assembly<double>& assembly) {
     return lines;
 }
 
+namespace {
+
+/// A track, and the pendulum that it is taken for.
+Side make_measured_side(const SideSpec& spec, const Rational& sample_hz) {
+    Side side;
+    side.why = "a measured swing, which nothing steps";
+    side.motion.sample_interval = *quotient({1, 1}, sample_hz);
+    side.motion.chain = chain_of(spec);
+    if (!spec.physical.is_none()) side.motion.physical = physical_of(spec);
+    measure(spec, side);
+    side.replay = replay_of(spec.track);
+    side.has_energy_error = side.has_work = false;
+    return side;
+}
+
+}  // namespace
+
 Side make_side(const SideSpec& spec, const Rational& sample_hz) {
+    if (!spec.track.is_none()) return make_measured_side(spec, sample_hz);
     Side side;
     side.method = *find_method(spec.integrator);
     auto& motion = side.motion;

@@ -4,10 +4,12 @@
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 #include "scene/video_spec.hpp"
+#include "track/track.hpp"
 
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -143,6 +145,22 @@ struct PhysicalSpec {
     bool has_coulomb() const;
 };
 
+/// Whether such chains differ in numbers alone.
+bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other);
+/// Of chains that are alike: every number is that share of the way from one to the other.
+PhysicalSpec between(const PhysicalSpec& from, const PhysicalSpec& to, const Quad& share);
+
+/// [a.track]: a measured swing, which the side shows in place of a simulation.
+struct TrackSpec {
+    std::string file;                    // as it was found; empty: none
+    std::optional<Quad> start_s;         // on the file's clock; none: the first sample
+    std::vector<Quad> offset_deg{0, 0};  // of the encoders: what they show at rest
+    std::shared_ptr<const Track> track;  // what the file holds
+    std::string sha256;                  // of the file
+
+    bool is_none() const { return file.empty(); }
+};
+
 template <class Spec>
 std::string_view kind_name(const Spec& spec) {
     return Spec::kinds[spec.part.index()];
@@ -167,6 +185,7 @@ struct SideSpec {
     Stabilise stabilise = Stabilise::none;
     Quad stabilise_rate_per_s = 10;  // Baumgarte's α = β
     PhysicalSpec physical;
+    TrackSpec track;
     std::vector<ParticleSpec> particles;  // in place of a chain
     std::vector<ConstraintSpec> constraints;
     std::vector<ForceSpec> forces;
@@ -226,6 +245,9 @@ inline constexpr std::size_t longest_preset_name = 255 - 64;
 /// where it cannot be read; exit 130 soon after `stop` is set.
 PresetText find_preset(const std::string& name_or_path, const std::atomic<bool>* stop = nullptr);
 
+/// The path of a file that a preset names: beside the preset, or from here; from the command line always from here.
+std::string path_beside(const std::string& preset_path, const std::string& given, bool from_command_line);
+
 /// All presets that are built in, by name.
 std::vector<PresetText> builtin_presets();
 
@@ -263,6 +285,12 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
 
 /// Steps and samples must fall on each other exactly.
 void check_clock(const Preset& preset, const TomlReader& scene);
+
+/// Reads the file of a side's track, if it has one. Throws Error, or takes note of the fault, as the reader of its table does.
+void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side);
+
+/// No side may run for longer than its track.
+void check_tracks(const Preset& preset, const TomlReader& scene);
 
 /// Frames must fall on samples exactly, the poster on a frame; a GIF that names no rate gets one.
 void check_frames(Preset& preset, const TomlReader& video);

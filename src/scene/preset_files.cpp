@@ -87,6 +87,12 @@ PresetText read_file(const fs::path& path, const std::string& call, const std::a
 
 }  // namespace
 
+std::string path_beside(const std::string& preset_path, const std::string& given, bool from_command_line) {
+    std::error_code ignored;
+    const auto beside = fs::path(preset_path).parent_path() / given;
+    return !from_command_line && fs::exists(beside, ignored) ? beside.string() : given;
+}
+
 std::vector<PresetText> builtin_presets() {
     std::vector<PresetText> presets;
     for (const auto& file : scene_files()) {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 namespace doppel {
 namespace {
@@ -53,6 +52,11 @@ void check_layout(const Preset& preset, const TomlReader& video) {
     }
     if (layout != Arrangement::ensemble) return;
     const auto &a = preset.a, &b = preset.b;
+    if (!a.track.is_none() || !b.track.is_none())
+        throw video.fault("layout", "\"{}\" goes from one simulation to another; a side shows a track", name);
+    if (!are_alike(a.physical, b.physical))
+        throw video.fault(
+            "layout", "\"{}\" takes sides with the same kinds of torques, and center_m on both or on neither", name);
     if (a.is_mechanism() || b.is_mechanism())
         throw video.fault("layout", "\"{}\" is of chains without further constraints and forces", name);
     if (a.model != b.model || a.integrator != b.integrator || a.step() != b.step() ||
@@ -163,10 +167,7 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     std::string given;
     fonts.read({.key = key}, given);
     if (given.empty()) return !fonts.has(key);
-    namespace fs = std::filesystem;
-    std::error_code ignored;
-    const auto beside = fs::path(document.path).parent_path() / given;
-    video.text_font = !fonts.from_command_line(key) && fs::exists(beside, ignored) ? beside.string() : given;
+    video.text_font = path_beside(document.path, given, fonts.from_command_line(key));
     try {
         video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font));
     } catch (const Error& error) {
@@ -218,6 +219,8 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
         auto a = document.table(*level, "a"), b = document.table(*level, "b");
         read_side(a, preset.a, is_film);
         read_side(b, preset.b, is_film);
+        load_track(document, a, preset.a);
+        load_track(document, b, preset.b);
         b.check_together([&] {
             if (!is_film && preset.a.links() != preset.b.links())
                 throw b.fault("links",
@@ -232,7 +235,7 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
 
 void check_clock(const Preset& preset, const TomlReader& scene) {
     for (const auto* side : {&preset.a, &preset.b}) {
-        if (side->accuracy || find_method(side->integrator)->adaptive) continue;
+        if (!side->track.is_none() || side->accuracy || find_method(side->integrator)->adaptive) continue;
         const auto rate = quotient({1, 1}, side->step());
         const auto steps = rate ? quotient(*rate, preset.sample_hz) : std::nullopt;
         if (!steps || !steps->is_whole())
@@ -278,6 +281,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     faults.throw_if_any();
     place_members(document, top, video, preset);
     check_clock(preset, scene);
+    check_tracks(preset, scene);
     check_frames(preset, video);
     check_layout(preset, video);
     return preset;

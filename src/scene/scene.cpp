@@ -64,7 +64,7 @@ void check_precision(const Scene& scene) {
         if (side->motion.precision == Precision::in_double) check_droplets(scene, *side);
     if (scene.a.motion.precision == Precision::in_quad && scene.b.motion.precision == Precision::in_quad) return;
     const auto &a = scene.preset.a, &b = scene.preset.b;
-    if (differ_in_kind(a, b)) return;
+    if (differ_in_kind(a, b) || !a.track.is_none() || !b.track.is_none()) return;
     check_rounding(scene, "mass_kg", a.mass_kg, b.mass_kg);
     check_rounding(scene, "length_m", a.length_m, b.length_m);
     check_rounding(scene, "angle_deg", a.angle_deg, b.angle_deg);
@@ -83,7 +83,7 @@ void check_precision(const Scene& scene) {
 /// Errors say whose they are.
 Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::atomic<bool>& stop) {
     try {
-        if (spec.accuracy) return choose_side(spec, preset.duration_s, preset.sample_hz, stop);
+        if (spec.accuracy && spec.track.is_none()) return choose_side(spec, preset.duration_s, preset.sample_hz, stop);
         return make_side(spec, preset.sample_hz);
     } catch (const Error& fault) {
         throw Error(fault.code(), fmt::format("{}: side {}: {}", preset.name, name, fault.what()));
@@ -92,7 +92,9 @@ Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::a
 
 /// By which the steps of a sample can be divided on both sides; 0 = by anything.
 long common_steps(const Scene& scene) {
-    const auto steps = [](const Side& side) { return side.method.adaptive ? 0 : side.motion.steps_per_sample; };
+    const auto steps = [](const Side& side) {
+        return side.replay || side.method.adaptive ? 0 : side.motion.steps_per_sample;
+    };
     return std::gcd(steps(scene.a), steps(scene.b));
 }
 
@@ -118,9 +120,10 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
                            (member.*numbers).begin(), between);
         if (!asked.angles_deg.empty()) member.angle_deg = asked.angles_deg[k];
         member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
+        member.physical = doppel::between(first.physical, last.physical, share);
         members.push_back(in_ticks(scene.a.motion, scene.frames.ticks_per_sample));
         members.back().chain = chain_of(member);
-        if (members.back().physical) members.back().physical = physical_of(member);
+        if (!member.physical.is_none()) members.back().physical = physical_of(member);
         members.back().wants_tension = false;
     }
     return members;
@@ -141,7 +144,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     const auto wanted = [&](StripKind kind) {
         return std::find(preset.video.strips.begin(), preset.video.strips.end(), kind) != preset.video.strips.end();
     };
-    if (scene.a.has_work || scene.b.has_work)
+    const auto keeps_energy = [](const Side& side) { return !side.replay && !side.has_work; };
+    if (!keeps_energy(scene.a) || !keeps_energy(scene.b))
         std::replace(scene.preset.video.strips.begin(), scene.preset.video.strips.end(), StripKind::energy,
                      StripKind::total_energy);
     if (wanted(StripKind::rod_force) && (scene.a.motion.physical || scene.b.motion.physical))
@@ -177,7 +181,8 @@ std::optional<std::string> not_finite(const Observation& seen, bool has_angles) 
 /// Errors say whose they are.
 std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
     try {
-        return make_motion(in_ticks(side.motion, scene.frames.ticks_per_sample));
+        const auto motion = in_ticks(side.motion, scene.frames.ticks_per_sample);
+        return side.replay ? make_replay(motion, *side.replay) : make_motion(motion);
     } catch (const Error& fault) {
         throw Error(fault.code(), fmt::format("{}: side {}: {}", scene.preset.name, name, fault.what()));
     }

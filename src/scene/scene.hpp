@@ -5,6 +5,7 @@
 #include "integrate/motion.hpp"
 #include "physics/mechanism_assembly.hpp"
 #include "scene/preset.hpp"
+#include "track/replay.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -67,20 +68,25 @@ std::vector<MechanismLine> lines_of(const Assembly<double>& assembly);
 /// One side with everything chosen.
 struct Side {
     MotionSpec motion;
+    std::optional<Replay> replay;        // of a side that shows a track: what is not simulated
     std::string why;                     // this model
     std::optional<MethodChoice> choice;  // where an accuracy was asked for
-    MethodEntry method;
+    MethodEntry method{};
     Rational step{0, 1};       // s; of methods with a fixed step
     std::vector<double> mass;  // kg, a bob each
     bool has_angles = true;    // a chain, whose bobs hang one below the other
     double gravity = 0;        // m/s²
     double energy_unit = 0;    // J, what an error of its energy is measured by in pictures (the potential range)
     double reach = 0;          // m, from the pivot to the end of the outstretched chain; of a mechanism, its size_of()
-    bool has_energy_error = true;      // no spring is damped: what else changes the energy is known, Observation::work
-    bool has_work = false;             // by friction or drive on a chain
-    double pivot_reach = 0;            // m, how far the pivot moves from the origin
+    bool has_energy_error =
+        true;                // all that changes the energy is known (Observation::work): simulated, no damped spring
+    bool has_work = false;   // by friction or drive on a chain
+    double pivot_reach = 0;  // m, how far the pivot moves from the origin
     std::vector<MechanismLine> lines;  // what is drawn besides the bobs
 };
+
+/// What of a track is shown. Throws Error (exit 2) where it has no sample at its start.
+Replay replay_of(const TrackSpec& spec);
 
 /// The names of the models that a method steps.
 std::vector<std::string_view> models_of(const MethodEntry& method);

@@ -13,32 +13,35 @@ namespace {
 namespace fs = std::filesystem;
 
 // Who may include whom: dependencies run one way.
-//     base ← numeric ← physics ← integrate ← analysis ┐
-//     base ← image ← render ← plot ←──────────────────┼─ scene ← film ← figure, fit ← cli ← main
-//     base ← image ← output ← vector (and render) ←───┘
+//     base ← numeric ← physics ← integrate ← analysis, track ┐
+//     base ← image ← render ← plot ←─────────────────────────┼─ scene ← film ← figure, fit ← cli ← main
+//     base ← image ← output ← vector (and render) ←──────────┘
 const std::map<std::string, std::set<std::string>> needs{
     {"base", {}},
     {"numeric", {"base"}},
     {"physics", {"numeric", "base"}},
     {"integrate", {"physics", "numeric", "base"}},
     {"analysis", {"integrate", "physics", "numeric", "base"}},
+    {"track", {"integrate", "physics", "numeric", "base"}},
     {"image", {"base"}},
     {"render", {"image", "base"}},
     {"plot", {"render", "image", "base"}},
     {"output", {"image", "base"}},
     {"vector", {"output", "render", "image", "base"}},
-    {"scene", {"analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image", "base"}},
+    {"scene",
+     {"analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image", "base"}},
     {"film",
-     {"scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image", "base"}},
+     {"scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image",
+      "base"}},
     {"figure",
-     {"film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image",
-      "base"}},
+     {"film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render",
+      "image", "base"}},
     {"fit",
-     {"film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image",
-      "base"}},
+     {"film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render",
+      "image", "base"}},
     {"cli",
-     {"figure", "fit", "film", "scene", "analysis", "integrate", "physics", "numeric", "output", "vector", "plot",
-      "render", "image", "base"}},
+     {"figure", "fit", "film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector",
+      "plot", "render", "image", "base"}},
 };
 
 /// Calls visit(file, room or system header) for every include in src.

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "fit/segment.hpp"
+#include "track/model.hpp"
+#include "track/track.hpp"
 
 #include <vector>
 
@@ -11,7 +12,10 @@ struct Glimpse {
     std::array<double, 2> angle, rate, acceleration;
 };
 
-/// At moments half a window apart; the window is as long as the noise asks for.
+/// At a time on the piece's clock: of as many samples as the noise asks for, and of no fewer than seven an arm.
+Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s);
+
+/// At moments half a window apart.
 std::vector<Glimpse> glimpses_of(const Track& track);
 
 /// Angles and rates at the first sample of a segment, from a polynomial of its first tenth of a second or more.

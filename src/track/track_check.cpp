@@ -1,6 +1,6 @@
 #include "base/error.hpp"
-#include "fit/regression.hpp"
-#include "fit/track.hpp"
+#include "track/regression.hpp"
+#include "track/track.hpp"
 
 #include <algorithm>
 #include <cmath>

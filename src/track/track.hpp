@@ -20,6 +20,12 @@ struct TrackPiece {
     double duration() const { return time_s.back() - time_s.front(); }
 };
 
+/// Samples first … last − 1 of a piece.
+struct TrackSegment {
+    std::size_t piece = 0, first = 0, last = 0;
+    std::size_t size() const { return last - first; }
+};
+
 /// A measured swing.
 struct Track {
     std::vector<TrackPiece> pieces;  // in the order of time
@@ -39,6 +45,9 @@ struct Track {
 /// Throws Error: exit 2 where there is no such file, or where it cannot be a track (named: file, line, value, and what
 /// would be right), exit 4 where it cannot be read.
 Track read_tracks(const std::vector<std::filesystem::path>& files);
+
+/// All of a file. Throws Error as read_tracks() does.
+std::string text_of_track(const std::filesystem::path& file);
 
 /// The same of texts, `names` for messages.
 Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<std::string>& texts);

@@ -1,4 +1,4 @@
-#include "fit/track.hpp"
+#include "track/track.hpp"
 
 #include "base/error.hpp"
 #include "numeric/portable_math.hpp"
@@ -9,7 +9,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <string_view>
 
@@ -211,17 +210,27 @@ Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<s
     return track;
 }
 
+std::string text_of_track(const std::filesystem::path& file) {
+    constexpr std::size_t most_bytes = std::size_t{256} << 20;
+    if (!std::filesystem::exists(file)) throw bad_input("{}: there is no such file", file.string());
+    if (std::filesystem::is_directory(file)) throw bad_input("{} is a folder; give the CSV files in it", file.string());
+    std::ifstream stream(file, std::ios::binary);
+    std::string text, portion(std::size_t{1} << 16, '\0');
+    while (stream) {
+        stream.read(portion.data(), static_cast<std::streamsize>(portion.size()));
+        text.append(portion, 0, static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > most_bytes)
+            throw bad_input("{} has more than {} MB; a track is a CSV file", file.string(), most_bytes >> 20);
+    }
+    if (!stream.eof()) throw io_failed("{}: cannot be read", file.string());
+    return text;
+}
+
 Track read_tracks(const std::vector<std::filesystem::path>& files) {
     std::vector<std::string> names, texts;
     for (const auto& path : files) {
-        if (!std::filesystem::exists(path)) throw bad_input("{}: there is no such file", path.string());
-        if (std::filesystem::is_directory(path))
-            throw bad_input("{} is a folder; give the CSV files in it", path.string());
-        std::ifstream file(path, std::ios::binary);
-        std::string text{std::istreambuf_iterator<char>(file), {}};
-        if (!file.good() && !file.eof()) throw io_failed("{}: cannot be read", path.string());
+        texts.push_back(text_of_track(path));
         names.push_back(path.string());
-        texts.push_back(std::move(text));
     }
     return tracks_of_texts(names, texts);
 }

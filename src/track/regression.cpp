@@ -1,4 +1,4 @@
-#include "fit/regression.hpp"
+#include "track/regression.hpp"
 
 #include "numeric/portable_math.hpp"
 
@@ -46,25 +46,39 @@ double window_of(const Track& track) {
 
 }  // namespace
 
+Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s) {
+    constexpr std::size_t least = 7;
+    constexpr Eigen::Index degree = 4;
+    const auto& times = piece.time_s;
+    const double half = window_of(track) / 2;
+    const auto place = [&](auto bound) { return static_cast<std::size_t>(bound - times.begin()); };
+    Glimpse glimpse{};
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+        auto first = place(std::lower_bound(times.begin(), times.end(), time_s - half)),
+             last = place(std::upper_bound(times.begin(), times.end(), time_s + half));
+        const auto& is_outlier = piece.is_outlier[arm];
+        const auto count = [&](std::size_t from, std::size_t to) {
+            return static_cast<std::size_t>(std::count(is_outlier.begin() + static_cast<std::ptrdiff_t>(from),
+                                                       is_outlier.begin() + static_cast<std::ptrdiff_t>(to), 0));
+        };
+        while (count(first, last) < least && (first > 0 || last < times.size())) {
+            const bool back = first > 0 && (last == times.size() || time_s - times[first - 1] < times[last] - time_s);
+            back ? --first : ++last;
+        }
+        std::array<double, 3> values{piece.angle[arm][std::min(first, times.size() - 1)], 0, 0};
+        local_fit(piece, arm, first, last, time_s, degree, values);
+        glimpse.angle[arm] = values[0], glimpse.rate[arm] = values[1], glimpse.acceleration[arm] = values[2];
+    }
+    return glimpse;
+}
+
 std::vector<Glimpse> glimpses_of(const Track& track) {
     std::vector<Glimpse> all;
     const double window = window_of(track);
-    for (const auto& piece : track.pieces) {
-        std::size_t first = 0, last = 0;
-        for (double center = piece.time_s.front() + window / 2; center < piece.time_s.back() - window / 2;
-             center += window / 2) {
-            while (piece.time_s[first] < center - window / 2) ++first;
-            while (last < piece.size() && piece.time_s[last] <= center + window / 2) ++last;
-            Glimpse glimpse{};
-            bool whole = true;
-            for (std::size_t arm = 0; arm < 2 && whole; ++arm) {
-                std::array<double, 3> values{};
-                whole = local_fit(piece, arm, first, last, center, 4, values);
-                glimpse.angle[arm] = values[0], glimpse.rate[arm] = values[1], glimpse.acceleration[arm] = values[2];
-            }
-            if (whole) all.push_back(glimpse);
-        }
-    }
+    for (const auto& piece : track.pieces)
+        for (double time = piece.time_s.front() + window / 2; time < piece.time_s.back() - window / 2;
+             time += window / 2)
+            all.push_back(glimpse_at(track, piece, time));
     return all;
 }
 

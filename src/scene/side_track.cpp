@@ -1,0 +1,68 @@
+#include "embedded/scene.hpp"
+#include "output/written.hpp"
+#include "scene/preset_fields.hpp"
+#include "scene/scene.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace doppel {
+namespace {
+
+/// Reads the file beside the preset, from here, or built in.
+void read_file(TrackSpec& spec, const std::string& preset_path, bool from_command_line) {
+    const auto path = path_beside(preset_path, spec.file, from_command_line);
+    const auto built_in = std::find_if(scene_files().begin(), scene_files().end(),
+                                       [&](const EmbeddedFile& file) { return file.name == spec.file; });
+    std::error_code ignored;
+    const bool is_built_in = built_in != scene_files().end() && !std::filesystem::exists(path, ignored);
+    if (!is_built_in) spec.file = path;
+    const auto text = is_built_in ? std::string(built_in->contents) : text_of_track(path);
+    spec.sha256 = sha256_of_text(text);
+    spec.track = std::make_shared<const Track>(tracks_of_texts({spec.file}, {text}));
+}
+
+}  // namespace
+
+void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side) {
+    if (side.track.is_none()) return;
+    auto table = side_table.inner(side_table.read_table("track"), fmt::format("[{}.track]", side_table.bare_name()));
+    std::string_view key = "file";
+    try {
+        if (!side.particles.empty() || side.links() != 2)
+            throw bad_input("a track is of a double pendulum; the side has {}",
+                            side.particles.empty() ? fmt::format("{} links", side.links()) : "particles");
+        read_file(side.track, document.path, table.from_command_line(key));
+        key = "start_s";
+        replay_of(side.track);
+    } catch (const Error& error) {
+        const auto fault = table.fault(key, "{}", error.what());
+        if (error.code() != ExitCode::bad_input) throw Error(error.code(), fault.what());
+        table.refuse(fault, key);
+    }
+}
+
+Replay replay_of(const TrackSpec& spec) {
+    const Quad degree = pi_of<Quad>() / 180;
+    std::array<double, 2> offset{};
+    std::transform(spec.offset_deg.begin(), spec.offset_deg.end(), offset.begin(),
+                   [&](const Quad& angle) { return static_cast<double>(Quad(angle * degree)); });
+    std::optional<double> start;
+    if (spec.start_s) start = static_cast<double>(*spec.start_s);
+    return replay_from(spec.track, start, offset);
+}
+
+void check_tracks(const Preset& preset, const TomlReader& scene) {
+    for (const auto* side : {&preset.a, &preset.b}) {
+        if (side->track.is_none()) continue;
+        const double length = replay_of(side->track).length();
+        constexpr double rounding = 1e-9;
+        if (preset.duration_s.value() <= length + rounding) continue;
+        const auto rate = preset.sample_hz.value();
+        throw scene.fault("duration_s", "must be at most {:.6g}, as long as the track of side {} lasts; it is {}",
+                          std::floor((length + rounding) * rate) / rate, side == &preset.a ? "a" : "b",
+                          preset.duration_s.value());
+    }
+}
+
+}  // namespace doppel

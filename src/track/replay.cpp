@@ -1,0 +1,84 @@
+#include "track/replay.hpp"
+
+#include "base/error.hpp"
+#include "physics/physical_forces.hpp"
+#include "track/regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+constexpr double whole_sample = 1e-9;  // s: times are the same within that
+
+class ReplayedMotion final : public Motion {
+public:
+    ReplayedMotion(const MotionSpec& spec, const Replay& replay)
+        : pendulum_((spec.physical ? *spec.physical : physical(*spec.chain)).cast<double>()),
+          replay_(replay),
+          interval_(spec.sample_interval) {}
+
+    void advance(const std::atomic<bool>&) override {
+        ++count_;
+        if (time() > replay_.length() + whole_sample)
+            throw Error(ExitCode::method_failed,
+                        fmt::format("the track ends {:.6g} s after its start", replay_.length()));
+    }
+
+    Observation observe() const override {
+        const auto seen = glimpse_at(*replay_.track, replay_.samples(), replay_.start_s + time());
+        State<double, Eigen::Dynamic> y(4);
+        for (std::size_t arm = 0; arm < 2; ++arm) {
+            const auto i = static_cast<Eigen::Index>(arm);
+            y[i] = seen.angle[arm] - replay_.offset[arm];
+            y[i + 2] = seen.rate[arm];
+        }
+        const PivotPlace<double> at(pendulum_.pivot, time());
+        Observation now{.bobs = bobs_of_angles(pendulum_.chain, y),
+                        .exact = {},
+                        .pivot = {0, at.place.x, at.place.y, at.velocity.x, at.velocity.y},
+                        .tension = {}};
+        move_with(now.bobs, now.pivot);
+        const auto parts = energies(pendulum_, now.bobs, now.pivot);
+        now.kinetic_energy = parts.kinetic;
+        now.energy = parts.kinetic + parts.potential;
+        return now;
+    }
+
+    Effort effort() const override { return {}; }
+
+private:
+    double time() const { return static_cast<double>(count_) * interval_.value(); }
+
+    PhysicalPendulum<double> pendulum_;
+    Replay replay_;
+    Rational interval_;
+    long count_ = 0;
+};
+
+}  // namespace
+
+double Replay::length() const {
+    return samples().time_s.back() - start_s;
+}
+
+Replay replay_from(std::shared_ptr<const Track> track, std::optional<double> start_s, std::array<double, 2> offset) {
+    const auto& pieces = track->pieces;
+    const double start = start_s.value_or(pieces.front().time_s.front());
+    const auto holds = [&](const TrackPiece& piece) {
+        return start >= piece.time_s.front() - whole_sample && start < piece.time_s.back();
+    };
+    const auto found = std::find_if(pieces.begin(), pieces.end(), holds);
+    if (found == pieces.end())
+        throw bad_input("no sample is at {} s: the track goes from {} to {} s{}", start, pieces.front().time_s.front(),
+                        pieces.back().time_s.back(),
+                        pieces.size() > 1 ? fmt::format(", in {} pieces", pieces.size()) : "");
+    return {std::move(track), static_cast<std::size_t>(found - pieces.begin()), start, offset};
+}
+
+std::unique_ptr<Motion> make_replay(const MotionSpec& spec, const Replay& replay) {
+    return std::make_unique<ReplayedMotion>(spec, replay);
+}
+
+}  // namespace doppel
