@@ -20,6 +20,14 @@ void add_preset_options(CLI::App& command, PresetOptions& options) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void add_beside_option(CLI::App& command, PresetOptions& options) {
+    command
+        .add_option("--beside", options.beside,
+                    "A measured track (CSV) in place of side a; side b starts as it does, fitted to its first two "
+                    "seconds, and runs as long")
+        ->type_name("TRACK");
+}
+
 void add_out_options(CLI::App& command, std::string& out, std::string& progress) {
     command.add_option("-o,--out", out, "Folder for the results; they go to DIR/NAME/")
         ->type_name("DIR")
@@ -100,7 +108,9 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     std::vector<Scene> scenes;
     std::vector<std::string> names;
     for (const auto& name : options.presets) {
-        scenes.push_back(make_scene(read_preset(find_preset(name, &stop), overrides), stop));
+        const auto text = find_preset(name, &stop);
+        const auto& all = options.beside.empty() ? overrides : beside_overrides(text, overrides, options.beside, stop);
+        scenes.push_back(make_scene(read_preset(text, all), stop));
         names.push_back(scenes.back().preset.name);
         check_names(names, options.presets);
     }

@@ -5,6 +5,7 @@
 
 #include <CLI/App.hpp>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -17,6 +18,7 @@ namespace doppel {
 /// What commands that take presets have in common, as it was typed.
 struct PresetOptions {
     std::vector<std::string> presets, sets;
+    std::string beside = {};
 };
 
 /// What commands that run presets have besides.
@@ -26,6 +28,12 @@ struct RunCommandOptions : PresetOptions {
 };
 
 void add_preset_options(CLI::App& command, PresetOptions& options);
+/// --beside.
+void add_beside_option(CLI::App& command, PresetOptions& options);
+/// What --beside FILE puts on top of a preset and the overrides `given`, with these: side a shows the track, and side b starts
+/// as fitted to its first two seconds and runs for as long as it lasts. Throws Error as read_preset() does.
+std::vector<Override> beside_overrides(const PresetText& text, const std::vector<Override>& given,
+                                       const std::string& track, const std::atomic<bool>& stop);
 /// --out and --progress.
 void add_out_options(CLI::App& command, std::string& out, std::string& progress);
 /// The same, and --jobs; `jobs` = what it counts, for the help.

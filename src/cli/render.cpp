@@ -57,6 +57,7 @@ void add_render(CLI::App& app) {
         "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films\n"
         "  doppel render butterfly --from 6.8 --to 9\n"
         "  doppel render butterfly --format gif --size 640x360\n"
+        "  doppel render out/lab/lab.toml --beside track.csv\n"
         "  doppel render butterfly --set 'video.layout=\"overlay\"' --set video.poster_s=14 --set "
         "'video.contact_sheet=[4, 3]'");
     add_run_options(command, *options,
@@ -79,6 +80,7 @@ void add_render(CLI::App& app) {
                     "draft (a quarter of the pixels, fast), standard (what the preset says) or best (slow)")
         ->type_name("QUALITY")
         ->check(CLI::IsMember({"draft", "standard", "best"}));
+    add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     add_gl_option(command, options->gl);
     command.callback([options] {
@@ -105,6 +107,7 @@ void add_still(CLI::App& app) {
         "  doppel still butterfly --at 14 --set video.transparent=true\n"
         "  doppel still butterfly --at 14 --format pdf");
     add_preset_options(command, *options);
+    add_beside_option(command, *options);
     command.add_option("--at", options->at, "The time of the picture, s; there must be a sample")
         ->type_name("SECONDS")
         ->required();
@@ -139,6 +142,7 @@ void add_simulate(CLI::App& app) {
         "  doppel simulate butterfly --set 'system.integrator=\"rk4\"'\n"
         "  doppel simulate butterfly --columns time_s,a_theta2_rad,distance");
     add_run_options(command, *options, "Has no effect on a table");
+    add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     command.callback([options] {
         run_all(read_scenes(*options), *options,

@@ -261,8 +261,8 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
 
 std::string scene_caption(const Scene& scene, Wording wording) {
     if (scene.preset.subtitle) return *scene.preset.subtitle;
-    if (scene.a.replay && scene.b.replay) return "two measured double pendulums";
-    if (scene.a.replay || scene.b.replay) return "a measured double pendulum and its computed twin";
+    if (scene.a.replay && scene.b.replay) return "two real double pendulums";
+    if (scene.a.replay || scene.b.replay) return "a real double pendulum and its twin";
     const auto at_rest = [](const SideSpec& side) {
         const auto rests = [](const ParticleSpec& particle) {
             return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;

@@ -289,9 +289,6 @@ void check_clock(const Preset& preset, const TomlReader& scene);
 /// Reads the file of a side's track, if it has one. Throws Error, or takes note of the fault, as the reader of its table does.
 void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side);
 
-/// No side may run for longer than its track.
-void check_tracks(const Preset& preset, const TomlReader& scene);
-
 /// Frames must fall on samples exactly, the poster on a frame; a GIF that names no rate gets one.
 void check_frames(Preset& preset, const TomlReader& video);
 

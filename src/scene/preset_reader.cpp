@@ -281,7 +281,6 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     faults.throw_if_any();
     place_members(document, top, video, preset);
     check_clock(preset, scene);
-    check_tracks(preset, scene);
     check_frames(preset, video);
     check_layout(preset, video);
     return preset;

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
+#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -90,6 +91,19 @@ Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::a
     }
 }
 
+/// Throws Error (exit 2) where a side would run for longer than its track.
+void check_tracks(const Scene& scene) {
+    const auto& preset = scene.preset;
+    for (const auto* side : {&scene.a, &scene.b}) {
+        if (!side->replay) continue;
+        const auto most = longest_duration(*side->replay, preset.sample_hz);
+        if (preset.duration_s.value() > most.value())
+            throw bad_input(
+                "{}: [scene] duration_s must be at most {}, as long as the track of side {} lasts; it is {}",
+                preset.name, toml_ratio(most), side == &scene.a ? "a" : "b", preset.duration_s.text());
+    }
+}
+
 /// By which the steps of a sample can be divided on both sides; 0 = by anything.
 long common_steps(const Scene& scene) {
     const auto steps = [](const Side& side) {
@@ -155,6 +169,7 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
             preset.name);
     scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
     check_precision(scene);
+    check_tracks(scene);
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
     return scene;
 }

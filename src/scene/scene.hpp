@@ -87,6 +87,8 @@ struct Side {
 
 /// What of a track is shown. Throws Error (exit 2) where it has no sample at its start.
 Replay replay_of(const TrackSpec& spec);
+/// A whole number of samples, up to the last that it holds, s.
+Rational longest_duration(const Replay& replay, const Rational& sample_hz);
 
 /// The names of the models that a method steps.
 std::vector<std::string_view> models_of(const MethodEntry& method);

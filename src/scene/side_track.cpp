@@ -4,6 +4,7 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace doppel {
@@ -52,17 +53,10 @@ Replay replay_of(const TrackSpec& spec) {
     return replay_from(spec.track, start, offset);
 }
 
-void check_tracks(const Preset& preset, const TomlReader& scene) {
-    for (const auto* side : {&preset.a, &preset.b}) {
-        if (side->track.is_none()) continue;
-        const double length = replay_of(side->track).length();
-        constexpr double rounding = 1e-9;
-        if (preset.duration_s.value() <= length + rounding) continue;
-        const auto rate = preset.sample_hz.value();
-        throw scene.fault("duration_s", "must be at most {:.6g}, as long as the track of side {} lasts; it is {}",
-                          std::floor((length + rounding) * rate) / rate, side == &preset.a ? "a" : "b",
-                          preset.duration_s.value());
-    }
+Rational longest_duration(const Replay& replay, const Rational& sample_hz) {
+    constexpr double rounding = 1e-9;  // s
+    const auto samples = static_cast<long>(std::floor((replay.length() + rounding) * sample_hz.value()));
+    return *quotient({samples, 1}, sample_hz);
 }
 
 }  // namespace doppel

@@ -6,20 +6,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace doppel {
 namespace {
 
-/// Polynomial of degree `degree` through samples first … last − 1 of one arm, by the time from `center`: value, rate,
-/// acceleration there. False where there are too few.
-bool local_fit(const TrackPiece& piece, std::size_t arm, std::size_t first, std::size_t last, double center,
-               Eigen::Index degree, std::array<double, 3>& result) {
+/// What a polynomial says of one arm at a moment, and how far the samples are from it.
+struct LocalFit {
+    double angle = 0, rate = 0, acceleration = 0, rms = 0;
+};
+
+/// Samples first … last − 1 of a piece.
+struct SampleRange {
+    std::size_t first = 0, last = 0;
+};
+
+/// A polynomial in the time from `center` through a range of one arm's samples; nothing where they are too few.
+std::optional<LocalFit> local_fit(const TrackPiece& piece, std::size_t arm, SampleRange range, double center,
+                                  Eigen::Index degree) {
     std::vector<std::size_t> used;
-    for (std::size_t i = first; i < last; ++i)
+    for (std::size_t i = range.first; i < range.last; ++i)
         if (!piece.is_outlier[arm][i]) used.push_back(i);
     const auto count = static_cast<Eigen::Index>(used.size());
-    if (count < degree + 2) return false;
-    const double span = std::max(piece.time_s[last - 1] - center, center - piece.time_s[first]);
+    if (count < degree + 2) return std::nullopt;
+    const double span = std::max(piece.time_s[range.last - 1] - center, center - piece.time_s[range.first]);
     Eigen::MatrixXd powers(count, degree + 1);
     Eigen::VectorXd values(count);
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -29,8 +39,27 @@ bool local_fit(const TrackPiece& piece, std::size_t arm, std::size_t first, std:
         values[i] = piece.angle[arm][used[static_cast<std::size_t>(i)]];
     }
     const Eigen::VectorXd c = (powers.transpose() * powers).ldlt().solve(powers.transpose() * values);
-    result = {c[0], c[1] / span, 2 * c[2] / (span * span)};
-    return c.allFinite();
+    if (!c.allFinite()) return std::nullopt;
+    const double rest = (values - powers * c).norm() / std::sqrt(static_cast<double>(count));
+    return LocalFit{c[0], c[1] / span, 2 * c[2] / (span * span), rest};
+}
+
+/// A window around a moment, shifted to be whole even at the ends of the piece, and widened to hold `least` samples.
+SampleRange range_around(const TrackPiece& piece, std::size_t arm, double time_s, double window, std::size_t least) {
+    const auto& times = piece.time_s;
+    const auto& is_outlier = piece.is_outlier[arm];
+    const double from = std::max(times.front(), std::min(time_s - window / 2, times.back() - window));
+    const auto place = [&](auto bound) { return static_cast<std::size_t>(bound - times.begin()); };
+    SampleRange range{place(std::lower_bound(times.begin(), times.end(), from)),
+                      place(std::upper_bound(times.begin(), times.end(), from + window))};
+    auto& [first, last] = range;
+    auto count = static_cast<std::size_t>(std::count(is_outlier.begin() + static_cast<std::ptrdiff_t>(first),
+                                                     is_outlier.begin() + static_cast<std::ptrdiff_t>(last), 0));
+    while (count < least && (first > 0 || last < times.size())) {
+        const bool back = first > 0 && (last == times.size() || time_s - times[first - 1] < times[last] - time_s);
+        if (!is_outlier[back ? --first : last++]) ++count;
+    }
+    return range;
 }
 
 /// Long enough that its polynomial averages the noise away, short against a swing.
@@ -47,38 +76,41 @@ double window_of(const Track& track) {
 }  // namespace
 
 Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s) {
-    constexpr std::size_t least = 7;
-    constexpr Eigen::Index degree = 4;
-    const auto& times = piece.time_s;
-    const double half = window_of(track) / 2;
-    const auto place = [&](auto bound) { return static_cast<std::size_t>(bound - times.begin()); };
+    constexpr Eigen::Index degree = 5;
+    constexpr std::size_t least = degree + 3;
+    // encoders err alike for some samples in a row, which the noise from sample to sample does not tell
+    constexpr double noises = 3, shortest_s = 1e-6;
     Glimpse glimpse{};
     for (std::size_t arm = 0; arm < 2; ++arm) {
-        auto first = place(std::lower_bound(times.begin(), times.end(), time_s - half)),
-             last = place(std::upper_bound(times.begin(), times.end(), time_s + half));
-        const auto& is_outlier = piece.is_outlier[arm];
-        const auto count = [&](std::size_t from, std::size_t to) {
-            return static_cast<std::size_t>(std::count(is_outlier.begin() + static_cast<std::ptrdiff_t>(from),
-                                                       is_outlier.begin() + static_cast<std::ptrdiff_t>(to), 0));
-        };
-        while (count(first, last) < least && (first > 0 || last < times.size())) {
-            const bool back = first > 0 && (last == times.size() || time_s - times[first - 1] < times[last] - time_s);
-            back ? --first : ++last;
+        LocalFit fit;
+        for (double window = window_of(track); window > shortest_s; window /= 2) {
+            const auto range = range_around(piece, arm, time_s, window, least);
+            fit = local_fit(piece, arm, range, time_s, degree).value_or(LocalFit{piece.angle[arm][range.first]});
+            if (fit.rms <= noises * track.noise[arm] || range.last - range.first <= least) break;
         }
-        std::array<double, 3> values{piece.angle[arm][std::min(first, times.size() - 1)], 0, 0};
-        local_fit(piece, arm, first, last, time_s, degree, values);
-        glimpse.angle[arm] = values[0], glimpse.rate[arm] = values[1], glimpse.acceleration[arm] = values[2];
+        glimpse.angle[arm] = fit.angle, glimpse.rate[arm] = fit.rate, glimpse.acceleration[arm] = fit.acceleration;
     }
     return glimpse;
 }
 
 std::vector<Glimpse> glimpses_of(const Track& track) {
+    constexpr Eigen::Index degree = 4;
     std::vector<Glimpse> all;
     const double window = window_of(track);
     for (const auto& piece : track.pieces)
         for (double time = piece.time_s.front() + window / 2; time < piece.time_s.back() - window / 2;
-             time += window / 2)
-            all.push_back(glimpse_at(track, piece, time));
+             time += window / 2) {
+            Glimpse glimpse{};
+            bool whole = true;
+            for (std::size_t arm = 0; arm < 2 && whole; ++arm) {
+                const auto fit = local_fit(piece, arm, range_around(piece, arm, time, window, 0), time, degree);
+                whole = fit.has_value();
+                if (whole)
+                    glimpse.angle[arm] = fit->angle, glimpse.rate[arm] = fit->rate,
+                    glimpse.acceleration[arm] = fit->acceleration;
+            }
+            if (whole) all.push_back(glimpse);
+        }
     return all;
 }
 
@@ -89,9 +121,9 @@ ArmState<double> guessed_start(const Track& track, const TrackSegment& segment) 
     while (last < segment.last && (piece.time_s[last] <= begin + window || last < segment.first + 6)) ++last;
     ArmState<double> start{};
     for (std::size_t arm = 0; arm < 2; ++arm) {
-        std::array<double, 3> values{piece.angle[arm][segment.first], 0, 0};
-        local_fit(piece, arm, segment.first, last, begin, 3, values);
-        start[arm] = values[0], start[arm + 2] = values[1];
+        const auto fit =
+            local_fit(piece, arm, {segment.first, last}, begin, 3).value_or(LocalFit{piece.angle[arm][segment.first]});
+        start[arm] = fit.angle, start[arm + 2] = fit.rate;
     }
     return start;
 }

@@ -12,10 +12,10 @@ struct Glimpse {
     std::array<double, 2> angle, rate, acceleration;
 };
 
-/// At a time on the piece's clock: of as many samples as the noise asks for, and of no fewer than seven an arm.
+/// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone.
 Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s);
 
-/// At moments half a window apart.
+/// At moments half a window apart; the window is as long as the noise asks for.
 std::vector<Glimpse> glimpses_of(const Track& track);
 
 /// Angles and rates at the first sample of a segment, from a polynomial of its first tenth of a second or more.

@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"strips-only", "calm", 360, {"video.panels=[\"distance\", \"energy\"]"}},
                     Golden{"rods-1s", "rods", 120, {}}, Golden{"damped-3s", "damped", 360, {}},
                     Golden{"kapitza-2s", "kapitza", 240, {"video.theme=\"light\""}},
-                    Golden{"fan-3s", "fan", 360, {"video.members=40"}},
+                    Golden{"measured-2s", "measured", 480, {}}, Golden{"fan-3s", "fan", 360, {"video.members=40"}},
                     Golden{"phase-dance-3s", "phase-dance", 360, {}},
                     Golden{"section-3s", "butterfly", 360, {"video.layout=\"phase\"", "video.phase=\"section\""}},
                     Golden{"slow-parting-2s", "slow-parting", 480, {}},

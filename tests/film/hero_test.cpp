@@ -17,9 +17,9 @@
 namespace doppel {
 namespace hero_test {
 
-constexpr std::array films{"butterfly", "calm",   "fan",         "horizon",     "loop",     "damped",
-                           "kapitza",   "rods",   "mass-ratio",  "phase-dance", "raindrop", "slow-parting",
-                           "springs",   "triple", "two-methods", "whip",        "whip-256"};
+constexpr std::array films{"butterfly", "calm",     "fan",        "horizon",     "loop",     "damped",
+                           "kapitza",   "rods",     "mass-ratio", "phase-dance", "raindrop", "slow-parting",
+                           "springs",   "measured", "triple",     "two-methods", "whip",     "whip-256"};
 constexpr std::array sizes{Size{1920, 1080}, Size{480, 270}, Size{3840, 2160}, Size{1080, 1920}};
 
 /// A film with fewer samples and another size; how it is stepped is chosen once.

@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <map>
+#include <sstream>
+
 namespace doppel {
 namespace program_test {
 
@@ -46,6 +50,54 @@ TEST(FitProgram, FitsARealPendulum) {
     EXPECT_NEAR(json["track"]["period"]["seconds"].get<double>(), 5.334, 0.005);
     EXPECT_EQ(json["ladder"].size(), 9u);
     EXPECT_EQ(read_png(folder / "out/lab/lab.png").size, (Size{1600, 1300}));
+}
+
+/// The largest difference of an angle between the sides of a table, rad, and its last time, s.
+std::pair<double, double> largest_difference(const fs::path& file) {
+    std::istringstream table(bytes_of(file));
+    std::string line, cell;
+    std::getline(table, line);
+    std::map<std::string, std::size_t> column;
+    for (std::istringstream names(line); std::getline(names, cell, ',');) column.emplace(cell, column.size());
+    double worst = 0, last = 0;
+    while (std::getline(table, line)) {
+        std::vector<double> row;
+        for (std::istringstream cells(line); std::getline(cells, cell, ',');)
+            row.push_back(cell.empty() ? NAN : std::stod(cell));
+        const auto at = [&](const char* name) { return row[column.at(name)]; };
+        worst = std::max({worst, std::abs(at("a_theta1_rad") - at("b_theta1_rad")),
+                          std::abs(at("a_theta2_rad") - at("b_theta2_rad"))});
+        last = at("time_s");
+    }
+    return {worst, last};
+}
+
+/// Of pieces that were not fitted: two seconds tell the start, the rest is predicted.
+TEST(FitProgram, ItsPresetRunsBesideATrack) {
+    const auto folder = fresh_folder();
+    ASSERT_EQ(test::doppel(folder, fit_of({data / "piece-00.csv", data / "piece-02.csv"}, {"--name", "lab"})).code, 0);
+    const auto beside = [&](const std::string& track, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> words{"simulate", "out/lab/lab.toml", "--beside", track, "--progress", "none"};
+        words.insert(words.end(), more.begin(), more.end());
+        return test::doppel(folder, words);
+    };
+    const auto left_out = (data / "piece-04.csv").string();
+    const auto result = beside(left_out);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto [worst, last] = largest_difference(folder / "out/lab/lab.csv");
+    EXPECT_LT(worst, 5e-3);                // measured 2.2e-3 rad
+    EXPECT_NEAR(last, 319 / 120.0, 1e-9);  // as long as the track
+    const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.json"));
+    EXPECT_EQ(json["a"]["measured"]["file"], left_out);
+    EXPECT_EQ(json["a"]["measured"]["samples"], 1334);
+    EXPECT_EQ(json["resolved_preset"]["b"]["note"].get<std::string>().substr(0, 28), "start fitted to 2 s, within ");
+
+    ASSERT_EQ(beside(left_out, {"--set", "scene.duration_s=1", "--set", "a.track.start_s=0.5"}).code, 0);
+    EXPECT_EQ(largest_difference(folder / "out/lab/lab.csv").second, 1);
+
+    const auto gone = beside("gone.csv");
+    EXPECT_EQ(gone.code, 2);
+    EXPECT_EQ(gone.err, "doppel: --beside gone.csv (a.track.file): [a.track] file gone.csv: there is no such file\n");
 }
 
 TEST(FitProgram, WritesTheSameBytesForAnyNumberOfThreads) {

@@ -1,0 +1,58 @@
+// The start that follows a track, against the start that made it.
+#include "fit/start.hpp"
+
+#include "track/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace start_test {
+
+using namespace test;
+
+FittedStart start_of(const MotionSpec& twin, const std::string& text) {
+    const auto track = std::make_shared<const Track>(tracks_of_texts({"swing.csv"}, {text}));
+    return fit_start(twin, replay_from(track, std::nullopt, {}), never_stop);
+}
+
+void expect_start(const FittedStart& start, double angle, double rate) {
+    EXPECT_NEAR(start.angle[0], 1, angle);
+    EXPECT_NEAR(start.angle[1], -2, angle);
+    EXPECT_NEAR(start.rate[0], 3, rate);
+    EXPECT_NEAR(start.rate[1], 5, rate);
+}
+
+TEST(FitStart, FindsStartAndOffsets) {
+    const auto start = start_of(swinging_rods(), csv_of_motion(swinging_rods(), 1002, 0, 0.01));
+    expect_start(start, 1e-6, 1e-5);
+    EXPECT_NEAR(start.offset[0], 0.01, 1e-6);
+    EXPECT_NEAR(start.offset[1], -0.01, 1e-6);
+    EXPECT_NEAR(start.seconds, 2, 1e-9);
+    EXPECT_LT(start.rms, 1e-6);
+}
+
+TEST(FitStart, NoiseShiftsItLittle) {
+    expect_start(start_of(swinging_rods(), csv_of_motion(swinging_rods(), 1002, 1e-3)), 2e-4, 3e-3);  // measured 5e-5, 6e-4
+}
+
+/// Whatever steps the twin: the start is that of its own motion.
+TEST(FitStart, OfAnyMethod) {
+    auto twin = swinging_rods();
+    twin.method = "rk4";
+    twin.steps_per_sample = 20;
+    expect_start(start_of(twin, csv_of_motion(swinging_rods(), 1002)), 1e-6, 1e-5);
+}
+
+/// Point masses do not swing so: as much as they can follow is fitted, and it is said how much.
+TEST(FitStart, OfAModelThatCannotFollow) {
+    auto twin = swinging_rods();
+    twin.physical = physical(*twin.chain);
+    const auto start = start_of(twin, csv_of_motion(swinging_rods(), 1002));
+    EXPECT_GT(start.seconds, 0);
+    EXPECT_LT(start.seconds, 2);
+    EXPECT_LT(start.rms, 0.1);
+    expect_start(start, 0.3, 3);
+}
+
+}  // namespace start_test
+}  // namespace doppel

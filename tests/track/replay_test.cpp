@@ -1,0 +1,101 @@
+// A measured swing shown as a motion, against the motion that was measured.
+#include "track/replay.hpp"
+
+#include "base/error.hpp"
+#include "track/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace doppel {
+namespace replay_test {
+
+using namespace test;
+
+std::shared_ptr<const Track> track_of(const std::string& text) {
+    return std::make_shared<const Track>(tracks_of_texts({"swing.csv"}, {text}));
+}
+
+/// The largest errors of angles, rates, places and energy, seen 240 times a second.
+struct Errors {
+    double angle = 0, rate = 0, place = 0, energy = 0;
+};
+Errors errors_of(const std::string& text, std::array<double, 2> offset = {}) {
+    const auto spec = swinging_rods({1, 240});
+    const auto truth = make_motion(spec), shown = make_replay(spec, replay_from(track_of(text), std::nullopt, offset));
+    Errors worst;
+    const auto keep = [](double& most, double error) { most = std::max(most, std::abs(error)); };
+    for (int k = 0; k <= 480; ++k) {
+        if (k > 0) truth->advance(never_stop), shown->advance(never_stop);
+        const auto a = truth->observe(), b = shown->observe();
+        for (std::size_t i = 0; i < 2; ++i) {
+            keep(worst.angle, a.bobs[i].theta - b.bobs[i].theta);
+            keep(worst.rate, a.bobs[i].omega - b.bobs[i].omega);
+            keep(worst.place, std::hypot(a.bobs[i].x - b.bobs[i].x, a.bobs[i].y - b.bobs[i].y));
+        }
+        keep(worst.energy, a.energy - b.energy);
+    }
+    return worst;
+}
+
+TEST(Replay, ShowsTheMotionThatWasMeasured) {
+    const auto worst = errors_of(csv_of_motion(swinging_rods(), 1002));
+    EXPECT_LT(worst.angle, 1e-5);   // measured 2e-6
+    EXPECT_LT(worst.rate, 2e-3);    // measured 6e-4 of 16 rad/s
+    EXPECT_LT(worst.place, 2e-6);   // measured 4e-7
+    EXPECT_LT(worst.energy, 2e-3);  // measured 5e-4 of 4 J
+}
+
+TEST(Replay, AveragesNoiseAway) {
+    const auto worst = errors_of(csv_of_motion(swinging_rods(), 1002, 1e-4));
+    EXPECT_LT(worst.angle, 7e-4);  // measured 4.9e-4, the worst of 962
+    EXPECT_LT(worst.rate, 0.15);   // measured 0.097; from sample to sample it would be 0.2
+}
+
+TEST(Replay, SubtractsWhatEncodersShowAtRest) {
+    const auto text = csv_of_motion(swinging_rods(), 1002, 0, 0.05);
+    EXPECT_GT(errors_of(text).angle, 0.049);
+    EXPECT_LT(errors_of(text, {0.05, -0.05}).angle, 1e-5);
+}
+
+TEST(Replay, LeavesOutWhatIsFarOff) {
+    auto text = csv_of_motion(swinging_rods(), 1002);
+    const auto row = text.find("\n0.4,");
+    ASSERT_NE(row, std::string::npos);
+    text.replace(row + 1, text.find('\n', row + 1) - row - 1, "0.4,9,9");
+    EXPECT_LT(errors_of(text).angle, 1e-5);
+}
+
+TEST(Replay, BeginsWhereItIsToldAndEndsWithItsPiece) {
+    auto text = csv_of_motion(swinging_rods(), 1202);
+    const auto from = text.find("\n1,") + 1, to = text.find("\n1.5,") + 1;
+    text.erase(from, to - from);  // 0 … 0.998 s and 1.5 … 2.402 s
+    const auto track = track_of(text);
+    EXPECT_NEAR(replay_from(track, std::nullopt, {}).length(), 0.998, 1e-12);
+    const auto later = replay_from(track, 1.6, {});
+    EXPECT_EQ(later.piece, 1u);
+    EXPECT_NEAR(later.length(), 0.802, 1e-12);
+    const auto shown = make_replay(swinging_rods({2, 5}), later);
+    const auto truth = make_motion(swinging_rods({8, 5}));
+    truth->advance(never_stop);
+    EXPECT_NEAR(shown->observe().bobs[1].theta, truth->observe().bobs[1].theta, 1e-5);
+    shown->advance(never_stop), shown->advance(never_stop);
+    try {
+        shown->advance(never_stop);
+        FAIL() << "it went on";
+    } catch (const Error& fault) {
+        EXPECT_EQ(fault.code(), ExitCode::method_failed);
+        EXPECT_STREQ(fault.what(), "the track ends 0.802 s after its start");
+    }
+    for (const double gap : {1.2, -1.0, 3.0}) try {
+            replay_from(track, gap, {});
+            ADD_FAILURE() << gap;
+        } catch (const Error& fault) {
+            EXPECT_EQ(fault.what(),
+                      fmt::format("no sample is at {} s: the track goes from 0 to 2.402 s, in 2 pieces", gap));
+        }
+}
+
+}  // namespace replay_test
+}  // namespace doppel
