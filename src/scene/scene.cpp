@@ -162,10 +162,12 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     if (!keeps_energy(scene.a) || !keeps_energy(scene.b))
         std::replace(scene.preset.video.strips.begin(), scene.preset.video.strips.end(), StripKind::energy,
                      StripKind::total_energy);
-    if (wanted(StripKind::rod_force) && (scene.a.motion.physical || scene.b.motion.physical))
+    const auto has_rod_forces = [](const Side& side) { return !side.motion.physical && !side.replay; };
+    if (wanted(StripKind::rod_force) && !(has_rod_forces(scene.a) && has_rod_forces(scene.b)))
         throw bad_input(
-            "{}: [video] panels: \"rod-force\" is the force in massless rods; links with mass, friction or a "
-            "drive have none such",
+            "{}: [video] panels: \"rod-force\" is the force in massless rods of a simulation; links with mass, "
+            "friction or "
+            "a drive have none such, and tracks tell none",
             preset.name);
     scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
     check_precision(scene);

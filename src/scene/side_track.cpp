@@ -32,7 +32,9 @@ void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& 
     try {
         if (!side.particles.empty() || side.links() != 2)
             throw bad_input("a track is of a double pendulum; the side has {}",
-                            side.particles.empty() ? fmt::format("{} links", side.links()) : "particles");
+                            side.particles.empty()
+                                ? fmt::format("{} link{}", side.links(), side.links() == 1 ? "" : "s")
+                                : "particles");
         read_file(side.track, document.path, table.from_command_line(key));
         key = "start_s";
         replay_of(side.track);

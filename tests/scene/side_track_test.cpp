@@ -134,6 +134,9 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{track + "start_s = 1",
                     "x: [scene] duration_s must be at most \"199/120\", as long as the track of "
                     "side a lasts; it is 2"},
+        RefusedText{track + "[video]\npanels = [\"pendulums\", \"rod-force\"]",
+                    "x: [video] panels: \"rod-force\" is the force in massless rods of a simulation; links with mass, "
+                    "friction or a drive have none such, and tracks tell none"},
         RefusedText{track + "[video]\nlayout = \"ensemble\"",
                     "nowhere/x.toml:6:1: [video] layout \"ensemble\" goes from one simulation to another; a side shows "
                     "a track"}));
