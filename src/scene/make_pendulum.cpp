@@ -58,12 +58,13 @@ bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other) {
 }
 
 PhysicalSpec between(const PhysicalSpec& from, const PhysicalSpec& to, const Quad& share) {
-    auto made = from, end = to;
+    auto made = from;
     const auto move = [&](Quad& number, const Quad& last) { number += share * (last - number); };
     const auto move_all = [&](std::vector<Quad>& numbers, const std::vector<Quad>& last) {
         for (std::size_t i = 0; i < numbers.size(); ++i) move(numbers[i], last[i]);
     };
-    const auto lists = made.lists(), last = end.lists();
+    const auto lists = made.lists();
+    const auto last = to.lists();
     for (std::size_t k = 0; k < lists.size(); ++k) move_all(*lists[k], *last[k]);
     move_all(made.center_m, to.center_m);
     move(made.joint_coulomb_width_deg_per_s, to.joint_coulomb_width_deg_per_s);

@@ -185,7 +185,8 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
 void find_in(SideSpec side, const TomlReader& table, std::string_view key, NumericKey& number) {
     const Place place(number.inside);
     const auto demand_counting = [&](const Field& field) {
-        if (!field.only.holds) throw table.fault(key, "\"{}\" {}", number.path, field.only.fault);
+        if (!field.only.holds && !field.only.fault.empty())
+            throw table.fault(key, "\"{}\" {}", number.path, field.only.fault);
         number.bounds = field.bounds;
         number.label = label_of(number, field);
     };
@@ -254,10 +255,10 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
     spread(old.length_m, side.length_m);
     spread(old.angle_deg, side.angle_deg);
     spread(old.omega_deg_per_s, side.omega_deg_per_s);
-    auto before = old.physical;
-    const auto lists = side.physical.lists(), old_lists = before.lists();
+    const auto old_lists = old.physical.lists();
+    const auto lists = side.physical.lists();
     for (std::size_t i = 0; i < lists.size(); ++i) spread(*old_lists[i], *lists[i]);
-    if (!before.center_m.empty()) spread(before.center_m, side.physical.center_m = side.length_m);
+    if (!old.physical.center_m.empty()) spread(old.physical.center_m, side.physical.center_m = side.length_m);
 }
 
 }  // namespace

@@ -128,18 +128,21 @@ struct PhysicalSpec {
 
     friend bool operator==(const PhysicalSpec&, const PhysicalSpec&) = default;
 
-    /// All the lists with a number a link but center_m.
-    auto lists() {
-        return std::array{&rod_mass_kg,
-                          &inertia_kg_m2,
-                          &joint_viscous_N_m_s,
-                          &joint_coulomb_N_m,
-                          &arm_drag_linear_N_m_s,
-                          &arm_drag_quadratic_N_m_s2,
-                          &air_drag_quadratic_N_m_s2,
-                          &drag_linear_N_s_per_m,
-                          &drag_quadratic_N_s2_per_m2};
+    template <class Physical>
+    static auto lists_of(Physical& of) {
+        return std::array{&of.rod_mass_kg,
+                          &of.inertia_kg_m2,
+                          &of.joint_viscous_N_m_s,
+                          &of.joint_coulomb_N_m,
+                          &of.arm_drag_linear_N_m_s,
+                          &of.arm_drag_quadratic_N_m_s2,
+                          &of.air_drag_quadratic_N_m_s2,
+                          &of.drag_linear_N_s_per_m,
+                          &of.drag_quadratic_N_s2_per_m2};
     }
+    /// All the lists with a number a link but center_m.
+    auto lists() { return lists_of(*this); }
+    auto lists() const { return lists_of(*this); }
     /// Whether any of it is there.
     bool is_none() const;
     bool has_coulomb() const;

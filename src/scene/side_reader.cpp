@@ -232,10 +232,9 @@ bool PhysicalSpec::has_coulomb() const {
 }
 
 bool PhysicalSpec::is_none() const {
-    auto copy = *this;
-    const auto lists = copy.lists();
+    const auto all = lists();
     return center_m.empty() && torques.empty() && pivot.amplitude_m == 0 &&
-           std::all_of(lists.begin(), lists.end(), [&](const auto* list) { return is_zero(*list); });
+           std::all_of(all.begin(), all.end(), [](const auto* list) { return is_zero(*list); });
 }
 
 bool differ_in_kind(const SideSpec& a, const SideSpec& b) {
