@@ -57,10 +57,13 @@ struct SegmentSums {
     std::vector<Eigen::VectorXd> blocks;  // where asked for: slopes (four, then p) of successive stretches
 };
 
+/// How many residuals a segment has: two a sample, without outliers.
+std::size_t residual_count(const Track& track, const TrackSegment& segment);
+
 /// What to keep besides.
 struct SegmentExtras {
-    std::vector<Residual>* residuals = nullptr;
-    double block_s = 0;  // length of the stretches; 0 = none
+    Residual* residuals = nullptr;  // room for residual_count() of them
+    double block_s = 0;             // length of the stretches; 0 = none
 };
 
 /// The residuals of a segment whose arms start in `start` at its first sample, and how they change with start and

@@ -127,11 +127,12 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
              int jobs, const std::atomic<bool>& stop) {
     constexpr double enough = 0.005;
     double damping = 1e-8;
+    Fit next;  // outside the loop, as its memory serves again
     for (int start = fit.passes; fit.passes - start < most;) {
         throw_if_set(stop);
         const auto change = step_of(fit, damping);
         if (change.expected < enough + relative * fit.cost) return;
-        Fit next{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = fit.starts};
+        next.model = fit.model, next.rules = fit.rules, next.parameters = fit.parameters, next.starts = fit.starts;
         next.passes = fit.passes;
         apply(next, change);
         if (is_possible(next.parameters))
@@ -140,7 +141,7 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
             next.cost = std::numeric_limits<double>::infinity();
         fit.passes = next.passes;
         if (next.cost < fit.cost) {
-            fit = std::move(next);
+            std::swap(fit, next);
             damping = std::max(damping / 10, least_damping);
         } else if (damping > 1e6) {
             return;
@@ -175,19 +176,19 @@ std::vector<Eigen::Index> Fit::free_places() const {
 
 void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, int jobs, double block_s) {
     ++fit.passes;
-    fit.sums.assign(segments.size(), {});
-    std::vector<std::vector<Residual>> residuals(segments.size());
+    fit.sums.resize(segments.size());
+    std::vector<std::size_t> begins(segments.size() + 1, 0);
+    for (std::size_t k = 0; k < segments.size(); ++k) begins[k + 1] = begins[k] + residual_count(track, segments[k]);
+    fit.residuals.resize(begins.back());
     parallel_for(segments.size(), jobs, [&](std::size_t k) {
         fit.sums[k] = evaluate_segment(track, fit.model, fit.rules, fit.parameters, fit.starts[k], segments[k], k,
-                                       {&residuals[k], block_s});
+                                       {fit.residuals.data() + begins[k], block_s});
     });
     double squares = 0;
     fit.cost = 0;
-    fit.residuals.clear();
-    for (std::size_t k = 0; k < segments.size(); ++k) {  // in order, whoever computed them
-        fit.cost += fit.sums[k].cost;
-        squares += fit.sums[k].squares;
-        fit.residuals.insert(fit.residuals.end(), residuals[k].begin(), residuals[k].end());
+    for (const auto& sums : fit.sums) {  // in order, whoever computed them
+        fit.cost += sums.cost;
+        squares += sums.squares;
     }
     fit.rms = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(fit.residuals.size(), 1)));
 }
