@@ -20,6 +20,10 @@ struct ModelSpec {
     bool point_masses = false;  // then D1 = A D2/C, and gravity_1 is not among `fitted`
     Drag drag = Drag::own;
     std::vector<FitParameter> fitted;
+    bool may_gain = false;  // friction may be negative
+
+    /// Whether it is friction that must not be negative.
+    bool is_bounded(FitParameter parameter) const { return is_friction(parameter) && !may_gain; }
 };
 
 /// The parameters with those that follow from others.

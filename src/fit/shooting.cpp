@@ -68,8 +68,8 @@ Change step_of(const Fit& fit, double damping) {
         for (std::size_t k = 0; k < held.size(); ++k) {
             const auto parameter = fit.model.fitted[k];
             const auto place = static_cast<Eigen::Index>(k);
-            const bool leaves =
-                is_friction(parameter) && fit.parameters[index_of(parameter)] <= 0 && change.parameters[place] < 0;
+            const bool leaves = fit.model.is_bounded(parameter) && fit.parameters[index_of(parameter)] <= 0 &&
+                                change.parameters[place] < 0;
             if (held[k] || !leaves) continue;
             held[k] = again = true;
             matrix.row(place).setZero();
@@ -81,7 +81,7 @@ Change step_of(const Fit& fit, double damping) {
     for (std::size_t k = 0; k < held.size(); ++k) {
         const auto parameter = fit.model.fitted[k];
         auto& d = change.parameters[static_cast<Eigen::Index>(k)];
-        if (is_friction(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
+        if (fit.model.is_bounded(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
     }
     change.expected = 0.5 * change.parameters.dot(slope);
     for (std::size_t k = 0; k < fit.sums.size(); ++k) {
@@ -154,7 +154,8 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
 void note_bounds(Fit& fit) {
     fit.at_bound.clear();
     for (const auto parameter : fit.model.fitted)
-        if (is_friction(parameter) && fit.parameters[index_of(parameter)] <= 0) fit.at_bound.push_back(parameter);
+        if (fit.model.is_bounded(parameter) && fit.parameters[index_of(parameter)] <= 0)
+            fit.at_bound.push_back(parameter);
 }
 
 }  // namespace
@@ -206,7 +207,7 @@ Fit moved(const Fit& fit, const std::vector<Eigen::Index>& places, const Eigen::
     for (std::size_t k = 0; k < fit.model.fitted.size(); ++k) {
         const auto parameter = fit.model.fitted[k];
         auto& d = all.parameters[static_cast<Eigen::Index>(k)];
-        if (is_friction(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
+        if (fit.model.is_bounded(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
     }
     for (const auto& sums : fit.sums)
         all.starts.push_back(inverse_of_start(sums, 0) * (sums.start_slope - sums.mixed * all.parameters));
