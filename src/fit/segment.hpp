@@ -71,7 +71,7 @@ struct SegmentExtras {
 };
 
 /// The residuals of a segment whose arms start in `start` at its first sample, and how they change with start and
-/// parameters: exact derivatives of the computed motion, by dual numbers.
+/// parameters: exact derivatives of the computed motion, carried along.
 SegmentSums evaluate_segment(const Track& track, const ModelSpec& model, const FitRules& rules,
                              const Parameters& parameters, const ArmState<double>& start, const TrackSegment& segment,
                              std::size_t number = 0, const SegmentExtras& extras = {});

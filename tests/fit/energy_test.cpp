@@ -16,7 +16,7 @@ std::pair<int, std::string> ending(const Track& track, Bodies bodies = Bodies::a
     try {
         answer(track, {.bodies = bodies}, 2, no_stop, [](std::size_t, std::size_t) {});
     } catch (const Error& error) {
-        return {error.exit_code, error.what()};
+        return {static_cast<int>(error.code()), error.what()};
     }
     return {0, ""};
 }
@@ -51,8 +51,8 @@ TEST(FitEnergy, IsLostAsTheFrictionSays) {
     auto truth = lab_arms(false);
     at(truth, viscous_1) = 0.08, at(truth, viscous_2) = 0.03;
     const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
-    EXPECT_GT(errors_from_zero(track, truth), 50);             // measured 136
-    EXPECT_LT(errors_from_zero(reversed(track), truth), -50);  // measured −136
+    EXPECT_GT(errors_from_zero(track, truth), 50);             // measured 372
+    EXPECT_LT(errors_from_zero(reversed(track), truth), -50);  // measured −370
 }
 
 TEST(FitEnergy, TracksPlayedBackwardsAreRefused) {
@@ -73,7 +73,7 @@ TEST(FitEnergy, TracksPlayedBackwardsAreRefused) {
 TEST(FitEnergy, TracksWithoutFrictionAreTaken) {
     const auto truth = lab_arms(false);
     double squares = 0, largest = 0;
-    constexpr unsigned tracks = 60;
+    constexpr unsigned tracks = 40;
     for (unsigned seed = 1; seed <= tracks; ++seed) {
         const auto track = simulated(truth, Drag::own, {.noise = 1e-3, .seed = seed});
         const double z = errors_from_zero(track, truth);
@@ -81,9 +81,9 @@ TEST(FitEnergy, TracksWithoutFrictionAreTaken) {
         largest = std::max(largest, std::abs(z));
     }
     RecordProperty("rms", std::to_string(std::sqrt(squares / tracks)));
-    EXPECT_LT(largest, 4);
-    EXPECT_NEAR(std::sqrt(squares / tracks), 1, 0.3);
-    for (unsigned seed = 1; seed <= 4; ++seed) {
+    EXPECT_LT(largest, 4);                             // measured 2.5
+    EXPECT_NEAR(std::sqrt(squares / tracks), 1, 0.3);  // measured 0.96
+    for (unsigned seed = 1; seed <= 2; ++seed) {
         const auto track = simulated(truth, Drag::own, {.noise = seed % 2 == 0 ? 1e-3 : 1e-5, .seed = seed});
         EXPECT_EQ(ending(track).second, "");
         EXPECT_EQ(ending(reversed(track)).second, "");
@@ -96,7 +96,8 @@ TEST(FitEnergy, ALagIsNotTakenForEnergy) {
     for (const std::ptrdiff_t shift : {-2, -1, 1, 2})
         for (unsigned seed = 1; seed <= 4; ++seed) {
             const auto track = simulated(truth, Drag::own, {.hz = 500, .noise = 1e-3, .seed = seed});
-            EXPECT_LT(std::abs(errors_from_zero(with_lag(track, shift), truth)), 4) << shift << " " << seed;
+            // measured up to 2.4; by a fit that knows no lag 3.8
+            EXPECT_LT(std::abs(errors_from_zero(with_lag(track, shift), truth)), 3) << shift << " " << seed;
         }
 }
 
