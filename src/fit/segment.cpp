@@ -74,7 +74,7 @@ public:
             rows_.col(held_).setZero();
             weights_[held_] = 0;
         }
-        add_columns(std::make_integer_sequence<int, size>());
+        add_blocks(std::make_integer_sequence<int, (size + block_columns - 1) / block_columns>());
         held_ = 0;
     }
 
@@ -82,20 +82,22 @@ public:
     const Row& slope() const { return slope_; }
 
 private:
-    static constexpr int at_once = 4;
+    static constexpr int at_once = 4, block_columns = 4;
 
-    template <int... columns>
-    void add_columns(std::integer_sequence<int, columns...>) {
-        (add_column<columns>(), ...);
+    template <int... blocks>
+    void add_blocks(std::integer_sequence<int, blocks...>) {
+        (add_block<block_columns * blocks>(), ...);
     }
 
-    /// From the diagonal down, or one above it: an even place.
-    template <int j>
-    void add_column() {
-        constexpr int from = j / 2 * 2, length = size - from;
-        const Eigen::Vector4d by = weights_.cwiseProduct(rows_.row(j).transpose());
-        const auto of = [&](int k) { return by[k] * rows_.col(k).template segment<length>(from); };
-        matrix_.col(j).template segment<length>(from) += (of(0) + of(1)) + (of(2) + of(3));
+    /// Columns from that on, from the diagonal block down.
+    template <int from>
+    void add_block() {
+        constexpr int length = size - from;
+        for (int j = from; j < std::min(from + block_columns, size); ++j) {
+            const Eigen::Vector4d by = weights_.cwiseProduct(rows_.row(j).transpose());
+            const auto of = [&](int k) { return by[k] * rows_.col(k).template segment<length>(from); };
+            matrix_.col(j).template segment<length>(from) += (of(0) + of(1)) + (of(2) + of(3));
+        }
     }
 
     int held_ = 0;

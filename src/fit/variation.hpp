@@ -95,7 +95,7 @@ Accelerations accelerations_of(const Arms<double>& arms, const ArmState<double>&
 }
 
 /// Arms whose state is known with its derivatives by the start (directions 0 to 3) and some parameters (from 4 on):
-/// exact, as duals throughout would give them, at a fifth of the cost.
+/// exact, as duals throughout would give them, for less.
 template <int N>
 struct VaryingArms {
     using Number = Dual<double, N>;
