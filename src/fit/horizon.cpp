@@ -2,6 +2,7 @@
 
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
+#include "fit/variation.hpp"
 
 #include <Eigen/LU>
 
@@ -88,15 +89,16 @@ bool follow(const Track& track, const TrackSegment& segment, std::size_t first_p
 void attribute(const Fit& fit, const Fit& start, const Uncertainty& uncertainty, double limit, Prediction& prediction) {
     constexpr int most = 4 + static_cast<int>(dynamic_count);
     using Number = Dual<double, most>;
-    Arms<Number> arms{.p = {}, .drag = fit.model.drag};
+    VaryingArms<most> arms{
+        .arms = arms_of(fit.model, fit.parameters), .direction = {}, .point_masses = fit.model.point_masses};
+    arms.direction.fill(-1);
     std::vector<Eigen::Index> directions, places;
-    for (std::size_t k = 0; k < dynamic_count; ++k) arms.p[k] = fit.parameters[k];
     for (std::size_t k = 0; k < uncertainty.parameters.size(); ++k) {
         const auto parameter = uncertainty.parameters[k];
         if (!is_dynamic(parameter)) continue;
         directions.push_back(4 + static_cast<Eigen::Index>(index_of(parameter)));
         places.push_back(static_cast<Eigen::Index>(k));
-        arms.p[index_of(parameter)] = Number::variable(fit.parameters[index_of(parameter)], directions.back());
+        arms.direction[index_of(parameter)] = directions.back();
     }
     const Eigen::MatrixXd of_parameters = uncertainty.covariance(places, places);
     const Eigen::Matrix4d of_start = start.sums[0].starts.inverse() * std::pow(uncertainty.inflation, 2);

@@ -21,20 +21,6 @@ struct Plan {
     ModelSpec model;
 };
 
-ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
-    ModelSpec model{.point_masses = point, .drag = drag, .fitted = {inertia, coupling}};
-    auto& fitted = model.fitted;
-    if (!point) fitted.push_back(gravity_1);
-    fitted.push_back(gravity_2);
-    if (friction > 0) fitted.insert(fitted.end(), {viscous_1, viscous_2});
-    if (friction > 1) fitted.insert(fitted.end(), {coulomb_1, coulomb_2});
-    if (friction > 2) fitted.insert(fitted.end(), {quadratic_1, quadratic_2});
-    fitted.insert(fitted.end(), {offset_1, offset_2});
-    if (reading > 0) fitted.push_back(lag);
-    if (reading > 1) fitted.insert(fitted.end(), {scale_1, scale_2});
-    return model;
-}
-
 bool fits(const ModelSpec& model, FitParameter parameter) {
     return std::find(model.fitted.begin(), model.fitted.end(), parameter) != model.fitted.end();
 }
@@ -148,6 +134,20 @@ bool is_as_likely(const FittedModel& rung, const FittedModel& best) {
 
 }  // namespace
 
+ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
+    ModelSpec model{.point_masses = point, .drag = drag, .fitted = {inertia, coupling}};
+    auto& fitted = model.fitted;
+    if (!point) fitted.push_back(gravity_1);
+    fitted.push_back(gravity_2);
+    if (friction > 0) fitted.insert(fitted.end(), {viscous_1, viscous_2});
+    if (friction > 1) fitted.insert(fitted.end(), {coulomb_1, coulomb_2});
+    if (friction > 2) fitted.insert(fitted.end(), {quadratic_1, quadratic_2});
+    fitted.insert(fitted.end(), {offset_1, offset_2});
+    if (reading > 0) fitted.push_back(lag);
+    if (reading > 1) fitted.insert(fitted.end(), {scale_1, scale_2});
+    return model;
+}
+
 Division divide(const Track& track, double segment_s) {
     constexpr double longest = 3, shortest = 0.5, wanted = 8, few_pieces = 4;
     const double length = segment_s > 0 ? segment_s : std::clamp(track.duration() / wanted, shortest, longest);
@@ -197,7 +197,7 @@ Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments) {
             const auto parameter = fit.model.fitted[static_cast<std::size_t>(places[static_cast<std::size_t>(k)])];
             const double value = fit.parameters[index_of(parameter)];
             constexpr double margin = 1e-9;
-            if (!is_friction(parameter) || value + change[k] >= -margin * value) continue;
+            if (!fit.model.is_bounded(parameter) || value + change[k] >= -margin * value) continue;
             const double to_zero = -value / scale[k];
             right -= even.col(k) * to_zero;
             even.row(k).setZero();

@@ -12,6 +12,10 @@ namespace doppel {
 /// Which bodies the arms may be.
 enum class Bodies { automatic, point, compound };
 
+/// The model with friction: 0 none, 1 viscous, 2 and dry, 3 and drag; and with a reading: 0 offsets, 1 and a lag, 2 and
+/// scales.
+ModelSpec model_of(bool point, int friction, Drag drag = Drag::own, int reading = 0);
+
 /// A model and how it did.
 struct FittedModel {
     std::string name;  // "compound, viscous and dry friction"

@@ -2,6 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "fit/energy.hpp"
 
 #include <fmt/format.h>
 
@@ -25,16 +26,40 @@ double spread_of(const Track& track) {
     return std::sqrt(squares / count);
 }
 
+/// How much a model may leave, rms, rad.
+double most_left(const Track& track) {
+    constexpr double most_share = 0.05, noises = 3;
+    return std::max(most_share * spread_of(track), noises * std::max(track.noise[0], track.noise[1]));
+}
+
+/// Throws where the swing gains energy. Only where friction that must not be negative is held at 0 need one look.
+void demand_loss(const Track& track, const ModelLadder& ladder, int jobs, const std::atomic<bool>& stop) {
+    constexpr double sure = 5;  // standard errors
+    const auto is_viscous = [](const FittedModel& rung) {
+        const auto& fitted = rung.model.fitted;
+        const auto has = [&](FitParameter parameter) {
+            return std::count(fitted.begin(), fitted.end(), parameter) > 0;
+        };
+        return has(FitParameter::viscous_1) && !has(FitParameter::coulomb_1);
+    };
+    const auto viscous = std::find_if(ladder.rungs.rbegin(), ladder.rungs.rend(), is_viscous);
+    if (viscous == ladder.rungs.rend() || viscous->fit.at_bound.empty()) return;
+    const auto loss = energy_loss(track, ladder.division.segments, viscous->fit, jobs, stop);
+    if (loss.share > -sure * loss.standard_error || loss.rms > most_left(track)) return;
+    throw method_failed(
+        "{}: the swing gains energy, {:.2g} ± {:.1g} % of its energy of motion a second, and a pendulum that swings "
+        "freely loses it: time_s must grow as time did, and nothing may drive the pendulum",
+        track.pieces.front().name, -100 * loss.share, 100 * loss.standard_error);
+}
+
 /// Throws where even the best model leaves too much for its numbers to mean anything.
 void demand_description(const Track& track, const ModelLadder& ladder) {
-    constexpr double most_share = 0.05, noises = 3;
     const auto& best = ladder.rungs[ladder.best];
-    const double spread = spread_of(track), noise = std::max(track.noise[0], track.noise[1]);
-    if (best.left_out_rms <= std::max(most_share * spread, noises * noise)) return;
+    if (best.left_out_rms <= most_left(track)) return;
     throw method_failed(
         "{}: no model describes this track: the best ({}) errs by {:.2g} rad on stretches left out, of angles "
         "spread by {:.2g} rad; is it a double pendulum that swings freely, and are the columns right?",
-        track.pieces.front().name, best.name, best.left_out_rms, spread);
+        track.pieces.front().name, best.name, best.left_out_rms, spread_of(track));
 }
 
 /// Exchanged, the arms obey the same equations, but for friction. No body, however, hangs by its own weight the wrong
@@ -78,6 +103,7 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
     auto& ladder = result.ladder = climb(result.track, question.bodies, jobs, stop, report);
     result.models_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     demand_order(result.track, ladder);
+    demand_loss(result.track, ladder, jobs, stop);
     demand_description(result.track, ladder);
     const auto& segments = ladder.division.segments;
     constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer

@@ -31,7 +31,7 @@ struct FitQuestion {
 };
 
 /// Fits all models, chooses one, and measures it. `report` hears how many models are done. Throws Error: exit 3 where no
-/// model describes the track, 130.
+/// model describes the track or the swing gains energy, 130.
 FitResult answer(Track track, const FitQuestion& question, int jobs, const std::atomic<bool>& stop,
                  const std::function<void(std::size_t done, std::size_t of)>& report);
 

@@ -14,6 +14,10 @@ struct ModelSpec {
     bool point_masses = false;  // then D1 = A D2/C, and gravity_1 is not among `fitted`
     Drag drag = Drag::own;
     std::vector<FitParameter> fitted;
+    bool may_gain = false;  // friction may be negative
+
+    /// Whether it is friction that must not be negative.
+    bool is_bounded(FitParameter parameter) const { return is_friction(parameter) && !may_gain; }
 };
 
 /// The parameters with those that follow from others.
@@ -51,14 +55,17 @@ struct SegmentSums {
     std::vector<Eigen::VectorXd> blocks;  // where asked for: slopes (four, then p) of successive stretches
 };
 
+/// How many residuals a segment has: two a sample, without outliers.
+std::size_t residual_count(const Track& track, const TrackSegment& segment);
+
 /// What to keep besides.
 struct SegmentExtras {
-    std::vector<Residual>* residuals = nullptr;
-    double block_s = 0;  // length of the stretches; 0 = none
+    Residual* residuals = nullptr;  // room for residual_count() of them
+    double block_s = 0;             // length of the stretches; 0 = none
 };
 
 /// The residuals of a segment whose arms start in `start` at its first sample, and how they change with start and
-/// parameters: exact derivatives of the computed motion, by dual numbers.
+/// parameters: exact derivatives of the computed motion, carried along.
 SegmentSums evaluate_segment(const Track& track, const ModelSpec& model, const FitRules& rules,
                              const Parameters& parameters, const ArmState<double>& start, const TrackSegment& segment,
                              std::size_t number = 0, const SegmentExtras& extras = {});

@@ -68,8 +68,8 @@ Change step_of(const Fit& fit, double damping) {
         for (std::size_t k = 0; k < held.size(); ++k) {
             const auto parameter = fit.model.fitted[k];
             const auto place = static_cast<Eigen::Index>(k);
-            const bool leaves =
-                is_friction(parameter) && fit.parameters[index_of(parameter)] <= 0 && change.parameters[place] < 0;
+            const bool leaves = fit.model.is_bounded(parameter) && fit.parameters[index_of(parameter)] <= 0 &&
+                                change.parameters[place] < 0;
             if (held[k] || !leaves) continue;
             held[k] = again = true;
             matrix.row(place).setZero();
@@ -81,7 +81,7 @@ Change step_of(const Fit& fit, double damping) {
     for (std::size_t k = 0; k < held.size(); ++k) {
         const auto parameter = fit.model.fitted[k];
         auto& d = change.parameters[static_cast<Eigen::Index>(k)];
-        if (is_friction(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
+        if (fit.model.is_bounded(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
     }
     change.expected = 0.5 * change.parameters.dot(slope);
     for (std::size_t k = 0; k < fit.sums.size(); ++k) {
@@ -127,11 +127,12 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
              int jobs, const std::atomic<bool>& stop) {
     constexpr double enough = 0.005;
     double damping = 1e-8;
+    Fit next;  // outside the loop, as its memory serves again
     for (int start = fit.passes; fit.passes - start < most;) {
         throw_if_set(stop);
         const auto change = step_of(fit, damping);
         if (change.expected < enough + relative * fit.cost) return;
-        Fit next{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = fit.starts};
+        next.model = fit.model, next.rules = fit.rules, next.parameters = fit.parameters, next.starts = fit.starts;
         next.passes = fit.passes;
         apply(next, change);
         if (is_possible(next.parameters))
@@ -140,7 +141,7 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
             next.cost = std::numeric_limits<double>::infinity();
         fit.passes = next.passes;
         if (next.cost < fit.cost) {
-            fit = std::move(next);
+            std::swap(fit, next);
             damping = std::max(damping / 10, least_damping);
         } else if (damping > 1e6) {
             return;
@@ -153,7 +154,8 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
 void note_bounds(Fit& fit) {
     fit.at_bound.clear();
     for (const auto parameter : fit.model.fitted)
-        if (is_friction(parameter) && fit.parameters[index_of(parameter)] <= 0) fit.at_bound.push_back(parameter);
+        if (fit.model.is_bounded(parameter) && fit.parameters[index_of(parameter)] <= 0)
+            fit.at_bound.push_back(parameter);
 }
 
 }  // namespace
@@ -175,19 +177,19 @@ std::vector<Eigen::Index> Fit::free_places() const {
 
 void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, int jobs, double block_s) {
     ++fit.passes;
-    fit.sums.assign(segments.size(), {});
-    std::vector<std::vector<Residual>> residuals(segments.size());
+    fit.sums.resize(segments.size());
+    std::vector<std::size_t> begins(segments.size() + 1, 0);
+    for (std::size_t k = 0; k < segments.size(); ++k) begins[k + 1] = begins[k] + residual_count(track, segments[k]);
+    fit.residuals.resize(begins.back());
     parallel_for(segments.size(), jobs, [&](std::size_t k) {
         fit.sums[k] = evaluate_segment(track, fit.model, fit.rules, fit.parameters, fit.starts[k], segments[k], k,
-                                       {&residuals[k], block_s});
+                                       {fit.residuals.data() + begins[k], block_s});
     });
     double squares = 0;
     fit.cost = 0;
-    fit.residuals.clear();
-    for (std::size_t k = 0; k < segments.size(); ++k) {  // in order, whoever computed them
-        fit.cost += fit.sums[k].cost;
-        squares += fit.sums[k].squares;
-        fit.residuals.insert(fit.residuals.end(), residuals[k].begin(), residuals[k].end());
+    for (const auto& sums : fit.sums) {  // in order, whoever computed them
+        fit.cost += sums.cost;
+        squares += sums.squares;
     }
     fit.rms = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(fit.residuals.size(), 1)));
 }
@@ -205,7 +207,7 @@ Fit moved(const Fit& fit, const std::vector<Eigen::Index>& places, const Eigen::
     for (std::size_t k = 0; k < fit.model.fitted.size(); ++k) {
         const auto parameter = fit.model.fitted[k];
         auto& d = all.parameters[static_cast<Eigen::Index>(k)];
-        if (is_friction(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
+        if (fit.model.is_bounded(parameter)) d = std::max(d, -fit.parameters[index_of(parameter)]);
     }
     for (const auto& sums : fit.sums)
         all.starts.push_back(inverse_of_start(sums, 0) * (sums.start_slope - sums.mixed * all.parameters));

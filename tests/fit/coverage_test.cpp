@@ -49,7 +49,7 @@ TEST(FitCoverage, NineteenOfTwentyIntervalsHoldTheTruth) {
     auto truth = lab_arms();
     at(truth, coulomb_1) = at(truth, coulomb_2) = at(truth, quadratic_1) = at(truth, quadratic_2) = 0;
     at(truth, offset_1) = 0.002, at(truth, offset_2) = -0.001;
-    const auto seen = coverage_of(trials, truth, spec(false, 1), {.noise = 1e-3});
+    const auto seen = coverage_of(trials, truth, model_of(false, 1), {.noise = 1e-3});
     RecordProperty("share", std::to_string(seen.all));
     EXPECT_GT(seen.all, 0.93);  // measured 0.945
     EXPECT_LT(seen.all, 0.97);
@@ -64,7 +64,7 @@ TEST(FitCoverage, NineteenOfTwentyIntervalsHoldTheTruth) {
 TEST(FitCoverage, HoldsForEveryKindOfFriction) {
     const bool is_long = std::getenv("DOPPEL_LONG_FIT");
     const int trials = is_long ? 200 : 25;
-    const auto seen = coverage_of(trials, lab_arms(), spec(false, 3, Drag::carried), {.noise = 3e-4});
+    const auto seen = coverage_of(trials, lab_arms(), model_of(false, 3, Drag::carried), {.noise = 3e-4});
     RecordProperty("share", std::to_string(seen.all));
     EXPECT_GT(seen.all, is_long ? 0.93 : 0.88);  // measured 0.942 of 200 trials
     EXPECT_LT(seen.all, is_long ? 0.97 : 1.0);

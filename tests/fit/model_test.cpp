@@ -1,5 +1,6 @@
 #include "fit/physical.hpp"
 #include "fit/support.hpp"
+#include "fit/variation.hpp"
 #include "physics/angle_chain.hpp"
 
 #include <gtest/gtest.h>
@@ -74,6 +75,37 @@ TEST(FitModel, IsTheSameSeenFromBehind) {
     for (auto& y : mirrored) y = -y;
     const auto backwards = arms(lab_arms(), Drag::carried).rate(mirrored);
     for (std::size_t q = 0; q < 4; ++q) EXPECT_EQ(backwards[q], -forwards[q]);
+}
+
+/// Derivatives written out against those that dual numbers find on their own.
+TEST(FitVariation, AccelerationsChangeAsDualNumbersSay) {
+    constexpr int all = 4 + static_cast<int>(dynamic_count);
+    using Number = Dual<double, all>;
+    for (const auto drag : {Drag::own, Drag::carried})
+        for (const bool point : {false, true})
+            for (const double sign : {1.0, -1.0}) {
+                auto p = lab_arms();
+                if (point) p = completed({.point_masses = true}, p);
+                Arms<Number> dual{.p = {}, .drag = drag};
+                VaryingArms<all> written{.arms = arms(p, drag), .direction = {}, .point_masses = point};
+                written.direction.fill(-1);
+                for (std::size_t k = 0; k < dynamic_count; ++k) {
+                    const auto place = 4 + static_cast<Eigen::Index>(k);
+                    if (point && k == index_of(gravity_1)) continue;
+                    dual.p[k] = Number::variable(p[k], place);
+                    written.direction[k] = place;
+                }
+                const auto number = [&](FitParameter parameter) -> Number& { return dual.p[index_of(parameter)]; };
+                if (point) number(gravity_1) = number(inertia) * number(gravity_2) / number(coupling);
+                ArmState<Number> state;
+                for (std::size_t q = 0; q < 4; ++q)
+                    state[q] = Number::variable(sign * somewhere[q], static_cast<Eigen::Index>(q));
+                const auto expected = dual.rate(state), rate = written.rate(state);
+                for (std::size_t q = 0; q < 4; ++q) {
+                    EXPECT_NEAR(rate[q].value, expected[q].value, 1e-12);  // measured 3e-14
+                    EXPECT_LT((rate[q].tangent - expected[q].tangent).cwiseAbs().maxCoeff(), 1e-12);
+                }
+            }
 }
 
 TEST(FitFlow, IsOfOrderFive) {

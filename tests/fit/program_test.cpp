@@ -124,6 +124,21 @@ TEST(FitProgram, RefusesWithAReasonAndLeavesNothing) {
     EXPECT_TRUE(test::listing(folder / "out").empty() || !fs::exists(folder / "out/piece-00/piece-00.toml"));
 }
 
+/// The real track played backwards would need friction that drives.
+TEST(FitProgram, RefusesARealTrackPlayedBackwards) {
+    const auto folder = fresh_folder();
+    const auto track = test::reversed(read_tracks(lab));
+    std::vector<fs::path> files;
+    for (std::size_t k = 0; k < track.pieces.size(); ++k) {
+        files.push_back(fmt::format("backwards-{}.csv", k));
+        test::write_bytes(folder / files.back(), test::csv_of(track.pieces[k]));
+    }
+    const auto refused = test::doppel(folder, fit_of(files));
+    EXPECT_EQ(refused.code, 3);
+    EXPECT_NE(refused.err.find("backwards-0.csv: the swing gains energy, "), std::string::npos) << refused.err;
+    EXPECT_TRUE(!fs::exists(folder / "out") || test::listing(folder / "out").empty());
+}
+
 /// A file of someone else's is not replaced; one of Doppel's is.
 TEST(FitProgram, ReplacesItsOwnFilesAlone) {
     const auto folder = fresh_folder();

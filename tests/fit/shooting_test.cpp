@@ -9,13 +9,6 @@ namespace shooting_test {
 
 using namespace test;
 
-/// All that can be fitted.
-ModelSpec everything(Drag drag) {
-    auto model = spec(false, 3, drag);
-    model.fitted.insert(model.fitted.end(), {lag, scale_1, scale_2});
-    return model;
-}
-
 TEST(FitShooting, DerivativesAreThoseOfDifferences) {
     auto truth = lab_arms();
     at(truth, lag) = 0.001, at(truth, scale_1) = 1.01, at(truth, offset_1) = 0.01;
@@ -23,11 +16,7 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
         for (const auto drag : {Drag::own, Drag::carried}) {
             const auto track = simulated(truth, drag, {.pieces = 1, .piece_s = 1});
             const TrackSegment segment{0, 0, track.samples()};
-            auto model = everything(drag);
-            if (point) {
-                model.point_masses = true;
-                std::erase(model.fitted, gravity_1);
-            }
+            const auto model = model_of(point, 3, drag, 2);
             FitRules rules{.step_s = 0.004, .scale = {1e6, 1e6}};  // no residual is beyond the bend
             auto parameters = completed(model, truth);
             ArmState<double> start{track.pieces[0].angle[0][0] + 0.01, track.pieces[0].angle[1][0], 1, -1};
@@ -55,7 +44,7 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
 /// Starts eliminated or not, the solution of the normal equations is the same.
 TEST(FitShooting, EliminatesStartsExactly) {
     const auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .noise = 1e-3});
-    const auto model = spec(false, 1);
+    const auto model = model_of(false, 1);
     const TrackSegment segment{0, 0, track.samples()};
     const auto division = divide(track, 3);
     auto fit = fit_at(model, lab_arms(), track, division);
@@ -79,7 +68,7 @@ TEST(FitShooting, FindsANoiselessTruth) {
     at(truth, coulomb_1) = at(truth, coulomb_2) = 0;
     at(truth, offset_1) = 0.003, at(truth, offset_2) = -0.002;
     const auto track = simulated(truth, Drag::carried, {.hz = 200});
-    auto model = spec(false, 1, Drag::carried);
+    auto model = model_of(false, 1, Drag::carried);
     model.fitted = {inertia,   coupling,    gravity_1,   gravity_2, viscous_1,
                     viscous_2, quadratic_1, quadratic_2, offset_1,  offset_2};
     auto wrong = truth;
@@ -101,7 +90,7 @@ TEST(FitShooting, KeepsFrictionFromBeingNegative) {
     const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
     const auto division = divide(track);
     const auto fit =
-        fit_model(track, division.segments, fit_at(spec(false, 1), lab_arms(false), track, division), {}, no_stop);
+        fit_model(track, division.segments, fit_at(model_of(false, 1), lab_arms(false), track, division), {}, no_stop);
     EXPECT_EQ(fit.parameters[index_of(viscous_1)], 0);
     EXPECT_EQ(fit.at_bound, std::vector{viscous_1});
 }
@@ -113,7 +102,7 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
         for (std::size_t i = 7; i < piece.size(); i += 100) piece.angle[i % 2][i] += 0.5;
     const auto division = divide(track);
     const auto fit =
-        fit_model(track, division.segments, fit_at(spec(false, 0), lab_arms(false), track, division), {}, no_stop);
+        fit_model(track, division.segments, fit_at(model_of(false, 0), lab_arms(false), track, division), {}, no_stop);
     EXPECT_NEAR(fit.parameters[index_of(inertia)], 1.8, 0.004);  // measured 0.0009; least squares: 0.08
     EXPECT_NEAR(fit.parameters[index_of(gravity_2)], 50, 0.05);  // measured 0.01
 }
@@ -122,8 +111,8 @@ TEST(FitShooting, IsTheSameForAnyNumberOfThreads) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     const auto division = divide(track);
     const auto fit = [&](int jobs) {
-        return fit_model(track, division.segments, fit_at(spec(false, 2), lab_arms(), track, division), {.jobs = jobs},
-                         no_stop);
+        return fit_model(track, division.segments, fit_at(model_of(false, 2), lab_arms(), track, division),
+                         {.jobs = jobs}, no_stop);
     };
     const auto one = fit(1), four = fit(4);
     EXPECT_EQ(one.parameters, four.parameters);
@@ -135,7 +124,7 @@ TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     const auto division = divide(track);
     const auto all =
-        fit_model(track, division.segments, fit_at(spec(false, 1), lab_arms(), track, division), {}, no_stop);
+        fit_model(track, division.segments, fit_at(model_of(false, 1), lab_arms(), track, division), {}, no_stop);
     const auto quick = fit_without(all, {2});
     auto segments = division.segments;
     auto rest = all;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -28,18 +29,6 @@ inline Parameters lab_arms(bool with_friction = true) {
     at(p, viscous_1) = 0.08, at(p, viscous_2) = 0.03, at(p, coulomb_1) = 0.1, at(p, coulomb_2) = 0.06;
     at(p, quadratic_1) = 0.006, at(p, quadratic_2) = 0.005;
     return p;
-}
-
-inline ModelSpec spec(bool point, int friction, Drag drag = Drag::own) {
-    ModelSpec model{.point_masses = point, .drag = drag, .fitted = {inertia, coupling}};
-    auto& fitted = model.fitted;
-    if (!point) fitted.push_back(gravity_1);
-    fitted.push_back(gravity_2);
-    if (friction > 0) fitted.insert(fitted.end(), {viscous_1, viscous_2});
-    if (friction > 1) fitted.insert(fitted.end(), {coulomb_1, coulomb_2});
-    if (friction > 2) fitted.insert(fitted.end(), {quadratic_1, quadratic_2});
-    fitted.insert(fitted.end(), {offset_1, offset_2});
-    return model;
 }
 
 /// How a swing is measured.
@@ -83,6 +72,21 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
         }
     }
     track.noise = {measuring.noise, measuring.noise};
+    return track;
+}
+
+/// Every piece, and the order of pieces, backwards in time.
+inline Track reversed(Track track) {
+    std::reverse(track.pieces.begin(), track.pieces.end());
+    for (auto& piece : track.pieces) {
+        const double sum = piece.time_s.front() + piece.time_s.back();
+        std::reverse(piece.time_s.begin(), piece.time_s.end());
+        for (auto& t : piece.time_s) t = sum - t;
+        for (std::size_t arm = 0; arm < 2; ++arm) {
+            std::reverse(piece.angle[arm].begin(), piece.angle[arm].end());
+            std::reverse(piece.is_outlier[arm].begin(), piece.is_outlier[arm].end());
+        }
+    }
     return track;
 }
 
