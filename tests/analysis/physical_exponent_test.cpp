@@ -1,6 +1,7 @@
 #include "analysis/exponent.hpp"
 #include "analysis/physical_releases.hpp"
 #include "analysis/stability.hpp"
+#include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
@@ -135,6 +136,15 @@ TEST(PhysicalExponent, DoesNotDependOnUnitsOfMassAndLength) {
     p.torques[0].frequency /= 2;
     const auto slow = largest_exponent(p, {.duration_s = 24, .transient_s = 4, .tolerance = 1e-11}, never);
     EXPECT_NEAR(slow.value / usual.value, 0.5, 2e-11);  // measured 1.9e-12
+}
+
+TEST(NaturalUnits, CountTheDriveAsGravity) {
+    const double unit = std::sqrt(0.8 / 9.8);
+    EXPECT_NEAR(NaturalUnits(driven(3)).time, unit / 2, 1e-15);  // measured 0
+    auto shaken = driven(0);
+    shaken.pivot = {0.3, 0.4, std::sqrt(9.8 * 16), 0};  // 8 g
+    EXPECT_NEAR(NaturalUnits(shaken).time, unit / 3, 1e-15);
+    EXPECT_EQ(NaturalUnits(shaken).length, 0.8);
 }
 
 TEST(PhysicalExponent, RefusesWhatMakesNoSense) {
