@@ -12,6 +12,13 @@
 namespace doppel {
 namespace {
 
+bool has_friction(const Pendulum<double>&) {
+    return false;
+}
+bool has_friction(const PhysicalPendulum<double>& p) {
+    return !p.friction.is_none();
+}
+
 /// The growth of one tangent, told in logarithms.
 template <class Model>
 class TangentGrowth {
@@ -20,7 +27,10 @@ public:
 
     template <class Release>
     TangentGrowth(const Release& p, const ExponentSpec& spec, const NaturalUnits& units)
-        : motion_(p, spec.tolerance), links_(static_cast<Eigen::Index>(links_of(p))), unit_(units.time) {
+        : motion_(p, spec.tolerance),
+          links_(static_cast<Eigen::Index>(links_of(p))),
+          unit_(units.time),
+          least_(has_friction(p) ? tenth : -huge) {
         typename Model::State start = Model::start(p.template cast<typename Model::Scalar>());
         size_ = start.size();
         // a direction that no symmetry knows: 1, 1/2, 1/3 …
@@ -36,12 +46,12 @@ public:
 
     /// How much ln|δ| grows in so many seconds.
     double advance(double seconds) {
-        constexpr double huge = 13.8, tiny = -2.3, many_turns = 100;  // a million-fold, a tenth, rad
+        constexpr double many_turns = 100;  // rad
         motion_.advance(seconds);
         State y = motion_.state();
         const double now = log_norm(y), growth = now - last_;
         last_ = now;
-        if (now > huge || now < tiny || y.head(links_).cwiseAbs().maxCoeff() > many_turns) {
+        if (now > huge || now < least_ || y.head(links_).cwiseAbs().maxCoeff() > many_turns) {
             y.tail(size_) *= portable_exp(-now);
             last_ = log_norm(y);
             motion_.restart(y);
@@ -50,6 +60,8 @@ public:
     }
 
 private:
+    static constexpr double huge = 13.8, tenth = -2.3;  // ln of a million, of 1/10
+
     /// ln of the tangent's Euclidean norm, rates times the natural unit of time.
     double log_norm(const State& y) const {
         double angles = 0, rates = 0;  // squares
@@ -64,7 +76,8 @@ private:
     TangentMotion<Model> motion_;
     Eigen::Index links_, size_;  // size of the state alone
     double unit_;                // s
-    double last_;
+    double least_;               // ln|δ| from which on it is made 1 again: error control sees little of small ones
+    double last_ = 0;
 };
 
 void check(const ExponentSpec& spec) {
