@@ -50,7 +50,7 @@ private:
     static Eigen::Index links(const PhysicalPendulum<double>& p) { return static_cast<Eigen::Index>(p.chain.links()); }
 };
 
-/// C_jk = −∂Q_j/∂ω_k of viscous joints, drag on arms and drag on ends.
+/// C_jk = −∂Q_j/∂ω_k of viscous joints, of drag on arms, on ends and of the air met.
 Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd& theta, const Eigen::VectorXd& omega,
                         double t) {
     const auto n = theta.size();
@@ -66,6 +66,13 @@ Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd
         if (i > 0) joint[i - 1] = -1;
         c += of(f.viscous, i) * joint * joint.transpose();
         c(i, i) += of(f.arm_linear, i) + 2 * of(f.arm_quadratic, i) * std::abs(omega[i]);
+        const auto u = static_cast<std::size_t>(i);
+        const double first = p.chain.mass[u] * p.center[u], by_arm = first / (p.inertia[u] + first * p.center[u]);
+        const Eigen::Vector2d across(std::cos(theta[i]), std::sin(theta[i]));
+        Eigen::VectorXd met = by_arm * way.transpose() * across;  // ∂/∂ω of the rate that meets the air
+        met[i] += 1;
+        const double rate = omega[i] + by_arm * across.dot(v);
+        c += 2 * of(f.air_quadratic, i) * std::abs(rate) * met * met.transpose();
         way.col(i) =
             p.chain.length[static_cast<std::size_t>(i)] * Eigen::Vector2d(std::cos(theta[i]), std::sin(theta[i]));
         v += way.col(i) * omega[i];
@@ -113,8 +120,12 @@ TEST(PhysicalSpectrum, SumsToWhatFrictionDoesToTheVolume) {
     three.friction.arm_linear = {0.02, 0, 0.03};
     three.friction.drag_linear = {0, 0.02, 0.03};
     EXPECT_LT(apart(three, 10, 20000), 1e-11);  // measured 4e-13
-    // driven, with drag; that on arms by the square has corners at rest
+    // driven, with drag; the squares of rates have corners at 0
     EXPECT_LT(apart(driven_bodies<double>(2), 5, 20000), 1e-11);  // measured 8e-14
+    auto airy = two;
+    airy.friction.air_quadratic = {0.05, 0.08};
+    airy.pivot = {0.2, 0.1, 5.5, 0.5};
+    EXPECT_LT(apart(airy, 5, 20000), 2e-7);  // measured 2.4e-8
     auto arms = two;
     arms.friction.arm_quadratic = {0.05, 0.08};
     EXPECT_LT(apart(arms, 5, 20000), 4e-7);  // measured 7e-8
