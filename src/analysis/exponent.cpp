@@ -12,18 +12,32 @@
 namespace doppel {
 namespace {
 
+bool has_friction(const Pendulum<double>&) {
+    return false;
+}
+bool has_friction(const PhysicalPendulum<double>& p) {
+    return !p.friction.is_none();
+}
+
 /// The growth of one tangent, told in logarithms.
 template <class Model>
 class TangentGrowth {
 public:
     using State = typename TangentMotion<Model>::State;
 
-    TangentGrowth(const Pendulum<double>& p, const ExponentSpec& spec, const NaturalUnits& units)
-        : motion_(p, spec.tolerance), size_(static_cast<Eigen::Index>(2 * p.links())), unit_(units.time) {
+    template <class Release>
+    TangentGrowth(const Release& p, const ExponentSpec& spec, const NaturalUnits& units)
+        : motion_(p, spec.tolerance),
+          links_(static_cast<Eigen::Index>(links_of(p))),
+          unit_(units.time),
+          least_(has_friction(p) ? tenth : -huge) {
+        typename Model::State start = Model::start(p.template cast<typename Model::Scalar>());
+        size_ = start.size();
         // a direction that no symmetry knows: 1, 1/2, 1/3 …
-        typename Model::State start = Model::start(p.cast<typename Model::Scalar>());
-        for (Eigen::Index i = 0; i < size_; ++i)
-            start[i].tangent[0] = 1 / static_cast<double>(i + 1) / (i < size_ / 2 ? 1 : unit_);
+        for (Eigen::Index i = 0; i < links_; ++i) {
+            start[i].tangent[0] = 1 / static_cast<double>(i + 1);
+            start[size_ / 2 + i].tangent[0] = 1 / static_cast<double>(links_ + i + 1) / unit_;
+        }
         State y(2 * size_);
         TangentFlow<Model>::from_dual(start, y);
         last_ = log_norm(y);
@@ -32,12 +46,12 @@ public:
 
     /// How much ln|δ| grows in so many seconds.
     double advance(double seconds) {
-        constexpr double huge = 13.8, many_turns = 100;  // a million-fold, rad
+        constexpr double many_turns = 100;  // rad
         motion_.advance(seconds);
         State y = motion_.state();
         const double now = log_norm(y), growth = now - last_;
         last_ = now;
-        if (std::abs(now) > huge || y.head(size_ / 2).cwiseAbs().maxCoeff() > many_turns) {
+        if (now > huge || now < least_ || y.head(links_).cwiseAbs().maxCoeff() > many_turns) {
             y.tail(size_) *= portable_exp(-now);
             last_ = log_norm(y);
             motion_.restart(y);
@@ -46,18 +60,24 @@ public:
     }
 
 private:
+    static constexpr double huge = 13.8, tenth = -2.3;  // ln of a million, of 1/10
+
     /// ln of the tangent's Euclidean norm, rates times the natural unit of time.
     double log_norm(const State& y) const {
-        const auto half = size_ / 2;
-        const double square =
-            y.segment(size_, half).squaredNorm() + unit_ * unit_ * y.segment(size_ + half, half).squaredNorm();
-        return 0.5 * portable_log(square);
+        double angles = 0, rates = 0;  // squares
+        for (Eigen::Index i = 0; i < links_; ++i) {
+            const double angle = y[size_ + i], rate = y[size_ + size_ / 2 + i];
+            angles += angle * angle;
+            rates += rate * rate;
+        }
+        return 0.5 * portable_log(angles + unit_ * unit_ * rates);
     }
 
     TangentMotion<Model> motion_;
-    Eigen::Index size_;  // of the state alone
-    double unit_;        // s
-    double last_;
+    Eigen::Index links_, size_;  // size of the state alone
+    double unit_;                // s
+    double least_;               // ln|δ| from which on it is made 1 again: error control sees little of small ones
+    double last_ = 0;
 };
 
 void check(const ExponentSpec& spec) {
@@ -107,8 +127,8 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
     return {mean, std::sqrt(1.25 * (error * error + finite_time * finite_time))};
 }
 
-template <class Model>
-Exponent measured(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
+template <class Model, class Release>
+Exponent measured(const Release& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     const NaturalUnits units(p);
     TangentGrowth<Model> growth(p, spec, units);
     const auto exponents_of_parts = [&](double seconds, long parts) {
@@ -128,6 +148,14 @@ Exponent measured(const Pendulum<double>& p, const ExponentSpec& spec, const std
 
 }  // namespace
 
+void demand_smooth(const PhysicalPendulum<double>& p) {
+    if (!p.friction.coulomb.empty())
+        throw bad_input(
+            "Lyapunov exponents are those of smooth motions; joints with Coulomb's friction (joint_coulomb_N_m) come "
+            "to "
+            "rest and let go again");
+}
+
 bool is_regular(const Exponent& exponent) {
     return exponent.value <= 1.5 * exponent.uncertainty;
 }
@@ -137,6 +165,13 @@ Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, c
     if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
     if (p.links() == 2) return measured<DoublePendulum<Dual<double, 1>>>(p, spec, stop);
     return measured<AngleChain<Dual<double, 1>, Eigen::Dynamic>>(p, spec, stop);
+}
+
+Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
+    check(spec);
+    demand_smooth(p);
+    if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
+    return measured<ChainWithoutWork<Dual<double, 1>>>(p, spec, stop);
 }
 
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "physics/pendulum.hpp"
+#include "physics/physical_pendulum.hpp"
 
 #include <atomic>
 #include <vector>
@@ -29,11 +29,18 @@ struct Exponent {
 /// motions had up to 0.8, of 40).
 bool is_regular(const Exponent& exponent);
 
-/// The largest exponent of the motion that `p` is released into, any number of links, by the tangent equations.
+/// The largest exponent of the motion that `p` is released into, any number of links, by the tangent equations in
+/// (θ, ω). The time, by which a driven pendulum moves, is given: no exponent is its own.
 /// One released at an equilibrium, to rounding, stays there: its exponent is exact.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:21.
-/// Errors  exit 2 where the spec makes no sense, exit 3 where dop853 breaks down, exit 130 soon after `stop` is set.
+/// Errors  exit 2 where the spec makes no sense or joints have Coulomb's friction (demand_smooth()), exit 3 where dop853
+///         breaks down, exit 130 soon after `stop` is set.
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
+Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
+
+/// Throws Error (exit 2) where joints have Coulomb's friction: they come to rest and let go again, where the motion has no
+/// tangents.
+void demand_smooth(const PhysicalPendulum<double>& p);
 
 /// How much a motion makes of an error at its start: the largest |∂θ_i(T)/∂θ_j(0)|, from the tangent equations in dual
 /// numbers. Times the rounding of a double, 2⁻⁵³, it is the error that no method in double can be expected to beat.
@@ -43,7 +50,7 @@ double angle_sensitivity(const Pendulum<double>& p, double seconds, const std::a
 struct SpectrumSpec {
     double duration_s = 500;   // of the motion
     int samples = 500;         // equally spaced, the last at the end
-    double tolerance = 1e-10;  // of taylor, for the state and its tangents alike
+    double tolerance = 1e-10;  // of taylor, for the state and its tangents alike; of physical pendulums of dop853
 };
 
 /// The exponents as estimated up to a time.
@@ -52,13 +59,17 @@ struct SpectrumSample {
     std::vector<double> exponents;  // 1/s, 2N of them; the greatest first as time grows
 };
 
-/// Estimates of all 2N Lyapunov exponents of a chain of 1 to 4 links.
-/// Errors  exit 2 where the spec or the number of links makes no sense, exit 3 where taylor breaks down, exit 130 soon
-///         after `stop` is set.
+/// Estimates of all 2N Lyapunov exponents of a chain of 1 to 4 links, in the canonical (θ, p). At any time their sum is
+/// 0 without friction, and with it the mean of what that does to the volume: of viscous friction −tr(C M⁻¹).
+/// Errors  exit 2 where the spec or the number of links makes no sense or joints have Coulomb's friction, exit 3 where the
+///         method breaks down, exit 130 soon after `stop` is set.
 std::vector<SpectrumSample> lyapunov_spectrum(const Pendulum<double>& p, const SpectrumSpec& spec,
                                               const std::atomic<bool>& stop);
+std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
+                                              const std::atomic<bool>& stop);
 
-/// The greatest |λ_i + λ_{2N+1−i}|, 1/s: what the pairs of a Hamiltonian system lack at a finite time.
+/// The greatest |λ_i + λ_{2N+1−i}|, 1/s: what the pairs of a Hamiltonian system, one without friction, lack at a finite
+/// time.
 double pair_mismatch(const SpectrumSample& sample);
 
 }  // namespace doppel

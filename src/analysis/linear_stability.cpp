@@ -1,4 +1,5 @@
 #include "analysis/stability.hpp"
+#include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "integrate/adams.hpp"
 #include "integrate/methods.hpp"
@@ -204,8 +205,10 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
     return fails;
 }
 
-/// √−κ for the least eigenvalue κ, or 0.
-std::optional<double> equilibrium_exponent(const Pendulum<double>& p) {
+namespace {
+
+/// Of the links, where all are at rest, and upright or hanging to rounding (or g = 0).
+std::optional<Eigen::VectorXd> equilibrium_cosines(const Pendulum<double>& p) {
     Eigen::VectorXd cosine(static_cast<Eigen::Index>(p.links()));
     for (std::size_t i = 0; i < p.links(); ++i) {
         const SinCos<double> turn(p.angle[i]);
@@ -213,8 +216,41 @@ std::optional<double> equilibrium_exponent(const Pendulum<double>& p) {
         if (p.rate[i] != 0 || (p.gravity != 0 && std::abs(turn.sin) > rounding)) return std::nullopt;
         cosine[static_cast<Eigen::Index>(i)] = turn.cos;
     }
+    return cosine;
+}
+
+/// ∂(θ′, ω′)/∂(θ, ω) at the release of what is not driven.
+Eigen::MatrixXd jacobian(const PhysicalPendulum<double>& p) {
+    using Number = Dual<double, 1>;
+    ChainWithoutWork<Number> chain(p.cast<Number>());
+    auto y = chain.start(p.cast<Number>()), rate = y;
+    Eigen::MatrixXd matrix(y.size(), y.size());
+    for (Eigen::Index j = 0; j < y.size(); ++j) {
+        y[j].tangent[0] = 1;
+        chain.rate(y, rate);
+        y[j].tangent[0] = 0;
+        for (Eigen::Index i = 0; i < y.size(); ++i) matrix(i, j) = rate[i].tangent[0];
+    }
+    return matrix;
+}
+
+}  // namespace
+
+/// √−κ for the least eigenvalue κ, or 0.
+std::optional<double> equilibrium_exponent(const Pendulum<double>& p) {
+    const auto cosine = equilibrium_cosines(p);
+    if (!cosine) return std::nullopt;
     if (p.gravity == 0) return 0.0;
-    return std::sqrt(std::max(0.0, -oscillations(p, cosine, Eigen::EigenvaluesOnly).eigenvalues()[0]));
+    return std::sqrt(std::max(0.0, -oscillations(p, *cosine, Eigen::EigenvaluesOnly).eigenvalues()[0]));
+}
+
+std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
+    if (p.is_driven() || !equilibrium_cosines(p.chain)) return std::nullopt;
+    if (p.chain.gravity == 0) return 0.0;
+    const Eigen::VectorXcd values = jacobian(p).eigenvalues();
+    const double most = values.real().maxCoeff();
+    constexpr double rounding = 1e-12;  // what an oscillation without friction may seem to grow by
+    return std::abs(most) < rounding * values.cwiseAbs().maxCoeff() ? 0 : most;
 }
 
 }  // namespace doppel

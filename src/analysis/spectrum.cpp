@@ -2,13 +2,13 @@
 #include "analysis/tangent_series.hpp"
 #include "base/error.hpp"
 #include "integrate/taylor.hpp"
-#include "physics/canonical.hpp"
 
 #include <Eigen/Householder>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 namespace doppel {
 namespace {
@@ -33,70 +33,105 @@ Eigen::VectorXd orthonormalise(Eigen::MatrixXd& frame) {
     return stretched.cwiseAbs();
 }
 
+/// As TangentMotion, of a chain of N point masses, by Taylor series.
+template <int N>
+class SeriesMotion {
+public:
+    using State = typename TangentChain<N>::State;
+
+    SeriesMotion(const SeriesMotion&) = delete;  // the stepper knows where the chain is
+    SeriesMotion(const Pendulum<double>& p, double tolerance) : chain_{p}, tolerance_(tolerance) {}
+
+    void restart(State y) {
+        for (int i = 0; i < N; ++i) y[i] = std::remainder(y[i], 2 * pi);
+        if (stepper_)
+            stepper_->reset(y);
+        else
+            stepper_.emplace(chain_, y, tolerance_);
+    }
+    void advance(double seconds) { stepper_->advance(seconds); }
+    const State& state() const { return stepper_->state(); }
+
+private:
+    TangentChain<N> chain_;
+    double tolerance_;
+    std::optional<Taylor::Stepper<TangentChain<N>>> stepper_;
+};
+
 /// All tangents to a motion, kept upright: now and then their frame is turned into an orthonormal one, and what it has
-/// stretched by is told in logarithms. Frames are canonical, (δθ, δp), where the flow keeps the volume: the logarithms
-/// sum to 0 at any time.
+/// stretched by is told in logarithms. Frames are canonical, (δθ, δp), where a flow without friction keeps the volume: the
+/// logarithms sum to 0 at any time. `Model` is one over dual numbers, `Motion` steps it.
 /// Source  Shimada & Nagashima 1979, Progress of Theoretical Physics 61:1605; Benettin et al. 1980, Meccanica 15:21.
-template <class Model, int N>
+template <class Model, class Motion>
 class Frame {
 public:
-    static constexpr int size = 2 * N;
     using Matrix = Eigen::MatrixXd;
     using Column = Eigen::VectorXd;
 
-    Frame(const Pendulum<double>& p, double tolerance, const NaturalUnits& units)
-        : model_(p.cast<Number>()), canonical_(model_), chain_{p} {
-        double mass = 0;
-        for (const double m : p.mass) mass += m;
-        unit_.setOnes(size);
-        unit_.tail(N).setConstant(mass * units.length * units.length / units.time);
-        canonical_.momenta(Model::start(p.cast<Number>()), z_);
-        motion_.emplace(chain_, tangents(Matrix::Identity(size, size)), tolerance);
+    template <class Release>
+    Frame(const Release& p, const Pendulum<double>& chain, double tolerance, const NaturalUnits& units)
+        : model_(p.template cast<Number>()),
+          canonical_(model_),
+          motion_(p, tolerance),
+          links_(static_cast<Eigen::Index>(chain.links())),
+          y_(Model::start(p.template cast<Number>())),
+          z_(y_) {
+        unit_.setOnes(2 * links_);
+        unit_.tail(links_).setConstant(mass_of(chain) * units.length * units.length / units.time);
+        canonical_.momenta(y_, z_);
+        restart(Matrix::Identity(2 * links_, 2 * links_));
     }
 
     /// What ln|δ_i| grow by in so many seconds.
     Column advance(double seconds) {
-        motion_->advance(seconds);
-        TangentFlow<Model>::to_dual(motion_->state(), y_);
+        constexpr double flat = 1e-7;  // a frame of which the least side has lost half of its digits
+        const auto before = motion_.state();
+        motion_.advance(seconds);
+        TangentFlow<Model>::to_dual(motion_.state(), y_);
         canonical_.momenta(y_, z_);
-        Matrix frame(size, size);
-        for (int i = 0; i < size; ++i) frame.row(i) = z_[i].tangent.transpose() / unit_[i];
+        Matrix frame(2 * links_, 2 * links_);
+        for (Eigen::Index i = 0; i < 2 * links_; ++i) frame.row(i) = z_[row(i)].tangent.transpose() / unit_[i];
         const Column stretched = orthonormalise(frame);
-        motion_->reset(tangents(frame));
+        if (stretched.minCoeff() < flat * stretched.maxCoeff()) {
+            motion_.restart(before);
+            const Column first = advance(seconds / 2);
+            return first + advance(seconds / 2);
+        }
+        restart(frame);
         return stretched.unaryExpr([](double factor) { return portable_log(factor); });
     }
 
 private:
     using Number = typename Model::Scalar;
 
-    using Chain = TangentChain<N>;
+    /// Of the state: angles and momenta, without the time.
+    Eigen::Index row(Eigen::Index i) const { return i < links_ ? i : z_.size() / 2 + i - links_; }
 
-    /// The values of z with the frame's columns for tangents; angles without whole turns.
-    typename Chain::State tangents(const Matrix& frame) {
-        for (int i = 0; i < size; ++i) z_[i].tangent = unit_[i] * frame.row(i).transpose();
+    /// The values of z with the frame's columns for tangents.
+    void restart(const Matrix& frame) {
+        for (Eigen::Index i = 0; i < 2 * links_; ++i) z_[row(i)].tangent = unit_[i] * frame.row(i).transpose();
         canonical_.velocities(z_, y_);
-        typename Chain::State all;
+        typename Motion::State all(y_.size() * (1 + TangentFlow<Model>::directions));
         TangentFlow<Model>::from_dual(y_, all);
-        for (int i = 0; i < N; ++i) all[i] = std::remainder(all[i], 2 * pi);
-        return all;
+        motion_.restart(all);
     }
 
     Model model_;
     Canonical<Model> canonical_;
-    Chain chain_;
-    std::optional<Taylor::Stepper<Chain>> motion_;
+    Motion motion_;
+    Eigen::Index links_;
     Column unit_;  // of angles and momenta: 1 and N m s
     typename Model::State y_, z_;
 };
 
-template <class Model, int N>
-std::vector<SpectrumSample> estimates(const Pendulum<double>& p, const SpectrumSpec& spec,
+template <class Model, class Motion, class Release>
+std::vector<SpectrumSample> estimates(const Release& p, const Pendulum<double>& chain, const SpectrumSpec& spec,
                                       const std::atomic<bool>& stop) {
     const NaturalUnits units(p);
-    Frame<Model, N> frame(p, spec.tolerance, units);
+    Frame<Model, Motion> frame(p, chain, spec.tolerance, units);
     const double interval = spec.duration_s / spec.samples;
     const long parts = parts_of(interval, units);
-    typename Frame<Model, N>::Column sum = Frame<Model, N>::Column::Zero(2 * N);
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 * chain.links()));
     std::vector<SpectrumSample> samples;
     for (int k = 1; k <= spec.samples; ++k) {
         for (long i = 0; i < parts; ++i) {
@@ -110,28 +145,50 @@ std::vector<SpectrumSample> estimates(const Pendulum<double>& p, const SpectrumS
     return samples;
 }
 
+/// By a model of so many links.
 template <int N>
-using DualChain = AngleChain<Dual<double, 2 * N>, N>;
+std::vector<SpectrumSample> estimates_of(const Pendulum<double>& p, const SpectrumSpec& spec,
+                                         const std::atomic<bool>& stop) {
+    using Number = Dual<double, 2 * N>;
+    using Model = std::conditional_t<N == 2, DoublePendulum<Number>, AngleChain<Number, N>>;
+    return estimates<Model, SeriesMotion<N>>(p, p, spec, stop);
+}
+template <int N>
+std::vector<SpectrumSample> estimates_of(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
+                                         const std::atomic<bool>& stop) {
+    demand_smooth(p);
+    using Model = ChainWithoutWork<Dual<double, 2 * N>>;
+    return estimates<Model, TangentMotion<Model>>(p, p.chain, spec, stop);
+}
+
+template <class Release>
+std::vector<SpectrumSample> spectrum(const Release& p, const SpectrumSpec& spec, const std::atomic<bool>& stop) {
+    if (!(spec.duration_s > 0) || spec.samples < 1)
+        throw bad_input("a spectrum takes a duration > 0 s and at least one sample; they are {} s and {}",
+                        spec.duration_s, spec.samples);
+    switch (links_of(p)) {
+        case 1:
+            return estimates_of<1>(p, spec, stop);
+        case 2:
+            return estimates_of<2>(p, spec, stop);
+        case 3:
+            return estimates_of<3>(p, spec, stop);
+        case 4:
+            return estimates_of<4>(p, spec, stop);
+        default:
+            throw bad_input("a spectrum is for 1 to 4 links; there are {}", links_of(p));
+    }
+}
 
 }  // namespace
 
 std::vector<SpectrumSample> lyapunov_spectrum(const Pendulum<double>& p, const SpectrumSpec& spec,
                                               const std::atomic<bool>& stop) {
-    if (!(spec.duration_s > 0) || spec.samples < 1)
-        throw bad_input("a spectrum takes a duration > 0 s and at least one sample; they are {} s and {}",
-                        spec.duration_s, spec.samples);
-    switch (p.links()) {
-        case 1:
-            return estimates<DualChain<1>, 1>(p, spec, stop);
-        case 2:
-            return estimates<DoublePendulum<Dual<double, 4>>, 2>(p, spec, stop);
-        case 3:
-            return estimates<DualChain<3>, 3>(p, spec, stop);
-        case 4:
-            return estimates<DualChain<4>, 4>(p, spec, stop);
-        default:
-            throw bad_input("a spectrum is for 1 to 4 links; there are {}", p.links());
-    }
+    return spectrum(p, spec, stop);
+}
+std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
+                                              const std::atomic<bool>& stop) {
+    return spectrum(p, spec, stop);
 }
 
 double pair_mismatch(const SpectrumSample& sample) {

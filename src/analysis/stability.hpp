@@ -2,7 +2,7 @@
 
 #include "integrate/motion.hpp"
 #include "numeric/rational.hpp"
-#include "physics/pendulum.hpp"
+#include "physics/physical_pendulum.hpp"
 
 #include <atomic>
 #include <optional>
@@ -44,8 +44,10 @@ double largest_frequency(const Pendulum<double>& pendulum);
 std::optional<double> step_limit(std::string_view method, std::span<const Mode> modes, double seconds, double times);
 
 /// The Lyapunov exponent in closed form, 1/s, where the release is an equilibrium: at rest and all links upright or
-/// hanging to rounding (or g = 0). Nothing elsewhere.
+/// hanging to rounding (or g = 0). Nothing elsewhere, as of what is driven.
+/// Of a physical one it is the greatest real part of the eigenvalues of the linearised equations; no Coulomb's friction.
 std::optional<double> equilibrium_exponent(const Pendulum<double>& p);
+std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p);
 
 /// Energy is compared with what a release has above hanging at rest. An error beyond so many times that is a blow-up.
 inline constexpr double blow_up = 100;

@@ -32,10 +32,10 @@ std::vector<TomlReader> FigureReader::entries(std::string_view key) {
     return all;
 }
 
-SideSpec FigureReader::release() {
+SideSpec FigureReader::release(bool physical) {
     SideSpec side;
     auto system = document.table(top, "system");
-    read_release(system, side);
+    physical ? read_physical_release(system, side) : read_release(system, side);
     return side;
 }
 

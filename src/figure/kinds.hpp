@@ -59,8 +59,9 @@ struct FigureReader {
     Preset read_pair(const std::vector<TomlReader*>& more = {});
     /// The tables of [[key]].
     std::vector<TomlReader> entries(std::string_view key);
-    /// The chain that [system] describes, where the figure itself knows how to step it.
-    SideSpec release();
+    /// The chain that [system] describes, where the figure itself knows how to step it; `physical`: with links that have
+    /// mass, friction and drives.
+    SideSpec release(bool physical = false);
 };
 
 /// Whether the method can step the model.
@@ -114,8 +115,8 @@ bool released_alike(const SideSpec& a, const SideSpec& b);
 
 /// An entry of the list of kinds.
 struct FigureKind {
-    enum class System { none, release, pair };  // what moves
-    std::string_view name;                      // of [scene] kind
+    enum class System { none, release, physical_release, pair };  // what moves
+    std::string_view name;                                        // of [scene] kind
     System system;
     std::shared_ptr<const Experiment> (*read)(FigureReader&);
     void (*read_keys)(FigureReader&, System);  // each by itself, so that all their faults are found
@@ -129,6 +130,7 @@ template <class Kind>
 void read_keys_of(FigureReader& reader, FigureKind::System system) {
     if (system == FigureKind::System::pair) reader.read_pair();
     if (system == FigureKind::System::release) reader.release();
+    if (system == FigureKind::System::physical_release) reader.release(true);
     if constexpr (requires { Kind::table_key; }) {
         Kind kind;
         reader.settings(kind).finish();

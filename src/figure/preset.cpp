@@ -64,12 +64,32 @@ void top_fields(Visit& visit, FigurePreset& figure) {
 }
 
 /// [system] of figures that step a chain themselves.
-FieldTable release_table() {
+FieldTable release_table(FigureKind::System system) {
     const SideSpec side;
     FieldTable release{"[system]"};
     chain_fields(release, side);
+    if (system == FigureKind::System::physical_release) {
+        FieldTable with_rods{"[system]"};
+        chain_fields(with_rods, side, not_negative);
+        release.widen(with_rods);
+        physical_fields(release, side.physical);
+    }
     gravity_field(release, side);
     return release;
+}
+
+/// What moves, in docs/presets.md.
+std::string system_words(FigureKind::System system) {
+    using System = FigureKind::System;
+    if (system == System::none) return "";
+    if (system == System::pair)
+        return " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and `sample_hz` of `[scene]`, as in a "
+               "film.";
+    std::vector<std::string_view> keys;
+    const auto table = release_table(system);
+    for (const auto& field : table.fields) keys.push_back(field.key);
+    return fmt::format(" What moves: `[system]`, of which it takes\n`{}`{}.", fmt::join(keys, "`, `"),
+                       system == System::release ? "" : ",\n`[system.pivot]` and `[[system.torque]]`");
 }
 
 /// Throws all faults that keys have by themselves; read_figure() finds those of several keys.
@@ -142,18 +162,11 @@ std::vector<FieldTable> figure_tables() {
     FieldTable top{"title, subtitle, erratum, captions"}, chart{"[chart]"};
     top_fields(top, figure);
     chart_fields(chart, figure.chart);
-    const auto release = release_table();
-    std::vector<std::string_view> release_keys;
-    for (const auto& field : release.fields) release_keys.push_back(field.key);
-    const std::string systems[] = {
-        "", fmt::format(" What moves: `[system]`, of which it takes\n`{}`.", fmt::join(release_keys, "`, `")),
-        " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and `sample_hz` of `[scene]`, as in a film."};
     std::vector<FieldTable> all{top, chart};
     for (const auto& kind : figure_kinds())
         for (auto& table : kind.tables()) {
             if (table.text.empty())
-                table.text =
-                    fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, systems[static_cast<std::size_t>(kind.system)]);
+                table.text = fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, system_words(kind.system));
             all.push_back(std::move(table));
         }
     return all;
@@ -186,7 +199,8 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
             all.insert(all.end(), pair.begin(), pair.end());
         else
             all.push_back(named({"", "", {scene.fields.front()}}, "scene"));
-        if (figure.system == FigureKind::System::release) all.push_back(release_table());
+        if (figure.system == FigureKind::System::release || figure.system == FigureKind::System::physical_release)
+            all.push_back(release_table(figure.system));
         all.push_back(figures[1]);
         for (auto& table : figure.tables())
             if (table.key() == "chart")

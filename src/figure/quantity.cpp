@@ -166,8 +166,9 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     const auto& a = pair.a;
     if (quantity == Quantity::exponent && a.is_mechanism())
         throw table.fault(key, "is that of a plain chain, without forces and constraints of its own");
-    if (quantity == Quantity::exponent && !a.physical.is_none())
-        throw table.fault(key, "is that of point masses, without friction and drive");
+    if (quantity == Quantity::exponent && a.physical.has_coulomb())
+        throw table.fault(key,
+                          "is that of a smooth motion; joints with joint_coulomb_N_m come to rest and let go again");
     if (quantity == Quantity::deviation && !a.particles.empty())
         throw table.fault(key, "\"deviation\" is of a chain, whose rods have angles");
     if (quantity == Quantity::flip_time && !a.particles.empty())
@@ -201,7 +202,9 @@ void Measurement::append(std::span<const Preset> pairs, std::span<TrialNumbers> 
             into[i].push_back(watched(pairs[i], stop));
             continue;
         }
-        const auto exponent = largest_exponent(chain_of(pairs[i].a).cast<double>(), exponent_, stop);
+        const auto& a = pairs[i].a;
+        const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), exponent_, stop)
+                                                   : largest_exponent(physical_of(a).cast<double>(), exponent_, stop);
         into[i].insert(into[i].end(), {exponent.value, exponent.uncertainty});
     }
 }

@@ -208,6 +208,7 @@ Json kind_schema(std::string_view kind) {
         const bool is_side = table.key() == "a" || table.key() == "b";
         for (const auto* entries : {"particle", "torque", "constraint", "force"})
             if (is_side) keys["properties"][entries] = Json::object();
+        if (table.name == "[system]" && !table.tables.empty()) keys["properties"]["torque"] = Json::object();
         const bool differs = is_side || table.key() == "scene" || table.key() == "chart" ||
                              (table.key() == "system" && table.name == "[system]");
         if (table.key().empty())

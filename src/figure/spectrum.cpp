@@ -14,7 +14,13 @@ class Spectrum final : public Experiment {
 public:
     static constexpr std::string_view table_key = "spectrum";
     Spectrum() = default;
-    explicit Spectrum(FigureReader& reader) : release_(reader.release()) {
+    explicit Spectrum(FigureReader& reader) : release_(reader.release(true)) {
+        if (release_.physical.has_coulomb())
+            throw reader.document.table(reader.top, "system")
+                .fault("joint_coulomb_N_m",
+                       "is not for Lyapunov exponents, which are those of smooth motions: such joints come to rest and "
+                       "let "
+                       "go again");
         auto table = reader.settings(*this);
         constexpr std::size_t most_links = 4;
         if (release_.links() > most_links)
@@ -28,7 +34,9 @@ public:
         visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000)},
               spec_.samples);
         constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true};
-        visit({"tolerance", "of taylor: relative error of a step, of the motion and of its tangents", "", tolerances},
+        visit({"tolerance",
+               "relative error of a step, of the motion and of its tangents: by taylor, of real chains by dop853", "",
+               tolerances},
               spec_.tolerance);
     }
 
@@ -70,14 +78,21 @@ public:
         const auto& last = samples.back();
         for (const double exponent : last.exponents)
             words += fmt::format("{}{}{:.4f}", words.empty() ? "" : ", ", exponent < 0 ? "−" : "+", std::abs(exponent));
-        figure.captions.push_back(
-            fmt::format("After {} s: {} 1/s. Their sum is 0 within {}, and the pairs are ± within {} 1/s.",
-                        spec_.duration_s, words, scientific(std::abs(sum(last))), scientific(pair_mismatch(last))));
+        const auto of_them =
+            keeps_volume()
+                ? fmt::format("Their sum is 0 within {}, and the pairs are ± within {} 1/s.",
+                              scientific(std::abs(sum(last))), scientific(pair_mismatch(last)))
+                : fmt::format("Their sum is −{:.4f} 1/s: at that mean rate friction shrinks volumes of states.",
+                              std::abs(sum(last)));
+        figure.captions.push_back(fmt::format("After {} s: {} 1/s. {}", spec_.duration_s, words, of_them));
     }
 
     std::string subtitle() const override {
-        return fmt::format("{} {}, {}; tangent equations in canonical variables, taylor",
-                           pendulum_words(release_.links()), released_words(release_), links_words(release_));
+        const auto physical = physical_words(release_.physical);
+        return fmt::format("{}{} {}, {}; tangent equations in canonical variables, {}",
+                           pendulum_words(release_.links()), physical.empty() ? "" : fmt::format(" with {},", physical),
+                           released_words(release_), links_words(release_),
+                           release_.physical.is_none() ? "taylor" : "dop853");
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -86,16 +101,21 @@ public:
         for (std::size_t i = 0; i < exponents(); ++i)
             all.push_back({fmt::format("exponent{}_per_s", i + 1), last.exponents[i]});
         all.push_back({"sum_per_s", sum(last)});
-        all.push_back({"pair_mismatch_per_s", pair_mismatch(last)});
+        if (keeps_volume()) all.push_back({"pair_mismatch_per_s", pair_mismatch(last)});
         return all;
     }
 
 private:
     std::size_t exponents() const { return 2 * release_.links(); }
 
+    bool keeps_volume() const { return physical_of(release_).friction.is_none(); }
+
     TrialNumbers compute_trial(std::size_t, const std::atomic<bool>& stop) const override {
         TrialNumbers numbers;
-        for (const auto& sample : lyapunov_spectrum(chain_of(release_).cast<double>(), spec_, stop)) {
+        const auto samples = release_.physical.is_none()
+                                 ? lyapunov_spectrum(chain_of(release_).cast<double>(), spec_, stop)
+                                 : lyapunov_spectrum(physical_of(release_).cast<double>(), spec_, stop);
+        for (const auto& sample : samples) {
             numbers.push_back(sample.time_s);
             numbers.insert(numbers.end(), sample.exponents.begin(), sample.exponents.end());
         }
@@ -122,6 +142,6 @@ private:
 
 }  // namespace
 
-const FigureKind spectrum_kind = kind_of<Spectrum>("spectrum", FigureKind::System::release);
+const FigureKind spectrum_kind = kind_of<Spectrum>("spectrum", FigureKind::System::physical_release);
 
 }  // namespace doppel

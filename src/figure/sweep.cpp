@@ -211,19 +211,22 @@ private:
     /// Counts the regular releases, and takes equilibria out of the curve: their exponent is not that of a motion.
     std::string exponent_words(Curve& exponents) const {
         long regular = 0;
+        bool contracts = false;
         std::string equilibria;
         for (std::size_t i = 0; i < trials_; ++i) {
             const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
             regular += is_regular({exponent, uncertainty});
+            contracts = contracts || exponent < -1.5 * uncertainty;
             if (exponent == 0 || uncertainty != 0) continue;
-            equilibria += fmt::format(" At {:g}{}, an unstable equilibrium, it is {:.2f} 1/s.", exponents.x[i],
-                                      parameter_.angle ? "°" : "", exponent);
+            equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i],
+                                      parameter_.angle ? "°" : "", exponent > 0 ? "an unstable" : "a stable", exponent);
             exponents.y[i] = NAN;
         }
-        return fmt::format(
-            "{} of {} releases are regular: their exponent cannot be told from 0. Its band holds two of "
-            "three runs four times as long.{}",
-            regular, trials_, equilibria);
+        return fmt::format("{} of {} releases are {}. Its band holds two of three runs four times as long.{}", regular,
+                           trials_,
+                           contracts ? "regular or settle: their exponent is not above 0"
+                                     : "regular: their exponent cannot be told from 0",
+                           equilibria);
     }
 
     Curve curve(std::span<const TrialNumbers> numbers, std::size_t column) const {

@@ -27,9 +27,9 @@ public:
     PhysicalPendulum<Scalar> pendulum;
     PhysicalLayout layout;
 
-    explicit PhysicalChain(const PhysicalPendulum<Scalar>& p)
+    explicit PhysicalChain(const PhysicalPendulum<Scalar>& p, bool with_work = true)
         : pendulum(p),
-          layout(p, links(p)),
+          layout(p, links(p), with_work),
           forces_(p),
           bodies_(p),
           sin_(Half::Zero(links(p))),
@@ -39,8 +39,8 @@ public:
           held_(p.chain.links(), false),
           slip_(p.chain.links(), 0) {}
 
-    static State start(const PhysicalPendulum<Scalar>& p) {
-        const PhysicalLayout layout(p, links(p));
+    static State start(const PhysicalPendulum<Scalar>& p, bool with_work = true) {
+        const PhysicalLayout layout(p, links(p), with_work);
         State y(2 * layout.half);
         layout.start(y);
         const auto released = released_in_angles<Scalar, Eigen::Dynamic>(p.chain);

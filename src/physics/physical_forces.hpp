@@ -9,14 +9,16 @@ namespace doppel {
 
 /// How the state (q, v) of a physical pendulum is laid out: the coordinates of its links; then, of a driven one, the time t,
 /// whose rate is 1; then, where energy is not kept, a number whose rate is the work W done on it so far, J, by friction
-/// and drive, so that the energy less W is constant. Every method steps them like coordinates.
+/// and drive, so that the energy less W is constant; what does not ask for it leaves it out. Every method steps them like
+/// coordinates.
 struct PhysicalLayout {
     Eigen::Index coordinates, time = -1, work = -1, half;  // `half`: of q; −1 where there is none
 
     template <class Scalar>
-    PhysicalLayout(const PhysicalPendulum<Scalar>& p, Eigen::Index of_links) : coordinates(of_links), half(of_links) {
+    PhysicalLayout(const PhysicalPendulum<Scalar>& p, Eigen::Index of_links, bool with_work = true)
+        : coordinates(of_links), half(of_links) {
         if (p.is_driven()) time = half++;
-        if (!p.conserves_energy()) work = half++;
+        if (with_work && !p.conserves_energy()) work = half++;
     }
 
     /// Of y = (q, v): the time, s, and the work, J.

@@ -280,6 +280,8 @@ void read_side(TomlReader& table, SideSpec& side, bool has_text = false);
 
 /// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say.
 void read_release(TomlReader& table, SideSpec& side);
+/// The same with what a real chain has besides.
+void read_physical_release(TomlReader& table, SideSpec& side);
 
 /// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier. Those
 /// of a film have texts of their own.

@@ -67,6 +67,16 @@ std::string table_text(const std::string& name, const Fields& fields) {
     return fmt::format("\n{}\n{}", name, writer.text());
 }
 
+std::string torques_toml(const std::string& name, const SideSpec& side) {
+    std::string text;
+    for (const auto& torque : side.physical.torques)
+        text += table_text(fmt::format("[[{}.torque]]", name), [&](TomlWriter& writer) {
+            writer({.key = "name"}, torque.name);
+            part_fields(writer, torque);
+        });
+    return text;
+}
+
 /// [a] or [b] with everything in it.
 std::string side_toml(const std::string& name, const SideSpec& side) {
     auto complete = side;
@@ -85,11 +95,7 @@ std::string side_toml(const std::string& name, const SideSpec& side) {
         if (!all.accuracy) method_fields(writer, all);
         precision_fields(writer, all);
     });
-    for (const auto& torque : side.physical.torques)
-        text += table_text(fmt::format("[[{}.torque]]", name), [&](TomlWriter& writer) {
-            writer({.key = "name"}, torque.name);
-            part_fields(writer, torque);
-        });
+    text += torques_toml(name, side);
     for (const auto& particle : side.particles)
         text += table_text(fmt::format("[[{}.particle]]", name), [&](TomlWriter& writer) {
             writer.add("name", toml_text(particle.name));
@@ -123,10 +129,13 @@ std::string resolved_sides(const Preset& preset, const std::string& above) {
 }
 
 std::string resolved_release(const SideSpec& side) {
-    return table_text("[system]", [&](TomlWriter& writer) {
-        chain_fields(writer, side);
-        gravity_field(writer, side);
-    });
+    return table_text("[system]",
+                      [&](TomlWriter& writer) {
+                          chain_fields(writer, side);
+                          gravity_field(writer, side);
+                          if (!side.physical.is_none()) physical_fields(writer, side.physical);
+                      }) +
+           torques_toml("system", side);
 }
 
 std::string resolved_chain(const SideSpec& side) {

@@ -115,8 +115,12 @@ bool read_part(TomlReader& entry, Spec& spec, bool is_new) {
     return true;
 }
 
-/// What a real chain has besides.
-void read_physical(TomlReader& table, SideSpec& side) {
+/// A chain, and what a real one has besides.
+void read_physical_chain(TomlReader& table, SideSpec& side) {
+    const auto& rods = side.physical.rod_mass_kg;
+    const bool has_rods =
+        table.has("rod_mass_kg") || std::any_of(rods.begin(), rods.end(), [](const Quad& mass) { return mass > 0; });
+    chain_fields(table, side, has_rods ? not_negative : positive);
     if (table.has("center_m")) side.physical.center_m.resize(side.links());
     physical_fields(table, side.physical);
     read_entries(table, "torque", side.physical.torques, [&](TomlReader& entry, TorqueSpec& torque, bool) {
@@ -155,6 +159,12 @@ void check_sticking(TomlReader& table, const SideSpec& side) {
                           side.integrator);
 }
 
+void check_masses(TomlReader& table, const SideSpec& side) {
+    for (std::size_t i = 0; i < side.links(); ++i)
+        if (side.mass_kg[i] + side.physical.rod_mass_kg[i] == 0)
+            throw table.fault("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
+}
+
 /// What a real chain cannot be together with, and what it must have.
 void check_physical(TomlReader& table, const SideSpec& side) {
     const auto& physical = side.physical;
@@ -169,9 +179,7 @@ void check_physical(TomlReader& table, const SideSpec& side) {
                           "\"mechanism\" has no links with mass, friction or drive; \"angles\" and "
                           "\"constraints\" have them");
     check_sticking(table, side);
-    for (std::size_t i = 0; i < side.links(); ++i)
-        if (side.mass_kg[i] + physical.rod_mass_kg[i] == 0)
-            throw table.fault("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
+    check_masses(table, side);
 }
 
 /// What the keys say together must be possible.
@@ -248,13 +256,16 @@ void read_release(TomlReader& table, SideSpec& side) {
     table.finish();
 }
 
+void read_physical_release(TomlReader& table, SideSpec& side) {
+    read_physical_chain(table, side);
+    gravity_field(table, side);
+    table.finish();
+    table.check_together([&] { check_masses(table, side); });
+}
+
 void read_side(TomlReader& table, SideSpec& side, bool has_text) {
     if (has_text) side_text_fields(table, side);
-    const auto& rods = side.physical.rod_mass_kg;
-    const bool has_rods =
-        table.has("rod_mass_kg") || std::any_of(rods.begin(), rods.end(), [](const Quad& mass) { return mass > 0; });
-    chain_fields(table, side, has_rods ? not_negative : positive);
-    read_physical(table, side);
+    read_physical_chain(table, side);
     read_mechanism(table, side);
     gravity_field(table, side);
     table(model_field, side.model);

@@ -47,6 +47,44 @@ TEST(Spectrum, ComesInPairsThatSumToZero) {
     EXPECT_GT(last[1], 0.5);                                             // 90°/90° is chaotic
 }
 
+TEST(Spectrum, OfADrivenPendulumSumsToFrictionOverInertia) {
+    const auto figure = figure_of("driven-spectrum", {"spectrum.duration_s=200", "spectrum.samples=20"});
+    const auto table = table_of(figure);
+    ASSERT_EQ(table.columns.size(), 4u);  // none of the time, none of the work
+    for (const auto& row : table.rows) EXPECT_NEAR(row[3], -1.5652475842498528, 3e-11);  // measured 4e-12
+    EXPECT_GT(table.rows.back()[1], 0.2);
+    const auto found = findings_of(figure);
+    EXPECT_EQ(found.at("exponent1_per_s"), table.rows.back()[1]);
+    EXPECT_FALSE(found.contains("pair_mismatch_per_s"));  // friction leaves no pairs
+}
+
+TEST(Sweep, FindsExponentsOfDrivenPendulums) {
+    // the least of them is the rate at which every motion of one driven link loses its past, b/2J
+    const auto table = table_of(figure_from(R"(
+[scene]
+kind = "sweep"
+duration_s = 1
+[system]
+links = 1
+angle_deg = 10
+rod_mass_kg = 0.3
+joint_viscous_N_m_s = 1.1
+[[system.torque]]
+name = "motor"
+amplitude_N_m = 1
+frequency_hz = 0.3
+[sweep]
+parameter = "system.torque.motor.amplitude_N_m"
+from = 0.5
+to = 2.5
+points = 3
+quantity = "exponent"
+exponent_duration_s = 200
+)"));
+    ASSERT_EQ(table.rows.size(), 3u);
+    for (const auto& row : table.rows) EXPECT_NEAR(row[1], -0.5, 0.02) << row[0];
+}
+
 TEST(Bifurcation, PeriodsDoubleWhereTheTextbookSays) {
     // of θ″ + θ′/2 + sinθ = γ cos(2τ/3): one period at 1.35, two at 1.45, four at 1.47, none at 1.15 and 1.5
     // Source  Baker & Gollub, Chaotic Dynamics, §3.3

@@ -26,10 +26,36 @@ TEST(FigurePreset, EveryBuiltInOneReadsAndHasATitle) {
         EXPECT_GE(figure.experiment->together(), 1u);
         names.insert(preset.name);
     }
-    for (const char* name :
-         {"fig2-left", "fig2-right", "fig3-left", "fig3-right", "fig4-left", "fig4-right", "fig5-left", "fig5-right",
-          "fig6", "fig7", "fig8", "why-they-part", "droplet", "lyapunov-spectrum", "poincare", "flip-map", "links"})
+    for (const char* name : {"fig2-left", "fig2-right", "fig3-left", "fig3-right", "fig4-left", "fig4-right",
+                             "fig5-left", "fig5-right", "fig6", "fig7", "fig8", "why-they-part", "droplet",
+                             "lyapunov-spectrum", "poincare", "flip-map", "links", "driven-spectrum"})
         EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
+    const std::string system = "[system]\nlinks = 1\njoint_coulomb_N_m = 0.1\nintegrator = \"rk4\"\n";
+    const auto spectrum =
+        error_of([&] { figure_from("[scene]\nkind = \"spectrum\"\n[system]\njoint_coulomb_N_m = 0.1\n"); });
+    EXPECT_EQ(spectrum.first, ExitCode::bad_input);
+    EXPECT_EQ(spectrum.second.rfind("presets/x.toml:4:1: [system] joint_coulomb_N_m is not for Lyapunov exponents", 0),
+              0u)
+        << spectrum.second;
+    for (const std::string table : {"sweep", "map"}) {
+        const auto fault = error_of([&] {
+            figure_from(system + "[scene]\nkind = \"" + table + "\"\n[" + table + "]\nquantity = \"exponent\"\n" +
+                        (table == "map"
+                             ? "x_parameter = \"theta1_deg\"\ny_parameter = \"system.length_m\"\ny_from = 1\n"
+                               "y_to = 2\n"
+                             : ""));
+        });
+        EXPECT_EQ(fault.first, ExitCode::bad_input);
+        EXPECT_NE(fault.second.find("quantity is that of a smooth motion"), std::string::npos) << fault.second;
+    }
+    // no mass at all
+    const auto massless =
+        error_of([&] { figure_from("[scene]\nkind = \"spectrum\"\n[system]\nmass_kg = 0\nrod_mass_kg = [1, 0]\n"); });
+    EXPECT_NE(massless.second.find("mass_kg of link 2 and its rod_mass_kg are both 0"), std::string::npos)
+        << massless.second;
 }
 
 TEST(FigurePreset, DrawsOnlyLettersThatTheFontHas) {

@@ -105,6 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
              {"section.energy_J=[9.8, 20]", "section.orbits=3", "section.crossings=10",
               "section.exponent_duration_s=50"}},
         Case{"lyapunov-spectrum", {"spectrum.duration_s=5", "spectrum.samples=10"}},
+        Case{"driven-spectrum", {"spectrum.duration_s=5", "spectrum.samples=10"}},
         Case{"why-they-part",
              {"scene.duration_s=0.5", "convergence.methods=[\"euler\", \"dop853\"]", "convergence.halvings=4",
               "convergence.quad_halvings=2", "convergence.decades=4", "convergence.quad_decades=3"}}),
