@@ -192,6 +192,18 @@ Rung external_rung(const WorkProblem& problem, const ReferenceSolution& solution
 
 }  // namespace
 
+bool Solver::serves(const WorkProblem& problem) const {
+    switch (problem.kind) {
+        case WorkProblem::Kind::chain:
+            return true;
+        case WorkProblem::Kind::bodies:
+            return model != Model::mechanism && !external;
+        case WorkProblem::Kind::mechanism:
+            return model == Model::mechanism && !external;
+    }
+    return false;
+}
+
 MotionSpec WorkProblem::motion_in(Model model) const {
     auto spec = motion;
     spec.model = model;
@@ -206,8 +218,10 @@ double WorkProblem::error(const Observation& end, const Reference& reference) co
 ReferenceSolution reference_solution(const WorkProblem& problem, const std::atomic<bool>& stop) {
     // quad at its tolerance comes to some 1e-30 of the sensitivity; that of a mechanism is not known
     constexpr double allowed = 1e-26, allowed_blindly = 1e-15;
-    const auto spec = problem.motion_in(problem.plain ? Model::angles : Model::mechanism);
-    if (!problem.plain) return {reference_end(spec, spec.sample_interval, allowed_blindly, stop), NAN};
+    const bool is_mechanism = problem.kind == WorkProblem::Kind::mechanism;
+    const auto spec = problem.motion_in(is_mechanism ? Model::mechanism : Model::angles);
+    if (problem.kind != WorkProblem::Kind::chain)
+        return {reference_end(spec, spec.sample_interval, allowed_blindly, stop), NAN};
     const double sensitivity = angle_sensitivity(spec.chain->cast<double>(), problem.duration(), stop);
     return {reference_end(spec, spec.sample_interval, allowed * std::max(sensitivity, 1.0), stop), sensitivity};
 }

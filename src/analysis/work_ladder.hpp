@@ -35,9 +35,14 @@ struct ExternalMethod {
 
 /// A motion to compute, and what its errors are measured by.
 struct WorkProblem {
+    enum class Kind {
+        chain,     // point masses on massless rods under gravity: every model serves
+        bodies,    // links with mass, friction or a drive
+        mechanism  // anything else
+    };
     std::string name, title;  // "P1", "P1 · 90°/90°, 10 s"
     MotionSpec motion;        // what moves; one sample interval is the whole duration; method and model do not matter
-    bool plain = true;        // a chain under gravity and nothing else: every model serves
+    Kind kind = Kind::chain;
     bool conserves_energy = true;
     double natural_time = 1;  // s
     double energy_unit = 1;   // J
@@ -72,7 +77,7 @@ struct Solver {
     /// The method of the published study.
     bool is_study() const { return method == "euler" && model == Model::angles; }
     /// Whether it can compute the problem.
-    bool serves(const WorkProblem& problem) const { return problem.plain || (model == Model::mechanism && !external); }
+    bool serves(const WorkProblem& problem) const;
 };
 
 inline constexpr double study_step = 1.0 / 30000;  // s

@@ -253,10 +253,11 @@ private:
     }
 
     std::string error_words(bool floors) const {
-        return fmt::format("Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
-                           has_angles() ? "angle" : "place, as a part of the mechanism's size,",
-                           problems_.all.front().plain ? "in two formulations" : "at two tolerances",
-                           floors ? " Dashed: the rounding of a double, and what the motion makes of it." : "");
+        return fmt::format(
+            "Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
+            has_angles() ? "angle" : "place, as a part of the mechanism's size,",
+            problems_.all.front().kind == WorkProblem::Kind::chain ? "in two formulations" : "at two tolerances",
+            floors ? " Dashed: the rounding of a double, and what the motion makes of it." : "");
     }
 
     std::string spread_words(const std::vector<Ladder>& ladders) const {

@@ -38,7 +38,12 @@ Look look_of(std::string_view method) {
 /// The errors shown.
 ErrorRange range_of(const WorkDiagram& diagram) {
     constexpr double at_floor = 10;
-    return {std::isnan(diagram.floor) ? 0 : at_floor * diagram.floor, most_shown};
+    return {std::isnan(diagram.floor) ? rounding : at_floor * diagram.floor, most_shown};
+}
+
+/// An error may be 0 by luck, which a logarithmic axis has no place for.
+double shown(double error) {
+    return std::max(error, rounding / 4);
 }
 
 /// In colour with its name, or faint.
@@ -60,7 +65,8 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
         curve.dashed = look.dashed;
     }
     const auto useful = useful_rungs(ladder, diagram.cost, range_of(diagram));
-    for (const std::size_t i : useful) add_point(curve, cost_of(ladder.rungs[i], diagram.cost), ladder.rungs[i].error);
+    for (const std::size_t i : useful)
+        add_point(curve, cost_of(ladder.rungs[i], diagram.cost), shown(ladder.rungs[i].error));
     return curve;
 }
 
@@ -72,8 +78,8 @@ Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
         const auto& rung = ladder.rungs[i];
         const double spread = std::min(ladder.spread[i], most);
         if (spread < shows) continue;
-        add_point(bars, rung.cpu_s * (1 - spread), rung.error);
-        add_point(bars, rung.cpu_s * (1 + spread), rung.error);
+        add_point(bars, rung.cpu_s * (1 - spread), shown(rung.error));
+        add_point(bars, rung.cpu_s * (1 + spread), shown(rung.error));
         add_point(bars, NAN, NAN);
     }
     return bars;
@@ -82,7 +88,7 @@ Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
 Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.background = Background::band};
     for (const auto& point : front_of(diagram.index, diagram.ladders, diagram.cost, range_of(diagram)))
-        add_point(curve, point.cost, point.error);
+        add_point(curve, point.cost, shown(point.error));
     return curve;
 }
 

@@ -1,6 +1,7 @@
 #include "analysis/tangent.hpp"
 #include "figure/system_words.hpp"
 #include "figure/work_precision.hpp"
+#include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
 
 #include <fmt/ranges.h>
@@ -34,18 +35,22 @@ std::string title_words(const std::string& name, const SideSpec& side, const Rat
 
 /// The release of a chain or mechanism as a problem. Throws Error (exit 2) where the system is faulty.
 WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational& duration) {
-    if (!spec.physical.is_none())
-        throw bad_input("{}: methods are compared on point masses, without friction and drive", name);
-    const bool plain = !spec.is_mechanism();
-    spec.model = plain ? ModelChoice::automatic : ModelChoice::mechanism;
+    if (spec.physical.has_coulomb())
+        throw bad_input("{}: methods are compared on smooth motions; joints with joint_coulomb_N_m stick", name);
+    using Kind = WorkProblem::Kind;
+    const auto kind = spec.is_mechanism() ? Kind::mechanism : spec.physical.is_none() ? Kind::chain : Kind::bodies;
+    spec.model = kind == Kind::mechanism ? ModelChoice::mechanism : ModelChoice::automatic;
     spec.integrator = "taylor";
     spec.precision = Precision::in_double;
     spec.stabilise = Stabilise::none;
     const auto side = make_side(spec, {1, 1});
-    WorkProblem problem{.name = name, .title = title_words(name, spec, duration), .plain = plain};
-    problem.motion = {
-        .chain = side.motion.chain, .parts = assembly_of(spec), .sample_interval = duration, .follows_turns = false};
-    problem.conserves_energy = problem.motion.parts->conserves_energy();
+    WorkProblem problem{.name = name, .title = title_words(name, spec, duration), .kind = kind};
+    problem.motion = {.chain = side.motion.chain,
+                      .physical = side.motion.physical,
+                      .sample_interval = duration,
+                      .follows_turns = false};
+    if (kind != Kind::bodies) problem.motion.parts = assembly_of(spec);
+    problem.conserves_energy = side.has_energy_error;
     problem.energy_unit = side.energy_unit;
     problem.size = side.reach;
     const double gravity = std::abs(side.gravity);
@@ -64,14 +69,16 @@ WorkProblem standard_problem(const std::string& name, const StandardProblem& sta
 }
 
 /// What moves, in the words of a subtitle.
-std::string system_words(const WorkProblem& problem) {
+std::string system_words(const WorkProblem& problem, const SideSpec& side) {
     constexpr std::string_view computed = "double precision, one core";
     if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
     const auto chain = problem.motion.chain->cast<double>();
     const bool rests = std::all_of(chain.rate.begin(), chain.rate.end(), [](double rate) { return rate == 0; });
+    const auto besides = problem.kind == WorkProblem::Kind::mechanism ? ", and more"
+                         : problem.kind == WorkProblem::Kind::bodies  ? " with " + physical_words(side.physical)
+                                                                      : "";
     return fmt::format("side a of {}{}: {}{}; {}", problem.name, rests ? ", released at rest" : "",
-                       links_words(chain.length, chain.mass, chain.gravity), problem.plain ? "" : ", and more",
-                       computed);
+                       links_words(chain.length, chain.mass, chain.gravity), besides, computed);
 }
 
 /// What the standard problems are of: "double and triple pendulums".
@@ -111,7 +118,7 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
 WorkProblems problem_of(Preset film) {
     WorkProblems problems;
     problems.all.push_back(make_problem(film.name, film.a, film.duration_s));
-    problems.subtitle = system_words(problems.all.back());
+    problems.subtitle = system_words(problems.all.back(), film.a);
     film.b = film.a;
     problems.comment = commented(resolved_sides(film));
     return problems;
