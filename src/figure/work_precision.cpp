@@ -46,7 +46,9 @@ public:
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
         if (ladders_.empty())
-            throw table.fault("models", "must name one that serves; {} takes \"mechanism\"", problems_.all[0].name);
+            throw table.fault(
+                "models", "must name one that serves; {} takes {}", problems_.all[0].name,
+                problems_.all[0].kind == WorkProblem::Kind::bodies ? "\"angles\" or \"constraints\"" : "\"mechanism\"");
     }
 
     template <class Visit>
