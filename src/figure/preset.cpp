@@ -183,10 +183,8 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
     std::vector<FieldTable> all{named(top, "")};
     if (kind == pair_kind) {
         all.insert(all.end(), pair.begin(), pair.end());
-        const auto text = side_text_table().fields;
         for (auto& table : all)
-            if (table.key() == "a" || table.key() == "b")
-                table.fields.insert(table.fields.end(), text.begin(), text.end());
+            if (table.key() == "a" || table.key() == "b") table.append(side_text_table());
         all.push_back(film.back());
         return all;
     }

@@ -171,11 +171,7 @@ Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, boo
 /// [system], or [a] and [b], which change what stands there.
 Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
     auto table = film[2];
-    const auto text = side_text_table();
-    if (may_change) {
-        table.fields.insert(table.fields.end(), text.fields.begin(), text.fields.end());
-        table.tables.insert(table.tables.end(), text.tables.begin(), text.tables.end());
-    }
+    if (may_change) table.append(side_text_table());
     auto schema = table_schema(table);
     auto particle = table_schema(film[3]);
     particle["required"] = needed_keys(film[3]);

@@ -15,13 +15,10 @@ namespace {
 /// Of a side that shows a track.
 Json track_json(const Replay& replay, const TrackSpec& spec) {
     const auto& piece = replay.samples();
-    const Json measured{{"file", spec.file},
-                        {"sha256", spec.sha256},
-                        {"first_sample_s", piece.time_s.front()},
-                        {"start_s", replay.start_s},
-                        {"samples", piece.size()},
-                        {"noise_rad", replay.track->noise},
-                        {"notes", replay.track->notes}};
+    const Json measured{
+        {"file", spec.file},           {"sha256", spec.sha256},   {"first_sample_s", piece.time_s.front()},
+        {"start_s", replay.start_s},   {"samples", piece.size()}, {"noise_rad", replay.track->noise},
+        {"notes", replay.track->notes}};
     return {{"measured", measured}};
 }
 

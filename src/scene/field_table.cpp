@@ -67,6 +67,11 @@ std::string ListedField::example() const {
     return "\"\"";
 }
 
+void FieldTable::append(const FieldTable& other) {
+    fields.insert(fields.end(), other.fields.begin(), other.fields.end());
+    tables.insert(tables.end(), other.tables.begin(), other.tables.end());
+}
+
 void FieldTable::widen(const FieldTable& other) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
         auto& bounds = fields[i].bounds;

@@ -83,6 +83,8 @@ struct FieldTable {
     }
     static bool from_command_line(std::string_view) { return false; }
 
+    /// Takes the keys and tables of `other`, too.
+    void append(const FieldTable& other);
     /// Takes the numbers that `other`, the same list beside other values, takes too.
     void widen(const FieldTable& other);
 

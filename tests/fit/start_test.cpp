@@ -32,7 +32,8 @@ TEST(FitStart, FindsStartAndOffsets) {
 }
 
 TEST(FitStart, NoiseShiftsItLittle) {
-    expect_start(start_of(swinging_rods(), csv_of_motion(swinging_rods(), 1002, 1e-3)), 2e-4, 3e-3);  // measured 5e-5, 6e-4
+    expect_start(start_of(swinging_rods(), csv_of_motion(swinging_rods(), 1002, 1e-3)), 2e-4,
+                 3e-3);  // measured 5e-5, 6e-4
 }
 
 /// Whatever steps the twin: the start is that of its own motion.
