@@ -151,9 +151,8 @@ Exponent measured(const Release& p, const ExponentSpec& spec, const std::atomic<
 void demand_smooth(const PhysicalPendulum<double>& p) {
     if (!p.friction.coulomb.empty())
         throw bad_input(
-            "Lyapunov exponents are those of smooth motions; joints with Coulomb's friction (joint_coulomb_N_m) come "
-            "to "
-            "rest and let go again");
+            "Lyapunov exponents are those of smooth motions; joints with Coulomb's friction (joint_coulomb_N_m) "
+            "come to rest and let go again");
 }
 
 bool is_regular(const Exponent& exponent) {

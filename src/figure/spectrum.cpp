@@ -18,9 +18,8 @@ public:
         if (release_.physical.has_coulomb())
             throw reader.document.table(reader.top, "system")
                 .fault("joint_coulomb_N_m",
-                       "is not for Lyapunov exponents, which are those of smooth motions: such joints come to rest and "
-                       "let "
-                       "go again");
+                       "is not for Lyapunov exponents, which are those of smooth motions: such joints come to "
+                       "rest and let go again");
         auto table = reader.settings(*this);
         constexpr std::size_t most_links = 4;
         if (release_.links() > most_links)

@@ -2,6 +2,7 @@
 #include "integrate/runge_kutta.hpp"
 #include "peers/chain_rate.hpp"
 #include "physics/angle_chain.hpp"
+#include "physics/physical_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <benchmark/benchmark.h>
@@ -13,15 +14,35 @@
 namespace doppel {
 namespace {
 
+template <class Model>
+constexpr bool is_of_bodies = false;
+template <>
+constexpr bool is_of_bodies<PhysicalChain<double>> = true;
+
+/// Of bodies: even rods in place of point masses, with viscous friction.
+template <class Model>
+auto released(std::size_t links) {
+    Pendulum<double> p;
+    p.mass.assign(links, 1);
+    p.length.assign(links, 1);
+    p.angle.assign(links, radians(90));
+    p.rate.assign(links, 0);
+    if constexpr (is_of_bodies<Model>) {
+        auto bodies = physical(p);
+        bodies.center.assign(links, 0.5);
+        bodies.inertia.assign(links, 1.0 / 12);
+        bodies.friction.viscous.assign(links, 0.01);
+        return bodies;
+    } else {
+        return p;
+    }
+}
+
 template <class Stepper, class Model>
 void thousand_steps(const char* method, const char* model, std::size_t links) {
     const auto title = std::string(model) + "_" + std::to_string(links) + "/" + method;
     benchmark::RegisterBenchmark(title.c_str(), [links](benchmark::State& state) {
-        Pendulum<double> p;
-        p.mass.assign(links, 1);
-        p.length.assign(links, 1);
-        p.angle.assign(links, radians(90));
-        p.rate.assign(links, 0);
+        const auto p = released<Model>(links);
         Model pendulum(p);
         Stepper stepper(pendulum, Model::start(p), 1.0 / 30000);
         for (auto _ : state) {
@@ -56,6 +77,7 @@ const bool registered = [] {
     all_methods<AngleChain<double, 3>>("angles", 3);
     all_methods<ByHand>("angles by hand", 3);
     all_methods<AngleChain<double, Eigen::Dynamic>>("angles", 8);
+    for (const std::size_t links : {2, 3, 8}) all_methods<PhysicalChain<double>>("bodies", links);
     all_methods<RodChain<double, 2>>("constraints", 2);
     all_methods<RodChain<double, 3>>("constraints", 3);
     all_methods<RodChain<double, Eigen::Dynamic>>("constraints", 8);
