@@ -41,16 +41,6 @@ std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEnt
                         spec.links() == 1 ? "one link" : fmt::format("{} links", spec.links()))};
 }
 
-/// Rod below rod, from the pivot.
-std::vector<MechanismLine> lines_of(const Pendulum<double>& chain) {
-    using Kind = MechanismLine::Kind;
-    const End<double> pivot = Place<double>(0, 0);
-    std::vector<MechanismLine> lines;
-    for (std::size_t i = 0; i < chain.links(); ++i)
-        lines.push_back({Kind::rod, i == 0 ? pivot : End<double>(i - 1), i});
-    return lines;
-}
-
 /// What of a link's mass is at its end, kg: that of a body is along it.
 double end_mass(const SideSpec& spec, std::size_t link) {
     const auto& physical = spec.physical;
@@ -100,28 +90,6 @@ void measure(const SideSpec& spec, Side& side) {
         std::max({2 * mass * side.gravity * side.reach, std::abs(mechanism.energy(start)), kinetic_energy(bobs)});
     if (!(side.energy_unit > 0)) side.energy_unit = 1;
 }
-
-}  // namespace
-
-std::vector<MechanismLine> lines_of(const Assembly<double>& assembly) {
-    using Kind = MechanismLine::Kind;
-    std::vector<MechanismLine> lines;
-    for (const auto& constraint : assembly.constraints) {
-        if (const auto* anchor = std::get_if<Anchor<double>>(&constraint))
-            lines.push_back({Kind::anchor, anchor->place, anchor->place});
-        if (const auto* rod = std::get_if<Rod<double>>(&constraint)) lines.push_back({Kind::rod, rod->a, rod->b});
-        if (const auto* slot = std::get_if<SlotLine<double>>(&constraint))
-            lines.push_back({Kind::slot_line, slot->point, Place<double>(slot->point + slot->direction)});
-        if (const auto* slot = std::get_if<SlotCircle<double>>(&constraint))
-            lines.push_back({Kind::slot_circle, slot->centre, slot->centre, slot->radius});
-    }
-    for (const auto& force : assembly.forces)
-        if (const auto* spring = std::get_if<Spring<double>>(&force))
-            lines.push_back({Kind::spring, spring->a, spring->b});
-    return lines;
-}
-
-namespace {
 
 /// A track, and the pendulum that it is taken for.
 Side make_measured_side(const SideSpec& spec, const Rational& sample_hz) {

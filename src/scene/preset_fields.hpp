@@ -2,6 +2,7 @@
 
 #include "integrate/methods.hpp"
 #include "scene/physical_fields.hpp"
+#include "scene/side_text_fields.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -65,35 +66,6 @@ void chain_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
     constexpr std::string_view from_vertical = "at the start, from the downward vertical, counter-clockwise";
     visit({"angle_deg", from_vertical, "deg", turns, "", {}, "one a link"}, side.angle_deg);
     visit({"omega_deg_per_s", "rates at the start", "deg/s", {}, "", {}, "one a link"}, side.omega_deg_per_s);
-}
-
-/// [a.track] and [b.track]
-template <class Visit, class Spec>
-void track_fields(Visit& visit, Spec& track) {
-    visit(
-        {.key = "file",
-         .help = "CSV of a measured double pendulum, which the side shows instead of a simulation; beside the preset, "
-                 "from here, or one that came with the program",
-         .absent = "none"},
-        track.file);
-    const Only of_file{.holds = !track.is_none()};
-    visit({"start_s", "the file's time at which the motion begins", "s", {}, "the first sample", of_file},
-          track.start_s);
-    visit({"offset_deg", "what the encoders show at rest, which is subtracted", "deg", {}, "", of_file, "one an arm"},
-          track.offset_deg);
-}
-
-/// Of [a] and [b] of a film.
-template <class Visit, class Side>
-void side_text_fields(Visit& visit, Side&& side) {
-    visit({.key = "label",
-           .help = "what the side is called in the picture; \"\" = nothing",
-           .absent = "what sets it apart",
-           .is_drawn = true},
-          side.label);
-    visit({.key = "note", .help = "the line below the label; \"\" = none", .absent = "how it starts", .is_drawn = true},
-          side.note);
-    visit.table("track", [&](auto& table) { track_fields(table, side.track); });
 }
 
 template <class Visit, class Side>

@@ -64,6 +64,8 @@ struct MechanismLine {
 
 /// What a picture needs besides the particles: the constraints in their order, then the springs in theirs.
 std::vector<MechanismLine> lines_of(const Assembly<double>& assembly);
+/// Of a chain: rod below rod, from the pivot.
+std::vector<MechanismLine> lines_of(const Pendulum<double>& chain);
 
 /// One side with everything chosen.
 struct Side {
