@@ -78,7 +78,7 @@ double improve(const MotionSpec& spec, const Eigen::VectorXd& measured, Unknowns
 
 FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std::atomic<bool>& stop) {
     constexpr double longest_s = 2, followed = 0.1, settled = 0.999;
-    constexpr int most_steps = 12;
+    constexpr int most_passes = 12;
     constexpr std::size_t first_count = 20;
     auto spec = motion;
     spec.sample_interval = interval;
@@ -99,7 +99,7 @@ FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std:
     keep();
     for (auto count = std::min(first_count, most);; count = std::min(2 * count, most)) {
         double rms = std::numeric_limits<double>::infinity();
-        for (int step = 0; step < most_steps; ++step) {
+        for (int pass = 0; pass < most_passes; ++pass) {
             const double before = rms;
             rms = improve(spec, measured.head(2 * static_cast<Eigen::Index>(count)), x, stop);
             if (rms > settled * before) break;
