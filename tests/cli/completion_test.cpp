@@ -130,7 +130,12 @@ TEST(Completion, IsSoonThere) {
         EXPECT_EQ(doppel(folder, {"complete", "bash", "figure", "fig2-right", "--set", "sweep."}).code, 0);
         best = std::min(best, seconds_of(CLOCK_MONOTONIC) - start);
     }
-    EXPECT_LT(best, 0.2);  // 0.02 s measured; sanitizers take longer
+#ifdef DOPPEL_SANITIZE
+    constexpr double soon = 1;  // 0.1 s measured, 0.35 beside other work
+#else
+    constexpr double soon = 0.2;  // 0.02 s measured
+#endif
+    EXPECT_LT(best, soon);
 }
 
 /// A bash on a terminal.
