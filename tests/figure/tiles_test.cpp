@@ -6,6 +6,7 @@
 #include "output/png.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <map>
@@ -173,6 +174,85 @@ TEST(Tiles, LeaveOtherFilesAlone) {
     fs::create_directory_symlink(run.out / "elsewhere", run.tiles());
     EXPECT_EQ(refusal(run, small()).first, ExitCode::io_failed);
     EXPECT_TRUE(fs::is_empty(run.out / "elsewhere"));
+}
+
+TEST(Tiles, OfAnotherSizeOrKindAreRefused) {
+    TileRun run;
+    run(small());
+    const auto tile = run.tiles() / "2-0-0.png";
+    const auto elsewhere = run.out / "tile.png";
+    fs::rename(tile, elsewhere);
+    const auto refused = [&](const char* why) {
+        // with the coarser ones there, and to be made of it
+        for (const char* coarser : {"", "1-0-0.png"}) {
+            if (*coarser) fs::remove(run.tiles() / coarser);
+            const auto [code, message] = refusal(run, small());
+            EXPECT_EQ(code, ExitCode::io_failed) << why;
+            EXPECT_NE(message.find("2-0-0.png"), std::string::npos) << message;
+            EXPECT_NE(message.find(why), std::string::npos) << message;
+        }
+    };
+    for (const Size size : {Size{4000, 4000}, {256, 300}, {300, 256}, {1, 1}}) {
+        write_png(tile, Picture(size));
+        refused("a tile has 256x256; remove it");
+    }
+    // a bomb: its pixels are not decoded
+    write_png(tile, Picture({256, 256}));
+    auto bytes = test::bytes_of(tile);
+    bytes[18] = bytes[22] = 0x7f;
+    test::write_bytes(tile, bytes);
+    refused("32512x32512");
+    fs::remove(tile);
+    fs::create_symlink(elsewhere, tile);
+    refused("cannot be read");
+    fs::remove(tile);
+    ASSERT_EQ(mkfifo(tile.c_str(), 0600), 0);
+    refused("not a regular file");
+    fs::remove(tile);
+    fs::rename(elsewhere, tile);
+    run(small());
+}
+
+TEST(Tiles, OfAnotherThemeOrScaleAreAnothers) {
+    TileRun run;
+    const std::string map =
+        "title = \"x\"\n[scene]\nkind = \"map\"\nduration_s = 0.5\n[map]\ncolumns = 6\nrows = 4\nquantity = "
+        "\"divergence\"\n";
+    run(figure_from(map));
+    for (const std::string other : {"[chart]\ntheme = \"dark\"\n", "color_range = [0.3, 0.5]\n"}) {
+        const auto [code, message] = refusal(run, figure_from(map + other));
+        EXPECT_EQ(code, ExitCode::io_failed) << other;
+        EXPECT_NE(message.find("belongs to another preset or version"), std::string::npos) << message;
+    }
+    run(figure_from("subtitle = \"other words\"\n" + map));  // the tiles are the same
+}
+
+TEST(Tiles, CountCellsNotPixels) {
+    for (const auto& [size, cells] :
+         {std::pair("columns = 20\nrows = 20\n", 400), {"columns = 4\nrows = 4\n", 16}, {"", 256 * 256}}) {
+        TileRun run;
+        const auto figure = small(*size ? size : "columns = 256\nrows = 256\n");  // the last is its own image
+        const auto result = run(figure);
+        EXPECT_EQ(result.samples, cells) << size;
+    }
+}
+
+TEST(Tiles, GoOnWhereTheMarkWasCutShort) {
+    TileRun run;
+    run(small("columns = 20\nrows = 20\n"));
+    const auto mark = test::bytes_of(run.tiles() / "pyramid.json");
+    fs::remove_all(run.tiles());
+    fs::create_directories(run.tiles());
+    test::write_bytes(run.tiles() / "pyramid.json", "");
+    run(small("columns = 20\nrows = 20\n"));
+    EXPECT_EQ(test::bytes_of(run.tiles() / "pyramid.json"), mark);
+    // but not where somebody's tiles are there
+    test::write_bytes(run.tiles() / "pyramid.json", "");
+    EXPECT_EQ(refusal(run, small("columns = 20\nrows = 20\n")).first, ExitCode::io_failed);
+    // nor without an end
+    fs::remove(run.tiles() / "pyramid.json");
+    fs::create_symlink("/dev/zero", run.tiles() / "pyramid.json");
+    EXPECT_EQ(refusal(run, small("columns = 20\nrows = 20\n")).first, ExitCode::io_failed);
 }
 
 TEST(Tiles, AreOfMapsAndOfAllParts) {
