@@ -41,7 +41,8 @@ Stream open_png(const FilePlace& place) {
 /// Source  Portable Network Graphics (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE makes at most 1032 bytes of one.
 std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
     constexpr std::uint64_t signature = 8, around = 12;  // length, type and checksum of a chunk
-    constexpr std::uint64_t most_inflated = 1032;
+    constexpr std::uint64_t most_inflated = 1032, most_bytes = std::uint64_t{1} << 30;
+    if (bytes > most_bytes) return fmt::format("it has more than {} MB", most_bytes >> 20);
     unsigned char head[head_bytes];
     if (std::fread(head, 1, sizeof head, file) == sizeof head) {
         const auto width = big_endian(head + 16), height = big_endian(head + 20);
@@ -53,6 +54,7 @@ std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
         unsigned char chunk[8];  // length and type
         if (std::fseek(file, static_cast<long>(at), SEEK_SET) != 0 || std::fread(chunk, 1, 8, file) != 8) break;
         if (std::string_view(reinterpret_cast<const char*>(chunk + 4), 4) == "IEND") break;
+        if (chunk[4] < 'A') return fmt::format("there is no chunk at byte {}", at);  // zeros of a sparse file
         if (big_endian(chunk) + around > bytes - at)
             return fmt::format("the chunk at byte {} is longer than the file", at);
         at += around + big_endian(chunk);

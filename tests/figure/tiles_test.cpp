@@ -2,6 +2,7 @@
 
 #include "figure/map_figure.hpp"
 #include "figure/support.hpp"
+#include "figure/tile_page.hpp"
 #include "image/color.hpp"
 #include "output/png.hpp"
 
@@ -296,6 +297,37 @@ TEST(TilePage, SaysWhatItShowsAndNothingThatTheTitleMeans) {
     EXPECT_NE(page.find("no flip within 0.6 s"), std::string::npos);
     EXPECT_EQ(page.find("{map}"), std::string::npos);
     EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+TEST(TilePage, TakesAnyNames) {
+    const fs::path path = fs::path(DOPPEL_TEST_OUTPUT) / "hostile.html";
+    const std::string title = "</title><!--<script>{map}{subtitle}$(x)'\"\n`${1}`\\";
+    const std::string label = "<!--<script></script>{title}$&$`\n\u2028'\"\\, m";
+    MapFrame frame{.x = {.count = 2}, .y = {.count = 2}, .x_axis = {.label = label}, .y_axis = {.label = "y"}};
+    frame.look.low = 0, frame.look.high = 1;
+    // the address of a#b is not "a", and a%41 is not aA
+    for (const auto& [name, address] : {std::pair("a#b?c", "a%23b%3Fc.tiles"),
+                                        {"a%41", "a%2541.tiles"},
+                                        {"x:y\\'\"\n<", "x%3Ay%5C%27%22%0A%3C.tiles"},
+                                        {"θ\xff", "%CE%B8%FF.tiles"}}) {
+        write_tile_page(path,
+                        {title, title, std::string(name) + ".tiles", Pyramid(2, 2), frame, frame.look, themes[0]});
+        const auto page = test::bytes_of(path);
+        const std::string begin = "const map = ";
+        const auto from = page.find(begin) + begin.size(), to = page.find(";\n", from);
+        const auto data = page.substr(from, to - from);
+        EXPECT_EQ(data.find('<'), std::string::npos) << data;
+        const auto map = Json::parse(data);
+        EXPECT_EQ(map["folder"], address);
+        EXPECT_EQ(map["x"]["label"], label);
+        // one script, one title, no comment
+        for (const char* once : {"<script", "</script", "</title"}) {
+            const auto at = page.find(once);
+            EXPECT_NE(at, std::string::npos);
+            EXPECT_EQ(page.find(once, at + 1), std::string::npos) << once;
+        }
+        EXPECT_EQ(page.find("<!--"), page.rfind("<!--"));
+    }
 }
 
 }  // namespace tiles_test
