@@ -27,6 +27,12 @@ std::string on_one_line(std::string_view text);
 /// The text as XML 1.0 and HTML take it between tags and in quotes: on one line, without characters that XML forbids.
 std::string markup(std::string_view text);
 
+/// JSON as a script in a page takes it: nothing in it begins a tag or a comment.
+std::string in_script(std::string json);
+
+/// A name as a part of an address, RFC 3986: every byte but letters, digits and -._~ as %XX.
+std::string in_address(std::string_view name);
+
 /// The whole characters of its first `most` bytes, with "…" where there is more.
 std::string shortened(std::string_view text, std::size_t most);
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "figure/part_file.hpp"
 #include "image/picture.hpp"
 #include "output/folder.hpp"
+#include "scene/resolved.hpp"
 
 #include <atomic>
 #include <mutex>
@@ -11,13 +11,13 @@
 
 namespace doppel {
 
-/// A folder of tiles, which belongs to one preset and version: pyramid.json in it says to which. Its tiles appear whole,
-/// and none is replaced. May be used by several threads, and by several processes for tiles of their own.
+/// A folder of tiles, which belongs to one preset and version: pyramid.json in it says to which. Its tiles are regular
+/// files, PNGs of Pyramid::tile pixels a side; they appear whole, and none is replaced. May be used by several threads, and by several processes for tiles of their own.
 class TileFolder {
 public:
-    /// Makes the folder in `above`, or takes it where it is the same's. Throws Error (exit 4) where it is another's, not
-    /// Doppel's, or a link.
-    TileFolder(const Folder& above, const std::string& name, const PartHeader& header);
+    /// Makes the folder in `above`, or takes it where its pyramid.json is `owner`. Throws Error (exit 4) where it is
+    /// another's, not Doppel's, or a link, or a tile in it is not as above.
+    TileFolder(const Folder& above, const std::string& name, const Json& owner);
 
     std::filesystem::path path() const { return folder_.path(); }
     std::size_t count() const;

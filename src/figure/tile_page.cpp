@@ -39,7 +39,7 @@ void write_tile_page(const FilePlace& place, const TilePage& page) {
     const auto files = figure_files();
     const auto file = std::ranges::find(files, "figure/tiles.html", &EmbeddedFile::name);
     if (file == files.end()) throw io_failed("the page of tiles was not built in");
-    const Json map{{"folder", page.folder},
+    const Json map{{"folder", in_address(page.folder)},
                    {"tile", Pyramid::tile},
                    {"levels", page.pyramid.levels},
                    {"columns", page.pyramid.columns},
@@ -47,9 +47,7 @@ void write_tile_page(const FilePlace& place, const TilePage& page) {
                    {"x", axis_json(page.frame.x, page.frame.x_axis)},
                    {"y", axis_json(page.frame.y, page.frame.y_axis)},
                    {"scale", scale_json(page.look, page.theme)}};
-    // in a script "</" would end it
-    auto data = map.dump();
-    for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; at += 3) data.insert(at + 1, "\\");
+    const auto data = in_script(map.dump(-1, ' ', false, Json::error_handler_t::replace));
     OutputFile output(place);
     std::string_view rest = file->contents;
     while (!rest.empty()) {

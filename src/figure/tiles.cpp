@@ -19,6 +19,17 @@ namespace {
 
 constexpr double bytes_a_cell = 1;  // of PNGs; of the flip map 0.6
 
+/// What the pixels of all tiles depend on.
+Json owner_of(const FigurePreset& figure, const MapFigure& map) {
+    const auto header = header_of(figure);
+    const auto& look = map.frame().look;
+    Json range;  // null: by the numbers
+    if (look.low && look.high) range = {*look.low, *look.high};
+    return {{"doppel", program_json()},       {"figure", header.figure},     {"preset_sha256", header.preset},
+            {"version", header.version},      {"revision", header.revision}, {"theme", figure.chart.theme},
+            {"color_range", std::move(range)}};
+}
+
 /// Makes the tiles of one figure.
 class TileMaker {
 public:
@@ -29,7 +40,7 @@ public:
           pyramid_(map_.frame().x.count, map_.frame().y.count),
           theme_(*std::find_if(themes.begin(), themes.end(),
                                [&](const Theme& theme) { return theme.name == figure.chart.theme; })),
-          folder_(above, figure.name + ".tiles", header_of(figure)),
+          folder_(above, figure.name + ".tiles", owner_of(figure, *figure.experiment->map())),
           stop_(stop),
           report_(std::move(report)),
           jobs_(jobs) {
@@ -38,16 +49,17 @@ public:
         mirrors_ = frame.is_mirrored && frame.x.count % tile == 0 && frame.y.count % tile == 0;
     }
 
-    /// Colours by the numbers of 64 rows of 64 cells, if the preset does not say; of a row some stand side by side, as
-    /// they are found fastest together.
+    /// Colours by the numbers of 64 rows of 64 cells, or of as many as there are, if the preset does not say; of a row
+    /// some stand side by side, as they are found fastest together.
     void fit_colors() {
         look_ = map_.frame().look;
         if (look_.low && look_.high) return;
-        constexpr int rows = 64, groups = 8, together = 8;
+        constexpr int most_rows = 64, most_groups = 8, together = 8;
         const auto &x = map_.frame().x, &y = map_.frame().y;
         const int side_by_side = std::min(together, x.count);
-        std::vector<std::vector<float>> numbers(rows);
-        parallel_for(rows, jobs_, [&](std::size_t row) {
+        const int rows = std::min(most_rows, y.count), groups = std::min(most_groups, x.count / side_by_side);
+        std::vector<std::vector<float>> numbers(static_cast<std::size_t>(rows));
+        parallel_for(numbers.size(), jobs_, [&](std::size_t row) {
             for (int group = 0; group < groups; ++group) {
                 std::vector<TrialNumbers> cells(static_cast<std::size_t>(side_by_side));
                 map_.find(spread(static_cast<int>(row), rows, y.count),
@@ -84,12 +96,14 @@ public:
             if (!is_there(pyramid_.levels, row, column) ||
                 (mirrors_ && !is_there(pyramid_.levels, down - 1 - row, across - 1 - column)))
                 missing.push_back(i);
+            else
+                done_ += cells_by(i);
+            total_ += cells_by(i);
         }
-        total_ = static_cast<double>(last - first) * cells_a_tile() * (mirrors_ ? 2 : 1);
-        done_ =
-            total_ * (1 - static_cast<double>(missing.size()) / std::max<double>(1, static_cast<double>(last - first)));
         if (done_ > 0)
-            report_.note(fmt::format("goes on: {:.0f} % of the finest tiles are there", 100 * done_ / total_));
+            report_.note(
+                fmt::format("goes on: {:.0f} % of the finest tiles are there",
+                            100 * (1 - static_cast<double>(missing.size()) / static_cast<double>(last - first))));
         if (!missing.empty()) fit_colors();
         start_s_ = seconds_of(CLOCK_MONOTONIC);
         parallel_for(missing.size(), jobs_, [&](std::size_t i) {
@@ -102,7 +116,7 @@ public:
                 turn(picture);
                 write(picture, pyramid_.levels, other_row, other_column);
             }
-            progress(cells_a_tile() * (mirrors_ ? 2 : 1));
+            progress(cells_by(missing[i]));
         });
     }
 
@@ -138,7 +152,16 @@ public:
 
 private:
     static int spread(int i, int of, int cells) { return static_cast<int>((2L * i + 1) * cells / (2L * of)); }
-    double cells_a_tile() const { return static_cast<double>(Pyramid::tile) * Pyramid::tile; }
+    /// How many cells are known with finest tile i, counted row by row; of a mirrored map its image's too.
+    double cells_by(long i) const {
+        constexpr int tile = Pyramid::tile;
+        const int across = pyramid_.across(pyramid_.levels);
+        const int row = static_cast<int>(i / across), column = static_cast<int>(i % across);
+        const double cells = std::min(tile, pyramid_.columns - column * tile) *
+                             static_cast<double>(std::min(tile, pyramid_.rows - row * tile));
+        const bool is_own_image = 2 * i + 1 == static_cast<long>(across) * pyramid_.down(pyramid_.levels);
+        return cells * (mirrors_ && !is_own_image ? 2 : 1);
+    }
     double share_there() const {
         const double all = static_cast<double>(pyramid_.across(pyramid_.levels)) * pyramid_.down(pyramid_.levels);
         return std::min(1.0, static_cast<double>(folder_.count()) / (all * 4 / 3));

@@ -190,12 +190,12 @@ Descriptor create_unnamed_file(const FilePlace& place) {
 
 Descriptor open_file(const FilePlace& place) {
     // opening a pipe without a writer would block
-    const int careful = place.folder ? O_NOFOLLOW | O_NONBLOCK : 0;
+    const int careful = O_NONBLOCK | (place.folder ? O_NOFOLLOW : 0);
     Descriptor file(openat(place.descriptor(), place.name.c_str(), O_RDONLY | O_CLOEXEC | careful));
     if (!file) throw cannot(place.path, "read");
     struct stat status {};
     if (fstat(file.number(), &status) != 0) throw cannot(place.path, "read");
-    if (place.folder && !S_ISREG(status.st_mode)) throw io_failed("{} is not a regular file", place.path.string());
+    if (!S_ISREG(status.st_mode)) throw io_failed("{} is not a regular file", place.path.string());
     return file;
 }
 

@@ -101,7 +101,7 @@ FilePlace part_of(const FilePlace& place);
 Descriptor create_file(const FilePlace& place);
 /// A file without a name on the file system of `place`, to write and read; closing it frees it. Throws Error (exit 4).
 Descriptor create_unnamed_file(const FilePlace& place);
-/// A file to read; in a folder only a regular one, and no link. Throws Error (exit 4).
+/// A regular file to read; in a folder no link. Throws Error (exit 4).
 Descriptor open_file(const FilePlace& place);
 
 /// A pointer from a library in C and the function that frees it.

@@ -25,9 +25,12 @@ void write_png(const FilePlace& place, const Picture& picture, const PngOptions&
 /// The bytes of the same file. Throws Error (exit 4).
 std::string png_bytes(const Picture& picture, const PngOptions& options = {});
 
-/// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it cannot be
-/// decoded.
-Picture read_png(const std::filesystem::path& path);
+/// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it is no regular
+/// file or cannot be decoded.
+Picture read_png(const FilePlace& place);
+
+/// The size that its header says. Throws as read_png().
+Size png_size(const FilePlace& place);
 
 /// A numbered sequence: picture k = 0, 1, … is written to place_of(k), called by take(). `threads` compress, fed
 /// through a bounded queue. take() and finish() throw as write_png(), and exit 130 soon after `stop` is set.

@@ -3,15 +3,26 @@
 #include "base/error.hpp"
 #include "embedded/render.hpp"
 
+#include <ft2build.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <mutex>
 #include <span>
 #include <system_error>
 #include <utility>
+#include FT_FREETYPE_H
+#include FT_ADVANCES_H
+#include FT_OUTLINE_H
+#include FT_TRUETYPE_TABLES_H
+#include FT_TRUETYPE_TAGS_H
 
+// FreeType reads fonts, as it trusts nothing in them; stb_truetype draws their outlines: the same pixels everywhere
+#define STBTT_assert(condition) static_cast<void>(condition)
 #define STB_TRUETYPE_IMPLEMENTATION
 #define STBTT_STATIC
 #include <stb_truetype.h>
@@ -111,25 +122,42 @@ Coverage missing_box(float size, Weight weight, float shift) {
     return coverage;
 }
 
-unsigned number_at(std::string_view bytes, std::size_t at, int count) {
-    unsigned value = 0;
-    for (int i = 0; i < count; ++i)
-        value = value << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)]);
-    return value;
-}
+constexpr float most_ems = 16;  // from the pen, in any direction: a glyph beyond is damaged
 
-/// Whether all tables of the font that begins at `start` lie in the file: stb_truetype reads them unchecked.
-bool is_whole(std::string_view bytes, std::size_t start) {
-    constexpr std::size_t header = 12, entry = 16;
-    if (start + header > bytes.size()) return false;
-    const std::size_t tables = number_at(bytes, start + 4, 2);
-    if (start + header + tables * entry > bytes.size()) return false;
-    for (std::size_t i = 0; i < tables; ++i) {
-        const std::size_t at = start + header + i * entry;
-        if (std::size_t{number_at(bytes, at + 8, 4)} + number_at(bytes, at + 12, 4) > bytes.size()) return false;
+/// An outline in the font's units, as stb_truetype draws it.
+class OutlineBuilder {
+public:
+    explicit OutlineBuilder(FT_Outline& outline) {
+        // at twice the size points between two others are exact
+        static constexpr FT_Outline_Funcs steps{
+            &OutlineBuilder::move, &OutlineBuilder::line, &OutlineBuilder::curve, &OutlineBuilder::cubic, 1, 0};
+        is_whole_ = FT_Outline_Decompose(&outline, &steps, this) == 0;
     }
-    return true;
-}
+    /// Empty where it is damaged.
+    std::vector<stbtt_vertex> vertices() && { return is_whole_ ? std::move(vertices_) : std::vector<stbtt_vertex>(); }
+
+private:
+    static short units(FT_Pos twice) {
+        using Limits = std::numeric_limits<short>;
+        return static_cast<short>(std::clamp<FT_Pos>(twice >> 1, Limits::min(), Limits::max()));
+    }
+    static int add(void* to, unsigned char kind, const FT_Vector& at, const FT_Vector& first, const FT_Vector& second) {
+        static_cast<OutlineBuilder*>(to)->vertices_.push_back(
+            {units(at.x), units(at.y), units(first.x), units(first.y), units(second.x), units(second.y), kind, 0});
+        return 0;
+    }
+    static int move(const FT_Vector* at, void* to) { return add(to, STBTT_vmove, *at, {}, {}); }
+    static int line(const FT_Vector* at, void* to) { return add(to, STBTT_vline, *at, {}, {}); }
+    static int curve(const FT_Vector* first, const FT_Vector* at, void* to) {
+        return add(to, STBTT_vcurve, *at, *first, {});
+    }
+    static int cubic(const FT_Vector* first, const FT_Vector* second, const FT_Vector* at, void* to) {
+        return add(to, STBTT_vcubic, *at, *first, *second);
+    }
+
+    std::vector<stbtt_vertex> vertices_;
+    bool is_whole_ = false;
+};
 
 std::string contents_of(const std::filesystem::path& path) {
     constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
@@ -146,10 +174,28 @@ std::string contents_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+/// FreeType's, which one thread may use at a time.
 struct Font::Tables {
-    stbtt_fontinfo info{};
-    bool is_postscript = false;  // its outlines have their ink on the left of the pen
-    bool is_complete = false;    // has an outline for all that it has a number for
+    std::mutex mutex;
+    FT_Library library = nullptr;
+    FT_Face face = nullptr;
+    bool is_complete = false;  // has an outline for all that it has a number for
+
+    ~Tables() {
+        FT_Done_Face(face);
+        FT_Done_FreeType(library);
+    }
+    /// Null where it cannot be read.
+    FT_Outline* outline_of(int glyph) const {
+        constexpr int in_units = FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP;
+        const bool is_read = FT_Load_Glyph(face, static_cast<FT_UInt>(glyph), in_units) == 0;
+        return is_read && face->glyph->format == FT_GLYPH_FORMAT_OUTLINE ? &face->glyph->outline : nullptr;
+    }
+    bool has_table(FT_ULong tag) const {
+        FT_ULong bytes = 0;  // asks for the length
+        return FT_Load_Sfnt_Table(face, tag, 0, nullptr, &bytes) == 0;
+    }
+    float scale(float size) const { return size / static_cast<float>(face->units_per_EM); }
 };
 
 Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index)
@@ -158,15 +204,16 @@ Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes
       bytes_(owned_.empty() ? bytes : owned_),
       index_(index),
       tables_(std::make_unique<Tables>()) {
-    bytes = bytes_;
-    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-    constexpr std::size_t least = 16;  // up to the first font's place in a collection
-    const int start = bytes.size() < least ? -1 : stbtt_GetFontOffsetForIndex(data, index);
-    if (start < 0) throw bad_input("is no TrueType or OpenType font");
-    if (!is_whole(bytes, static_cast<std::size_t>(start))) throw bad_input("is cut short");
-    if (stbtt_InitFont(&tables_->info, data, start) == 0) throw bad_input("is a font without outlines");
-    tables_->is_postscript = tables_->info.cff.size > 0;
-    tables_->is_complete = owned_.empty();
+    auto& [mutex, library, face, is_complete] = *tables_;
+    if (FT_Init_FreeType(&library) != 0) throw io_failed("FreeType cannot be started");
+    const auto* data = reinterpret_cast<const FT_Byte*>(bytes_.data());
+    if (FT_New_Memory_Face(library, data, static_cast<FT_Long>(bytes_.size()), index, &face) != 0 || !FT_IS_SFNT(face))
+        throw bad_input("is no TrueType or OpenType font, or is damaged");
+    const bool has_outlines =
+        tables_->has_table(TTAG_glyf) || tables_->has_table(TTAG_CFF) || tables_->has_table(TTAG_CFF2);
+    if (!has_outlines || face->units_per_EM == 0) throw bad_input("is a font without outlines");
+    if (FT_Select_Charmap(face, FT_ENCODING_UNICODE) != 0) throw bad_input("is a font without letters of Unicode");
+    is_complete = owned_.empty();
 }
 
 Font::~Font() = default;
@@ -185,39 +232,44 @@ std::shared_ptr<const Font> Font::from_file(const std::filesystem::path& path, i
 }
 
 int Font::number_of(char32_t character) const {
-    const int number = stbtt_FindGlyphIndex(&tables_->info, static_cast<int>(character));
+    const std::lock_guard hold(tables_->mutex);
+    const int number = static_cast<int>(FT_Get_Char_Index(tables_->face, character));
     if (number == 0 || tables_->is_complete) return number;
     const bool is_space = character == U' ' || character == U'\u00a0' || character == U'\u3000' ||
                           (character >= U'\u2000' && character <= U'\u200a') || character == U'\u202f';
-    return !is_space && stbtt_IsGlyphEmpty(&tables_->info, number) != 0 ? 0 : number;
+    if (is_space) return number;
+    const auto* outline = tables_->outline_of(number);
+    return outline && outline->n_points > 0 ? number : 0;
 }
 
 float Font::advance(int glyph, float size, Weight weight) const {
-    int units = 0, bearing = 0;
-    stbtt_GetGlyphHMetrics(&tables_->info, glyph, &units, &bearing);
+    const std::lock_guard hold(tables_->mutex);
+    FT_Fixed units = 0;
+    if (FT_Get_Advance(tables_->face, static_cast<FT_UInt>(glyph), FT_LOAD_NO_SCALE, &units) != 0) units = 0;
     // letters move apart by less than they grow: heavier text is set tighter
     const float extra = weight == Weight::bold && units > 0 ? bold_spacing * size : 0;
-    return static_cast<float>(units) * stbtt_ScaleForMappingEmToPixels(&tables_->info, size) + extra;
+    return static_cast<float>(units) * tables_->scale(size) + extra;
 }
 
 Coverage Font::rasterised(int glyph, float size, Weight weight, float shift) const {
     if (glyph == 0) return missing_box(size, weight, shift);
-    const stbtt_fontinfo& font = tables_->info;
-    stbtt_vertex* vertices = nullptr;
-    const int count = stbtt_GetGlyphShape(&font, glyph, &vertices);
-    const auto give_back = [&](stbtt_vertex* v) { stbtt_FreeShape(&font, v); };
-    const std::unique_ptr<stbtt_vertex, decltype(give_back)> owner(vertices, give_back);
-    if (count == 0) return {};
-    const std::span outline(vertices, static_cast<std::size_t>(count));
+    const std::lock_guard hold(tables_->mutex);
+    FT_Outline* const read = tables_->outline_of(glyph);
+    if (!read) return missing_box(size, weight, shift);
+    auto outline = OutlineBuilder(*read).vertices();
+    if (outline.empty()) return {};
 
     // the outline at its final weight; the bold one sits in the middle of its wider advance
-    const float scale = stbtt_ScaleForMappingEmToPixels(&font, size);
+    const float scale = tables_->scale(size);
     if (weight == Weight::bold) {
-        const float units_per_em = (tables_->is_postscript ? -size : size) / scale;
+        const bool is_postscript = (read->flags & FT_OUTLINE_REVERSE_FILL) != 0;  // ink on the left of the pen
+        const float units_per_em = (is_postscript ? -size : size) / scale;
         embolden_all(outline, {bold_across * units_per_em, bold_along * units_per_em});
         shift += bold_spacing / 2 * size;
     }
     const Area extent = extent_of(outline, scale, shift);
+    const float reach = std::max({-extent.left, -extent.top, extent.right, extent.bottom});
+    if (!(reach <= most_ems * size)) return missing_box(size, weight, shift);
 
     Coverage coverage;
     coverage.left = static_cast<int>(std::floor(extent.left));
@@ -228,8 +280,8 @@ Coverage Font::rasterised(int glyph, float size, Weight weight, float shift) con
     coverage.values.resize(static_cast<std::size_t>(coverage.size.width) * coverage.size.height);
     stbtt__bitmap target{coverage.size.width, coverage.size.height, coverage.size.width, coverage.values.data()};
     const float flatness = 0.05f;  // px
-    stbtt_Rasterize(&target, flatness, vertices, count, scale, scale, shift, 0, coverage.left, coverage.top, 1,
-                    nullptr);
+    stbtt_Rasterize(&target, flatness, outline.data(), static_cast<int>(outline.size()), scale, scale, shift, 0,
+                    coverage.left, coverage.top, 1, nullptr);
     return coverage;
 }
 

@@ -23,8 +23,8 @@ struct Coverage {
 /// the next letter is; em.
 inline constexpr float bold_pen = 0.0345f, bold_spacing = 0.0300f;
 
-/// One font, of a TrueType or OpenType file with outlines. It never changes: threads may share it. Such files are
-/// trusted: that no table leaves the file is checked, what the tables say is not.
+/// One font, of a TrueType or OpenType file with outlines. It never changes: threads may share it. FreeType reads it: a
+/// damaged font has wrong letters, boxes for letters, or none, and nothing worse.
 class Font {
 public:
     /// The built-in one.
@@ -49,7 +49,7 @@ public:
     Coverage rasterised(int glyph, float size, Weight weight, float shift) const;
 
 private:
-    struct Tables;  // as stb_truetype has them
+    struct Tables;  // as FreeType has them
     Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index);
 
     std::filesystem::path file_;

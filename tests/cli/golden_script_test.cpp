@@ -45,5 +45,46 @@ TEST(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
         EXPECT_NE(summary.find(line), std::string::npos) << summary;
 }
 
+TEST(GoldenScript, SaysWhatItCannotDrawAndSkipsNothing) {
+    const auto folder = test::fresh_folder();
+    // in place of the program, one that draws nothing, says what it would and reads its input
+    test::write_bytes(folder / "draws", "#!/bin/sh\ncat\necho \"ran $1 $2\"\n");
+    test::write_bytes(folder / "fails", "#!/bin/sh\nexit 1\n");
+    for (const char* program : {"draws", "fails"}) fs::permissions(folder / program, fs::perms::owner_all);
+    const auto run = [&](const std::string& more) {
+        return shell(folder,
+                     "export PROGRAM=./draws GOLDEN=golden OUT=drawn FRAMES=0:2 SIZE= GITHUB_STEP_SUMMARY=summary " +
+                         more + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
+    };
+    struct Case {
+        const char* variables;
+        int code;
+        const char *err, *out;
+    };
+    for (const auto& [variables, code, err, out] :
+         {Case{"PRESETS=' '", 2, "golden: PRESETS and FIGURES: there is nothing to draw", ""},
+          {"GOLDEN= PRESETS=calm", 2, "golden: GOLDEN: is empty", ""},
+          {"OUT=-x PRESETS=calm", 2, "golden: OUT: begins with \"-\"", ""},
+          {"FRAMES= PRESETS=calm", 2, "golden: FRAMES: is empty", ""},
+          {"PRESETS='--help\ncalm'", 2, "golden: --help: is no preset", "ran render calm\nran compare golden/calm\n"},
+          {"PRESETS='a/x.toml\nb/x.toml\ncalm'", 2, "golden: b/x.toml: has the name of a/x.toml",
+           "ran render a/x.toml\nran compare golden/x\nran render calm\nran compare golden/calm\n"},
+          {"PRESETS=a/x.toml FIGURES=b/x.toml", 2, "golden: b/x.toml: has the name of a/x.toml",
+           "ran render a/x.toml\nran compare golden/x\n"},
+          {"PROGRAM=./fails PRESETS=calm", 4, "golden: calm: drawing ended with exit code 1", ""},
+          {"PROGRAM=./none PRESETS=calm", 127, "none", ""},
+          {"PRESETS='one\ntwo' FIGURES=three", 0, "",
+           "ran render one\nran compare golden/one\nran render two\nran compare golden/two\n"
+           "ran figure three\nran compare golden/three.png\n"}}) {
+        const auto outcome = run(variables);
+        EXPECT_EQ(outcome.code, code) << variables << outcome.err;
+        EXPECT_NE(outcome.err.find(err), std::string::npos) << variables << outcome.err;
+        EXPECT_EQ(outcome.out, out) << variables;
+    }
+    const auto summary = bytes_of(folder / "summary");
+    for (const char* line : {"| PRESETS and FIGURES | there is nothing to draw", "| calm | failed (exit code 4) |"})
+        EXPECT_NE(summary.find(line), std::string::npos) << summary;
+}
+
 }  // namespace golden_script_test
 }  // namespace doppel

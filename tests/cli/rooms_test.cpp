@@ -95,6 +95,7 @@ constexpr Library libraries[]{
     {"GL/", "render", "gl_"},
     {"EGL/", "render", "gl_"},
     {"stb_truetype", "render", "font"},
+    {"ft2build", "render", "font"},
     {"libavformat/", "output", "libav"},
     {"libavcodec/", "output", "libav"},
     {"libswscale/", "output", "libav"},

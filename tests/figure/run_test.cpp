@@ -88,7 +88,7 @@ TEST(FigureRun, MakesSeveralOfSeveralSizes) {
     for (const auto* figure : {&one, &other, &third}) {
         const auto base = (out / figure->name / figure->name).string();
         EXPECT_EQ(bytes_of(base + ".csv"), table_text(*figure, computed(*figure)));
-        EXPECT_EQ(read_png(base + ".png").size, figure->chart.size);
+        EXPECT_EQ(read_png(fs::path(base + ".png")).size, figure->chart.size);
         const auto alone = out / "alone";
         run_figure(*figure, {.out = alone});
         EXPECT_TRUE(bytes_of(base + ".png") == bytes_of(alone / figure->name / (figure->name + ".png"))) << base;

@@ -2,10 +2,12 @@
 
 #include "figure/map_figure.hpp"
 #include "figure/support.hpp"
+#include "figure/tile_page.hpp"
 #include "image/color.hpp"
 #include "output/png.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <map>
@@ -175,6 +177,85 @@ TEST(Tiles, LeaveOtherFilesAlone) {
     EXPECT_TRUE(fs::is_empty(run.out / "elsewhere"));
 }
 
+TEST(Tiles, OfAnotherSizeOrKindAreRefused) {
+    TileRun run;
+    run(small());
+    const auto tile = run.tiles() / "2-0-0.png";
+    const auto elsewhere = run.out / "tile.png";
+    fs::rename(tile, elsewhere);
+    const auto refused = [&](const char* why) {
+        // with the coarser ones there, and to be made of it
+        for (const char* coarser : {"", "1-0-0.png"}) {
+            if (*coarser) fs::remove(run.tiles() / coarser);
+            const auto [code, message] = refusal(run, small());
+            EXPECT_EQ(code, ExitCode::io_failed) << why;
+            EXPECT_NE(message.find("2-0-0.png"), std::string::npos) << message;
+            EXPECT_NE(message.find(why), std::string::npos) << message;
+        }
+    };
+    for (const Size size : {Size{4000, 4000}, {256, 300}, {300, 256}, {1, 1}}) {
+        write_png(tile, Picture(size));
+        refused("a tile has 256x256; remove it");
+    }
+    // a bomb: its pixels are not decoded
+    write_png(tile, Picture({256, 256}));
+    auto bytes = test::bytes_of(tile);
+    bytes[18] = bytes[22] = 0x7f;
+    test::write_bytes(tile, bytes);
+    refused("32512x32512");
+    fs::remove(tile);
+    fs::create_symlink(elsewhere, tile);
+    refused("cannot be read");
+    fs::remove(tile);
+    ASSERT_EQ(mkfifo(tile.c_str(), 0600), 0);
+    refused("not a regular file");
+    fs::remove(tile);
+    fs::rename(elsewhere, tile);
+    run(small());
+}
+
+TEST(Tiles, OfAnotherThemeOrScaleAreAnothers) {
+    TileRun run;
+    const std::string map =
+        "title = \"x\"\n[scene]\nkind = \"map\"\nduration_s = 0.5\n[map]\ncolumns = 6\nrows = 4\nquantity = "
+        "\"divergence\"\n";
+    run(figure_from(map));
+    for (const std::string other : {"[chart]\ntheme = \"dark\"\n", "color_range = [0.3, 0.5]\n"}) {
+        const auto [code, message] = refusal(run, figure_from(map + other));
+        EXPECT_EQ(code, ExitCode::io_failed) << other;
+        EXPECT_NE(message.find("belongs to another preset or version"), std::string::npos) << message;
+    }
+    run(figure_from("subtitle = \"other words\"\n" + map));  // the tiles are the same
+}
+
+TEST(Tiles, CountCellsNotPixels) {
+    for (const auto& [size, cells] :
+         {std::pair("columns = 20\nrows = 20\n", 400), {"columns = 4\nrows = 4\n", 16}, {"", 256 * 256}}) {
+        TileRun run;
+        const auto figure = small(*size ? size : "columns = 256\nrows = 256\n");  // the last is its own image
+        const auto result = run(figure);
+        EXPECT_EQ(result.samples, cells) << size;
+    }
+}
+
+TEST(Tiles, GoOnWhereTheMarkWasCutShort) {
+    TileRun run;
+    run(small("columns = 20\nrows = 20\n"));
+    const auto mark = test::bytes_of(run.tiles() / "pyramid.json");
+    fs::remove_all(run.tiles());
+    fs::create_directories(run.tiles());
+    test::write_bytes(run.tiles() / "pyramid.json", "");
+    run(small("columns = 20\nrows = 20\n"));
+    EXPECT_EQ(test::bytes_of(run.tiles() / "pyramid.json"), mark);
+    // but not where somebody's tiles are there
+    test::write_bytes(run.tiles() / "pyramid.json", "");
+    EXPECT_EQ(refusal(run, small("columns = 20\nrows = 20\n")).first, ExitCode::io_failed);
+    // nor without an end
+    fs::remove(run.tiles() / "pyramid.json");
+    fs::create_symlink("/dev/zero", run.tiles() / "pyramid.json");
+    EXPECT_EQ(refusal(run, small("columns = 20\nrows = 20\n")).first, ExitCode::io_failed);
+}
+
 TEST(Tiles, AreOfMapsAndOfAllParts) {
     TileRun run;
     auto [code, message] = refusal(run, figure_of("fig2-right"));
@@ -216,6 +297,37 @@ TEST(TilePage, SaysWhatItShowsAndNothingThatTheTitleMeans) {
     EXPECT_NE(page.find("no flip within 0.6 s"), std::string::npos);
     EXPECT_EQ(page.find("{map}"), std::string::npos);
     EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+TEST(TilePage, TakesAnyNames) {
+    const fs::path path = fs::path(DOPPEL_TEST_OUTPUT) / "hostile.html";
+    const std::string title = "</title><!--<script>{map}{subtitle}$(x)'\"\n`${1}`\\";
+    const std::string label = "<!--<script></script>{title}$&$`\n\u2028'\"\\, m";
+    MapFrame frame{.x = {.count = 2}, .y = {.count = 2}, .x_axis = {.label = label}, .y_axis = {.label = "y"}};
+    frame.look.low = 0, frame.look.high = 1;
+    // the address of a#b is not "a", and a%41 is not aA
+    for (const auto& [name, address] : {std::pair("a#b?c", "a%23b%3Fc.tiles"),
+                                        {"a%41", "a%2541.tiles"},
+                                        {"x:y\\'\"\n<", "x%3Ay%5C%27%22%0A%3C.tiles"},
+                                        {"θ\xff", "%CE%B8%FF.tiles"}}) {
+        write_tile_page(path,
+                        {title, title, std::string(name) + ".tiles", Pyramid(2, 2), frame, frame.look, themes[0]});
+        const auto page = test::bytes_of(path);
+        const std::string begin = "const map = ";
+        const auto from = page.find(begin) + begin.size(), to = page.find(";\n", from);
+        const auto data = page.substr(from, to - from);
+        EXPECT_EQ(data.find('<'), std::string::npos) << data;
+        const auto map = Json::parse(data);
+        EXPECT_EQ(map["folder"], address);
+        EXPECT_EQ(map["x"]["label"], label);
+        // one script, one title, no comment
+        for (const char* once : {"<script", "</script", "</title"}) {
+            const auto at = page.find(once);
+            EXPECT_NE(at, std::string::npos);
+            EXPECT_EQ(page.find(once, at + 1), std::string::npos) << once;
+        }
+        EXPECT_EQ(page.find("<!--"), page.rfind("<!--"));
+    }
 }
 
 }  // namespace tiles_test

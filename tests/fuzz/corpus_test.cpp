@@ -4,6 +4,7 @@
 #include "fuzz/mutation.hpp"
 #include "fuzz/reading.hpp"
 #include "output/fixtures.hpp"
+#include "render/font_files.hpp"
 
 #include <algorithm>
 
@@ -81,6 +82,31 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ReadersOfFiles,
                          testing::Values(Files{"sets", test::read_sets, 300}, Files{"parts", test::read_part, 60},
                                          Files{"pictures", test::read_picture, 1000}),
                          [](const auto& files) { return std::string(files.param.folder); });
+
+/// Changes 1 to 4 bytes of a table of the font; of its directory where `table` is its number of tables.
+std::string with_damaged_table(std::string font, std::size_t table, std::mt19937& random) {
+    const auto tables = test::number_at(font, 4, 2), entry = 12 + 16 * table;
+    const auto start = table < tables ? test::number_at(font, entry + 8) : 0;
+    const auto length = table < tables ? test::number_at(font, entry + 12) : entry;
+    constexpr std::size_t head = 512;  // where a table says what is in it
+    for (auto changes = 1 + random() % 4; changes > 0; --changes)
+        font[start + random() % std::min(length, head)] = static_cast<char>(random() % 256);
+    return font;
+}
+
+TEST(Fonts, DamagedOnesCrashNothing) {
+    const auto font = test::embedded_font();
+    EXPECT_EQ(read_watched(font, "whole", test::read_font), "");
+    const auto tables = test::number_at(font, 4, 2);
+    std::mt19937 random(2026);
+    int accepted = 0;
+    for (std::size_t i = 0; i < 250 && !HasFailure(); ++i) {
+        const auto table = i % (tables + 1);
+        const auto damaged = with_damaged_table(font, table, random);
+        accepted += read_watched(damaged, fmt::format("{}, table {}", i, table), test::read_font).empty();
+    }
+    EXPECT_GT(accepted, 125);  // measured 0
+}
 
 class Mutations : public testing::TestWithParam<PresetText> {};
 

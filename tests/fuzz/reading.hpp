@@ -23,4 +23,7 @@ std::string read_part(std::string_view input);
 /// A PNG to compare with.
 std::string read_picture(std::string_view input);
 
+/// A font: all letters that it has are measured and drawn, large and small, in both weights.
+std::string read_font(std::string_view input);
+
 }  // namespace doppel::test

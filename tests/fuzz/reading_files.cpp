@@ -3,9 +3,12 @@
 #include "fuzz/reading.hpp"
 #include "output/png.hpp"
 #include "output/written.hpp"
+#include "render/font.hpp"
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -143,6 +146,32 @@ std::string read_picture(std::string_view input) {
             picture.rgba.size() != 4 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height))
             throw std::logic_error("a picture of another size than its pixels");
     });
+}
+
+std::string read_font(std::string_view input) {
+    const File file(input);
+    std::shared_ptr<const Font> font;
+    try {
+        font = Font::from_file(file.path());
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::bad_input) throw std::logic_error(std::string("not exit 2: ") + fault.what());
+        return fault.what();
+    }
+    constexpr char32_t letters = 0x2400, step = 7;
+    constexpr int largest = 40;  // px
+    for (char32_t letter = 0; letter < letters; letter += letter < 0x100 ? 1 : step) {
+        const int glyph = font->number_of(letter);
+        if (glyph == 0 && letter > 0) continue;  // the same box
+        for (const auto weight : {Weight::regular, Weight::bold})
+            for (const int pixels : {largest, 8}) {
+                const auto size = static_cast<float>(pixels);
+                const auto drawn = font->rasterised(glyph, size, weight, 0.5f);
+                if (!std::isfinite(font->advance(glyph, size, weight))) throw std::logic_error("no width");
+                if (std::max(drawn.size.width, drawn.size.height) > 32 * largest + 2)
+                    throw std::logic_error("a glyph without bounds");
+            }
+    }
+    return {};
 }
 
 }  // namespace doppel::test

