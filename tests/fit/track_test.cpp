@@ -2,14 +2,12 @@
 #include "fit/result.hpp"
 #include "fit/support.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace doppel {
 namespace track_test {
 
 using namespace test;
-using ::testing::HasSubstr;
 
 Track read(const std::vector<std::string>& texts) {
     std::vector<std::string> names;
@@ -30,7 +28,7 @@ std::pair<int, std::string> refusal(const std::vector<std::string>& texts) {
 void expect_refused(const std::vector<std::string>& texts, int code, const std::string& words) {
     const auto [seen, message] = refusal(texts);
     EXPECT_EQ(seen, code) << message;
-    EXPECT_THAT(message, HasSubstr(words));
+    EXPECT_NE(message.find(words), std::string::npos) << message;
 }
 
 /// A swing, and what is made of each of its angles.
@@ -180,7 +178,7 @@ TEST(FitTrack, LeavesWildSamplesOut) {
     const auto read_again = read({csv_of(track.pieces[0])});
     EXPECT_EQ(read_again.outliers(), 3u);
     for (const std::size_t i : {50, 120, 333}) EXPECT_EQ(read_again.pieces[0].is_outlier[1][i], 1);
-    EXPECT_THAT(read_again.notes.at(0), HasSubstr("3 of 1202 angles are far off their neighbours"));
+    EXPECT_EQ(read_again.notes.at(0), "3 of 1202 angles are far off their neighbours, and were left out");
     EXPECT_NEAR(read_again.noise[0], 1e-3, 1e-4);  // measured 1.01e-3
 }
 
