@@ -196,7 +196,7 @@ void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments,
 
 Reduced reduced(const SegmentSums& sums, const std::vector<Eigen::Index>& places) {
     const auto inverse = inverse_of_start(sums, 0);
-    const Eigen::MatrixXd mixed = sums.mixed(Eigen::all, places), through = mixed.transpose() * inverse;
+    const Eigen::MatrixXd mixed = sums.mixed(Eigen::seqN(0, 4), places), through = mixed.transpose() * inverse;
     return {sums.shared(places, places) - through * mixed, sums.shared_slope(places) - through * sums.start_slope};
 }
 

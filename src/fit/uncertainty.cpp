@@ -56,7 +56,7 @@ Eigen::MatrixXd scatter_of(const Fit& fit, const std::vector<Eigen::Index>& plac
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(count, count);
     double stretches = 0;
     for (const auto& sums : fit.sums) {
-        const Eigen::MatrixXd mixed = sums.mixed(Eigen::all, places);
+        const Eigen::MatrixXd mixed = sums.mixed(Eigen::seqN(0, 4), places);
         const Eigen::MatrixXd through = mixed.transpose() * inverse_of(sums.starts);
         for (const auto& block : sums.blocks) {
             const Eigen::VectorXd shared = block.tail(block.size() - 4);
