@@ -47,7 +47,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
         throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
     const int jobs = options.jobs > 0 ? options.jobs : cores();
     const double start = seconds_of(CLOCK_MONOTONIC);
-    auto track = read_tracks(files);
+    auto track = read_tracks(files, stop);
     Transaction parts(options.out / name, name);
     const auto place = [&](const char* ending) { return parts.file(name + ending); };
     const auto preset = place(".toml"), table = place(".csv"), page = place(".png");

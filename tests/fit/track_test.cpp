@@ -1,3 +1,4 @@
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "fit/result.hpp"
 #include "fit/support.hpp"
@@ -170,6 +171,15 @@ TEST(FitTrack, LeavesCrumbsBetweenGapsOut) {
     ASSERT_EQ(track.pieces.size(), 2u);
     EXPECT_EQ(track.start_s, (std::vector{0, 4.81}));
     EXPECT_EQ(track.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
+}
+
+/// 100 000 pieces of one row each.
+TEST(FitTrack, ManyPiecesTakeAsLongAsTheirRows) {
+    std::string text = "time_s,theta1_rad,theta2_rad,piece\n";
+    for (int i = 0; i < 100'000; ++i) text += fmt::format("{},0.1,0.2,{}\n", 0.01 * i, i);
+    const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    EXPECT_THROW(read({text}), Error);
+    EXPECT_LT(seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start, 3);  // measured 0.08 s; 27 s when quadratic
 }
 
 TEST(FitTrack, LeavesWildSamplesOut) {
