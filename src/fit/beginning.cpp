@@ -19,14 +19,15 @@ struct Part {
     ArmState<double> start{};
 };
 
-std::vector<Part> quarters_of(const Track& track, const std::vector<TrackSegment>& segments) {
+/// Each segment in `most` parts, or a half, a quarter … as many where these would be too short.
+std::vector<Part> parts_of(const Track& track, const std::vector<TrackSegment>& segments, std::size_t most) {
     constexpr std::size_t least_samples = 8;
     constexpr double least_s = 0.15;
     std::vector<Part> parts;
     for (std::size_t k = 0; k < segments.size(); ++k) {
         const auto& times = track.pieces[segments[k].piece].time_s;
         const double begin = times[segments[k].first], length = times[segments[k].last - 1] - begin;
-        std::size_t count = 4;
+        auto count = most;
         while (count > 1 &&
                (length < least_s * static_cast<double>(count) || segments[k].size() < least_samples * count))
             count /= 2;
@@ -83,8 +84,8 @@ Fit fitted(const Track& track, std::vector<Part>& parts, Fit fit, int jobs, cons
     return fit;
 }
 
-Parameters regressed(const Track& track) {
-    const auto regression = regress(glimpses_of(track));
+Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
+    const auto regression = regress(glimpses_of(track, stop));
     if (!regression.is_physical)
         throw method_failed(
             "{}: no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
@@ -95,23 +96,40 @@ Parameters regressed(const Track& track) {
     return p;
 }
 
-}  // namespace
-
-Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop) {
-    Beginning beginning{.division = divide(track), .fit = {}};
-    auto parts = quarters_of(track, beginning.division.segments);
+/// Fits parts, joined as far as one leads to the next.
+std::pair<Fit, std::vector<Part>> fitted_in_parts(const Track& track, const std::vector<TrackSegment>& segments,
+                                                  std::size_t most, const Parameters& guess, int jobs,
+                                                  const std::atomic<bool>& stop) {
+    auto parts = parts_of(track, segments, most);
     for (auto& part : parts) part.start = guessed_start(track, part.segment);
     Fit fit{};
-    fit.parameters = regressed(track);
+    fit.parameters = guess;
     fit.rules.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
     fit.model.fitted = {inertia, coupling, gravity_1, gravity_2, offset_1, offset_2};
     fit = fitted(track, parts, std::move(fit), jobs, stop);
     fit.model.fitted = {inertia,   coupling,  gravity_1,   gravity_2,   viscous_1, viscous_2,
                         coulomb_1, coulomb_2, quadratic_1, quadratic_2, offset_1,  offset_2};
-    for (int level = 0; level < 2; ++level) {
+    for (auto joins = most; joins > 1; joins /= 2) {
         fit = fitted(track, parts, std::move(fit), jobs, stop);
         parts = joined(track, fit, parts);
     }
+    return {std::move(fit), std::move(parts)};
+}
+
+}  // namespace
+
+Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop) {
+    Beginning beginning{.division = divide(track), .fit = {}};
+    const auto guess = regressed(track, stop);
+    constexpr std::size_t quarters = 4, shortest = 16;
+    const auto begun = [&] {
+        for (auto most = quarters;; most *= 2) try {
+                return fitted_in_parts(track, beginning.division.segments, most, guess, jobs, stop);
+            } catch (const Error& error) {  // shorter ones may stay finite
+                if (error.code() != ExitCode::method_failed || most == shortest) throw;
+            }
+    };
+    auto [fit, parts] = begun();
     // units as they were, of the segments as they are
     auto& division = beginning.division;
     const bool by_piece = division.units.size() == track.pieces.size() && track.pieces.size() > 1;

@@ -1,5 +1,6 @@
 #include "fit/energy.hpp"
 
+#include "base/error.hpp"
 #include "fit/flow.hpp"
 #include "fit/uncertainty.hpp"
 
@@ -14,13 +15,15 @@ struct MeanSquares {
     double energy = 0;
 };
 
-MeanSquares mean_squares(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit) {
+MeanSquares mean_squares(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit,
+                         const std::atomic<bool>& stop) {
     const auto arms = arms_of(fit.model, fit.parameters);
     const double step = fit.rules.step_s, inertia = fit.parameters[index_of(FitParameter::inertia)];
     const double coupling = fit.parameters[index_of(FitParameter::coupling)];
     MeanSquares mean;
     double count = 0;
     for (std::size_t k = 0; k < segments.size(); ++k) {
+        throw_if_set(stop);
         const auto& times = track.pieces[segments[k].piece].time_s;
         const double length = times[segments[k].last - 1] - times[segments[k].first];
         auto state = fit.starts[k], slope = arms.rate(state);
@@ -43,8 +46,8 @@ EnergyLoss energy_loss(const Track& track, const std::vector<TrackSegment>& segm
     fit.model.may_gain = true;
     fit.sums.clear();  // of fewer parameters
     fit = fit_model(track, segments, std::move(fit), {.step_share = 0.2, .relative = 1e-4, .jobs = jobs}, stop);
-    const auto uncertainty = uncertainty_of(track, segments, fit, jobs);
-    const auto mean = mean_squares(track, segments, fit);
+    const auto uncertainty = uncertainty_of(track, segments, fit, jobs, stop);
+    const auto mean = mean_squares(track, segments, fit, stop);
     EnergyLoss loss{.rms = fit.rms};
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
     for (std::size_t k = 0; k < uncertainty.parameters.size(); ++k) {

@@ -1,5 +1,6 @@
 #include "fit/horizon.hpp"
 
+#include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
 #include "fit/variation.hpp"
@@ -176,15 +177,20 @@ Horizon measure_horizon(const Track& track, const Division& division, const Fit&
             auto out = division.units[u];
             if (judged != u) out.insert(out.end(), division.units[judged].begin(), division.units[judged].end());
             const auto without = fit_without(fit, out);
-            run.emplace(fitted_start(track, segment, without, run ? run->fit.starts[0] : without.starts[first], stop));
+            try {
+                const auto guess = run ? run->fit.starts[0] : without.starts[first];
+                run.emplace(fitted_start(track, segment, without, guess, stop));
+            } catch (const Error& error) {  // of this prediction alone
+                if (error.code() != ExitCode::method_failed) throw;
+                break;
+            }
             bool goes_on = true;
             for (const auto k : division.units[judged])
                 goes_on =
                     goes_on && follow(track, division.segments[k], segment.piece, horizon.limit, *run, prediction);
             if (!goes_on) break;
         }
-        const auto& start = run->fit;
-        attribute(fit, start, uncertainty, horizon.limit, prediction);
+        if (run) attribute(fit, run->fit, uncertainty, horizon.limit, prediction);
         all[u] = std::move(prediction);
     });
     std::vector<std::pair<double, bool>> times;

@@ -16,7 +16,8 @@ struct Period {
 
 /// The interval at which the fitted motion leads from each piece to the next; nothing where no interval up to four
 /// times a piece stands out.
-std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit);
+std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit,
+                                  const std::atomic<bool>& stop);
 
 /// A prediction from the beginning of a unit of the track. Every unit is judged by parameters that were fitted without
 /// it and without the first.

@@ -47,7 +47,7 @@ std::vector<Plan> plans_of(Bodies bodies) {
     return plans;
 }
 
-/// Mean square residual of segments whose starts alone are fitted, rad².
+/// Mean square residual of segments whose starts alone are fitted, rad²; infinite where no motion stays finite.
 double mean_square_without(const Track& track, const Division& division, const std::vector<std::size_t>& unit,
                            const Fit& fit, const std::atomic<bool>& stop) {
     Fit alone{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters};
@@ -57,8 +57,13 @@ double mean_square_without(const Track& track, const Division& division, const s
         alone.starts.push_back(fit.starts[k]);
     }
     alone.model.fitted.clear();
-    alone = fit_model(track, segments, alone,
-                      {.most_passes = 8, .finds_scale = false, .finds_step = false, .relative = 1e-3}, stop);
+    try {
+        alone = fit_model(track, segments, alone,
+                          {.most_passes = 8, .finds_scale = false, .finds_step = false, .relative = 1e-3}, stop);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::method_failed) throw;
+        return std::numeric_limits<double>::infinity();
+    }
     return alone.rms * alone.rms;
 }
 
@@ -98,7 +103,7 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
 
 /// The nearer of two places to start from: where the model before ended, and where all began.
 Fit nearer_start(const Track& track, const std::vector<TrackSegment>& segments, const ModelSpec& model,
-                 const Fit& before, const Fit& first, int jobs) {
+                 const Fit& before, const Fit& first, int jobs, const std::atomic<bool>& stop) {
     const auto placed = [&](Fit fit) {
         fit.model = model;
         for (std::size_t k = index_of(viscous_1); k < dynamic_count; ++k)
@@ -112,8 +117,8 @@ Fit nearer_start(const Track& track, const std::vector<TrackSegment>& segments, 
     auto other = placed(before);
     if (!fits(model, coulomb_1)) return other;
     one.rules = other.rules;
-    evaluate_fit(track, segments, one, jobs);
-    evaluate_fit(track, segments, other, jobs);
+    evaluate_fit(track, segments, one, jobs, stop);
+    evaluate_fit(track, segments, other, jobs, stop);
     return one.cost < other.cost ? one : other;
 }
 
@@ -190,21 +195,22 @@ Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments) {
     const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     Eigen::MatrixXd even = scale.asDiagonal() * matrix * scale.asDiagonal();
     Eigen::VectorXd right = scale.asDiagonal() * slope, change;
+    std::vector<bool> held(places.size(), false);  // each once: what is not finite would ask for it for ever
     for (bool again = true; again;) {
         again = false;
         change = scale.asDiagonal() * even.ldlt().solve(right);
         for (Eigen::Index k = 0; k < count; ++k) {
-            const auto parameter = fit.model.fitted[static_cast<std::size_t>(places[static_cast<std::size_t>(k)])];
+            const auto place = static_cast<std::size_t>(k);
+            const auto parameter = fit.model.fitted[static_cast<std::size_t>(places[place])];
             const double value = fit.parameters[index_of(parameter)];
-            constexpr double margin = 1e-9;
-            if (!fit.model.is_bounded(parameter) || value + change[k] >= -margin * value) continue;
+            if (held[place] || !fit.model.is_bounded(parameter) || value + change[k] >= 0) continue;
             const double to_zero = -value / scale[k];
             right -= even.col(k) * to_zero;
             even.row(k).setZero();
             even.col(k).setZero();
             even(k, k) = 1;
             right[k] = to_zero;
-            again = true;
+            held[place] = again = true;
         }
     }
     return moved(fit, places, change);
@@ -222,8 +228,14 @@ ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic
     for (const auto& plan : plans) {
         throw_if_set(stop);
         FittedModel rung{.name = plan.name, .model = plan.model};
-        const auto start = nearer_start(track, segments, plan.model, before, first, jobs);
-        rung.fit = fit_model(track, segments, start, {.step_share = 0.2, .relative = roughly, .jobs = jobs}, stop);
+        const auto start = nearer_start(track, segments, plan.model, before, first, jobs, stop);
+        try {
+            rung.fit = fit_model(track, segments, start, {.step_share = 0.2, .relative = roughly, .jobs = jobs}, stop);
+        } catch (const Error& error) {  // of this model alone
+            if (error.code() != ExitCode::method_failed || (plan.name == plans.back().name && ladder.rungs.empty()))
+                throw;
+            continue;
+        }
         leave_out(track, ladder.division, rung, jobs, stop);
         rung.parameters = rung.fit.free().size();
         before = rung.fit;

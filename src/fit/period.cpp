@@ -1,3 +1,4 @@
+#include "base/error.hpp"
 #include "fit/flow.hpp"
 #include "fit/horizon.hpp"
 
@@ -17,7 +18,8 @@ double square_distance(const ArmState<double>& a, const ArmState<double>& b, dou
 
 }  // namespace
 
-std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit) {
+std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit,
+                                  const std::atomic<bool>& stop) {
     const auto pieces = track.pieces.size();
     if (pieces < 3) return std::nullopt;
     double shortest = track.pieces[0].duration();
@@ -31,6 +33,7 @@ std::optional<Period> find_period(const Track& track, const Division& division, 
     const auto looks = static_cast<std::size_t>(longest * shortest / step);
     std::vector<std::vector<ArmState<double>>> motions;
     for (std::size_t k = 0; k + 1 < pieces; ++k) {
+        throw_if_set(stop);
         auto state = starts[k], slope = arms.rate(state);
         auto& motion = motions.emplace_back();
         for (std::size_t i = 0; i < looks; ++i, take_step(arms, step, state, slope)) motion.push_back(state);
@@ -46,6 +49,7 @@ std::optional<Period> find_period(const Track& track, const Division& division, 
     std::size_t best = from;
     std::vector<double> all(looks, 1);
     for (std::size_t look = from; look < looks; ++look) {
+        throw_if_set(stop);
         all[look] = off(look);
         if (all[look] < all[best]) best = look;
     }

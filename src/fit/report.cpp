@@ -1,10 +1,13 @@
 #include "fit/report.hpp"
 
+#include "base/text.hpp"
+
 #include <Eigen/Cholesky>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 namespace doppel {
@@ -32,6 +35,7 @@ std::string source_words(const Track& track) {
     std::vector<std::string> names;
     for (const auto& piece : track.pieces)
         if (names.empty() || names.back() != piece.name) names.push_back(piece.name);
+    names[0] = on_one_line(std::filesystem::path(names[0]).filename().string());
     return names.size() == 1 ? names[0] : fmt::format("{} and {} more", names[0], names.size() - 1);
 }
 
@@ -136,7 +140,7 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     std::string text = fmt::format(
         "# Fitted by doppel fit to {}: {}.\n# It errs by {:.2g} rad on pieces left out. Errors, ladder and horizon are "
         "in "
-        "{}.json.\n",
+        "{}.fit.json.\n",
         source_words(result.track), rung.name, rung.left_out_rms, name);
     text += fmt::format("# Angles tell ratios alone: gravity and the second mass are given, {}.\n", p.rule);
     text += fmt::format("title = {}\n\n[scene]\nduration_s = 30\n\n[system]\n", toml_text(name + ", as measured"));
@@ -165,8 +169,11 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
 Json fit_json(const FitResult& result) {
     const auto& track = result.track;
     std::vector<std::string> files;
-    for (const auto& piece : track.pieces)
-        if (files.empty() || files.back() != piece.name) files.push_back(piece.name);
+    std::error_code ignored;  // of a folder that is gone: the path is empty
+    for (const auto& piece : track.pieces) {
+        const auto file = on_one_line(std::filesystem::proximate(piece.name, ignored).string());
+        if (files.empty() || files.back() != file) files.push_back(file);
+    }
     Json json = {{"doppel", program_json()},
                  {"track",
                   {{"files", files},

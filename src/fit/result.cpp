@@ -44,7 +44,13 @@ void demand_loss(const Track& track, const ModelLadder& ladder, int jobs, const 
     };
     const auto viscous = std::find_if(ladder.rungs.rbegin(), ladder.rungs.rend(), is_viscous);
     if (viscous == ladder.rungs.rend() || viscous->fit.at_bound.empty()) return;
-    const auto loss = energy_loss(track, ladder.division.segments, viscous->fit, jobs, stop);
+    EnergyLoss loss;
+    try {
+        loss = energy_loss(track, ladder.division.segments, viscous->fit, jobs, stop);
+    } catch (const Error& error) {  // no such fit, so no such gain
+        if (error.code() != ExitCode::method_failed) throw;
+        return;
+    }
     if (loss.share > -sure * loss.standard_error || loss.rms > most_left(track)) return;
     throw method_failed(
         "{}: the swing gains energy, {:.2g} ± {:.1g} % of its energy of motion a second, and a pendulum that swings "
@@ -76,12 +82,12 @@ void demand_order(const Track& track, const ModelLadder& ladder) {
         track.pieces.front().name, moment);
 }
 
-void put_on_one_clock(FitResult& result, const FitQuestion& question) {
+void put_on_one_clock(FitResult& result, const FitQuestion& question, const std::atomic<bool>& stop) {
     auto& track = result.track;
     if (!track.start_s.empty() && !question.every_s) return;
     auto every = question.every_s;
     if (!every) {
-        result.period = find_period(track, result.ladder.division, result.chosen().fit);
+        result.period = find_period(track, result.ladder.division, result.chosen().fit, stop);
         if (!result.period) return;
         every = result.period->seconds;
     }
@@ -109,13 +115,13 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
     constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer
     const auto finish = [&](FittedModel& rung) {
         rung.fit = fit_model(result.track, segments, rung.fit, {.step_share = of_errors, .jobs = jobs}, stop);
-        auto uncertainty = uncertainty_of(result.track, segments, rung.fit, jobs);
+        auto uncertainty = uncertainty_of(result.track, segments, rung.fit, jobs, stop);
         if (!uncertainty.is_white) return uncertainty;
         rung.fit = fit_model(result.track, segments, rung.fit, {.jobs = jobs}, stop);
-        return uncertainty_of(result.track, segments, rung.fit, jobs);
+        return uncertainty_of(result.track, segments, rung.fit, jobs, stop);
     };
     result.uncertainty = finish(ladder.rungs[ladder.chosen]);
-    put_on_one_clock(result, question);
+    put_on_one_clock(result, question, stop);
     if (!result.track.start_s.empty()) {
         auto horizon =
             measure_horizon(result.track, ladder.division, result.chosen().fit, result.uncertainty, jobs, stop);

@@ -43,14 +43,15 @@ std::string fit_name(const std::filesystem::path& file) {
 FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions& options,
                const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
     const auto name = options.name.empty() ? fit_name(files.front()) : options.name;
-    if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos)
+    if (name.empty() || name.find('/') != std::string::npos)
         throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
+    check_preset_name(options.name.empty() ? files.front().string() : "--name", name);
     const int jobs = options.jobs > 0 ? options.jobs : cores();
     const double start = seconds_of(CLOCK_MONOTONIC);
-    auto track = read_tracks(files);
+    auto track = read_tracks(files, stop);
     Transaction parts(options.out / name, name);
     const auto place = [&](const char* ending) { return parts.file(name + ending); };
-    const auto preset = place(".toml"), table = place(".csv"), page = place(".png");
+    const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
     const auto result = answer(std::move(track), options.question, jobs, stop, [&](std::size_t done, std::size_t of) {
         report({static_cast<long>(done), static_cast<long>(of)});
     });
@@ -60,20 +61,20 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
         Csv rows(table, residual_columns());
         write_residuals(result, rows);
         rows.finish();
-        parts.finished(name + ".csv");
+        parts.finished(name + ".residuals.csv");
         throw_if_set(stop);
         const auto list = compose(fit_page(result, name), page_size, light);
         Renderer renderer(page_size, DisplayList{}, options.gl, stop);
         const auto picture = renderer.draw(list, stop);
         throw_if_set(stop);
         write_png(page, picture,
-                  {.metadata = metadata_of(name, name, fmt::format("how it was made is in {}.json", name))}, stop);
+                  {.metadata = metadata_of(name, name, fmt::format("how it was made is in {}.fit.json", name))}, stop);
         parts.finished(name + ".png");
         auto manifest = fit_json(result);
         manifest["threads"] = jobs;
         manifest["time"] = {{"models_cpu_s", result.models_cpu_s}, {"fit_cpu_s", result.cpu_s}};
         manifest["libraries"] = {{"gl", renderer.description()}, {"compiler", __VERSION__}};
-        write_manifest(parts, name + ".json", std::move(manifest));
+        write_manifest(parts, name + ".fit.json", std::move(manifest));
         throw_if_set(stop);
         return parts.publish();
     };

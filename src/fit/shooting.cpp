@@ -4,6 +4,7 @@
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
 #include "numeric/portable_math.hpp"
+#include "track/regression.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -136,7 +137,7 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
         next.passes = fit.passes;
         apply(next, change);
         if (is_possible(next.parameters))
-            evaluate_fit(track, segments, next, jobs);
+            evaluate_fit(track, segments, next, jobs, stop);
         else
             next.cost = std::numeric_limits<double>::infinity();
         fit.passes = next.passes;
@@ -175,13 +176,15 @@ std::vector<Eigen::Index> Fit::free_places() const {
     return places;
 }
 
-void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, int jobs, double block_s) {
+void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, int jobs,
+                  const std::atomic<bool>& stop, double block_s) {
     ++fit.passes;
     fit.sums.resize(segments.size());
     std::vector<std::size_t> begins(segments.size() + 1, 0);
     for (std::size_t k = 0; k < segments.size(); ++k) begins[k + 1] = begins[k] + residual_count(track, segments[k]);
     fit.residuals.resize(begins.back());
     parallel_for(segments.size(), jobs, [&](std::size_t k) {
+        throw_if_set(stop);
         fit.sums[k] = evaluate_segment(track, fit.model, fit.rules, fit.parameters, fit.starts[k], segments[k], k,
                                        {fit.residuals.data() + begins[k], block_s});
     });
@@ -196,7 +199,7 @@ void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments,
 
 Reduced reduced(const SegmentSums& sums, const std::vector<Eigen::Index>& places) {
     const auto inverse = inverse_of_start(sums, 0);
-    const Eigen::MatrixXd mixed = sums.mixed(Eigen::all, places), through = mixed.transpose() * inverse;
+    const Eigen::MatrixXd mixed = sums.mixed(Eigen::seqN(0, 4), places), through = mixed.transpose() * inverse;
     return {sums.shared(places, places) - through * mixed, sums.shared_slope(places) - through * sums.start_slope};
 }
 
@@ -211,17 +214,17 @@ Fit moved(const Fit& fit, const std::vector<Eigen::Index>& places, const Eigen::
     }
     for (const auto& sums : fit.sums)
         all.starts.push_back(inverse_of_start(sums, 0) * (sums.start_slope - sums.mixed * all.parameters));
-    Fit result = fit;
+    Fit result{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = fit.starts};
     apply(result, all);
-    result.sums.clear();
-    result.residuals.clear();
     return result;
 }
 
-double step_error(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit) {
+double step_error(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit,
+                  const std::atomic<bool>& stop) {
     const auto arms = arms_of(fit.model, fit.parameters);
     double largest = 0;
     for (std::size_t k = 0; k < segments.size(); ++k) {
+        throw_if_set(stop);
         const auto& times = track.pieces[segments[k].piece].time_s;
         const double length = times[segments[k].last - 1] - times[segments[k].first];
         Flow<double> whole(arms, fit.starts[k], fit.rules.step_s), half(arms, fit.starts[k], fit.rules.step_s / 2);
@@ -241,15 +244,22 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
     auto fit = std::move(start);
     fit.passes = 0;
     fit.parameters = completed(fit.model, fit.parameters);
+    constexpr int rounds = 20;
+    constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
     const auto evaluate = [&] {
-        evaluate_fit(track, segments, fit, effort.jobs);
+        evaluate_fit(track, segments, fit, effort.jobs, stop);
+        // a start from which the motion ran away is guessed anew from the samples, and steps are finer
+        while (!std::isfinite(fit.cost) && fit.rules.step_s > least_step) {
+            for (std::size_t k = 0; k < segments.size(); ++k)
+                if (!std::isfinite(fit.sums[k].cost)) fit.starts[k] = guessed_start(track, segments[k]);
+            fit.rules.step_s /= 2;
+            evaluate_fit(track, segments, fit, effort.jobs, stop);
+        }
         if (!std::isfinite(fit.cost))
             throw method_failed(
                 "{}: no double pendulum moves like this: from its own angles and rates the motion does not stay finite",
                 track.pieces.front().name);
     };
-    constexpr int rounds = 20;
-    constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
     if (fit.sums.size() != segments.size() || fit.residuals.empty()) evaluate();
     bool is_settled = !effort.finds_scale;
     if (const auto before = fit.rules.scale; effort.finds_scale) {  // too small a scale is slow
@@ -264,7 +274,7 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
                 std::max(effort.most_passes - fit.passes, 2), effort.jobs, stop);
         const double noise = std::min(fit.rules.scale[0], fit.rules.scale[1]);
         const bool is_coarse = is_settled && effort.finds_step && fit.rules.step_s > least_step &&
-                               step_error(track, segments, fit) > effort.step_share * noise;
+                               step_error(track, segments, fit, stop) > effort.step_share * noise;
         if (is_coarse) fit.rules.step_s /= 2;
         const bool was_settled = is_settled;
         if (effort.finds_scale && (!is_settled || is_coarse)) {

@@ -37,7 +37,8 @@ struct FitEffort {
 /// Minimises Huber's loss of all residuals over starts and parameters: Gauss–Newton steps damped as Levenberg and
 /// Marquardt do, the starts eliminated segment by segment, friction kept ≥ 0. `start` has model, parameters and starts; what
 /// sums it has are those there.
-/// The result is the same bits for any number of jobs. Throws Error: exit 3 where no motion stays finite, 130.
+/// Ends after at most most_passes + 60 passes (two in each of 20 rounds, and what finds a scale and steps). The result is
+/// the same bits for any number of jobs. Throws Error: exit 3 where no motion stays finite, 130.
 ///
 /// Source  Bock 1983 (multiple shooting); Nocedal & Wright, Numerical Optimization, §10.3.
 Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit start, const FitEffort& effort,
@@ -45,7 +46,7 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
 
 /// Sums, residuals, cost and rms where `fit` stands.
 void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, int jobs,
-                  double block_s = 0);
+                  const std::atomic<bool>& stop, double block_s = 0);
 
 /// The normal matrix of the free parameters and the slope, starts eliminated, of one segment.
 struct Reduced {
@@ -58,6 +59,7 @@ Reduced reduced(const SegmentSums& sums, const std::vector<Eigen::Index>& places
 Fit moved(const Fit& fit, const std::vector<Eigen::Index>& places, const Eigen::VectorXd& change);
 
 /// The largest change of an angle, rad, when the integrator's step is halved.
-double step_error(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit);
+double step_error(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit,
+                  const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #include "fit/uncertainty.hpp"
 
+#include "base/error.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <Eigen/Cholesky>
@@ -18,12 +19,14 @@ struct Correlations {
     long count = 0;
 };
 
-Correlations correlations_of(const Fit& fit, std::size_t arm, std::size_t lags) {
+Correlations correlations_of(const Fit& fit, std::size_t arm, std::size_t lags, const std::atomic<bool>& stop) {
     Correlations result{.sums = std::vector<double>(lags + 1, 0)};
     std::vector<double> series;
     const auto take = [&] {
-        for (std::size_t lag = 0; lag <= lags && lag < series.size(); ++lag)
+        for (std::size_t lag = 0; lag <= lags && lag < series.size(); ++lag) {
+            throw_if_set(stop);
             for (std::size_t i = 0; i + lag < series.size(); ++i) result.sums[lag] += series[i] * series[i + lag];
+        }
         result.count += static_cast<long>(series.size());
         series.clear();
     };
@@ -56,7 +59,7 @@ Eigen::MatrixXd scatter_of(const Fit& fit, const std::vector<Eigen::Index>& plac
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(count, count);
     double stretches = 0;
     for (const auto& sums : fit.sums) {
-        const Eigen::MatrixXd mixed = sums.mixed(Eigen::all, places);
+        const Eigen::MatrixXd mixed = sums.mixed(Eigen::seqN(0, 4), places);
         const Eigen::MatrixXd through = mixed.transpose() * inverse_of(sums.starts);
         for (const auto& block : sums.blocks) {
             const Eigen::VectorXd shared = block.tail(block.size() - 4);
@@ -86,7 +89,8 @@ double Uncertainty::standard_error(FitParameter parameter) const {
     return found == parameters.end() ? 0 : standard_error(static_cast<std::size_t>(found - parameters.begin()));
 }
 
-Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs) {
+Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs,
+                           const std::atomic<bool>& stop) {
     // those at a bound, too: that they could be more makes the others less certain
     Uncertainty result{.parameters = fit.model.fitted, .covariance = {}};
     const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
@@ -97,7 +101,7 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
     constexpr double limit = 29.6;  // χ² of ten at 99.9 %
     const double interval = mean_interval(track);
     for (std::size_t arm = 0; arm < 2; ++arm) {
-        const auto [sums, n] = correlations_of(fit, arm, furthest);
+        const auto [sums, n] = correlations_of(fit, arm, furthest, stop);
         double portmanteau = 0;
         for (std::size_t lag = 1; lag <= lags; ++lag) portmanteau += std::pow(sums[lag] / sums[0], 2);
         result.is_white &= portmanteau * static_cast<double>(n) < limit;
@@ -123,7 +127,7 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
     // of others
     constexpr double shortest_s = 0.3, memories = 4;
     const double block_s = std::max(shortest_s, memories * std::max(result.memory_s[0], result.memory_s[1]));
-    evaluate_fit(track, segments, fit, jobs, block_s);
+    evaluate_fit(track, segments, fit, jobs, stop, block_s);
     const Eigen::MatrixXd sandwich = inverse * scatter_of(fit, places) * inverse / (slope * slope);
     const Eigen::VectorXd white = result.covariance.diagonal();
     const Eigen::VectorXd wider = (white.array() / sandwich.diagonal().array()).max(1).sqrt();

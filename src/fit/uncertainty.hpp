@@ -25,7 +25,9 @@ struct Uncertainty {
 /// From the curvature of the loss where the residuals are white (Ljung & Box over ten lags, at 99.9 %); else from how
 /// much the slopes of stretches longer than the residuals' memory scatter (a sandwich), and no less than that.
 ///
+/// Throws Error (exit 130).
 /// Source  Huber, Robust Statistics, §7.6; Newey & West 1987
-Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs);
+Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs,
+                           const std::atomic<bool>& stop);
 
 }  // namespace doppel

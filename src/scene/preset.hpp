@@ -242,6 +242,10 @@ struct PresetText {
 /// ".100000-of-100000.HASH.resume.part" would be the longest.
 inline constexpr std::size_t longest_preset_name = 255 - 64;
 
+/// What becomes the name of a folder and the start of those of its files. Throws Error (exit 2) where that leads out of
+/// the folder, is too long, not UTF-8, or holds a control character; `path` = where the name is from.
+void check_preset_name(const std::string& path, const std::string& name);
+
 /// Finds a preset: a path (anything with a slash or ending in .toml), or a name in presets/ or presets/figures/ here,
 /// or built into the program. A path may be that of a pipe where `stop` is given, which ends the waiting for it. Throws
 /// Error: exit 2 that names the nearest preset, or says what is in place of the file or wrong with its name; exit 4

@@ -27,8 +27,9 @@ constexpr std::array<std::string_view, 2> folders{"presets/", "presets/figures/"
 
 constexpr std::size_t most_bytes = std::size_t{8} << 20;  // links = 10 000 with every number to 34 digits take 4 MB
 
-/// What becomes the name of a folder and the start of those of its files.
-void check_name(const std::string& path, const std::string& name) {
+}  // namespace
+
+void check_preset_name(const std::string& path, const std::string& name) {
     const auto refuse = [&](const std::string& why) {
         throw bad_input("{}: the preset's name, \"{}\", becomes that of its folder and files, and {}; rename it", path,
                         name, why);
@@ -42,6 +43,8 @@ void check_name(const std::string& path, const std::string& name) {
         refuse(
             fmt::format("has {} bytes; {} are the most that leave room for endings", name.size(), longest_preset_name));
 }
+
+namespace {
 
 /// Waits until there is something to read. Throws Error (exit 130) soon after `stop` is set.
 void wait_for_bytes(const Descriptor& pipe, const std::atomic<bool>& stop) {
@@ -81,7 +84,7 @@ std::string contents_of(const fs::path& path, const std::atomic<bool>* stop) {
 PresetText read_file(const fs::path& path, const std::string& call, const std::atomic<bool>* stop) {
     PresetText preset{.name = path.stem().string(), .path = path.string(), .text = {}, .call = call};
     preset.text = contents_of(path, stop);
-    check_name(preset.path, preset.name);
+    check_preset_name(preset.path, preset.name);
     return preset;
 }
 

@@ -1,5 +1,6 @@
 #include "track/regression.hpp"
 
+#include "base/error.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <Eigen/QR>
@@ -93,13 +94,14 @@ Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s) {
     return glimpse;
 }
 
-std::vector<Glimpse> glimpses_of(const Track& track) {
+std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop) {
     constexpr Eigen::Index degree = 4;
     std::vector<Glimpse> all;
     const double window = window_of(track);
     for (const auto& piece : track.pieces)
         for (double time = piece.time_s.front() + window / 2; time < piece.time_s.back() - window / 2;
              time += window / 2) {
+            throw_if_set(stop);
             Glimpse glimpse{};
             bool whole = true;
             for (std::size_t arm = 0; arm < 2 && whole; ++arm) {

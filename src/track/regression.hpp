@@ -16,7 +16,7 @@ struct Glimpse {
 Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s);
 
 /// At moments half a window apart; the window is as long as the noise asks for.
-std::vector<Glimpse> glimpses_of(const Track& track);
+std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop);
 
 /// Angles and rates at the first sample of a segment, from a polynomial of its first tenth of a second or more.
 ArmState<double> guessed_start(const Track& track, const TrackSegment& segment);

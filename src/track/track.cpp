@@ -118,15 +118,16 @@ void unwrap(std::vector<double>& angles) {
 }
 
 /// The rows of one file, cut where a piece ends.
-void read_text(const std::string& name, std::string_view text, Track& track) {
+void read_text(const std::string& name, std::string_view text, Track& track, const std::atomic<bool>& stop) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     std::optional<Heading> heading;
     std::vector<std::string_view> names;
     std::string piece_number;
     const auto first_piece = track.pieces.size();
-    std::size_t line_number = 0;
+    std::size_t line_number = 0, rows = track.samples();
     bool starts = true;
     while (!text.empty()) {
+        throw_if_set(stop);
         const auto end = text.find('\n');
         const auto line = trimmed(text.substr(0, end));
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
@@ -163,7 +164,7 @@ void read_text(const std::string& name, std::string_view text, Track& track) {
         const auto angles = angles_of(name, line_number, values);
         piece.time_s.push_back(time);
         for (std::size_t arm = 0; arm < 2; ++arm) piece.angle[arm].push_back(angles[arm]);
-        if (track.samples() > most_rows)
+        if (++rows > most_rows)
             throw bad_input("{}: there are more than {} rows; a minute of a track at 1000 Hz is plenty", name,
                             most_rows);
     }
@@ -192,9 +193,10 @@ double Track::duration() const {
     return sum;
 }
 
-Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<std::string>& texts) {
+Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<std::string>& texts,
+                      const std::atomic<bool>& stop) {
     Track track;
-    for (std::size_t k = 0; k < texts.size(); ++k) read_text(names[k], texts[k], track);
+    for (std::size_t k = 0; k < texts.size(); ++k) read_text(names[k], texts[k], track, stop);
     bool one_clock = true;
     for (std::size_t k = 1; k < track.pieces.size(); ++k)
         one_clock &= track.pieces[k].time_s.front() > track.pieces[k - 1].time_s.back();
@@ -206,7 +208,7 @@ Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<s
             unwrap(piece.angle[arm]);
             piece.is_outlier[arm].assign(piece.size(), 0);
         }
-    check_track(track);
+    check_track(track, stop);
     return track;
 }
 
@@ -226,13 +228,13 @@ std::string text_of_track(const std::filesystem::path& file) {
     return text;
 }
 
-Track read_tracks(const std::vector<std::filesystem::path>& files) {
+Track read_tracks(const std::vector<std::filesystem::path>& files, const std::atomic<bool>& stop) {
     std::vector<std::string> names, texts;
     for (const auto& path : files) {
         texts.push_back(text_of_track(path));
         names.push_back(path.string());
     }
-    return tracks_of_texts(names, texts);
+    return tracks_of_texts(names, texts, stop);
 }
 
 }  // namespace doppel

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -37,23 +38,26 @@ struct Track {
     double duration() const;  // s, of all pieces together
 };
 
+inline constexpr std::atomic<bool> not_stopped = false;  // for what nobody stops
+
 /// Reads CSV files with a heading: time_s and theta1_rad, theta2_rad, or x0_px, y0_px, x1_px, y1_px, x2_px, y2_px
 /// (pivot, joint, end; y down); other columns are left alone. A gap of more than a fifth of a second begins a new
 /// piece, as does every file, and a new number in a column "piece". Pieces are on one clock where their times never go
 /// back; else they are taken to follow one another in the order given.
 ///
 /// Throws Error: exit 2 where there is no such file, or where it cannot be a track (named: file, line, value, and what
-/// would be right), exit 4 where it cannot be read.
-Track read_tracks(const std::vector<std::filesystem::path>& files);
+/// would be right), exit 4 where it cannot be read, 130 soon after `stop` is set.
+Track read_tracks(const std::vector<std::filesystem::path>& files, const std::atomic<bool>& stop = not_stopped);
 
 /// All of a file. Throws Error as read_tracks() does.
 std::string text_of_track(const std::filesystem::path& file);
 
 /// The same of texts, `names` for messages.
-Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<std::string>& texts);
+Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<std::string>& texts,
+                      const std::atomic<bool>& stop = not_stopped);
 
 /// Throws Error (exit 2) where a track is too short, too coarse or moves too little to tell a model. Finds outliers and
 /// the noise.
-void check_track(Track& track);
+void check_track(Track& track, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace doppel {
@@ -42,11 +43,12 @@ double median_size(std::vector<double> values) {
 }
 
 /// The noise, and samples that stand out of it alone: their neighbours deviate the other way.
-void find_noise(Track& track) {
+void find_noise(Track& track, const std::atomic<bool>& stop) {
     constexpr double far = 12, of_cubic = 1.39;  // the deviation of noise of 1 from a cubic of the same noise
     for (std::size_t arm = 0; arm < 2; ++arm) {
         std::vector<double> all;
         for (const auto& piece : track.pieces) {
+            throw_if_set(stop);
             const auto odd = oddness_of(piece, arm);
             all.insert(all.end(), odd.begin() + 2, odd.end() - 2);
         }
@@ -69,16 +71,24 @@ bool is_short(const TrackPiece& piece) {
 
 /// Leaves out crumbs between gaps; a whole file that is too short is left, to be refused.
 void drop_crumbs(Track& track) {
+    std::map<std::string_view, std::size_t> of_file;
+    for (const auto& piece : track.pieces) ++of_file[piece.name];
+    std::vector<bool> is_dropped(track.pieces.size(), false);
     std::size_t dropped = 0;
     for (std::size_t k = track.pieces.size(); k-- > 0;) {
-        const auto& piece = track.pieces[k];
-        const auto of_file = std::count_if(track.pieces.begin(), track.pieces.end(),
-                                           [&](const auto& other) { return other.name == piece.name; });
-        if (!is_short(piece) || of_file == 1) continue;
-        track.pieces.erase(track.pieces.begin() + static_cast<std::ptrdiff_t>(k));
-        if (!track.start_s.empty()) track.start_s.erase(track.start_s.begin() + static_cast<std::ptrdiff_t>(k));
-        ++dropped;
+        auto& left = of_file[track.pieces[k].name];
+        if (!is_short(track.pieces[k]) || left == 1) continue;
+        is_dropped[k] = true;
+        --left, ++dropped;
     }
+    std::vector<TrackPiece> pieces;
+    std::vector<double> starts;
+    for (std::size_t k = 0; k < track.pieces.size(); ++k) {
+        if (is_dropped[k]) continue;
+        pieces.push_back(std::move(track.pieces[k]));
+        if (!track.start_s.empty()) starts.push_back(track.start_s[k]);
+    }
+    track.pieces = std::move(pieces), track.start_s = std::move(starts);
     if (dropped > 0)
         track.notes.push_back(fmt::format("{} stretches between gaps, of less than {} samples or {} s, were left out",
                                           dropped, least_of_piece, least_of_piece_s));
@@ -188,9 +198,9 @@ void convert(Track& track, const Reading& reading) {
 
 /// Where the angles taken as they are obey no double pendulum's equations, but do when taken in another way: refuses
 /// what is a mistake, and takes so what is a convention.
-void check_convention(Track& track) {
+void check_convention(Track& track, const std::atomic<bool>& stop) {
     constexpr double well = 0.003, obeys = 0.1, much_better = 0.3;
-    const auto glimpses = glimpses_of(track);
+    const auto glimpses = glimpses_of(track, stop);
     const double as_it_is = unexplained(glimpses, {});
     if (as_it_is < well) return;
     Reading best;
@@ -199,6 +209,7 @@ void check_convention(Track& track) {
     const auto first = range_of(track, 0), second = range_of(track, 1);
     const bool may_be_degrees = std::max(first[1] - first[0], second[1] - second[0]) > small;
     for (const auto& reading : other_readings()) {
+        throw_if_set(stop);
         if (reading.unit != 1 && !may_be_degrees) continue;
         if (const double value = unexplained(glimpses, reading); value < least) least = value, best = reading;
     }
@@ -221,10 +232,10 @@ void check_convention(Track& track) {
 
 }  // namespace
 
-void check_track(Track& track) {
+void check_track(Track& track, const std::atomic<bool>& stop) {
     drop_crumbs(track);
     demand_length(track);
-    find_noise(track);
+    find_noise(track, stop);
     demand_motion(track);
     constexpr double most_outliers = 0.1;
     if (static_cast<double>(track.outliers()) > most_outliers * 2 * static_cast<double>(track.samples()))
@@ -233,7 +244,7 @@ void check_track(Track& track) {
     if (track.outliers() > 0)
         track.notes.push_back(fmt::format("{} of {} angles are far off their neighbours, and were left out",
                                           track.outliers(), 2 * track.samples()));
-    check_convention(track);
+    check_convention(track, stop);
 }
 
 }  // namespace doppel

@@ -28,7 +28,7 @@ Coverage coverage_of(int trials, const Parameters& truth, const ModelSpec& model
         const auto division = divide(track);
         const auto fit =
             fit_model(track, division.segments, fit_at(model, truth, track, division), {.jobs = 2}, no_stop);
-        const auto uncertainty = uncertainty_of(track, division.segments, fit, 2);
+        const auto uncertainty = uncertainty_of(track, division.segments, fit, 2, no_stop);
         coverage.white += uncertainty.is_white;
         for (const auto parameter : uncertainty.parameters) {
             const double off = fit.parameters[index_of(parameter)] - truth[index_of(parameter)];

@@ -34,9 +34,9 @@ TEST(FitProgram, FitsARealPendulum) {
     const auto result = test::doppel(folder, fit_of(lab, {"--name", "lab"}));
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.err, "");
-    for (const char* ending : {".toml", ".json", ".csv", ".png"})
+    for (const char* ending : {".toml", ".fit.json", ".residuals.csv", ".png"})
         EXPECT_NE(result.out.find("out/lab/lab" + std::string(ending)), std::string::npos) << result.out;
-    const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.json"));
+    const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json"));
     const auto& model = json["model"];
     EXPECT_EQ(model["name"], "compound, viscous, dry, drag by the air met");
     EXPECT_LT(model["left_out_rms_rad"].get<double>(), 0.0007);  // measured 0.00046
@@ -84,6 +84,9 @@ TEST(FitProgram, ItsPresetRunsBesideATrack) {
     const auto left_out = (data / "piece-04.csv").string();
     const auto result = beside(left_out);
     ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_TRUE(fs::exists(folder / "out/lab/lab.residuals.csv"));
+    EXPECT_TRUE(
+        nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json")).contains("ladder"));  // still the fit's
     const auto [worst, last] = largest_difference(folder / "out/lab/lab.csv");
     EXPECT_LT(worst, 5e-3);                // measured 2.2e-3 rad
     EXPECT_NEAR(last, 319 / 120.0, 1e-9);  // as long as the track
@@ -104,7 +107,7 @@ TEST(FitProgram, WritesTheSameBytesForAnyNumberOfThreads) {
     const auto folder = fresh_folder();
     for (const char* jobs : {"1", "3"})
         ASSERT_EQ(test::doppel(folder, fit_of(lab, {"--name", "lab", "-o", jobs, "-j", jobs})).code, 0);
-    for (const char* file : {"lab/lab.csv", "lab/lab.toml"})
+    for (const char* file : {"lab/lab.residuals.csv", "lab/lab.toml"})
         EXPECT_EQ(bytes_of(folder / "1" / file), bytes_of(folder / "3" / file)) << file;
 }
 
@@ -122,6 +125,27 @@ TEST(FitProgram, RefusesWithAReasonAndLeavesNothing) {
     EXPECT_EQ(test::doppel(folder, fit_of(lab, {"--model", "rope"})).code, 2);
     EXPECT_FALSE(fs::exists(folder / "out/bad"));
     EXPECT_TRUE(test::listing(folder / "out").empty() || !fs::exists(folder / "out/piece-00/piece-00.toml"));
+}
+
+/// Names that a terminal or the preset would obey are refused, or escaped where they are only told.
+TEST(FitProgram, NamesOfStrangersGiveNoOrders) {
+    const auto folder = fresh_folder();
+    for (const char* name : {"\x1b[2J", "a\nb",
+                             "a\xe2\x80\xae"
+                             "b",
+                             "\xff"}) {
+        const auto refused = test::doppel(folder, fit_of(lab, {"--name", name}));
+        EXPECT_EQ(refused.code, 2) << refused.err;
+        EXPECT_EQ(refused.err.find(name), std::string::npos);
+    }
+    const auto track = folder / "a\n[video]\nformat=\"png\"\n#.csv";
+    fs::copy_file(lab[0], track);
+    EXPECT_EQ(test::doppel(folder, fit_of({track})).code, 2);  // its name would be that of the files
+    ASSERT_EQ(test::doppel(folder, fit_of({track}, {"--name", "lab"})).code, 0);
+    const auto preset = bytes_of(folder / "out/lab/lab.toml");
+    EXPECT_TRUE(preset.starts_with("# Fitted by doppel fit to a [video] format=\"png\" #.csv: ")) << preset;
+    const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json"));
+    EXPECT_EQ(json["track"]["files"][0], "a [video] format=\"png\" #.csv");  // not from the root
 }
 
 /// The real track played backwards would need friction that drives.

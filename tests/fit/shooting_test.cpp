@@ -1,8 +1,12 @@
+#include "base/error.hpp"
 #include "fit/result.hpp"
 #include "fit/support.hpp"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
 
 namespace doppel {
 namespace shooting_test {
@@ -48,7 +52,7 @@ TEST(FitShooting, EliminatesStartsExactly) {
     const TrackSegment segment{0, 0, track.samples()};
     const auto division = divide(track, 3);
     auto fit = fit_at(model, lab_arms(), track, division);
-    evaluate_fit(track, {segment}, fit, 1);
+    evaluate_fit(track, {segment}, fit, 1, no_stop);
     const auto& sums = fit.sums[0];
     const auto count = static_cast<Eigen::Index>(model.fitted.size());
     Eigen::MatrixXd whole(4 + count, 4 + count);
@@ -117,6 +121,37 @@ TEST(FitShooting, IsTheSameForAnyNumberOfThreads) {
     const auto one = fit(1), four = fit(4);
     EXPECT_EQ(one.parameters, four.parameters);
     EXPECT_EQ(one.starts, four.starts);
+}
+
+/// A start from which the motion runs away is guessed anew; the fit goes on.
+TEST(FitShooting, OneBadStartEndsItselfNotTheFit) {
+    const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
+    const auto division = divide(track);
+    auto start = fit_at(model_of(false, 0), lab_arms(false), track, division);
+    start.starts[1][2] = 2e4;  // rad/s
+    const auto fit = fit_model(track, division.segments, start, {}, no_stop);
+    EXPECT_NEAR(fit.rms, 1e-3, 5e-5);  // measured 1.00e-3: the noise
+}
+
+TEST(FitShooting, EndsSoonAfterItIsStopped) {
+    const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
+    const auto division = divide(track);
+    auto fit = fit_at(model_of(false, 0), lab_arms(false), track, division);
+    const std::atomic<bool> stop = true;
+    EXPECT_THROW(evaluate_fit(track, division.segments, fit, 1, stop), Error);
+    EXPECT_EQ(fit.sums[0].count, 0);
+    EXPECT_THROW(tracks_of_texts({"a.csv"}, {csv_of(track.pieces[0])}, stop), Error);
+}
+
+/// Sums that are not finite, as of a motion that nearly ran away, once kept a loop for ever.
+TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
+    const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
+    const auto division = divide(track);
+    auto fit = fit_at(model_of(false, 2), lab_arms(), track, division);
+    evaluate_fit(track, division.segments, fit, 1, no_stop);
+    fit.sums[0].shared(0, 0) = -std::numeric_limits<double>::infinity();
+    const auto without = fit_without(fit, {2});
+    EXPECT_FALSE(std::isfinite(without.parameters[index_of(inertia)]));
 }
 
 /// What is left out by one step is near what a fit without it finds.
