@@ -122,7 +122,7 @@ Plot ladder_plot(const FitResult& result) {
 }
 
 Plot horizon_plot(const FitResult& result) {
-    Plot plot{.title = "Predictions from two seconds of data"};
+    Plot plot{.title = "Predictions from at most two seconds of data"};
     plot.x = {.label = "time predicted, s", .low = 0};
     plot.y = {.label = "largest error so far, rad", .logarithmic = true};
     if (!result.horizon) {

@@ -3,6 +3,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "fit/energy.hpp"
+#include "numeric/portable_math.hpp"
 
 #include <fmt/format.h>
 
@@ -161,8 +162,15 @@ std::string horizon_sentence(const FitResult& result) {
     const auto left = h.left_by[0] + h.left_by[1] + h.left_by[2];
     const auto words = h.median_s ? fmt::format("for {:.1f} s (median)", *h.median_s)
                                   : fmt::format("for longer than the track shows, {:.1f} s", h.longest_s);
-    auto sentence = fmt::format("Predictions stay within {:.2g} rad {}", h.limit, words);
-    if (left == 0) return sentence + fmt::format("; none of {} left.", h.predictions.size());
+    const auto [least, most] = std::minmax_element(h.predictions.begin(), h.predictions.end(),
+                                                   [](const auto& a, const auto& b) { return a.data_s < b.data_s; });
+    const auto from = fmt::format("{:.1f}", least->data_s), to = fmt::format("{:.1f}", most->data_s);
+    auto sentence = fmt::format("Predictions from {}{} s of data stay within {:.2g} rad {}", from,
+                                from == to ? "" : " to " + to, h.limit, words);
+    const auto count = static_cast<double>(h.predictions.size());
+    if (left == 0)  // (1 − p)ⁿ = 5 %
+        return sentence + fmt::format("; none of {} left: at 95 % confidence at most {:.0f} % would.", count,
+                                      100 * (1 - portable_pow(0.05, 1 / count)));
     constexpr std::array<const char*, 3> names{"the model", "the start", "the parameters"};
     std::string because;
     for (std::size_t k = 0; k < names.size(); ++k)

@@ -224,6 +224,16 @@ TEST(FitHorizon, FindsTheIntervalOfPiecesAndHowFarItSees) {
     EXPECT_GT(result.horizon->longest_s, 5);
 }
 
+TEST(FitHorizon, SaysWhatNoneIsWorthAndWhatItUsed) {
+    FitResult result;
+    result.horizon = Horizon{.predictions = std::vector<Prediction>(8, {.data_s = 1.9}), .longest_s = 10.9};
+    result.horizon->predictions[3].data_s = 1.12;
+    // 1 − 0.05^(1/8) = 0.3123
+    EXPECT_EQ(horizon_sentence(result),
+              "Predictions from 1.1 to 1.9 s of data stay within 0.1 rad for longer than the track shows, 10.9 s; none "
+              "of 8 left: at 95 % confidence at most 31 % would.");
+}
+
 TEST(FitHorizon, TakesTheMedianOfTimesCutShort) {
     EXPECT_FALSE(median_of({{1, false}, {2, false}}));
     EXPECT_EQ(median_of({{1, true}, {2, true}, {3, true}}), 2);
