@@ -79,7 +79,7 @@ TEST(Fonts, AFileThatIsNoneIsNamedWithItsKey) {
     };
     EXPECT_EQ(message("none.ttf"), "p/film.toml:2:1: [video.fonts] text none.ttf: there is no such file");
     EXPECT_EQ(message((folder / "film.toml").string()),
-              fmt::format("p/film.toml:2:1: [video.fonts] text {}: is no TrueType or OpenType font",
+              fmt::format("p/film.toml:2:1: [video.fonts] text {}: is no TrueType or OpenType font, or is damaged",
                           (folder / "film.toml").string()));
     EXPECT_EQ(error_of([] { scene_of("butterfly", {"video.fonts.text=\"no.ttf\""}); }).second,
               "--set video.fonts.text: [video.fonts] text no.ttf: there is no such file");
