@@ -88,6 +88,9 @@ bool advanced(std::span<const std::unique_ptr<Motion>> motions, std::string& fai
     }
 }
 
+/// How many roundings of a number, half an ulp each, some_roundings_away() moves it by.
+constexpr double roundings_away = 24;
+
 /// Light masses make nearly as much of the roundings of steps as of those of the start: 0.93 of it was seen.
 constexpr double caution = 3;
 
@@ -161,9 +164,10 @@ MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance) {
 }
 
 MotionSpec some_roundings_away(MotionSpec spec) {
-    // a number errs by half an ulp at most; 12 ulps leave room for what the steps add
-    Quad change = 12 * (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
-                                                             : Quad(std::numeric_limits<double>::epsilon()));
+    // a number errs by half an ulp at most; more of them leave room for what the steps add
+    Quad change = roundings_away / 2 *
+                  (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
+                                                        : Quad(std::numeric_limits<double>::epsilon()));
     const auto move = [&](Quad& number) {
         number *= 1 + change;
         change = -change;
@@ -200,7 +204,12 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
     const bool affordable =
         !sticks && static_cast<double>(effort.evaluations) * bodies * (spec.physical ? of_tape : 1) <= most_work;
     if (spec.precision == Precision::in_quad || !affordable) return own;
-    return wide_trajectory(spec, samples, reach, enough, stop);
+    auto wide = wide_trajectory(spec, samples, reach, enough, stop);
+    // a run in double begins at numbers that were rounded once; that it errs by less may be chance
+    for (std::size_t sample = 0; sample < wide.seen.size() && !own.uncertainty.empty(); ++sample)
+        wide.uncertainty[sample] =
+            own.uncertainty[std::min(sample, own.uncertainty.size() - 1)] / (caution * roundings_away);
+    return wide;
 }
 
 double ErrorHistory::at(std::size_t sample) const {

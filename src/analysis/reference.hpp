@@ -30,9 +30,11 @@ struct ReferenceTrajectory {
     bool in_angles = true;                // of a chain; else by places, in units of `reach`
     double reach = 1;                     // m
     std::vector<std::vector<Quad>> seen;  // at samples 0, 1 …: the angles, rad, or x and y of all particles, m
-    std::vector<double> uncertainty;      // how far that may be off: rad, or units of `reach`, the largest so far
-    bool is_wider = false;                // in more digits than the motion's own: then none is left
-    std::string failure;                  // why it could not go on
+    /// How far that may be off: rad, or units of `reach`, the largest so far. Where `is_wider`, what one rounding of the
+    /// motion's numbers to its precision does: they are not known better.
+    std::vector<double> uncertainty;
+    bool is_wider = false;  // in more digits than the motion's own
+    std::string failure;    // why it could not go on
 
     /// How far a motion is from it at a sample that was seen: rad, the largest of all angles, up to whole turns; or of
     /// places, in units of `reach`. NaN where a number is NaN.

@@ -32,7 +32,8 @@ struct AdamsWeights {
 };
 
 /// Adams–Bashforth–Moulton at fixed step: predict, evaluate, correct, evaluate; two evaluations a step whatever the
-/// order. The first seven steps, for which the past is missing, are taken by dop853, of the same order.
+/// order. The first seven steps, and those after an event, for which the past is missing, are taken by dop853, of the same
+/// order.
 template <System Model>
 class AdamsStepper {
 public:
@@ -42,10 +43,16 @@ public:
     AdamsStepper(Model& model, const State& start, const Scalar& step)
         : model_(model), y_(start), at_(start), sum_(start), h_(step), starter_(start) {
         past_.fill(start);
+        take_modes(model_, y_);
         doppel::slope(model_, y_, past_[0]);
     }
 
     void advance(long steps) {
+        if constexpr (HasEvents<Model>)
+            if (model_.switches()) {
+                for (; steps > 0; --steps) step_to_event();
+                return;
+            }
         for (; steps > 0 && known_ < past_.size(); --steps) start_step();
         for (; steps > 0; --steps) step();
     }
@@ -58,11 +65,34 @@ private:
 
     void start_step() {
         starter_[0] = past_[newest_];
-        starter_.template evaluate<1, Dop853::pair.stages>(model_, y_, h_);
-        starter_.finish(y_, h_, at_);
-        y_.swap(at_);
-        evaluations_ += static_cast<long>(Dop853::pair.stages) - 1;
+        one_step(y_, h_);
         newest_ = known_++;
+        arrive();
+    }
+    /// Without a past, by dop853; starter_[0] is the slope at y.
+    void one_step(State& y, const Scalar& h) {
+        starter_.template evaluate<1, Dop853::pair.stages>(model_, y, h);
+        starter_.finish(y, h, at_);
+        y.swap(at_);
+        evaluations_ += static_cast<long>(Dop853::pair.stages) - 1;
+    }
+
+    /// Behind an event the past tells nothing: it begins again at the end of the step.
+    void step_to_event() requires HasEvents<Model> {
+        before_ = y_;
+        if (known_ < past_.size())
+            start_step();
+        else
+            step();
+        if (!(model_.margin(y_) < Scalar(0))) return;
+        y_ = before_;
+        step_through_events(model_, y_, h_, [&](State& y, const Scalar& t) {
+            doppel::slope(model_, y, starter_[0]);
+            ++evaluations_;
+            one_step(y, t);
+        });
+        newest_ = 0;
+        known_ = 1;
         arrive();
     }
 
@@ -92,7 +122,7 @@ private:
     }
 
     Model& model_;
-    State y_, at_, sum_;
+    State y_, at_, sum_, before_;
     Scalar h_;
     std::array<State, order> past_;       // slopes, a ring that ends at `newest_`
     std::size_t newest_ = 0, known_ = 1;  // the newest slope; how many there are

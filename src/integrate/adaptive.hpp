@@ -33,6 +33,7 @@ public:
             throw bad_input("{}: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", method.name,
                             static_cast<double>(tolerance), std::numeric_limits<Scalar>::digits10 + 1,
                             static_cast<double>(least));
+        take_modes(model_, y1_);
         doppel::slope(model_, y1_, k_[end]);
         h_ = first_step();
         evaluations_ = 2;
@@ -41,6 +42,8 @@ public:
     /// On from another state, by steps as long as before: for one much like the last.
     void reset(const State& start) {
         y1_ = out_ = start;
+        take_modes(model_, y1_);
+        ends_at_event_ = false;
         doppel::slope(model_, y1_, k_[end]);
         ++evaluations_;
         span_ = offset_ = lost_ = Scalar(0);
@@ -80,6 +83,12 @@ private:
 
     /// One step that the tolerance accepts, from y1. `seconds`, the interval asked for, tells when h has vanished.
     void step(const Scalar& seconds) {
+        if (ends_at_event_) {
+            if constexpr (HasEvents<Model>) model_.settle(y1_);
+            doppel::slope(model_, y1_, k_[end]);
+            ++evaluations_;
+            ends_at_event_ = false;
+        }
         y0_.swap(y1_);
         k_[0].swap(k_[end]);
         for (double limit = pair.control.grow;; limit = 1) {
@@ -88,13 +97,8 @@ private:
                     "{}: no step down to {:.3g} s meets tolerance = {:.3g}; the motion has a singularity "
                     "there, which no explicit method passes",
                     method.name, static_cast<double>(h_), static_cast<double>(tolerance_));
-            k_.template evaluate<1, end>(model_, y0_, h_);
-            k_.finish(y0_, h_, y1_);
-            if constexpr (error_needs_end) doppel::slope(model_, y1_, k_[end]);
-            evaluations_ += static_cast<long>(error_needs_end ? end : end - 1);
-
+            take(h_);
             const double error = error_of_step();
-            span_ = h_;
             if (error <= 1) {
                 h_ *= Scalar(growth(error, error_before_, limit));
                 error_before_ = error > 1e-4 ? error : 1e-4;
@@ -102,14 +106,43 @@ private:
             }
             h_ *= Scalar(growth(error, 1, 1));
         }
+        arrive();
+        if (steps_ == 0 || span_ < smallest_) smallest_ = span_;
+        ++steps_;
+        if constexpr (HasEvents<Model>)
+            if (model_.switches()) end_at_event();
+    }
+
+    void take(const Scalar& h) {
+        k_.template evaluate<1, end>(model_, y0_, h);
+        k_.finish(y0_, h, y1_);
+        if constexpr (error_needs_end) doppel::slope(model_, y1_, k_[end]);
+        evaluations_ += static_cast<long>(error_needs_end ? end : end - 1);
+        span_ = h;
+    }
+    /// The step stands: the slope at its end is that of the next one's start.
+    void arrive() {
         project(model_, y1_);
         if (!error_needs_end || projects(model_)) {
             doppel::slope(model_, y1_, k_[end]);
             ++evaluations_;
         }
-        if (steps_ == 0 || span_ < smallest_) smallest_ = span_;
-        ++steps_;
         interpolates_ = false;
+    }
+
+    /// Where an event is inside the last step, it is taken again as far as there.
+    void end_at_event() requires HasEvents<Model> {
+        constexpr int parts = 8;
+        const auto state_at = [&](const Scalar& t) -> const State& {
+            interpolate(t);
+            return out_;
+        };
+        const auto event = first_event(model_, span_, parts, state_at);
+        if (!event) return;
+        stall_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * span_);
+        take(*event);
+        arrive();
+        ends_at_event_ = true;
     }
 
     /// h_next / h; no more than `limit`. An error that is NaN shrinks the step.
@@ -166,16 +199,20 @@ private:
 
     /// out ← the state at the output time.
     void sample() {
-        if (offset_ == span_) {
+        if (offset_ == span_)
             out_ = y1_;
-            return;
-        }
+        else
+            interpolate(offset_);
+    }
+
+    /// out ← the state at t s from the start of the last step.
+    void interpolate(const Scalar& t) {
         if (!interpolates_) {
             k_.evaluate_dense(model_, y0_, span_);
             evaluations_ += static_cast<long>(Slopes<Model, pair>::all - end - 1);
             interpolates_ = true;
         }
-        const Scalar s = offset_ / span_, rest = Scalar(1) - s;
+        const Scalar s = t / span_, rest = Scalar(1) - s;
         out_.setZero();
         for (std::size_t row = pair.dense.size(); row-- > 0;) {
             k_.sum_with(pair.dense[row], scratch_);
@@ -194,8 +231,10 @@ private:
     Scalar smallest_ = Scalar(0);                   // s
     double error_before_ = 1e-4;
     long steps_ = 0, evaluations_ = 0;
-    bool interpolates_ = false;  // the slopes for it are those of the last step
-    State y0_, y1_, out_;        // at the start and the end of the last step; at the output time
+    bool interpolates_ = false;   // the slopes for it are those of the last step
+    bool ends_at_event_ = false;  // the last step
+    Stall stall_;
+    State y0_, y1_, out_;  // at the start and the end of the last step; at the output time
     State scratch_;
     Slopes<Model, pair> k_;
 };

@@ -25,23 +25,34 @@ public:
     using State = typename Model::State;
 
     SemiImplicitEulerStepper(Model& model, const State& start, const Scalar& step)
-        : model_(model), y_(start), dydt_(start), h_(step) {}
+        : model_(model), y_(start), dydt_(start), h_(step) {
+        take_modes(model_, y_);
+    }
 
     void advance(long steps) {
-        const auto n = y_.size() / 2;
         for (long i = 0; i < steps; ++i) {
-            model_.rate(y_, dydt_);
-            for (Eigen::Index j = n; j < 2 * n; ++j) y_[j] += h_ * dydt_[j];
-            for (Eigen::Index j = 0; j < n; ++j) y_[j] += h_ * y_[n + j];
-            project(model_, y_);
+            if constexpr (HasEvents<Model>)
+                if (model_.switches()) {
+                    step_through_events(model_, y_, h_, [&](State& y, const Scalar& h) { step(y, h); });
+                    continue;
+                }
+            step(y_, h_);
         }
-        evaluations_ += steps;
     }
 
     const State& state() const { return y_; }
     long evaluations() const { return evaluations_; }
 
 private:
+    void step(State& y, const Scalar& h) {
+        const auto n = y.size() / 2;
+        model_.rate(y, dydt_);
+        for (Eigen::Index j = n; j < 2 * n; ++j) y[j] += h * dydt_[j];
+        for (Eigen::Index j = 0; j < n; ++j) y[j] += h * y[n + j];
+        project(model_, y);
+        ++evaluations_;
+    }
+
     Model& model_;
     State y_, dydt_;
     Scalar h_;

@@ -171,9 +171,12 @@ public:
         : model_(model), y_(start), h_(step), angles_(start.size() / 2) {
         slopes_.fill(start);
         at_ = start;
+        take_modes(model_, y_);
     }
 
     void advance(long steps) {
+        if constexpr (HasEvents<Model>)
+            if (model_.switches()) return advance_through_events(steps);
         if constexpr (flattened)
             repeat_flattened(steps);
         else
@@ -190,6 +193,16 @@ private:
 
     void repeat(long steps) {
         for (long i = 0; i < steps; ++i) step(y_);
+    }
+    void advance_through_events(long steps) {
+        const Scalar h = h_;
+        for (long i = 0; i < steps; ++i)
+            step_through_events(model_, y_, h, [&](State& y, const Scalar& t) {
+                h_ = t;
+                step(y);
+                evaluations_ += static_cast<long>(stages);
+            });
+        h_ = h;
     }
 
     /// Short states of doubles: whether the compiler inlines a right-hand side of its own accord depends on what else is

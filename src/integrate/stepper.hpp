@@ -1,5 +1,6 @@
 #pragma once
 
+#include "integrate/events.hpp"
 #include "physics/constraint.hpp"
 
 #include <concepts>
@@ -56,19 +57,28 @@ public:
     template <System Model>
     requires(!std::same_as<Model, AnySystem> &&
              std::same_as<typename Model::State, State>) explicit AnySystem(const Model& model)
-        : system_(std::make_unique<Held<Model>>(model)), projects_(doppel::projects(model)) {}
+        : system_(std::make_unique<Held<Model>>(model)),
+          projects_(doppel::projects(model)),
+          switches_(doppel::switches(model)) {}
 
     void rate(const State& y, State& dydt) { system_->rate(y, dydt); }
     void project(State& y) {
         if (projects_) system_->project(y);
     }
     bool projects() const { return projects_; }
+    bool switches() const { return switches_; }
+    void take_modes(State& y) { system_->take_modes(y); }
+    void settle(State& y) { system_->settle(y); }
+    Scalar margin(const State& y) { return system_->margin(y); }
 
 private:
     struct Interface {
         virtual ~Interface() = default;
         virtual void rate(const State& y, State& dydt) = 0;
         virtual void project(State& y) = 0;
+        virtual void take_modes(State& y) = 0;
+        virtual void settle(State& y) = 0;
+        virtual Scalar margin(const State& y) = 0;
     };
     template <class Model>
     struct Held final : Interface {
@@ -76,10 +86,20 @@ private:
         explicit Held(const Model& held) : model(held) {}
         void rate(const State& y, State& dydt) override { model.rate(y, dydt); }
         void project(State& y) override { doppel::project(model, y); }
+        void take_modes(State& y) override { doppel::take_modes(model, y); }
+        void settle([[maybe_unused]] State& y) override {
+            if constexpr (HasEvents<Model>) model.settle(y);
+        }
+        Scalar margin([[maybe_unused]] const State& y) override {
+            if constexpr (HasEvents<Model>)
+                return model.margin(y);
+            else
+                return Scalar(0);
+        }
     };
 
     std::unique_ptr<Interface> system_;
-    bool projects_;
+    bool projects_, switches_;
 };
 
 /// The right-hand side, for methods of many stages: called, not copied into every one of them, which costs them two

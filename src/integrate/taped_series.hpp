@@ -17,8 +17,9 @@ namespace doppel {
 /// The Taylor series of a model from its right-hand side alone, as a tape takes it down at the start of each step.
 /// `Model` is one over plain numbers, `TapedModel` the same over Taped<Scalar>.
 ///
-/// What the right-hand side compares (the sign of a rate, a friction that no longer holds) may change on the way: a step
-/// ends just behind the first such change, by so little that what it errs there, its third power, is below rounding.
+/// What the right-hand side compares (the sign of a rate in a drag like |ω| ω) may change on the way: a step ends just
+/// behind the first such change, by so little that what it errs there, its third power, is below rounding. Where a force
+/// jumps the model has an event (integrate/events.hpp), at which the step ends.
 template <class Model, class TapedModel>
 class TapedSeries {
 public:
@@ -27,6 +28,7 @@ public:
 
     TapedSeries(const Model& model, int order)
         : order_(order),
+          source_(model),
           layout_(model.layout),
           model_(model.pendulum.template cast<Taped<Scalar>>()),
           tape_(order + 1),
@@ -38,6 +40,7 @@ public:
     void expand(const State& y) {
         tape_.clear();
         for (Eigen::Index i = 0; i < y.size(); ++i) y_[i] = Taped<Scalar>::argument(y[i], tape_);
+        if constexpr (requires { model_.keep_modes_of(source_); }) model_.keep_modes_of(source_);
         model_.rate(y_, rate_);
         tape_.finish();
         for (Eigen::Index i = 0; i < y.size(); ++i) tape_.term(y_[i].node(), 0) = y[i];
@@ -117,6 +120,7 @@ private:
     double greatest(int k) const { return plain_value(greatest_of(k)); }
 
     int order_;
+    const Model& source_;
     PhysicalLayout layout_;
     TapedModel model_;
     Tape<Scalar> tape_;

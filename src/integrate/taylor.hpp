@@ -43,11 +43,15 @@ public:
           base_(start),
           lost_(State::Zero(start.size())),
           change_(start),
-          out_(start) {}
+          out_(start) {
+        take_modes(model_, base_);
+    }
 
     /// On from another state, by a step of at most twice the last: for one much like the last.
     void reset(const State& start) {
         base_ = out_ = start;
+        take_modes(model_, base_);
+        ends_at_event_ = false;
         lost_.setZero();
         offset_ = offset_lost_ = Scalar(0);
         expand(plain_value(step_));
@@ -113,6 +117,11 @@ private:
             for (Eigen::Index i = 0; i < base_.size(); ++i) add(base_[i], lost_[i], change_[i]);
             project(model_, base_);
             add(offset_, offset_lost_, -step_);
+            if constexpr (HasEvents<Model>)
+                if (ends_at_event_) {
+                    model_.settle(base_);
+                    lost_.setZero();
+                }
         }
         expand(seconds);
     }
@@ -120,14 +129,29 @@ private:
     void expand(double seconds) {
         series_.expand(base_);
         const double h = chosen_step();
+        step_ = Scalar(h);
+        if constexpr (HasEvents<Model>) ends_at_event_ = model_.switches() && ends_at_event();
         if (!(h > plain_value(std::numeric_limits<Scalar>::epsilon()) * seconds))
             throw method_failed(
                 "taylor: a step of {:.3g} s is all that tolerance = {:.3g} allows, too little to get on; "
                 "the motion has a singularity there, which no explicit method passes",
                 h, tolerance_);
-        step_ = Scalar(h);
         if (steps_ == 0 || step_ < smallest_) smallest_ = step_;
         ++steps_;
+    }
+
+    /// Whether the model has an event in the step, which then ends there.
+    bool ends_at_event() requires HasEvents<Model> {
+        constexpr int parts = 16;
+        const auto event = first_event(model_, step_, parts, [&](const Scalar& t) -> const State& {
+            series_.move(t, change_);
+            change_ = base_ + (change_ + lost_);
+            return change_;
+        });
+        if (!event) return false;
+        stall_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * step_);
+        step_ = *event;
+        return true;
     }
 
     double chosen_step() {
@@ -186,6 +210,8 @@ private:
     double free_step_ = 0;                                 // s, what the step would be but for events
     Scalar offset_ = Scalar(0), offset_lost_ = Scalar(0);  // s, from the start of the step to the output time
     long steps_ = 0;
+    bool ends_at_event_ = false;  // the step
+    Stall stall_;
 };
 
 /// The Taylor method, for every model that has a series (integrate/taylor_series.hpp).

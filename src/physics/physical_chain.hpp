@@ -5,16 +5,17 @@
 
 #include <Eigen/Dense>
 
-#include <algorithm>
+#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace doppel {
 
 /// A chain of rigid bodies in angles, with friction, motors and a pivot that moves: M θ″ = f in O(N) (ArticulatedBodies).
 ///
-/// A joint with Coulomb's friction whose rate is 0 is held while a torque of at most c holds it: then it keeps its angle
-/// exactly. A step that ends with a rate of at most w ends at rest where it can be held so (project()).
+/// A joint with Coulomb's friction comes to rest where its rate is 0, and is held while a torque of at most c holds it: then
+/// it keeps its angle exactly. Between such events the right-hand side is smooth.
 ///
 /// State   (q, v) of PhysicalLayout, q = (θ1 … θN …). Angles are not wrapped.
 template <class S>
@@ -36,8 +37,8 @@ public:
           cos_(sin_),
           rates_(sin_),
           alpha_(sin_),
-          held_(p.chain.links(), false),
-          slip_(p.chain.links(), 0) {}
+          holding_(sin_),
+          slides_(p.chain.links(), 0) {}
 
     static State start(const PhysicalPendulum<Scalar>& p, bool with_work = true) {
         const PhysicalLayout layout(p, links(p), with_work);
@@ -49,11 +50,12 @@ public:
         return y;
     }
 
-    /// dydt ← d/dt of the state.
+    /// dydt ← d/dt of the state, with joints that stick and slide as take_modes() and settle() left them, without those as
+    /// they do at y.
     void rate(const State& y, State& dydt) {
         const auto n = layout.coordinates;
         const auto omega = y.segment(layout.half, n);
-        for (Eigen::Index i = 0; i < n; ++i) held_[at(i)] = has_coulomb(i) && rate_at(omega, i) == Scalar(0);
+        if (!has_modes_) choose_modes(y);
         const auto pivot = accelerate(y, omega);
         for (Eigen::Index i = 0; i < n; ++i) {
             dydt[i] = omega[i];
@@ -62,21 +64,40 @@ public:
         layout.rate(y, Scalar(forces_.power + dot(pivot.force, pivot.velocity)), dydt);
     }
 
-    bool projects() const { return !pendulum.friction.coulomb.empty(); }
-    /// Joints that turn at w or less come to rest where friction can hold them.
-    void project(State& y) {
-        const auto n = layout.coordinates;
-        auto omega = y.segment(layout.half, n);
-        bool any = false;
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const Scalar rate = rate_at(omega, i);
-            held_[at(i)] = has_coulomb(i) && rate <= pendulum.friction.width && -rate <= pendulum.friction.width;
-            any = any || (held_[at(i)] && rate != Scalar(0));
-        }
-        if (!any) return;
-        accelerate(y, Half(omega));
-        for (Eigen::Index i = 0; i < n; ++i) omega[i] = rates_[i];
+    // Events (integrate/events.hpp): a sliding joint comes to rest; a held one is let go.
+    bool switches() const { return !pendulum.friction.coulomb.empty(); }
+    void take_modes(State& y) {
+        has_modes_ = false;
+        choose_modes(y);
+        has_modes_ = true;
+        y.segment(layout.half, layout.coordinates) = rates_;
     }
+    void settle(State& y) {
+        choose_modes(y);
+        y.segment(layout.half, layout.coordinates) = rates_;
+    }
+    Scalar margin(const State& y) {
+        using std::abs;
+        const auto omega = y.segment(layout.half, layout.coordinates);
+        Scalar least(1);
+        const auto note = [&](const Scalar& margin) {
+            if (margin < least) least = margin;
+        };
+        for (Eigen::Index i = 0; i < omega.size(); ++i)
+            if (slides_[at(i)] != 0) note(Scalar(slides_[at(i)]) * rate_at(omega, i));
+        if (!holds_any()) return least;
+        accelerate(y, omega);
+        for (Eigen::Index i = 0; i < omega.size(); ++i)
+            if (is_held(i)) note(Scalar(1) - load(i));
+        return least;
+    }
+    /// For the same law on a tape.
+    template <class Other>
+    void keep_modes_of(const PhysicalChain<Other>& other) {
+        slides_ = other.modes();
+        has_modes_ = true;
+    }
+    const std::vector<int>& modes() const { return slides_; }
 
     /// For Hamilton's form (Canonical), at the angles of y = (q, …).
     void take_angles(const State& y) {
@@ -113,47 +134,71 @@ private:
         return !pendulum.friction.coulomb.empty() && pendulum.friction.coulomb[at(i)] != Scalar(0);
     }
 
+    bool is_held(Eigen::Index i) const { return has_coulomb(i) && slides_[at(i)] == 0; }
+    bool holds_any() const {
+        for (Eigen::Index i = 0; i < alpha_.size(); ++i)
+            if (is_held(i)) return true;
+        return false;
+    }
+    /// What a held joint bears of what friction gives; rounding alone lets none go.
+    Scalar load(Eigen::Index i) const {
+        using std::abs;
+        const Scalar most =
+            pendulum.friction.coulomb[at(i)] * (Scalar(1) + Scalar(64) * std::numeric_limits<Scalar>::epsilon());
+        return abs(holding_[i]) / most;
+    }
+    /// The held joint that bears too much, by most.
+    std::optional<Eigen::Index> overloaded() const {
+        std::optional<Eigen::Index> worst;
+        Scalar most(1);
+        for (Eigen::Index i = 0; i < alpha_.size(); ++i)
+            if (is_held(i) && load(i) > most) most = load(i), worst = i;
+        return worst;
+    }
+
+    /// Joints that have come to rest are held where friction can hold them; others begin to turn.
+    void choose_modes(const State& y) {
+        const auto n = layout.coordinates;
+        const auto omega = y.segment(layout.half, n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (!has_coulomb(i)) continue;
+            const Scalar rate = rate_at(omega, i);
+            const int sign = rate > Scalar(0) ? 1 : rate < Scalar(0) ? -1 : 0;
+            int& slides = slides_[at(i)];
+            slides = has_modes_ && slides != sign ? 0 : sign;
+        }
+        Half resting(n);
+        rest(omega, resting);
+        accelerate(y, resting);
+        std::vector<Eigen::Index> let_go;
+        while (const auto joint = overloaded()) {
+            slides_[at(*joint)] = holding_[*joint] > Scalar(0) ? -1 : 1;
+            let_go.push_back(*joint);
+            accelerate(y, resting);
+        }
+        // one that was let go may well be held now that others slide
+        for (const auto joint : let_go) {
+            const int sign = std::exchange(slides_[at(joint)], 0);
+            accelerate(y, resting);
+            if (overloaded()) slides_[at(joint)] = sign;
+        }
+        rates_ = resting;
+    }
+
     /// rates ← omega, but those of held joints, which turn with the link above.
     template <class Rates>
     void rest(const Rates& omega, Half& rates) const {
         for (Eigen::Index i = 0; i < rates.size(); ++i)
-            rates[i] = !held_[at(i)] ? Scalar(omega[i]) : i == 0 ? Scalar(0) : Scalar(rates[i - 1]);
+            rates[i] = !is_held(i) ? Scalar(omega[i]) : i == 0 ? Scalar(0) : Scalar(rates[i - 1]);
     }
 
-    /// rates_ ← omega, where held joints rest, and alpha_ at them; joints that friction cannot hold are taken out of held_.
+    /// rates_ ← omega, where held joints rest, alpha_ at them, and holding_, the torques that hold these.
     template <class Rates>
     Pivot accelerate(const State& y, const Rates& omega) {
         take_sin_cos(y, sin_, cos_);
         bodies_.factor(sin_, cos_);
         const Scalar t = layout.time_of(y);
         const PivotPlace<Scalar> pivot(pendulum.pivot, t);
-        auto tried = attempt(omega, t, pivot);
-        std::vector<std::size_t> let_go;
-        while (tried.slips) {
-            held_[*tried.slips] = false;
-            let_go.push_back(*tried.slips);
-            tried = attempt(omega, t, pivot);
-        }
-        // one that was let go may well be held now that others slide
-        for (const auto joint : let_go) {
-            held_[joint] = true;
-            auto again = attempt(omega, t, pivot);
-            if (again.slips) {
-                held_[joint] = false;
-                again = attempt(omega, t, pivot);
-            }
-            tried = again;
-        }
-        return {tried.force, pivot.velocity};
-    }
-
-    /// The accelerations with the joints in held_ at rest.
-    struct Attempt {
-        Planar<Scalar> force;              // of the pivot, N
-        std::optional<std::size_t> slips;  // the joint that takes most in excess of what friction gives
-    };
-    template <class Rates>
-    Attempt attempt(const Rates& omega, const Scalar& t, const PivotPlace<Scalar>& pivot) {
         rest(omega, rates_);
         take_forces(t, pivot.velocity);
         const auto solve = [&] {
@@ -161,19 +206,18 @@ private:
                                       alpha_) -
                    forces_.at_pivot;
         };
-        const auto free = solve();
-        if (std::find(held_.begin(), held_.end(), true) == held_.end()) return {free, std::nullopt};
-        if (const auto slips = add_holding_torques()) return {free, slips};
-        const auto force = solve();
-        const Half all = alpha_;
-        rest(all, alpha_);
-        return {force, std::nullopt};
+        auto force = solve();
+        if (holds_any()) {
+            add_holding_torques();
+            force = solve();
+            const Half all = alpha_;
+            rest(all, alpha_);
+        }
+        return {force, pivot.velocity};
     }
 
     void take_forces(const Scalar& t, const Planar<Scalar>& pivot_velocity) {
-        forces_.update(rates_, t, [&](Eigen::Index i, const Scalar& rate) {
-            return !has_coulomb(i) || held_[at(i)] ? 0 : rate > Scalar(0) ? 1 : rate < Scalar(0) ? -1 : slip_[at(i)];
-        });
+        forces_.update(rates_, t, [&](Eigen::Index i) { return slides_[at(i)]; });
         if (forces_.drag.empty()) return;
         Planar<Scalar> v = pivot_velocity;
         for (Eigen::Index i = 0; i < sin_.size(); ++i) {
@@ -189,11 +233,11 @@ private:
     }
 
     /// The torques λ that keep the held joints at rest: (D M⁻¹ Dᵀ) λ = −D θ″, where D takes the rates of links to those of
-    /// joints. None is added where friction cannot give one of them: returns the joint that exceeds it by most.
-    std::optional<std::size_t> add_holding_torques() {
+    /// joints.
+    void add_holding_torques() {
         std::vector<Eigen::Index> joints;
         for (Eigen::Index i = 0; i < alpha_.size(); ++i)
-            if (held_[at(i)]) joints.push_back(i);
+            if (is_held(i)) joints.push_back(i);
         const auto m = static_cast<Eigen::Index>(joints.size());
         Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> matrix(m, m);
         Half right(m), one(alpha_.size()), answer(alpha_.size());
@@ -205,22 +249,10 @@ private:
             right[k] = -rate_at(alpha_, joints[at(k)]);
         }
         const Half torque = matrix.partialPivLu().solve(right);
-        Eigen::Index worst = 0;
-        Scalar most(0);
         for (Eigen::Index k = 0; k < m; ++k) {
-            using std::abs;
-            const Scalar share = abs(torque[k]) / pendulum.friction.coulomb[at(joints[at(k)])];
-            if (share <= most) continue;
-            most = share;
-            worst = k;
+            holding_[joints[at(k)]] = torque[k];
+            add_torque(joints[at(k)], torque[k], forces_.torque);
         }
-        if (most > Scalar(1)) {
-            const auto joint = at(joints[at(worst)]);
-            slip_[joint] = torque[worst] > Scalar(0) ? -1 : 1;
-            return joint;
-        }
-        for (Eigen::Index k = 0; k < m; ++k) add_torque(joints[at(k)], torque[k], forces_.torque);
-        return std::nullopt;
     }
     static void add_torque(Eigen::Index joint, const Scalar& torque, Half& on_links) {
         on_links[joint] += torque;
@@ -230,8 +262,9 @@ private:
     PhysicalForces<Scalar> forces_;
     ArticulatedBodies<Scalar> bodies_;
     Half sin_, cos_, rates_, alpha_;
-    std::vector<bool> held_;
-    std::vector<int> slip_;  // the sign of the rate with which a joint at rest begins to turn that cannot be held
+    Half holding_;             // of held joints, N m
+    std::vector<int> slides_;  // the sign of a joint's rate in Coulomb's law until the next event; 0 where it is held
+    bool has_modes_ = false;   // slides_ are those of a motion
 };
 
 }  // namespace doppel

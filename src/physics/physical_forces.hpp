@@ -89,7 +89,7 @@ public:
         }
     }
 
-    /// At the rates ω of the links and the time t. sign(i, rate) is that of joint i in Coulomb's law; 0 where it is held.
+    /// At the rates ω of the links and the time t. sign(i) is that of joint i in Coulomb's law; 0 where it is held.
     template <class Rates, class Sign>
     void update(const Rates& omega, const Scalar& t, const Sign& sign) {
         power = Scalar(0);
@@ -101,7 +101,7 @@ public:
             Scalar at_joint(0);
             if (!friction_.viscous.empty()) at_joint -= of(friction_.viscous, i) * rate;
             if (!friction_.coulomb.empty()) {
-                if (const int s = sign(i, rate); s != 0) at_joint -= Scalar(s) * of(friction_.coulomb, i);
+                if (const int s = sign(i); s != 0) at_joint -= Scalar(s) * of(friction_.coulomb, i);
             }
             for (const auto& motor : motors_)
                 if (static_cast<Eigen::Index>(motor.joint) == i)

@@ -16,18 +16,17 @@ namespace doppel {
 ///     on a link's end  −d1 v − d2 |v| v                 force, by its velocity
 ///
 /// The third of them acts where an arm meets the air broadside: at its centre of oscillation, J / (m a) from the joint,
-/// with the speed u J / (m a), t across the arm and J its inertia about the joint. The second term is Coulomb's friction: it holds a joint at rest as long as a torque of at most c does. A step that ends
-/// with a rate of at most w ends at rest where the joint can be held so.
+/// with the speed u J / (m a), t across the arm and J its inertia about the joint. The second term is Coulomb's friction: it
+/// holds a joint at rest as long as a torque of at most c does.
 template <class Scalar>
 struct Friction {
-    std::vector<Scalar> viscous;              // b, N m s
-    std::vector<Scalar> coulomb;              // c, N m
-    Scalar width = Scalar(1) / Scalar(1000);  // w, rad/s, > 0
-    std::vector<Scalar> arm_linear;           // k1, N m s
-    std::vector<Scalar> arm_quadratic;        // k2, N m s²
-    std::vector<Scalar> air_quadratic;        // k3, N m s²
-    std::vector<Scalar> drag_linear;          // d1, N s/m
-    std::vector<Scalar> drag_quadratic;       // d2, N s²/m²
+    std::vector<Scalar> viscous;         // b, N m s
+    std::vector<Scalar> coulomb;         // c, N m
+    std::vector<Scalar> arm_linear;      // k1, N m s
+    std::vector<Scalar> arm_quadratic;   // k2, N m s²
+    std::vector<Scalar> air_quadratic;   // k3, N m s²
+    std::vector<Scalar> drag_linear;     // d1, N s/m
+    std::vector<Scalar> drag_quadratic;  // d2, N s²/m²
 
     friend bool operator==(const Friction&, const Friction&) = default;
 
@@ -97,14 +96,13 @@ struct PhysicalPendulum {
             return made;
         };
         const auto& f = friction;
-        PhysicalPendulum<To> made{
-            chain.template cast<To>(),
-            all(center),
-            all(inertia),
-            {all(f.viscous), all(f.coulomb), one(f.width), all(f.arm_linear), all(f.arm_quadratic),
-             all(f.air_quadratic), all(f.drag_linear), all(f.drag_quadratic)},
-            {one(pivot.x), one(pivot.y), one(pivot.frequency), one(pivot.phase)},
-            {}};
+        PhysicalPendulum<To> made{chain.template cast<To>(),
+                                  all(center),
+                                  all(inertia),
+                                  {all(f.viscous), all(f.coulomb), all(f.arm_linear), all(f.arm_quadratic),
+                                   all(f.air_quadratic), all(f.drag_linear), all(f.drag_quadratic)},
+                                  {one(pivot.x), one(pivot.y), one(pivot.frequency), one(pivot.phase)},
+                                  {}};
         for (const auto& t : torques)
             made.torques.push_back({t.joint, one(t.amplitude), one(t.frequency), one(t.phase)});
         return made;

@@ -189,7 +189,7 @@ private:
             const Vector r = along(q, k, pivot.place), u = along(v, k, pivot.velocity);
             rates_[k] = (r.x * u.y - r.y * u.x) / dot(r, r);
         }
-        forces_.update(rates_, layout.time_of(q), [](Eigen::Index, const Scalar&) { return 0; });
+        forces_.update(rates_, layout.time_of(q), [](Eigen::Index) { return 0; });
         if (!pendulum.friction.air_quadratic.empty())
             for (Eigen::Index k = 0; k < constraints(); ++k) {
                 using std::sqrt;

@@ -32,13 +32,9 @@ PhysicalPendulum<Quad> physical_of(const SideSpec& spec) {
         const bool is_none = std::all_of(list.begin(), list.end(), [](const Quad& value) { return value == 0; });
         return is_none ? std::vector<Quad>() : list;
     };
-    made.friction = {given(from.joint_viscous_N_m_s),
-                     given(from.joint_coulomb_N_m),
-                     from.joint_coulomb_width_deg_per_s * degree,
-                     given(from.arm_drag_linear_N_m_s),
-                     given(from.arm_drag_quadratic_N_m_s2),
-                     given(from.air_drag_quadratic_N_m_s2),
-                     given(from.drag_linear_N_s_per_m),
+    made.friction = {given(from.joint_viscous_N_m_s),       given(from.joint_coulomb_N_m),
+                     given(from.arm_drag_linear_N_m_s),     given(from.arm_drag_quadratic_N_m_s2),
+                     given(from.air_drag_quadratic_N_m_s2), given(from.drag_linear_N_s_per_m),
                      given(from.drag_quadratic_N_s2_per_m2)};
     if (from.pivot.amplitude_m != 0) {
         const SinCos<Quad> direction(Quad(from.pivot.direction_deg * degree));

@@ -52,7 +52,7 @@ void physical_fields(Visit& visit, Physical& physical) {
     list("inertia_kg_m2", "of such a body, about its centre of mass", "kg m²", physical.inertia_kg_m2);
     list("joint_viscous_N_m_s", "friction at each joint, by its rate", "N m s", physical.joint_viscous_N_m_s);
     list("joint_coulomb_N_m", "friction at each joint, whatever its rate (Coulomb)", "N m", physical.joint_coulomb_N_m);
-    visit({"joint_coulomb_width_deg_per_s", "the rate below which a joint comes to rest where that friction holds it",
+    visit({"joint_coulomb_width_deg_per_s", "has no effect any more: a joint comes to rest where its rate is 0",
            "deg/s", positive},
           physical.joint_coulomb_width_deg_per_s);
     list("arm_drag_linear_N_m_s", "drag on each link, by its own rate", "N m s", physical.arm_drag_linear_N_m_s);

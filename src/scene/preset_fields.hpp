@@ -80,7 +80,8 @@ void gravity_field(Visit& visit, Side& side) {
 
 inline const Field model_field{.key = "model", .help = "the equations; auto: the smallest that serves"};
 inline const Field accuracy_field{"accuracy",
-                                  "largest error of an angle; chooses integrator, step_s and tolerance",
+                                  "largest error of an angle, or of a place as a part of the size of a mechanism; "
+                                  "chooses integrator, step_s and tolerance",
                                   "rad",
                                   {.low = 0, .high = 1, .is_open = true}};
 

@@ -174,7 +174,6 @@ TEST(PhysicalTaylor, CoulombsFrictionTakesAsMuchOfEverySwing) {
     const double c = 1e-3, start = 0.0103, each = 2 * c / 9.8;
     auto p = physical(Pendulum<double>{{1}, {1}, {start}, {0}});
     p.friction.coulomb = {c};
-    p.friction.width = 1e-7;
     Course course(spec_of(p, "taylor", 1000));
     double before = 0, turned = start;
     int turns = 0;
