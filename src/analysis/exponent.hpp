@@ -23,6 +23,9 @@ struct Exponent {
     /// Of 40 releases 1e-9 or 1e-6 rad apart in each of 15 chaotic seas 78 % and 97 % were; in seven where sticky orbits
     /// hold a motion for minutes, as from 70° and 75°, 66 % and 92 %; of regular ones all.
     double uncertainty;
+    /// Whether long stretches of the run differ by no more than short ones foretell. Where they do (a chaotic transient,
+    /// orbits that stick), one run does not show all of the motion, and the uncertainty is too small.
+    bool is_settled = true;
 };
 
 /// Whether the exponent cannot be told from 0, as for regular motion: up to 1.5 times its uncertainty (regular

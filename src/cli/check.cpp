@@ -136,7 +136,7 @@ void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool
     else
         say(fmt::format("errs by about {} {} at the end", scientific(seen.error), unit));
     if (seen.exponent) {
-        const auto& [value, uncertainty] = *seen.exponent;
+        const auto& [value, uncertainty, is_settled] = *seen.exponent;
         const double tenfold = std::log(10) / value;
         switch (seen.kind) {
             case Forecast::Kind::regular:
@@ -145,6 +145,7 @@ void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool
             case Forecast::Kind::chaotic:
                 say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
                                 tenfold, value, uncertainty));
+                if (!is_settled) say("stretches of the motion differ by more than chance: that ± may be too small");
                 break;
             case Forecast::Kind::unstable:
                 say(

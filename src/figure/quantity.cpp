@@ -27,7 +27,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
                     .none_is_bad = true};
         case Quantity::exponent:
             return {.label = "largest Lyapunov exponent, 1/s",
-                    .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
+                    .columns = {"exponent_per_s", "exponent_uncertainty_per_s", "exponent_unsettled"},
                     .is_of_side_a = true,
                     .method = "tangent equations by Dormand–Prince 8"};
         case Quantity::flip_time:
@@ -205,7 +205,7 @@ void Measurement::append(std::span<const Preset> pairs, std::span<TrialNumbers> 
         const auto& a = pairs[i].a;
         const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), exponent_, stop)
                                                    : largest_exponent(physical_of(a).cast<double>(), exponent_, stop);
-        into[i].insert(into[i].end(), {exponent.value, exponent.uncertainty});
+        into[i].insert(into[i].end(), {exponent.value, exponent.uncertainty, exponent.is_settled ? 0.0 : 1.0});
     }
 }
 

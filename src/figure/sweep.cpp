@@ -106,7 +106,7 @@ public:
             drawn.hue = is_first ? 0 : 1;
             if (measurement.numbers() > 1) {
                 drawn.uncertainty = curve(numbers, column + 1).y;
-                figure.captions.push_back(exponent_words(drawn));
+                figure.captions.push_back(exponent_words(drawn, curve(numbers, column + 2).y));
             }
             plot.curves.push_back(std::move(drawn));
             column += measurement.numbers();
@@ -133,7 +133,8 @@ public:
             if (std::isinf(trial[0])) continue;
             least = std::fmin(least, trial[0]);
             most = std::fmax(most, trial[0]);
-            if (measurements_.back().numbers() > 1) regular += is_regular({trial[trial.size() - 2], trial.back()});
+            if (measurements_.back().numbers() > 1)
+                regular += is_regular({trial[trial.size() - 3], trial[trial.size() - 2]});
         }
         std::vector<Finding> all{{"least_" + column, least}, {"greatest_" + column, most}};
         if (const auto missing = without(numbers); missing > 0)
@@ -209,23 +210,28 @@ private:
     }
 
     /// Counts the regular releases, and takes equilibria out of the curve: their exponent is not that of a motion.
-    std::string exponent_words(Curve& exponents) const {
-        long regular = 0;
+    std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled) const {
+        long regular = 0, changing = 0;
         bool contracts = false;
         std::string equilibria;
         for (std::size_t i = 0; i < trials_; ++i) {
             const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
             regular += is_regular({exponent, uncertainty});
+            changing += !is_regular({exponent, uncertainty}) && unsettled[i] != 0;
             contracts = contracts || exponent < -1.5 * uncertainty;
             if (exponent == 0 || uncertainty != 0) continue;
             equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i],
                                       parameter_.angle ? "°" : "", exponent > 0 ? "an unstable" : "a stable", exponent);
             exponents.y[i] = NAN;
         }
-        return fmt::format("{} of {} releases are {}. Its band holds two of three runs four times as long.{}", regular,
-                           trials_,
+        return fmt::format("{} of {} releases are {}. Its band holds two of three runs four times as long{}.{}",
+                           regular, trials_,
                            contracts ? "regular or settle: their exponent is not above 0"
                                      : "regular: their exponent cannot be told from 0",
+                           changing == 0 ? ""
+                                         : fmt::format(", but not for {} whose stretches differ by more than chance (a "
+                                                       "transient, or orbits that stick): there it is too narrow",
+                                                       changing),
                            equilibria);
     }
 
