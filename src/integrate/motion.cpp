@@ -25,7 +25,7 @@ std::unique_ptr<Stepper<Scalar>> make_mechanism_stepper(const MotionSpec& spec);
 
 namespace {
 
-/// A fast rotation is checked for interruption every so many rad; some 0.1 s of work.
+/// A fast rotation or drive is checked for interruption every so many rad; some 0.1 s of work.
 constexpr double most_unwatched = 1e4;
 
 /// A model and the method that steps it, from sample to sample.
@@ -48,8 +48,13 @@ public:
         const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
         if (adaptive_) {
             const double interval = spec.sample_interval.value();
-            double fastest = 0;  // rad/s, of any bob
+            double fastest = 0;  // rad/s, of any bob or drive
             for (const auto& bob : bobs) fastest = std::max(fastest, std::abs(static_cast<double>(bob.omega)));
+            if (physical_) {
+                fastest = std::max(fastest, static_cast<double>(physical_->pivot.frequency));
+                for (const auto& motor : physical_->torques)
+                    fastest = std::max(fastest, static_cast<double>(motor.frequency));
+            }
             const double whole =
                 std::max(follows_turns ? interval / Turns::longest : 1, interval * fastest / most_unwatched);
             portions_ = static_cast<long>(std::ceil(std::min(whole, 1e12)));

@@ -101,8 +101,10 @@ long steps_at(int level) {
     return level == 0 ? 1 : level % 2 == 1 ? 1L << (level + 1) / 2 : 3L << (level / 2 - 1);
 }
 
-/// The fewest that are `least` or more.
+/// The fewest that are `least` or more. Throws Error (exit 2) where those are too many to count.
 int level_of_steps(double least) {
+    constexpr double most = 0x1p40;
+    if (!(least <= most)) throw bad_input("accuracy would take {:.2g} steps a sample: no run of these ends", least);
     int level = 0;
     while (static_cast<double>(steps_at(level)) < least) ++level;
     return level;

@@ -1,6 +1,7 @@
 #include "scene/method_choice.hpp"
 
 #include "analysis/difference.hpp"
+#include "base/clock.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
@@ -155,6 +156,21 @@ double true_error(const SideSpec& spec, const Side& side, bool rounded = false) 
                                                 : place_error(one.bobs, other.exact) / side.reach);
     }
     return worst;
+}
+
+TEST(Accuracy, WhoseStepsNobodyCouldCountIsRefused) {
+    EXPECT_NE(fault_of("[system]\nmodel = \"constraints\"\ngravity_m_per_s2 = 1e50\naccuracy = 1e-6\n")
+                  .find("steps a sample"),
+              std::string::npos);
+}
+
+// a motor of 1e12 Hz takes some 1e11 steps a sample
+TEST(Accuracy, IsInterruptedWhileAFastDriveIsStepped) {
+    const auto scene = make_scene(preset_from(
+        "[system]\nintegrator = \"taylor\"\n[[system.torque]]\namplitude_N_m = 1\njoint = 1\nfrequency_hz = 1e12\n"));
+    const TimeLimit limit(0.1, never);
+    SideRun run(scene, scene.a, 'a');
+    EXPECT_THROW(for (int sample = 0; sample < 2; ++sample) run.next(limit.reached()), Error);
 }
 
 TEST(Choice, MeetsTheAccuracyAndKnowsItOnScenesOfEveryKindDrawnByLot) {
