@@ -1,3 +1,4 @@
+#include "base/read_file.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
@@ -10,8 +11,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <sstream>
 
@@ -122,8 +121,7 @@ std::optional<std::string> schema_line_fault(const PresetText& preset) {
                            preset.path, number, path.string(), what);
     };
     if (!is_file(path)) return fault("and there is no such file");
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const auto text = read_whole_file(path, {"a schema is a JSON file", std::size_t{8} << 20});
     return text == preset_schema() ? std::nullopt : std::optional(fault("which is not this program's schema"));
 }
 

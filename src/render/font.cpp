@@ -1,15 +1,13 @@
 #include "render/font.hpp"
 
 #include "base/error.hpp"
+#include "base/read_file.hpp"
 #include "embedded/render.hpp"
 
 #include <ft2build.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <mutex>
 #include <span>
@@ -159,19 +157,6 @@ private:
     bool is_whole_ = false;
 };
 
-std::string contents_of(const std::filesystem::path& path) {
-    constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
-    std::error_code fault;
-    const auto status = std::filesystem::status(path, fault);
-    if (!std::filesystem::exists(status)) throw bad_input("there is no such file");
-    if (!std::filesystem::is_regular_file(status)) throw bad_input("is not a file");
-    if (std::filesystem::file_size(path, fault) > most_bytes) throw bad_input("has more than {} MB", most_bytes >> 20);
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    if (!file) throw io_failed("cannot be read: {}", std::generic_category().message(errno));
-    return bytes;
-}
-
 }  // namespace
 
 /// FreeType's, which one thread may use at a time.
@@ -228,7 +213,12 @@ const Font& Font::built_in() {
 }
 
 std::shared_ptr<const Font> Font::from_file(const std::filesystem::path& path, int index) {
-    return std::shared_ptr<const Font>(new Font(path, contents_of(path), {}, index));
+    auto bytes = read_whole_file(path, {"a font is a TrueType or OpenType file", std::size_t{256} << 20});
+    try {
+        return std::shared_ptr<const Font>(new Font(path, std::move(bytes), {}, index));
+    } catch (const Error& error) {
+        throw Error(error.code(), fmt::format("{}: {}", path.string(), error.what()));
+    }
 }
 
 int Font::number_of(char32_t character) const {

@@ -1,18 +1,13 @@
 #include "base/error.hpp"
+#include "base/read_file.hpp"
 #include "base/text.hpp"
 #include "embedded/scene.hpp"
-#include "output/folder.hpp"
 #include "scene/preset.hpp"
 
-#include <fcntl.h>
 #include <fmt/ranges.h>
-#include <poll.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -46,44 +41,10 @@ void check_preset_name(const std::string& path, const std::string& name) {
 
 namespace {
 
-/// Waits until there is something to read. Throws Error (exit 130) soon after `stop` is set.
-void wait_for_bytes(const Descriptor& pipe, const std::atomic<bool>& stop) {
-    constexpr int patience_ms = 50;
-    pollfd wanted{.fd = pipe.number(), .events = POLLIN, .revents = 0};
-    while (!stop)
-        if (poll(&wanted, 1, patience_ms) > 0) return;
-    throw interrupted();
-}
-
-/// All of a file, or of what comes through a pipe.
-std::string contents_of(const fs::path& path, const std::atomic<bool>* stop) {
-    const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
-    if (!file)
-        throw bad_input("{}: {}", path.string(),
-                        errno == ENOENT ? "there is no such preset" : std::generic_category().message(errno));
-    struct stat kind {};
-    fstat(file.number(), &kind);
-    if (S_ISDIR(kind.st_mode)) throw bad_input("{} is a folder; a preset is a TOML file", path.string());
-    const bool is_pipe = S_ISFIFO(kind.st_mode);
-    if (!S_ISREG(kind.st_mode) && !(is_pipe && stop))
-        throw bad_input("{} is not a file; a preset is a TOML file", path.string());
-    std::string text, portion(std::size_t{1} << 16, '\0');
-    for (;;) {
-        if (is_pipe) wait_for_bytes(file, *stop);
-        const auto count = read(file.number(), portion.data(), portion.size());
-        if (count == 0) return text;
-        if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-        if (count < 0) throw io_failed("{}: cannot be read: {}", path.string(), std::generic_category().message(errno));
-        text.append(portion, 0, static_cast<std::size_t>(count));
-        if (text.size() > most_bytes)
-            throw bad_input("{} has more than {} MB; a preset is a TOML file of a few lines", path.string(),
-                            most_bytes >> 20);
-    }
-}
-
 PresetText read_file(const fs::path& path, const std::string& call, const std::atomic<bool>* stop) {
     PresetText preset{.name = path.stem().string(), .path = path.string(), .text = {}, .call = call};
-    preset.text = contents_of(path, stop);
+    constexpr WantedFile wanted{"a preset is a TOML file", most_bytes, "there is no such preset"};
+    preset.text = read_whole_file(path, wanted, stop);
     check_preset_name(preset.path, preset.name);
     return preset;
 }

@@ -171,7 +171,7 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     try {
         video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font));
     } catch (const Error& error) {
-        const auto fault = fonts.fault(key, "{}: {}", *video.text_font, error.what());
+        const auto fault = fonts.fault(key, "{}", error.what());
         if (error.code() != ExitCode::bad_input) throw Error(error.code(), fault.what());
         fonts.refuse(fault, key);
         return false;

@@ -1,6 +1,7 @@
 #include "track/track.hpp"
 
 #include "base/error.hpp"
+#include "base/read_file.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <fmt/ranges.h>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <string_view>
 
@@ -36,6 +36,8 @@ std::vector<std::string_view> cells_of(std::string_view line) {
     }
 }
 
+// messages name the place, not what stands there: a stranger's preset may name any file
+
 /// Where the columns stand in a file.
 struct Heading {
     std::size_t time = 0;
@@ -50,7 +52,6 @@ Heading heading_of(const std::string& name, std::string_view line) {
         if (found == names.end()) return std::nullopt;
         return static_cast<std::size_t>(found - names.begin());
     };
-    const auto here = [&] { return fmt::format("it has {}", fmt::join(names, ", ")); };
     for (const auto* degrees : {"theta1_deg", "theta2_deg"})
         if (place(degrees))
             throw bad_input(
@@ -59,7 +60,7 @@ Heading heading_of(const std::string& name, std::string_view line) {
                 name, degrees);
     Heading heading;
     const auto time = place("time_s");
-    if (!time) throw bad_input("{}:1: there is no column time_s; {}", name, here());
+    if (!time) throw bad_input("{}:1: there is no column time_s", name);
     heading.time = *time;
     heading.piece = place("piece");
     const auto take = [&](const auto& columns) {
@@ -78,19 +79,19 @@ Heading heading_of(const std::string& name, std::string_view line) {
     else if (found > 0)
         throw bad_input(
             "{}:1: of x0_px, y0_px (pivot), x1_px, y1_px (joint), x2_px, y2_px (end) there are {} columns; "
-            "all six are needed: {}",
-            name, found, here());
+            "all six are needed",
+            name, found);
     throw bad_input(
         "{}:1: there are no angles; theta1_rad and theta2_rad are wanted, or x0_px, y0_px, x1_px, y1_px, "
-        "x2_px, y2_px; {}",
-        name, here());
+        "x2_px, y2_px",
+        name);
 }
 
 double number_of(const std::string& name, std::size_t line, std::string_view column, std::string_view cell) {
     double value = 0;
     const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (fault != std::errc() || end != cell.data() + cell.size())
-        throw bad_input("{}:{}: {} is \"{}\", which is no number", name, line, column, cell);
+        throw bad_input("{}:{}: {} is no number", name, line, column);
     if (!std::isfinite(value))
         throw bad_input("{}:{}: {} is {}; leave out rows without a measurement", name, line, column, cell);
     return value;
@@ -213,19 +214,7 @@ Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<s
 }
 
 std::string text_of_track(const std::filesystem::path& file) {
-    constexpr std::size_t most_bytes = std::size_t{256} << 20;
-    if (!std::filesystem::exists(file)) throw bad_input("{}: there is no such file", file.string());
-    if (std::filesystem::is_directory(file)) throw bad_input("{} is a folder; give the CSV files in it", file.string());
-    std::ifstream stream(file, std::ios::binary);
-    std::string text, portion(std::size_t{1} << 16, '\0');
-    while (stream) {
-        stream.read(portion.data(), static_cast<std::streamsize>(portion.size()));
-        text.append(portion, 0, static_cast<std::size_t>(stream.gcount()));
-        if (text.size() > most_bytes)
-            throw bad_input("{} has more than {} MB; a track is a CSV file", file.string(), most_bytes >> 20);
-    }
-    if (!stream.eof()) throw io_failed("{}: cannot be read", file.string());
-    return text;
+    return read_whole_file(file, {"a track is a CSV file", std::size_t{256} << 20});
 }
 
 Track read_tracks(const std::vector<std::filesystem::path>& files, const std::atomic<bool>& stop) {

@@ -48,14 +48,13 @@ std::string swing() {
 TEST(FitTrack, RefusesWhatIsNoTable) {
     expect_refused({""}, 2, "a.csv: the file is empty");
     expect_refused({"time_s,theta1_rad,theta2_rad\n"}, 2, "a.csv: there are no rows");
-    expect_refused({"t,theta1_rad,theta2_rad\n"}, 2, "a.csv:1: there is no column time_s; it has t, theta1_rad");
+    expect_refused({"t,theta1_rad,theta2_rad\n"}, 2, "a.csv:1: there is no column time_s");
     expect_refused({"time_s,a,b\n"}, 2, "there are no angles; theta1_rad and theta2_rad are wanted, or x0_px");
     expect_refused({"time_s,theta1_rad\n"}, 2, "a.csv:1: there is one arm only, theta1_rad");
     expect_refused({"time_s,x0_px,y0_px,x1_px,y1_px\n"}, 2, "x2_px, y2_px (end) there are 4 columns");
     expect_refused({"time_s,theta1_deg,theta2_deg\n"}, 2, "\"theta1_deg\" is in degrees");
     expect_refused({"time_s,theta1_rad,theta2_rad\n0,1\n"}, 2, "a.csv:2: there are 2 cells, and 3 columns");
-    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n1,x,2\n"}, 2,
-                   "a.csv:3: theta1_rad is \"x\", which is no number");
+    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n1,x,2\n"}, 2, "a.csv:3: theta1_rad is no number");
     expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,nan\n"}, 2,
                    "a.csv:2: theta2_rad is nan; leave out rows without a measurement");
     expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n0.1,1,2\n0.05,1,2\n"}, 2,

@@ -30,7 +30,9 @@ Fault fault_of(const fs::path& path) {
     try {
         Font::from_file(path);
     } catch (const Error& error) {
-        return {error.code(), error.what()};
+        const std::string message = error.what();
+        EXPECT_TRUE(message.starts_with(path.string())) << message;
+        return {error.code(), message.substr(path.string().size())};
     }
     return {ExitCode::done, "is a font"};
 }
@@ -75,16 +77,17 @@ TEST(Typefaces, SignsThatChooseALettersFormTakeNoRoom) {
 
 TEST(Typefaces, FilesThatAreNoFontAreRefused) {
     const auto font = test::embedded_font();
-    const Fault none{ExitCode::bad_input, "is no TrueType or OpenType font, or is damaged"};
+    const Fault none{ExitCode::bad_input, ": is no TrueType or OpenType font, or is damaged"};
     for (const auto* bytes : {"", "true", "A text of some length, and no font."})
         EXPECT_EQ(fault_of(file_of(bytes)), none) << bytes;
     for (const std::size_t bytes : {20u, 200u, 20000u})
         EXPECT_EQ(fault_of(file_of(font.substr(0, bytes))), none) << bytes;
     EXPECT_EQ(fault_of(file_of(test::font_without_table("glyf"))),
-              (Fault{ExitCode::bad_input, "is a font without outlines"}));
+              (Fault{ExitCode::bad_input, ": is a font without outlines"}));
     EXPECT_EQ(fault_of(file_of(font)).first, ExitCode::done);
-    EXPECT_EQ(fault_of("/none.ttf").second, "there is no such file");
-    EXPECT_EQ(fault_of("/").second, "is not a file");
+    EXPECT_EQ(fault_of("/none.ttf").second, ": there is no such file");
+    EXPECT_EQ(fault_of("/dev/zero").second, " is not a file; a font is a TrueType or OpenType file");
+    EXPECT_EQ(fault_of("/").second, " is a folder; a font is a TrueType or OpenType file");
 }
 
 TEST(Typefaces, SystemFontsHaveWhatTheOthersLack) {

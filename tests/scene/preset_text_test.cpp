@@ -87,7 +87,7 @@ TEST(PresetText, ComesFromAFileOrAPipeOfAFewMegabytes) {
               "/dev/zero is not a file; a preset is a TOML file");
     write_bytes(folder / "long.toml", std::string((std::size_t{8} << 20) + 1, '\n'));
     EXPECT_EQ(error_of([&] { find_preset((folder / "long.toml").string()); }).second,
-              (folder / "long.toml").string() + " has more than 8 MB; a preset is a TOML file of a few lines");
+              (folder / "long.toml").string() + " has more than 8 MB; a preset is a TOML file");
 
     const auto pipe = folder / "pipe.toml";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -122,10 +122,12 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{"[a.track]\nfile = \"gone.csv\"",
                     "nowhere/x.toml:2:1: [a.track] file gone.csv: there is no such file"},
         RefusedText{"[a.track]\nfile = \"/\"",
-                    "nowhere/x.toml:2:1: [a.track] file / is a folder; give the CSV files in it"},
-        RefusedText{"[a.track]\nfile = \"" + preset_file + "\"", "nowhere/x.toml:2:1: [a.track] file " + preset_file +
-                                                                     ":1: there is no column time_s; it has "
-                                                                     "title = \"Three thousandths of a degree"},
+                    "nowhere/x.toml:2:1: [a.track] file / is a folder; a track is a CSV file"},
+        RefusedText{"[a.track]\nfile = \"/dev/zero\"",
+                    "nowhere/x.toml:2:1: [a.track] file /dev/zero is not a file; a track is a CSV file"},
+        // the place, and nothing of what stands there: a stranger's preset may name any file
+        RefusedText{"[a.track]\nfile = \"" + preset_file + "\"",
+                    "nowhere/x.toml:2:1: [a.track] file " + preset_file + ":1: there is no column time_s"},
         RefusedText{"[system]\nlinks = 3\n" + track.substr(track.find("[a.track]")),
                     "nowhere/x.toml:4:1: [a.track] file a track is of a double pendulum; the side has 3 links"},
         RefusedText{track + "start_s = 3",
