@@ -59,7 +59,7 @@ void compare_pair(ComparedPicture& pair, const fs::path& out) {
     const auto name = difference_name(pair.actual);
     if (pair.verdict.passes) return remove_difference(folder_in(out), name);
     pair.match = Match::differs;
-    Transaction parts(folder_in(out), name);
+    Transaction parts(folder_in(out), name, {}, {.inputs = {pair.expected, pair.actual}});
     write_png(parts.file(name), difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
     const auto files = parts.publish();
     pair.message = fmt::format("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path,
@@ -112,11 +112,12 @@ void compare_folders(Comparison& comparison, const fs::path& out, std::optional<
 /// A report that was asked for: its place is taken before the work, so that one that cannot be is said at once.
 class Report {
 public:
-    explicit Report(const std::string& file) {
+    Report(const std::string& file, const std::vector<fs::path>& inputs) {
         if (file.empty()) return;
         const fs::path path = file;
         if (!path.has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
-        parts_.emplace(path.has_parent_path() ? path.parent_path() : fs::path("."), path.filename().string());
+        parts_.emplace(path.has_parent_path() ? path.parent_path() : fs::path("."), path.filename().string(),
+                       std::string(), Replacing{.inputs = inputs});
         place_ = parts_->file(path.filename().string());
     }
 
@@ -141,7 +142,8 @@ bool compare(const CompareOptions& options) {
                         folders ? options.expected : options.actual, folders ? options.actual : options.expected);
     const auto is_one_file = fs::path(options.junit).lexically_normal() == fs::path(options.html).lexically_normal();
     if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
-    Report junit(options.junit), html(options.html);
+    const std::vector<fs::path> inputs{options.expected, options.actual};
+    Report junit(options.junit, inputs), html(options.html, inputs);
     Comparison comparison{options.expected, options.actual, {}};
     std::optional<Error> first_fault;
     if (folders) {

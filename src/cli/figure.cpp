@@ -84,7 +84,11 @@ private:
 
 void make_figures(const FigureCommandOptions& options) {
     std::vector<FigurePreset> figures;
-    for (const auto& preset : chosen_presets(options)) figures.push_back(read_figure(preset, overrides(options)));
+    Replacing replacing{.force = options.force};
+    for (const auto& preset : chosen_presets(options)) {
+        figures.push_back(read_figure(preset, overrides(options)));
+        replacing.inputs.emplace_back(preset.path);
+    }
     Reports reports(figures, progress_style(options.progress));
     const FigureReport report{
         [&](std::size_t k, const FigureProgress& progress) {
@@ -100,7 +104,8 @@ void make_figures(const FigureCommandOptions& options) {
                      .shard = shard_of(options),
                      .merge = options.merge,
                      .tiles = options.tiles,
-                     .gl = gl_named(options.gl)},
+                     .gl = gl_named(options.gl),
+                     .replacing = std::move(replacing)},
                     watch_interrupts(), report);
     } catch (...) {
         reports.clear();

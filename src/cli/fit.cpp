@@ -16,6 +16,7 @@ struct FitCommandOptions {
     std::string model = "auto", out = "out", progress = "auto", name, gl = "auto";
     double gravity = Convention{}.gravity, mass = Convention{}.second_mass, every_s = 0;
     int jobs = 0;
+    bool force = false;
 };
 
 void fit(const FitCommandOptions& options) {
@@ -23,7 +24,8 @@ void fit(const FitCommandOptions& options) {
                            .out = options.out,
                            .name = options.name,
                            .jobs = options.jobs,
-                           .gl = gl_named(options.gl)};
+                           .gl = gl_named(options.gl),
+                           .force = options.force};
     fit_options.question.bodies = options.model == "point"      ? Bodies::point
                                   : options.model == "compound" ? Bodies::compound
                                                                 : Bodies::automatic;
@@ -82,7 +84,7 @@ void add_fit(CLI::App& app) {
         ->type_name("KG")
         ->check(CLI::Range(1e-9, 1e9))
         ->capture_default_str();
-    add_out_options(command, options->out, options->progress);
+    add_out_options(command, options->out, options->progress, options->force);
     command
         .add_option("-j,--jobs", options->jobs,
                     "Threads that compute; one a core where not given. The numbers stay the same")

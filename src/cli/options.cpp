@@ -28,7 +28,7 @@ void add_beside_option(CLI::App& command, PresetOptions& options) {
         ->type_name("TRACK");
 }
 
-void add_out_options(CLI::App& command, std::string& out, std::string& progress) {
+void add_out_options(CLI::App& command, std::string& out, std::string& progress, bool& force) {
     command.add_option("-o,--out", out, "Folder for the results; they go to DIR/NAME/")
         ->type_name("DIR")
         ->capture_default_str();
@@ -36,11 +36,14 @@ void add_out_options(CLI::App& command, std::string& out, std::string& progress)
         ->type_name("STYLE")
         ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
         ->capture_default_str();
+    command.add_flag("--force", force,
+                     "Replace files of Doppel's of the same names even where somebody changed them, or where another "
+                     "kind of run wrote them");
 }
 
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs) {
     add_preset_options(command, options);
-    add_out_options(command, options.out, options.progress);
+    add_out_options(command, options.out, options.progress, options.force);
     command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
 }
 
@@ -117,6 +120,19 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     return scenes;
 }
 
+std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
+                                             const std::vector<Scene>& scenes) {
+    std::vector<std::filesystem::path> inputs;
+    for (const auto& name : presets) inputs.emplace_back(find_preset(name).path);
+    for (const auto& scene : scenes) {
+        const auto& preset = scene.preset;
+        for (const auto* side : {&preset.a, &preset.b})
+            if (!side->track.is_none()) inputs.emplace_back(side->track.file);
+        if (preset.video.text_font) inputs.emplace_back(*preset.video.text_font);
+    }
+    return inputs;
+}
+
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
                  const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
     const auto style = progress_style(progress);
@@ -132,7 +148,8 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
     }
 }
 
-void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options) {
+void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options) {
+    run_options.replacing = {inputs_of(options.presets, scenes), options.force};
     const auto& stop = watch_interrupts();
     for (const auto& scene : scenes) check_run(scene, run_options);
     work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples",

@@ -25,6 +25,7 @@ struct PresetOptions {
 struct RunCommandOptions : PresetOptions {
     std::string out = "out", progress = "auto", columns = {};
     int jobs = 0;
+    bool force = false;
 };
 
 void add_preset_options(CLI::App& command, PresetOptions& options);
@@ -34,8 +35,8 @@ void add_beside_option(CLI::App& command, PresetOptions& options);
 /// as fitted to its first two seconds and runs for as long as it lasts. Throws Error as read_preset() does.
 std::vector<Override> beside_overrides(const PresetText& text, const std::vector<Override>& given,
                                        const std::string& track, const std::atomic<bool>& stop);
-/// --out and --progress.
-void add_out_options(CLI::App& command, std::string& out, std::string& progress);
+/// --out, --progress and --force.
+void add_out_options(CLI::App& command, std::string& out, std::string& progress, bool& force);
 /// The same, and --jobs; `jobs` = what it counts, for the help.
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
 
@@ -61,6 +62,9 @@ void check_names(const std::vector<std::string>& names, const std::vector<std::s
 /// The values of --set.
 std::vector<Override> overrides_of(const PresetOptions& options);
 
+/// The files that the scenes are read from: presets, tracks and fonts.
+std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets, const std::vector<Scene>& scenes);
+
 /// The scene of each preset, all of them read before the first one runs. `more` = overrides from other options.
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});
 
@@ -69,7 +73,7 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
                  const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work);
 
 /// Runs the scenes one after the other and tells the person how far they are.
-void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, const RunOptions& run_options);
+void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options);
 
 /// The first line of a preset in `folder`, "#:schema PATH\n": the schema in presets/ here, or else the one that is
 /// installed with the program; empty where there is neither.

@@ -17,6 +17,7 @@ struct RenderOptions : RunCommandOptions {
 
 struct StillOptions : PresetOptions {
     std::string at, size, format = "png", out = "out", progress = "auto", gl = "auto";
+    bool force = false;
 };
 
 /// The samples of --frames, or the times of --from and --to.
@@ -111,7 +112,7 @@ void add_still(CLI::App& app) {
     command.add_option("--at", options->at, "The time of the picture, s; there must be a sample")
         ->type_name("SECONDS")
         ->required();
-    add_out_options(command, options->out, options->progress);
+    add_out_options(command, options->out, options->progress, options->force);
     command.add_option("--size", options->size, "Size of the picture, px; the preset's where not given")
         ->type_name("WxH");
     command.add_option("--format", options->format, "What the picture is written as")
@@ -123,9 +124,11 @@ void add_still(CLI::App& app) {
         const auto at = seconds_of_option("--at", options->at);
         std::vector<Override> more{{"video.format", "\"png\"", "still, which draws PNG"}};
         if (!options->size.empty()) more.push_back(size_override("video.size", options->size));
-        const RunOptions run{.out = options->out, .gl = gl_named(options->gl)};
         const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
+        const RunOptions run{.out = options->out,
+                             .gl = gl_named(options->gl),
+                             .replacing = {inputs_of(options->presets, scenes), options->force}};
         for (const auto& scene : scenes) still_sample(scene, at);
         const auto& stop = watch_interrupts();
         work_on_all(scenes, options->progress, "samples", [&](const Scene& scene, const auto& report) {

@@ -262,7 +262,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
             const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
-            Transaction files(options.out / figures[k].name);
+            Transaction files(options.out / figures[k].name, "run", "figure", options.replacing);
             auto result = writer.write(figures[k], header_of(figures[k]), trials, {}, files);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
@@ -271,7 +271,12 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     }
     std::vector<std::unique_ptr<Transaction>> files;  // now, so that faults are reported early
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
-    for (const auto& figure : figures) files.push_back(std::make_unique<Transaction>(options.out / figure.name, run));
+    for (const auto& figure : figures) {
+        files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, "figure", options.replacing));
+        if (options.shard) continue;
+        for (const auto ending : {name_of(figure.chart.format), std::string_view("csv"), std::string_view("json")})
+            files.back()->demand(fmt::format("{}.{}", figure.name, ending));
+    }
     Scheduler scheduler(figures, options, jobs, files, stop, report);
     if (!figures.empty()) writer.prepare(figures.front());
     while (const auto k = scheduler.next()) {

@@ -21,6 +21,7 @@ struct FigureOptions {
     bool merge = false;                 // compute nothing: merge the parts
     bool tiles = false;                 // of maps: a pyramid of tiles in place of picture and table (figure/tiles.hpp)
     Gl gl = Gl::automatic;              // what draws
+    Replacing replacing = {};
 };
 
 /// Progress of the figures, which are numbered as given. Called by any thread, one at a time for one figure.

@@ -266,7 +266,8 @@ void make_tiles(const FigurePreset& figure, const FigureOptions& options, const 
     const double start = seconds_of(CLOCK_MONOTONIC);
     const int jobs = options.jobs > 0 ? options.jobs : cores();
     const auto run = options.shard ? fmt::format("tiles-{}-of-{}", options.shard->number, options.shard->of) : "tiles";
-    Transaction files(options.out / figure.name, run);
+    Transaction files(options.out / figure.name, run, "figure", options.replacing);
+    for (const char* ending : {".html", ".tiles.json"}) files.demand(figure.name + ending);
     TileMaker tiles(figure, files.folder(), jobs, stop, report);
     RunResult result;
     if (!options.merge) {

@@ -138,6 +138,8 @@ Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, Ru
         sink_ = make_video_sink(parts.file(film_name_), file, stop);
         record.libav = libav_description();
     }
+    if (poster_tick(scene)) parts.demand(scene.preset.name + ".poster.png");
+    if (video.contact_sheet) parts.demand(scene.preset.name + ".contact.png");
     canvas_.emplace(scene, composer_, options.gl, stop);
     record.gl = canvas_->description();
     if (video.contact_sheet)

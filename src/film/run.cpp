@@ -142,7 +142,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const auto [first, last, total] = range_of(scene, options);
     RunRecord record{.first_sample = first, .last_sample = last - 1};
-    Transaction parts(options.out / scene.preset.name);
+    Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
+    parts.demand(scene.preset.name + ".json");
     std::optional<Film> film;
     auto range = options;
     range.first = first, range.last = last;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "output/transaction.hpp"
 #include "render/renderer.hpp"
 #include "scene/scene.hpp"
 
@@ -22,6 +23,7 @@ struct RunOptions {
     int jobs = 0;                                    // threads that compress PNGs; 0 = one a core
     Gl gl = Gl::automatic;                           // what draws
     std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all where there is none
+    Replacing replacing = {};
 };
 
 /// How far a run is, as often as a frame is done.

@@ -49,7 +49,7 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
     const long last = still_sample(scene, time);
     const auto text = seconds_text(scene.time(last));
     const auto name = fmt::format("{}.{}s.{}", scene.preset.name, text, name_of(format));
-    Transaction parts(options.out / scene.preset.name, "still");
+    Transaction parts(options.out / scene.preset.name, "still", "film", options.replacing);
     const auto place = parts.file(name);
     Composer composer(scene, stop);
     std::optional<Canvas> canvas;  // now: what cannot draw says so at once

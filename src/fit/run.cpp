@@ -49,7 +49,8 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     const int jobs = options.jobs > 0 ? options.jobs : cores();
     const double start = seconds_of(CLOCK_MONOTONIC);
     auto track = read_tracks(files, stop);
-    Transaction parts(options.out / name, name);
+    Transaction parts(options.out / name, name, "fit", {files, options.force});
+    parts.demand(name + ".fit.json");
     const auto place = [&](const char* ending) { return parts.file(name + ending); };
     const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
     const auto result = answer(std::move(track), options.question, jobs, stop, [&](std::size_t done, std::size_t of) {

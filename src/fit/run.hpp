@@ -17,6 +17,7 @@ struct FitOptions {
     std::string name;                   // of the result; that of the first file where it is empty
     int jobs = 0;                       // threads that compute; 0 = one a core
     Gl gl = Gl::automatic;              // what draws
+    bool force = false;                 // as Replacing has it
 };
 
 /// What came of it, and sentences for the person.

@@ -53,8 +53,8 @@ void remove_quietly(const Folder& folder, const std::string& name) {
 
 }  // namespace
 
-Transaction::Transaction(const fs::path& folder, const std::string& run)
-    : made_(make_folders(folder)), folder_(open_last(folder, made_)) {
+Transaction::Transaction(const fs::path& folder, const std::string& run, const std::string& kind, Replacing replacing)
+    : kind_(kind), replacing_(std::move(replacing)), made_(make_folders(folder)), folder_(open_last(folder, made_)) {
     try {
         journal_.emplace(folder_, run);
         recover();
@@ -94,6 +94,23 @@ void Transaction::recover() {
     journal_->leave(false);
 }
 
+/// By the file, not the path: links and hard links are the same.
+void Transaction::refuse_input(const Folder& folder, const std::string& name) const {
+    std::error_code error;
+    for (const auto& input : replacing_.inputs)
+        if (fs::equivalent(input, folder.path() / name, error) && !error)
+            throw io_failed("{} is read by this run and would be replaced; give another folder with --out",
+                            (folder.path() / name).string());
+}
+
+void Transaction::refuse_changed(const Folder& folder, const std::string& name, const std::string& within) const {
+    if (!replacing_.force && is_changed(folder, name, written_, within))
+        throw io_failed(
+            "{} is not as Doppel wrote it: somebody changed it; move it, give another folder with --out, or replace it "
+            "with --force",
+            (folder.path() / name).string());
+}
+
 void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
     const auto path = folder_.path() / name;
     switch (folder_.entry(name).kind) {
@@ -105,7 +122,14 @@ void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) 
             throw io_failed("{} is neither a file nor a folder; remove it", path.string());
         case Kind::file:
             if (is_folder) throw io_failed("{} is a file; Doppel would make a folder there", path.string());
+            refuse_input(folder_, name);
             if (!is_written(folder_, name, written_)) throw not_ours(path);
+            if (const auto kind = kind_of_file(folder_, name, written_);
+                !replacing_.force && !kind_.empty() && !kind.empty() && kind != kind_)
+                throw io_failed(
+                    "{} is of a {}, and this is a {}; give another folder with --out, or replace it with --force",
+                    path.string(), kind, kind_);
+            refuse_changed(folder_, name);
             // an immutable file (chattr +i) cannot be renamed, a read-only one can: say so before work starts
             if (faccessat(folder_.descriptor(), name.c_str(), W_OK, 0) != 0 && errno == EPERM)
                 throw cannot(path, "replaced");
@@ -119,7 +143,9 @@ void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) 
         const bool ours =
             inside.entry(file).kind == Kind::file &&
             (written_.contains(name + "/" + file) || (is_numbered_picture(file) && is_written(inside, file, written_)));
+        if (inside.entry(file).kind == Kind::file) refuse_input(inside, file);
         if (!ours) throw not_ours(path / file);
+        refuse_changed(inside, file, name + "/");
     }
 }
 
@@ -149,7 +175,9 @@ void Transaction::note_part(const std::string& name) {
 }
 
 void Transaction::remove(const std::string& name) {
-    if (folder_.entry(name).kind == Kind::file && is_written(folder_, name, written_)) removed_.push_back(name);
+    if (folder_.entry(name).kind == Kind::file && is_written(folder_, name, written_) &&
+        !is_changed(folder_, name, written_))
+        removed_.push_back(name);
 }
 
 void Transaction::finished(const std::string& name) {
@@ -214,7 +242,7 @@ WrittenFiles Transaction::earlier_files() const {
             slash == std::string::npos
                 ? kind == Kind::file
                 : kind == Kind::folder && folder_.folder(first).entry(name.substr(slash + 1)).kind == Kind::file;
-        if (stands) earlier.emplace(name, about);
+        if (stands && !earlier.contains(name)) earlier.emplace(name, about);
     }
     return earlier;
 }

@@ -68,26 +68,34 @@ Json manifest_of(const Folder& folder, const std::string& name) {
     return json;
 }
 
-void add_files(WrittenFiles& written, const Json& files) {
+/// Of the run that wrote the manifest.
+std::string kind_of_manifest(const Json& manifest) {
+    return manifest.contains("ladder") ? "fit" : manifest.contains("figure") ? "figure" : "film";
+}
+
+void add_files(WrittenFiles& written, const Json& files, const std::string& kind) {
     for (const auto& [name, about] : files.items())
-        if (about.is_object()) written[name] = {about.value("bytes", std::uintmax_t{0}), about.value("sha256", "")};
+        if (about.is_object())
+            written.emplace(name,
+                            WrittenFile{about.value("bytes", std::uintmax_t{0}), about.value("sha256", ""), kind});
 }
 
 }  // namespace
 
 WrittenFiles written_files(const Folder& folder) {
-    WrittenFiles written;
+    WrittenFiles written, before;
     for (const auto& name : folder.names()) {
         const auto manifest = manifest_of(folder, name);
         if (manifest.is_null()) continue;
         try {
-            add_files(written, manifest["files"]);
+            add_files(written, manifest["files"], kind_of_manifest(manifest));
             if (const auto earlier = manifest.find("earlier_files"); earlier != manifest.end())
-                add_files(written, *earlier);
+                add_files(before, *earlier, {});
         } catch (const Json::exception&) {
             // not as Doppel wrote it: the rest is ignored
         }
     }
+    written.insert(before.begin(), before.end());  // behind those of the same name
     return written;
 }
 
@@ -115,7 +123,26 @@ bool is_written(const Folder& folder, const std::string& name, const WrittenFile
         const std::size_t bytes = folder.entry(name).bytes, most = pdf_mark.size() + 64;
         return bytes_of(folder, name, most, bytes - std::min(bytes, most)).find(pdf_mark) != std::string::npos;
     }
-    return head.starts_with("sample,time_s,") || head.starts_with(R"({"file":"doppel trials")");
+    return head.starts_with(R"({"file":"doppel trials")");
+}
+
+bool is_changed(const Folder& folder, const std::string& name, const WrittenFiles& written, const std::string& within) {
+    const auto [first, last] = written.equal_range(within + name);
+    std::string found;
+    for (auto record = first; record != last; ++record) {
+        const auto& [bytes, sha256, kind] = record->second;
+        if (sha256.empty()) return false;
+        if (bytes != folder.entry(name).bytes) continue;
+        if (found.empty()) found = sha256_of_file({folder, name});
+        if (found == sha256) return false;
+    }
+    return first != last;
+}
+
+std::string kind_of_file(const Folder& folder, const std::string& name, const WrittenFiles& written) {
+    if (const auto manifest = manifest_of(folder, name); !manifest.is_null()) return kind_of_manifest(manifest);
+    const auto record = written.find(name);  // the first
+    return record == written.end() ? "" : record->second.kind;
 }
 
 std::string sha256_of_file(const FilePlace& place) {

@@ -230,13 +230,54 @@ TEST(Transaction, KnowsWhatDoppelMadeByItsContentToo) {
     fs::create_directory(out / "frames");
     write_png(out / "frames/000000.png", noise({4, 4}, 1));
     write_png(out / "x.png", noise({4, 4}, 1));
-    write_bytes(out / "x.csv", "sample,time_s,a_theta1_rad\r\n");
     Transaction files(out);
     files.file("x.png");
-    files.file("x.csv");
     files.directory("frames");
+    write_bytes(out / "y.csv", "sample,time_s,theta1_rad,theta2_rad\r\n");  // of a measured track, too
+    expect_error(ExitCode::io_failed, {"y.csv"}, [&] { files.file("y.csv"); });
     write_bytes(out / "y.png", bytes_of(out / "x.png").substr(0, 33));  // without the words
     expect_error(ExitCode::io_failed, {"y.png"}, [&] { files.file("y.png"); });
+}
+
+TEST(Transaction, LeavesWhatSomebodyChangedButWhereForced) {
+    const auto out = fresh_folder();
+    write_bytes(out / "x.toml", "by Doppel");
+    write_bytes(out / "record.json", R"({"doppel": {}, "files": {"x.toml": {"bytes": 9, "sha256": ")" +
+                                         sha256_of_text("by Doppel") + R"("}}})");
+    Transaction(out).file("x.toml");
+    write_bytes(out / "x.toml", "by a hand");  // as long
+    expect_error(ExitCode::io_failed, {"x.toml", "--force"}, [&] { Transaction(out).file("x.toml"); });
+    Transaction(out, "run", "", {.force = true}).file("x.toml");
+    // what an earlier run's manifest says of it does not make it Doppel's again, nor the reverse
+    write_bytes(out / "later.json",
+                R"({"doppel": {}, "files": {}, "earlier_files": {"x.toml": {"bytes": 9, "sha256": ")" +
+                    sha256_of_text("by a hand") + R"("}}})");
+    Transaction(out).file("x.toml");
+}
+
+TEST(Transaction, LeavesFilesOfAnotherKindOfRunButWhereForced) {
+    const auto out = fresh_folder();
+    write_bytes(out / "x.json", R"({"doppel": {}, "ladder": [], "files": {"x.csv": {}}})");
+    write_bytes(out / "x.csv", "residuals");
+    for (const char* name : {"x.json", "x.csv"}) {
+        Transaction(out, "run", "fit").file(name);
+        Transaction(out, "run", "film", {.force = true}).file(name);
+        expect_error(ExitCode::io_failed, {name, "fit", "film", "--out", "--force"},
+                     [&] { Transaction(out, "run", "film").demand(name); });
+    }
+}
+
+TEST(Transaction, NeverReplacesAnInput) {
+    const auto out = fresh_folder(), elsewhere = out / "elsewhere";
+    fs::create_directories(elsewhere);
+    write_record(out, {"x.csv"});
+    write_bytes(out / "x.csv", "track");
+    fs::create_hard_link(out / "x.csv", elsewhere / "hard.csv");
+    fs::create_symlink(out / "x.csv", elsewhere / "soft.csv");
+    for (const auto& input : {out / "x.csv", elsewhere / "hard.csv", elsewhere / "soft.csv"})
+        expect_error(ExitCode::io_failed, {"x.csv", "is read by this run"},
+                     [&] { Transaction(out, "run", "", {.inputs = {input}, .force = true}).file("x.csv"); });
+    Transaction(out, "run", "", {.inputs = {elsewhere / "none.csv"}}).file("x.csv");
 }
 
 TEST(Transaction, TheMakerOfAPictureIsReadWhole) {
@@ -340,7 +381,7 @@ TEST(Transaction, HoldTheFolderForOneRunAtATime) {
         files.publish();
     }
     EXPECT_EQ(listing(out), (Names{"a", "a/x.csv"}));
-    Transaction(out / "a").file("x.csv");
+    Transaction(out / "a").file("y.csv");
 }
 
 TEST(Transaction, WhatAKilledRunLeftGoesWithTheNext) {
