@@ -89,6 +89,8 @@ private:
             ++evaluations_;
             ends_at_event_ = false;
         }
+        if constexpr (HasEvents<Model>)
+            if (model_.switches() && h_ > model_.longest_step()) h_ = model_.longest_step();
         y0_.swap(y1_);
         k_[0].swap(k_[end]);
         for (double limit = pair.control.grow;; limit = 1) {
@@ -132,12 +134,11 @@ private:
 
     /// Where an event is inside the last step, it is taken again as far as there.
     void end_at_event() requires HasEvents<Model> {
-        constexpr int parts = 8;
         const auto state_at = [&](const Scalar& t) -> const State& {
             interpolate(t);
             return out_;
         };
-        const auto event = first_event(model_, span_, parts, state_at);
+        const auto event = first_event(model_, span_, state_at);
         if (!event) return;
         stall_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * span_);
         take(*event);

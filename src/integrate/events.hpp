@@ -13,6 +13,7 @@ namespace doppel {
 //     take_modes(y)    at the start: y ← how the motion goes on from y; which law holds until the first event
 //     settle(y)        the same at an event
 //     margin(y)        0 or more until the next event
+//     longest_step()   s; in longer ones a margin may go below 0 and back between two looks at it
 //
 // rate() keeps to one law in between, however far a trial step goes.
 
@@ -22,6 +23,7 @@ concept HasEvents = requires(Model model, typename Model::State& y) {
     model.take_modes(y);
     model.settle(y);
     model.margin(y);
+    model.longest_step();
 };
 
 template <class Model>
@@ -37,21 +39,40 @@ void take_modes([[maybe_unused]] Model& model, [[maybe_unused]] State& y) {
         if (model.switches()) model.take_modes(y);
 }
 
-/// The first event in a step of h, s, to rounding and behind it; looked for at the ends of that many equal parts.
-/// `state_at(t)` is the state at 0 < t ≤ h.
+/// Between 0 ≤ low, where the margin is not below 0, and high, where it is: the least time where it is, to rounding.
+template <class Scalar, class Margin>
+Scalar bisect_event(Scalar low, Scalar high, const Scalar& h, Margin&& margin) {
+    while (high - low > std::numeric_limits<Scalar>::epsilon() * h) {
+        const Scalar middle = (low + high) / Scalar(2);
+        if (!(low < middle && middle < high)) break;
+        (margin(middle) < Scalar(0) ? high : low) = middle;
+    }
+    return high;
+}
+
+/// The first event in a step of h, s, to rounding and behind it; `state_at(t)` is the state at 0 ≤ t ≤ h. Looks at the ends
+/// of eight equal parts and close to those of the step; about a look where the margin is less than before and behind, for
+/// its least value there (by golden section).
 template <HasEvents Model, class Scalar, class StateAt>
-std::optional<Scalar> first_event(Model& model, const Scalar& h, int parts, StateAt&& state_at) {
-    const auto is_past = [&](const Scalar& t) { return model.margin(state_at(t)) < Scalar(0); };
-    const auto end_of = [&](int part) { return part == parts ? h : Scalar(h * Scalar(part) / Scalar(parts)); };
-    for (int part = 1; part <= parts; ++part) {
-        Scalar low = end_of(part - 1), high = end_of(part);
-        if (!is_past(high)) continue;
-        while (high - low > std::numeric_limits<Scalar>::epsilon() * h) {
-            const Scalar middle = (low + high) / Scalar(2);
-            if (!(low < middle && middle < high)) break;
-            (is_past(middle) ? high : low) = middle;
+std::optional<Scalar> first_event(Model& model, const Scalar& h, StateAt&& state_at) {
+    constexpr int looks = 11;
+    constexpr double places[looks]{0, 0.001, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.999, 1};
+    const auto margin = [&](const Scalar& t) { return model.margin(state_at(t)); };
+    Scalar at[looks], seen[looks];
+    for (int i = 0; i < looks; ++i) {
+        at[i] = h * Scalar(places[i]);
+        seen[i] = margin(at[i]);
+        if (i >= 2 && seen[i - 1] < seen[i - 2] && seen[i - 1] < seen[i] && !(seen[i - 1] < Scalar(0))) {
+            Scalar low = at[i - 2], high = at[i];
+            for (int k = 0; k < 25; ++k) {
+                const Scalar part = Scalar(0.381966011) * (high - low), left = low + part, right = high - part;
+                const Scalar on_left = margin(left), on_right = margin(right);
+                if (on_left < Scalar(0)) return bisect_event(at[i - 2], left, h, margin);
+                if (on_right < Scalar(0)) return bisect_event(at[i - 2], right, h, margin);
+                (on_left < on_right ? high : low) = on_left < on_right ? right : left;
+            }
         }
-        return high;
+        if (i > 0 && seen[i] < Scalar(0)) return bisect_event(at[i - 1], at[i], h, margin);
     }
     return std::nullopt;
 }
@@ -83,12 +104,14 @@ void step_through_events(Model& model, State& y, const Scalar& h, Take&& take) {
     Stall stall;
     for (Scalar left = h;;) {
         from = y;
-        const auto event = first_event(model, left, 1, state_at);
-        y = state_at(event.value_or(left));
-        if (!event) return;
+        y = state_at(left);
+        if (!(model.margin(y) < Scalar(0))) return;
+        const Scalar event =
+            bisect_event(Scalar(0), left, left, [&](const Scalar& t) { return model.margin(state_at(t)); });
+        y = state_at(event);
         model.settle(y);
-        stall.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * h);
-        left -= *event;
+        stall.note(event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * h);
+        left -= event;
         if (!(left > Scalar(0))) return;
     }
 }

@@ -4,6 +4,7 @@
 #include "physics/constraint.hpp"
 
 #include <concepts>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -70,6 +71,7 @@ public:
     void take_modes(State& y) { system_->take_modes(y); }
     void settle(State& y) { system_->settle(y); }
     Scalar margin(const State& y) { return system_->margin(y); }
+    Scalar longest_step() const { return system_->longest_step(); }
 
 private:
     struct Interface {
@@ -79,6 +81,7 @@ private:
         virtual void take_modes(State& y) = 0;
         virtual void settle(State& y) = 0;
         virtual Scalar margin(const State& y) = 0;
+        virtual Scalar longest_step() const = 0;
     };
     template <class Model>
     struct Held final : Interface {
@@ -95,6 +98,12 @@ private:
                 return model.margin(y);
             else
                 return Scalar(0);
+        }
+        Scalar longest_step() const override {
+            if constexpr (HasEvents<Model>)
+                return model.longest_step();
+            else
+                return Scalar(std::numeric_limits<double>::max());
         }
     };
 

@@ -130,7 +130,10 @@ private:
         series_.expand(base_);
         const double h = chosen_step();
         step_ = Scalar(h);
-        if constexpr (HasEvents<Model>) ends_at_event_ = model_.switches() && ends_at_event();
+        if constexpr (HasEvents<Model>) {
+            if (model_.switches() && step_ > model_.longest_step()) step_ = model_.longest_step();
+            ends_at_event_ = model_.switches() && ends_at_event();
+        }
         if (!(h > plain_value(std::numeric_limits<Scalar>::epsilon()) * seconds))
             throw method_failed(
                 "taylor: a step of {:.3g} s is all that tolerance = {:.3g} allows, too little to get on; "
@@ -142,8 +145,7 @@ private:
 
     /// Whether the model has an event in the step, which then ends there.
     bool ends_at_event() requires HasEvents<Model> {
-        constexpr int parts = 16;
-        const auto event = first_event(model_, step_, parts, [&](const Scalar& t) -> const State& {
+        const auto event = first_event(model_, step_, [&](const Scalar& t) -> const State& {
             series_.move(t, change_);
             change_ = base_ + (change_ + lost_);
             return change_;

@@ -91,6 +91,13 @@ public:
             if (is_held(i)) note(Scalar(1) - load(i));
         return least;
     }
+    /// Half a period of the fastest drive: joints that rest do not shorten steps.
+    Scalar longest_step() const {
+        Scalar fastest = pendulum.pivot.moves() ? pendulum.pivot.frequency : Scalar(0);
+        for (const auto& motor : pendulum.torques)
+            if (fastest < motor.frequency) fastest = motor.frequency;
+        return fastest > Scalar(0) ? Scalar(pi_of<Scalar>() / fastest) : Scalar(std::numeric_limits<double>::max());
+    }
     /// For the same law on a tape.
     template <class Other>
     void keep_modes_of(const PhysicalChain<Other>& other) {

@@ -126,8 +126,8 @@ std::vector<MeasuredMethod> measured_methods(const SideSpec& spec, double accura
             return true;
         if (is_mechanism ? !spec.is_mechanism() && spec.model != ModelChoice::mechanism : spec.is_mechanism())
             return true;
-        // series alone end a step where a joint begins to slip
-        if (spec.physical.has_coulomb() && (measured.model != Model::angles || measured.method != "taylor"))
+        // a fixed step looks for events at its end alone
+        if (spec.physical.has_coulomb() && (measured.model != Model::angles || !find_method(measured.method)->adaptive))
             return true;
         if (spec.stabilise != Stabilise::none &&
             (measured.model == Model::angles || !find_method(measured.method)->angles))

@@ -104,6 +104,17 @@ TEST(Coulomb, InQuadToo) {
     EXPECT_LE(difference(angles_after(spec_of(sticking(), "taylor", 0, 1e-15), 100), fine), 1e-13);
 }
 
+TEST(Coulomb, ARestingJointIsLetGoByThePeakOfADrive) {
+    // two motors that beat: their sum exceeds what friction gives by 0.5 % at most, for moments, after seconds of rest
+    auto p = physical(Pendulum<double>{{1}, {1}, {0}, {0}});
+    p.friction.coulomb = {1.99};
+    p.torques = {{0, 1, 2 * pi * 3, 0.8}, {0, 1, 2 * pi * 3.3, 2.9}};
+    const auto exact = angles_after(spec_of(p, "rk4", 100'000, 0), 1000);
+    EXPECT_GT(std::abs(exact[0]), 1e-7);
+    for (const auto* method : {"taylor", "dop853", "dopri5"})
+        EXPECT_NEAR(angles_after(spec_of(p, method, 0, 1e-12), 1000)[0], exact[0], 1e-10) << method;
+}
+
 /// Goes round and round at one time.
 struct Restless {
     using State = doppel::State<double, Eigen::Dynamic>;
@@ -113,6 +124,7 @@ struct Restless {
     void take_modes(State&) {}
     void settle(State& y) { y.setZero(); }
     double margin(const State& y) { return y[0] > 0 ? -1 : 1; }
+    double longest_step() const { return 1; }
 };
 
 TEST(Coulomb, EventsThatDoNotEndAreAFailureOfTheMethod) {
