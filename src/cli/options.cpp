@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <charconv>
+#include <system_error>
 
 namespace doppel {
 
@@ -123,7 +124,8 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
 std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
                                              const std::vector<Scene>& scenes) {
     std::vector<std::filesystem::path> inputs;
-    for (const auto& name : presets) inputs.emplace_back(find_preset(name).path);
+    for (const auto& name : presets)
+        if (std::error_code error; std::filesystem::is_regular_file(name, error)) inputs.emplace_back(name);
     for (const auto& scene : scenes) {
         const auto& preset = scene.preset;
         for (const auto* side : {&preset.a, &preset.b})

@@ -178,7 +178,8 @@ TEST(Program, TheLongestNameLeavesRoomForEveryEnding) {
     EXPECT_EQ(failed.code, 3) << failed.err;
     write_bytes(folder / (name + ".toml"), "title = \"long\"\n[scene]\nkind = \"sweep\"\nduration_s = 0.1\n");
     for (const auto& shard : {std::vector<std::string>{"--shard", "100000/100000"}, {}}) {
-        const auto result = doppel(folder, with({"figure", name + ".toml", "--progress", "none"}, shard));
+        const auto result =
+            doppel(folder, with({"figure", name + ".toml", "--progress", "none", "--out", "figures"}, shard));
         EXPECT_EQ(result.code, 0) << result.err;
     }
 }

@@ -157,7 +157,7 @@ TEST(Physical, AnAccuracyTakesWhatIsCheapForBodies) {
     EXPECT_EQ(first(""), "taylor");
     EXPECT_EQ(first("rod_mass_kg = 1"), "adams");
     EXPECT_EQ(first("joint_viscous_N_m_s = 0.1"), "adams");
-    EXPECT_EQ(first("joint_coulomb_N_m = 0.1"), "taylor");
+    EXPECT_EQ(first("joint_coulomb_N_m = 0.1"), "dop853");
 }
 
 }  // namespace physical_test
