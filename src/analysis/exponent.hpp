@@ -53,7 +53,7 @@ double angle_sensitivity(const Pendulum<double>& p, double seconds, const std::a
 struct SpectrumSpec {
     double duration_s = 500;   // of the motion
     int samples = 500;         // equally spaced, the last at the end
-    double tolerance = 1e-10;  // of taylor, for the state and its tangents alike; of physical pendulums of dop853
+    double tolerance = 1e-10;  // of dop853, for the state and its tangents alike
 };
 
 /// The exponents as estimated up to a time.
@@ -66,8 +66,6 @@ struct SpectrumSample {
 /// 0 without friction, and with it the mean of what that does to the volume: of viscous friction −tr(C M⁻¹).
 /// Errors  exit 2 where the spec or the number of links makes no sense or joints have Coulomb's friction, exit 3 where the
 ///         method breaks down, exit 130 soon after `stop` is set.
-std::vector<SpectrumSample> lyapunov_spectrum(const Pendulum<double>& p, const SpectrumSpec& spec,
-                                              const std::atomic<bool>& stop);
 std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
                                               const std::atomic<bool>& stop);
 

@@ -1,14 +1,11 @@
 #include "analysis/exponent.hpp"
-#include "analysis/tangent_series.hpp"
+#include "analysis/tangent.hpp"
 #include "base/error.hpp"
-#include "integrate/taylor.hpp"
 
 #include <Eigen/Householder>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <type_traits>
 
 namespace doppel {
 namespace {
@@ -33,51 +30,26 @@ Eigen::VectorXd orthonormalise(Eigen::MatrixXd& frame) {
     return stretched.cwiseAbs();
 }
 
-/// As TangentMotion, of a chain of N point masses, by Taylor series.
-template <int N>
-class SeriesMotion {
-public:
-    using State = typename TangentChain<N>::State;
-
-    SeriesMotion(const SeriesMotion&) = delete;  // the stepper knows where the chain is
-    SeriesMotion(const Pendulum<double>& p, double tolerance) : chain_{p}, tolerance_(tolerance) {}
-
-    void restart(State y) {
-        for (int i = 0; i < N; ++i) y[i] = std::remainder(y[i], 2 * pi);
-        if (stepper_)
-            stepper_->reset(y);
-        else
-            stepper_.emplace(chain_, y, tolerance_);
-    }
-    void advance(double seconds) { stepper_->advance(seconds); }
-    const State& state() const { return stepper_->state(); }
-
-private:
-    TangentChain<N> chain_;
-    double tolerance_;
-    std::optional<Taylor::Stepper<TangentChain<N>>> stepper_;
-};
-
 /// All tangents to a motion, kept upright: now and then their frame is turned into an orthonormal one, and what it has
 /// stretched by is told in logarithms. Frames are canonical, (δθ, δp), where a flow without friction keeps the volume: the
-/// logarithms sum to 0 at any time. `Model` is one over dual numbers, `Motion` steps it.
+/// logarithms sum to 0 at any time.
 /// Source  Shimada & Nagashima 1979, Progress of Theoretical Physics 61:1605; Benettin et al. 1980, Meccanica 15:21.
-template <class Model, class Motion>
+/// `directions` are at least 2N; those beyond are 0.
+template <int directions>
 class Frame {
 public:
     using Matrix = Eigen::MatrixXd;
     using Column = Eigen::VectorXd;
 
-    template <class Release>
-    Frame(const Release& p, const Pendulum<double>& chain, double tolerance, const NaturalUnits& units)
+    Frame(const PhysicalPendulum<double>& p, double tolerance, const NaturalUnits& units)
         : model_(p.template cast<Number>()),
           canonical_(model_),
           motion_(p, tolerance),
-          links_(static_cast<Eigen::Index>(chain.links())),
+          links_(static_cast<Eigen::Index>(p.chain.links())),
           y_(Model::start(p.template cast<Number>())),
           z_(y_) {
         unit_.setOnes(2 * links_);
-        unit_.tail(links_).setConstant(mass_of(chain) * units.length * units.length / units.time);
+        unit_.tail(links_).setConstant(mass_of(p.chain) * units.length * units.length / units.time);
         canonical_.momenta(y_, z_);
         restart(Matrix::Identity(2 * links_, 2 * links_));
     }
@@ -90,7 +62,8 @@ public:
         TangentFlow<Model>::to_dual(motion_.state(), y_);
         canonical_.momenta(y_, z_);
         Matrix frame(2 * links_, 2 * links_);
-        for (Eigen::Index i = 0; i < 2 * links_; ++i) frame.row(i) = z_[row(i)].tangent.transpose() / unit_[i];
+        for (Eigen::Index i = 0; i < 2 * links_; ++i)
+            frame.row(i) = z_[row(i)].tangent.head(2 * links_).transpose() / unit_[i];
         const Column stretched = orthonormalise(frame);
         if (stretched.minCoeff() < flat * stretched.maxCoeff()) {
             motion_.restart(before);
@@ -102,14 +75,17 @@ public:
     }
 
 private:
-    using Number = typename Model::Scalar;
+    using Number = Dual<double, directions>;
+    using Model = ChainWithoutWork<Number>;
+    using Motion = TangentMotion<Model>;
 
     /// Of the state: angles and momenta, without the time.
     Eigen::Index row(Eigen::Index i) const { return i < links_ ? i : z_.size() / 2 + i - links_; }
 
     /// The values of z with the frame's columns for tangents.
     void restart(const Matrix& frame) {
-        for (Eigen::Index i = 0; i < 2 * links_; ++i) z_[row(i)].tangent = unit_[i] * frame.row(i).transpose();
+        for (Eigen::Index i = 0; i < 2 * links_; ++i)
+            z_[row(i)].tangent.head(2 * links_) = unit_[i] * frame.row(i).transpose();
         canonical_.velocities(z_, y_);
         typename Motion::State all(y_.size() * (1 + TangentFlow<Model>::directions));
         TangentFlow<Model>::from_dual(y_, all);
@@ -124,14 +100,14 @@ private:
     typename Model::State y_, z_;
 };
 
-template <class Model, class Motion, class Release>
-std::vector<SpectrumSample> estimates(const Release& p, const Pendulum<double>& chain, const SpectrumSpec& spec,
+template <int directions>
+std::vector<SpectrumSample> estimates(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
                                       const std::atomic<bool>& stop) {
     const NaturalUnits units(p);
-    Frame<Model, Motion> frame(p, chain, spec.tolerance, units);
+    Frame<directions> frame(p, spec.tolerance, units);
     const double interval = spec.duration_s / spec.samples;
     const long parts = parts_of(interval, units);
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 * chain.links()));
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 * p.chain.links()));
     std::vector<SpectrumSample> samples;
     for (int k = 1; k <= spec.samples; ++k) {
         for (long i = 0; i < parts; ++i) {
@@ -145,50 +121,19 @@ std::vector<SpectrumSample> estimates(const Release& p, const Pendulum<double>& 
     return samples;
 }
 
-/// By a model of so many links.
-template <int N>
-std::vector<SpectrumSample> estimates_of(const Pendulum<double>& p, const SpectrumSpec& spec,
-                                         const std::atomic<bool>& stop) {
-    using Number = Dual<double, 2 * N>;
-    using Model = std::conditional_t<N == 2, DoublePendulum<Number>, AngleChain<Number, N>>;
-    return estimates<Model, SeriesMotion<N>>(p, p, spec, stop);
-}
-template <int N>
-std::vector<SpectrumSample> estimates_of(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
-                                         const std::atomic<bool>& stop) {
-    demand_smooth(p);
-    using Model = ChainWithoutWork<Dual<double, 2 * N>>;
-    return estimates<Model, TangentMotion<Model>>(p, p.chain, spec, stop);
-}
+}  // namespace
 
-template <class Release>
-std::vector<SpectrumSample> spectrum(const Release& p, const SpectrumSpec& spec, const std::atomic<bool>& stop) {
+std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
+                                              const std::atomic<bool>& stop) {
+    constexpr std::size_t most_links = 4;
+    const std::size_t links = p.chain.links();
     if (!(spec.duration_s > 0) || spec.samples < 1)
         throw bad_input("a spectrum takes a duration > 0 s and at least one sample; they are {} s and {}",
                         spec.duration_s, spec.samples);
-    switch (links_of(p)) {
-        case 1:
-            return estimates_of<1>(p, spec, stop);
-        case 2:
-            return estimates_of<2>(p, spec, stop);
-        case 3:
-            return estimates_of<3>(p, spec, stop);
-        case 4:
-            return estimates_of<4>(p, spec, stop);
-        default:
-            throw bad_input("a spectrum is for 1 to 4 links; there are {}", links_of(p));
-    }
-}
-
-}  // namespace
-
-std::vector<SpectrumSample> lyapunov_spectrum(const Pendulum<double>& p, const SpectrumSpec& spec,
-                                              const std::atomic<bool>& stop) {
-    return spectrum(p, spec, stop);
-}
-std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
-                                              const std::atomic<bool>& stop) {
-    return spectrum(p, spec, stop);
+    if (links < 1 || links > most_links)
+        throw bad_input("a spectrum is for 1 to {} links; there are {}", most_links, links);
+    demand_smooth(p);
+    return links <= 2 ? estimates<4>(p, spec, stop) : estimates<2 * most_links>(p, spec, stop);
 }
 
 double pair_mismatch(const SpectrumSample& sample) {

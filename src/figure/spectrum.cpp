@@ -34,7 +34,7 @@ public:
               spec_.samples);
         constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true};
         visit({"tolerance",
-               "relative error of a step, of the motion and of its tangents: by taylor, of real chains by dop853", "",
+               "relative error of a step of dop853, of the motion and of its tangents", "",
                tolerances},
               spec_.tolerance);
     }
@@ -111,9 +111,7 @@ private:
 
     TrialNumbers compute_trial(std::size_t, const std::atomic<bool>& stop) const override {
         TrialNumbers numbers;
-        const auto samples = release_.physical.is_none()
-                                 ? lyapunov_spectrum(chain_of(release_).cast<double>(), spec_, stop)
-                                 : lyapunov_spectrum(physical_of(release_).cast<double>(), spec_, stop);
+        const auto samples = lyapunov_spectrum(physical_of(release_).cast<double>(), spec_, stop);
         for (const auto& sample : samples) {
             numbers.push_back(sample.time_s);
             numbers.insert(numbers.end(), sample.exponents.begin(), sample.exponents.end());

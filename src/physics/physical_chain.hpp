@@ -1,9 +1,8 @@
 #pragma once
 
+#include "numeric/elimination.hpp"
 #include "physics/articulated.hpp"
 #include "physics/physical_forces.hpp"
-
-#include <Eigen/Dense>
 
 #include <limits>
 #include <optional>
@@ -255,10 +254,10 @@ private:
             for (Eigen::Index j = 0; j < m; ++j) matrix(j, k) = rate_at(answer, joints[at(j)]);
             right[k] = -rate_at(alpha_, joints[at(k)]);
         }
-        const Half torque = matrix.partialPivLu().solve(right);
+        solve_positive_definite(matrix, right);
         for (Eigen::Index k = 0; k < m; ++k) {
-            holding_[joints[at(k)]] = torque[k];
-            add_torque(joints[at(k)], torque[k], forces_.torque);
+            holding_[joints[at(k)]] = right[k];
+            add_torque(joints[at(k)], right[k], forces_.torque);
         }
     }
     static void add_torque(Eigen::Index joint, const Scalar& torque, Half& on_links) {

@@ -71,7 +71,7 @@ std::string hash_of_exponents() {
     const auto exponent = largest_exponent(released(2), {.duration_s = 50, .transient_s = 5}, never);
     hash.add(exponent.value);
     hash.add(exponent.uncertainty);
-    for (const auto& sample : lyapunov_spectrum(released(2), {.duration_s = 40, .samples = 40}, never))
+    for (const auto& sample : lyapunov_spectrum(physical(released(2)), {.duration_s = 40, .samples = 40}, never))
         for (const double number : sample.exponents) hash.add(number);
     return hash.text();
 }

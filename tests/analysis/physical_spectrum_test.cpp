@@ -159,14 +159,9 @@ TEST(PhysicalSpectrum, WithoutFrictionIsThatOfAHamiltonianSystem) {
         1e-10);
 }
 
-TEST(PhysicalSpectrum, OfPointMassesIsThatOfTheirChain) {
+TEST(PhysicalSpectrum, LargestExponentOfPointMassesIsThatOfTheirChain) {
     for (const std::size_t links : {1, 2, 3, 4}) {
         const auto p = uneven(links);
-        const SpectrumSpec spec{.duration_s = 4, .samples = 2, .tolerance = 1e-13};
-        const auto ideal = lyapunov_spectrum(p, spec, never).back(),
-                   same = lyapunov_spectrum(physical(p), spec, never).back();
-        for (std::size_t i = 0; i < 2 * links; ++i)
-            EXPECT_NEAR(same.exponents[i], ideal.exponents[i], 1e-12) << links;  // measured 1.6e-13
         const ExponentSpec of_one{.duration_s = 6, .transient_s = 1, .tolerance = 1e-12};
         const auto one = largest_exponent(p, of_one, never), other = largest_exponent(physical(p), of_one, never);
         EXPECT_NEAR(other.value, one.value, 3e-11) << links;              // measured 3e-12
