@@ -2,7 +2,6 @@
 
 #include "physics/constraint.hpp"
 #include "physics/constraint_matrix.hpp"
-#include "physics/row_order.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,7 @@ namespace doppel {
 
 /// The constraints of a mechanism, and what their J = ∂C/∂q does to vectors. Which entries of J differ from zero is
 /// found once; their values, a gradient for every particle that a row ties, are the caller's to keep. Rows come in the
-/// order of the constraints, or in one that keeps J M⁻¹ Jᵀ small (physics/row_order.hpp).
+/// order of the constraints: J M⁻¹ Jᵀ is narrow where neighbours are listed one after the other.
 template <class Scalar>
 class ConstraintSet {
 public:
@@ -35,7 +34,6 @@ public:
                     row += static_cast<Eigen::Index>(part.rows);
                 },
                 constraints_[c]);
-        set_places(static_cast<std::size_t>(q.size() / 2));
         std::vector<std::vector<std::size_t>> of_particle(static_cast<std::size_t>(q.size() / 2));
         const auto neighbours = [&](std::size_t k) -> auto& {
             return of_particle[static_cast<std::size_t>(blocks_[k].particle)];
@@ -173,32 +171,20 @@ private:
         std::size_t first, second;
     };
 
-    /// Puts the rows in their places.
-    void set_places(std::size_t particles) {
-        TiedRows all{owner_.size(), std::vector<std::vector<std::size_t>>(particles)};
-        for (const auto& block : blocks_)
-            all.tied[static_cast<std::size_t>(block.particle)].push_back(static_cast<std::size_t>(block.row));
-        place_ = narrow_places(all);
-        const auto owners = owner_;
-        for (std::size_t row = 0; row < owners.size(); ++row) owner_[place_[row]] = owners[row];
-        for (auto& block : blocks_) block.row = static_cast<Eigen::Index>(place_[static_cast<std::size_t>(block.row)]);
-    }
-
     /// The values that `ask` gives for every constraint, one a row.
     template <class Ask>
     void fill(Column& values, const Ask& ask) const {
-        auto place = place_.begin();
+        Eigen::Index row = 0;
         for (const auto& constraint : constraints_)
             std::visit(
                 [&](const auto& part) {
-                    for (const auto& value : ask(part)) values[static_cast<Eigen::Index>(*place++)] = value;
+                    for (const auto& value : ask(part)) values[row++] = value;
                 },
                 constraint);
     }
 
     std::vector<Constraint<Scalar>> constraints_;
     std::vector<std::size_t> owner_;  // of each row
-    std::vector<std::size_t> place_;  // of the rows in the order of the constraints
     std::vector<Block> blocks_;
     std::vector<Couple> couples_;
     Scalar farthest_fixed_ = Scalar(0), longest_rod_ = Scalar(0);  // m
