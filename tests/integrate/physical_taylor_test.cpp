@@ -2,7 +2,7 @@
 #include "integrate/taylor.hpp"
 #include "physics/physical_chain.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <cmath>
 
@@ -50,6 +50,19 @@ TEST(PhysicalTaylor, AnEvenRodSwingsWithItsPeriod) {
     EXPECT_NEAR(after(p, 10 * period, 1e-15)[0], amplitude, 1e-12);  // measured 4e-16
 }
 
+/// exp(A t) y, by its series over 100 equal parts of t.
+Eigen::Vector4d exponential(const Eigen::Matrix4d& a, double t, Eigen::Vector4d y) {
+    const double h = t / 100;
+    for (int part = 0; part < 100; ++part) {
+        Eigen::Vector4d term = y;
+        for (int k = 1; k <= 24; ++k) {
+            term = a * term * (h / k);
+            y += term;
+        }
+    }
+    return y;
+}
+
 TEST(PhysicalTaylor, SmallSwingsFadeAsTheLinearSystemDoes) {
     // M θ″ + B θ′ + K θ = 0, of rods with friction at the joints and on the arms: exact but for the cube of the amplitude
     const double small = 1e-6;
@@ -67,14 +80,11 @@ TEST(PhysicalTaylor, SmallSwingsFadeAsTheLinearSystemDoes) {
     system.topRightCorner<2, 2>().setIdentity();
     system.bottomLeftCorner<2, 2>() = -mass.inverse() * spring;
     system.bottomRightCorner<2, 2>() = -mass.inverse() * friction;
-    const Eigen::EigenSolver<Eigen::Matrix4d> modes(system);
     for (const double t : {0.5, 2.0, 5.0}) {
-        const Eigen::Vector4cd start = modes.eigenvectors().inverse() * Eigen::Vector4d(small, -2 * small, 0, 0);
-        const Eigen::Vector4cd end =
-            modes.eigenvectors() * ((modes.eigenvalues() * t).array().exp() * start.array()).matrix();
+        const Eigen::Vector4d end = exponential(system, t, Eigen::Vector4d(small, -2 * small, 0, 0));
         const auto y = after(p, t, 1e-15);
-        EXPECT_NEAR(y[0] / small, end[0].real() / small, 1e-10) << t;  // measured 6e-13
-        EXPECT_NEAR(y[1] / small, end[1].real() / small, 1e-10) << t;
+        EXPECT_NEAR(y[0] / small, end[0] / small, 1e-10) << t;  // measured 6e-13
+        EXPECT_NEAR(y[1] / small, end[1] / small, 1e-10) << t;
     }
 }
 
