@@ -3,6 +3,11 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+# before anything is copied
+install(CODE "if(NOT EXISTS \"${PROJECT_BINARY_DIR}/doppel\")
+    message(FATAL_ERROR \" doppel: the program is not built, and nothing was installed; first: cmake --build ${PROJECT_BINARY_DIR}\")
+endif()")
+
 set(doppel_package ${CMAKE_INSTALL_DATADIR}/cmake/doppel)
 set(doppel_path ${CMAKE_INSTALL_BINDIR}/doppel)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/doppel-config.cmake.in ${PROJECT_BINARY_DIR}/generated/doppel-config.cmake

@@ -20,12 +20,16 @@ add_custom_command(
     COMMAND ${CMAKE_COMMAND} -E touch ${pages}/made
     DEPENDS doppel CHANGELOG.md VERBATIM)
 add_custom_target(pages ALL DEPENDS ${pages}/made)
-install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1.gz)
-install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 FILES_MATCHING PATTERN *.5.gz)
-install(FILES ${pages}/doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES ${pages}/_doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
-install(FILES ${pages}/doppel.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-install(FILES ${pages}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# OPTIONAL: there are none where the target doppel alone was built
+install(CODE "if(NOT EXISTS \"${pages}/made\")
+    message(STATUS \"doppel: the manual pages and completions are not built, and left out; for them: cmake --build ${PROJECT_BINARY_DIR} --target pages\")
+endif()")
+install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL FILES_MATCHING PATTERN *.1.gz)
+install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 OPTIONAL FILES_MATCHING PATTERN *.5.gz)
+install(FILES ${pages}/doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+install(FILES ${pages}/_doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions OPTIONAL)
+install(FILES ${pages}/doppel.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)
+install(FILES ${pages}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
 
 # The release of Debian that this is: "deb12", "deb13", "sid".
 set(release "")

@@ -5,10 +5,13 @@
 #include <atomic>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace doppel {
+
+std::string on_one_line(std::string_view text);  // base/text.hpp
 
 /// What the process answers with; one number a kind of outcome.
 enum class ExitCode { done = 0, differs = 1, bad_input = 2, method_failed = 3, io_failed = 4, interrupted = 130 };
@@ -17,9 +20,10 @@ enum class ExitCode { done = 0, differs = 1, bad_input = 2, method_failed = 3, i
 /// thrown where the fault is known best, and caught once, in main.
 class Error : public std::runtime_error {
 public:
-    /// `further` = sentences about what else is wrong, where it was found in the same go.
+    /// `further` = sentences about what else is wrong, where it was found in the same go. A message may quote anything:
+    /// it becomes one line, and a NUL in it does not end it.
     Error(ExitCode code, const std::string& message, std::vector<std::string> further = {})
-        : std::runtime_error(message), code_(code), further_(std::move(further)) {}
+        : std::runtime_error(on_one_line(message)), code_(code), further_(std::move(further)) {}
     ExitCode code() const { return code_; }
     const std::vector<std::string>& further() const { return further_; }
 

@@ -39,6 +39,8 @@ void wait_for_bytes(int pipe, const std::atomic<bool>& stop) {
 std::string read_whole_file(const std::filesystem::path& path, const WantedFile& wanted,
                             const std::atomic<bool>* stop) {
     const auto reason = [] { return std::generic_category().message(errno); };
+    if (path.native().find('\0') != std::string::npos)  // the system would open what is named before it
+        throw bad_input("{}: has a NUL in it, which no name of a file has", path.string());
     const OpenFile file(path);
     if (file.number < 0)
         throw bad_input("{}: {}", path.string(), errno == ENOENT ? std::string(wanted.missing) : reason());

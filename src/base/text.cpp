@@ -138,6 +138,13 @@ std::string shortened(std::string_view text, std::size_t most) {
     return std::string(text.substr(0, most)) + "…";
 }
 
+std::string bytes_text(double bytes) {
+    if (bytes < 1e3) return fmt::format("{:.0f} bytes", bytes);
+    if (bytes < 1e6) return fmt::format("{:.0f} kB", bytes / 1e3);
+    if (bytes < 1e9) return fmt::format("{:.1f} MB", bytes / 1e6);
+    return bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9) : fmt::format("{:.1f} TB", bytes / 1e12);
+}
+
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
     constexpr std::size_t longest = 100;  // more is no typing error
     if (word.size() > longest) return {};

@@ -36,6 +36,9 @@ std::string in_address(std::string_view name);
 /// The whole characters of its first `most` bytes, with "…" where there is more.
 std::string shortened(std::string_view text, std::size_t most);
 
+/// A size for people: "512 bytes", "64 kB", "1.5 MB", "2.0 GB", "17.6 TB".
+std::string bytes_text(double bytes);
+
 /// The candidate that is a typing error away from `word`, if there is one.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 

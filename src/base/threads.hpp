@@ -26,12 +26,8 @@ std::vector<std::jthread> start_threads(std::size_t count, const Work& work) {
     return threads;
 }
 
-/// What to throw where work waits for a thread and there is none.
-inline Error no_thread() {
-    return io_failed(
-        "the system gives this process no further thread; raise its limit (ulimit -u, or pids.max of its control "
-        "group) or end other programs");
-}
+/// What to throw where work waits for a thread and there is none; says which limit keeps it from being had.
+Error no_thread();
 
 /// A thread that calls work(). Throws Error (exit 4) where the system lets this process have none.
 template <class Work>

@@ -1,6 +1,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "cli/comparison.hpp"
+#include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "output/png.hpp"
@@ -38,7 +39,7 @@ constexpr const char* maker = "Doppel compare";  // of every difference picture
 
 /// What an earlier comparison left, and it alone, is no news beside a picture that passes.
 void remove_difference(const fs::path& folder, const std::string& name) {
-    if (!fs::is_directory(folder)) return;
+    if (std::error_code unknown; !fs::is_directory(folder, unknown)) return;
     const auto pictures = Folder::at(folder);
     if (maker_of_picture(pictures, name) == maker) pictures.remove(name);
 }
@@ -60,7 +61,11 @@ void compare_pair(ComparedPicture& pair, const fs::path& out) {
     if (pair.verdict.passes) return remove_difference(folder_in(out), name);
     pair.match = Match::differs;
     Transaction parts(folder_in(out), name, {}, {.inputs = {pair.expected, pair.actual}});
-    write_png(parts.file(name), difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
+    const auto place = parts.file(name);
+    if (parts.folder().entry(name).kind == Entry::Kind::file && maker_of_picture(parts.folder(), name) != maker)
+        throw io_failed("{} is no difference picture; move it, or give another folder with --out",
+                        (parts.folder().path() / name).string());
+    write_png(place, difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
     const auto files = parts.publish();
     pair.message = fmt::format("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path,
                                expected_path, pair.verdict.why, files.front().string());
@@ -83,9 +88,19 @@ ComparedPicture compared(ComparedPicture pair, const fs::path& out, std::optiona
 
 std::set<std::string> png_names(const fs::path& folder) {
     std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".png") names.insert(entry.path().filename().string());
+    for (const auto& name : Folder::at(folder).names())
+        if (fs::path(name).extension() == ".png") names.insert(name);
     return names;
+}
+
+/// The pictures that are compared.
+std::vector<fs::path> compared_files(const CompareOptions& options, bool folders) {
+    std::vector<fs::path> inputs;
+    for (const fs::path given : {options.expected, options.actual}) {
+        if (!folders) inputs.push_back(given);
+        for (const auto& name : folders ? png_names(given) : std::set<std::string>()) inputs.push_back(given / name);
+    }
+    return inputs;
 }
 
 /// Every picture that either folder has. One that cannot be compared does not keep the others from it.
@@ -112,13 +127,18 @@ void compare_folders(Comparison& comparison, const fs::path& out, std::optional<
 /// A report that was asked for: its place is taken before the work, so that one that cannot be is said at once.
 class Report {
 public:
-    Report(const std::string& file, const std::vector<fs::path>& inputs) {
+    /// `start` = what such a report begins with, by which an older one is known.
+    Report(const std::string& file, std::string_view start, const std::vector<fs::path>& inputs) {
         if (file.empty()) return;
         const fs::path path = file;
         if (!path.has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
         parts_.emplace(path.has_parent_path() ? path.parent_path() : fs::path("."), path.filename().string(),
                        std::string(), Replacing{.inputs = inputs});
-        place_ = parts_->file(path.filename().string());
+        const auto name = path.filename().string();
+        place_ = parts_->file(name);
+        const auto& folder = parts_->folder();
+        if (folder.entry(name).kind == Entry::Kind::file && !begins_with(folder, name, start))
+            throw io_failed("{} is there already, and no such report; give the name of another file", file);
     }
 
     void publish(void (*write)(const FilePlace&, const Comparison&), const Comparison& comparison) {
@@ -134,16 +154,18 @@ private:
 
 /// True if all pass. Throws Error where some could not be read, after the reports are written.
 bool compare(const CompareOptions& options) {
+    std::error_code fault;
     for (const auto& path : {options.expected, options.actual})
-        if (!fs::exists(path)) throw bad_input("{}: there is no such file or folder", path);
-    const bool folders = fs::is_directory(options.expected);
-    if (folders != fs::is_directory(options.actual))
+        if (!fs::exists(path, fault))
+            throw fault ? cannot(path, "read", fault.value()) : bad_input("{}: there is no such file or folder", path);
+    const bool folders = fs::is_directory(options.expected, fault);
+    if (folders != fs::is_directory(options.actual, fault))
         throw bad_input("{} is a folder and {} is none; compare takes two pictures or two folders",
                         folders ? options.expected : options.actual, folders ? options.actual : options.expected);
     const auto is_one_file = fs::path(options.junit).lexically_normal() == fs::path(options.html).lexically_normal();
     if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
-    const std::vector<fs::path> inputs{options.expected, options.actual};
-    Report junit(options.junit, inputs), html(options.html, inputs);
+    const auto inputs = compared_files(options, folders);
+    Report junit(options.junit, junit_start, inputs), html(options.html, compare_page_start, inputs);
     Comparison comparison{options.expected, options.actual, {}};
     std::optional<Error> first_fault;
     if (folders) {
@@ -184,14 +206,14 @@ void add_compare(CLI::App& app, int& exit_code) {
         "Example:\n  doppel render calm --format png --frames 0:3 && doppel compare golden out/calm/frames");
     command.add_option("EXPECTED", options->expected, "Picture or folder as it should be")->required();
     command.add_option("ACTUAL", options->actual, "Picture or folder as it is")->required();
-    command.add_option("-o,--out", options->out, "Where difference pictures go: DIR/compare/")
+    refuse_dash(command.add_option("-o,--out", options->out, "Where difference pictures go: DIR/compare/"))
         ->type_name("DIR")
         ->capture_default_str();
-    command.add_option("--junit", options->junit, "Also writes a report for test servers: JUnit's XML")
+    refuse_dash(command.add_option("--junit", options->junit, "Also writes a report for test servers: JUnit's XML"))
         ->type_name("FILE");
-    command
-        .add_option("--html", options->html,
-                    "Also writes a page that shows expected, actual and difference of what differs, with a slider")
+    refuse_dash(command.add_option(
+                    "--html", options->html,
+                    "Also writes a page that shows expected, actual and difference of what differs, with a slider"))
         ->type_name("FILE");
     command.callback([options, &exit_code] {
         if (!compare(*options)) exit_code = static_cast<int>(ExitCode::differs);

@@ -46,7 +46,8 @@ void write_junit(const FilePlace& place, const Comparison& comparison) {
                     comparison.count(Match::differs) + comparison.count(Match::missing),
                     comparison.count(Match::unreadable), seconds);
     OutputFile file(place);
-    file.write("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- Doppel compare -->\n");
+    file.write(junit_start);
+    file.write("\n");
     file.write(fmt::format("<testsuites name=\"doppel compare\" {0}>\n  <testsuite name=\"{1}\" {0} skipped=\"0\">\n",
                            counts, suite));
     file.write(fmt::format(

@@ -126,8 +126,9 @@ void write_preset(const fs::path& path, std::string_view kind) {
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(path, ignored)))
         throw bad_input("{}: is there already; give the name of a new file", path.string());
+    outlive_readers();
     write_file(path, preset.text);
-    print_line("{0}: edit it, then: doppel check {0}", path.string());
+    tell_of_files(on_one_line(fmt::format("{0}: edit it, then: doppel check {0}", path.string())) + "\n");
 }
 
 }  // namespace

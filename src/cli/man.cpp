@@ -1,9 +1,10 @@
 #include "base/embedded.hpp"
 #include "base/error.hpp"
+#include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"
-#include "output/folder.hpp"
+#include "output/transaction.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -250,9 +251,23 @@ std::string page_of_presets() {
     return page + see_also({"doppel", "doppel-check", "doppel-init", "doppel-schema", "doppel-show"});
 }
 
-/// Each page and the file that it goes into.
-std::vector<std::pair<std::string, std::string>> all_pages(const CLI::App& app) {
-    std::vector<std::pair<std::string, std::string>> pages{{"doppel.1", page_of(app)}};
+/// Pages, each with the file that it goes into.
+using Pages = std::vector<std::pair<std::string, std::string>>;
+
+/// All or none, in place of older pages alone.
+void write_pages(const std::filesystem::path& folder, const Pages& pages) {
+    Transaction files(folder, "man", "manual");
+    for (const auto& [file, page] : pages) files.demand(file);
+    for (const auto& [name, page] : pages) {
+        OutputFile file(files.file(name));
+        file.write(page);
+        file.close();
+    }
+    files.publish();
+}
+
+Pages all_pages(const CLI::App& app) {
+    Pages pages{{"doppel.1", page_of(app)}};
     for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
         pages.emplace_back(page_name(*command) + ".1", page_of(*command));
     pages.emplace_back(fmt::format("{}.5", of_presets), page_of_presets());
@@ -274,18 +289,16 @@ void add_man(CLI::App& app) {
         names.push_back(each->get_name());
     command.add_option("PAGE", *name, "A command, or doppel.toml: presets; the program where not given")
         ->check(CLI::IsMember(names));
-    command.add_option("--all", *folder, "Write all pages into this folder")->type_name("DIR");
+    refuse_dash(command.add_option("--all", *folder, "Write all pages into this folder"))->type_name("DIR");
     command.callback([name, folder, &app] {
         if (!name->empty() && !folder->empty()) throw bad_input("--all writes every page; leave {} out", *name);
         const auto wanted = name->empty()         ? "doppel.1"
                             : *name == of_presets ? "doppel.toml.5"
                                                   : "doppel-" + *name + ".1";
-        if (!folder->empty()) make_folders(*folder);
-        for (const auto& [file, page] : all_pages(app))
-            if (!folder->empty())
-                write_file(std::filesystem::path(*folder) / file, page);
-            else if (file == wanted)
-                write_out(page);
+        const auto pages = all_pages(app);
+        if (!folder->empty()) return write_pages(*folder, pages);
+        for (const auto& [file, page] : pages)
+            if (file == wanted) write_out(page);
     });
 }
 

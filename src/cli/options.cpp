@@ -29,8 +29,14 @@ void add_beside_option(CLI::App& command, PresetOptions& options) {
         ->type_name("TRACK");
 }
 
+CLI::Option* refuse_dash(CLI::Option* option) {
+    return option->check([](const std::string& path) {
+        return path == "-" ? "this is not written to standard output; give a name, or ./- for one of that name" : "";
+    });
+}
+
 void add_out_options(CLI::App& command, std::string& out, std::string& progress, bool& force) {
-    command.add_option("-o,--out", out, "Folder for the results; they go to DIR/NAME/")
+    refuse_dash(command.add_option("-o,--out", out, "Folder for the results; they go to DIR/NAME/"))
         ->type_name("DIR")
         ->capture_default_str();
     command.add_option("--progress", progress, "How to show progress: auto, bar, plain, json or none")

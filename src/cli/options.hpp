@@ -35,6 +35,8 @@ void add_beside_option(CLI::App& command, PresetOptions& options);
 /// as fitted to its first two seconds and runs for as long as it lasts. Throws Error as read_preset() does.
 std::vector<Override> beside_overrides(const PresetText& text, const std::vector<Override>& given,
                                        const std::string& track, const std::atomic<bool>& stop);
+/// Refuses "-" for an option that names a folder or a file, where people mean standard output.
+CLI::Option* refuse_dash(CLI::Option* option);
 /// --out, --progress and --force.
 void add_out_options(CLI::App& command, std::string& out, std::string& progress, bool& force);
 /// The same, and --jobs; `jobs` = what it counts, for the help.

@@ -72,11 +72,22 @@ std::string duration(double seconds) {
     return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
-std::string bytes(double count) {
-    return count < 1e6 ? fmt::format("{:.0f} kB", count / 1e3) : fmt::format("{:.1f} MB", count / 1e6);
+/// "PATH (size)", or "FOLDER/"; a terminal shows it and obeys nothing in it.
+std::string file_line(const std::filesystem::path& file) {
+    std::error_code unknown;  // somebody may have moved it by now
+    const auto size = std::filesystem::file_size(file, unknown);
+    const auto more = std::filesystem::is_directory(file, unknown) ? "/"
+                      : unknown                                    ? ""
+                                : fmt::format(" ({})", bytes_text(static_cast<double>(size)));
+    return (isatty(STDOUT_FILENO) ? on_one_line(file.string()) : file.string()) + more;
 }
 
 }  // namespace
+
+void tell_of_files(std::string_view text) {
+    const auto fault = try_write_out(text);
+    if (fault && fault != std::errc::broken_pipe && fault != std::errc::bad_file_descriptor) throw unwritten(fault);
+}
 
 ProgressStyle progress_style(const std::string& name) {
     if (name == "bar") return ProgressStyle::bar;
@@ -125,7 +136,10 @@ void ProgressReport::operator()(const Progress& progress) {
 }
 
 void ProgressReport::note(const std::string& sentence) {
-    if (style_ == ProgressStyle::none) return;
+    if (style_ != ProgressStyle::none) warn(sentence);
+}
+
+void ProgressReport::warn(const std::string& sentence) {
     clear();
     if (style_ == ProgressStyle::json)
         tell({{"event", "note"}, {"preset", name_}, {"text", sentence}});
@@ -147,7 +161,7 @@ void ProgressReport::clear() {
 
 void ProgressReport::done(const RunResult& result) {
     clear();
-    for (const auto& warning : result.warnings) note(warning);
+    for (const auto& warning : result.warnings) warn(warning);
     const long count = result.frames > 0 ? result.frames : result.samples;
     if (style_ == ProgressStyle::json) {
         nlohmann::ordered_json line = {
@@ -163,11 +177,9 @@ void ProgressReport::done(const RunResult& result) {
     else if (style_ != ProgressStyle::none)
         say(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
             static_cast<double>(count) / result.wall_s, unit_);
-    for (const auto& file : result.files)
-        say(stdout, "{}\n",
-            std::filesystem::is_directory(file)
-                ? file.string() + "/"
-                : fmt::format("{} ({})", file.string(), bytes(static_cast<double>(std::filesystem::file_size(file)))));
+    std::string lines;
+    for (const auto& file : result.files) lines += file_line(file) + "\n";
+    tell_of_files(lines);
 }
 
 }  // namespace doppel

@@ -33,6 +33,10 @@ Error unwritten(const std::error_code& why);
 /// As try_write_out(); throws that Error.
 void write_out(std::string_view text);
 
+/// As write_out(), of files that are there: what nobody reads, because standard output is closed or its reader went, is
+/// no failure.
+void tell_of_files(std::string_view text);
+
 /// One line of it, for people: whatever it quotes, it is shown and not obeyed.
 template <class... Args>
 void print_line(fmt::format_string<Args...> format, Args&&... args) {
@@ -53,8 +57,10 @@ public:
     void operator()(const Progress& progress);
     /// A sentence of its own.
     void note(const std::string& sentence);
-    /// The run is done, and its files are there. Throws Error (exit 4) where a JSON line could not be written to
-    /// someone who still listens.
+    /// One that is no progress: it is said in every style.
+    void warn(const std::string& sentence);
+    /// The run is done, and its files are there. Throws Error (exit 4) where that could not be written to someone who
+    /// still listens.
     void done(const RunResult& result);
     /// Takes the bar off the screen, before an error is printed.
     void clear();

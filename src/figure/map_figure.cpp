@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -90,10 +91,9 @@ void demand_room(const FigurePreset& figure, const PartHeader& header, const Fol
     const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
     const double numbers = static_cast<double>(map->frame().columns.size() - 2);
     const double cells = share * x.count * y.count;
-    const auto gigabytes = [](double bytes) { return grouped(std::max(1L, std::lround(bytes / 1e9))); };
     const auto refuse = [&](const char* what, double needed, double there) {
-        return bad_input("{}: {} × {} cells take {} GB of {}, and there are {} GB; take fewer, or --tiles", figure.name,
-                         grouped(x.count), grouped(y.count), gigabytes(needed), what, gigabytes(there));
+        return bad_input("{}: {} × {} cells take {} of {}, and there are {}; take fewer, or --tiles", figure.name,
+                         grouped(x.count), grouped(y.count), bytes_text(needed), what, bytes_text(there));
     };
     // the numbers of all trials, and where a picture is drawn twice a float
     const double memory = cells * (8 * numbers + 8), owned = static_cast<double>(this_machine().memory);

@@ -2,6 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "base/threads.hpp"
 #include "figure/map_figure.hpp"
 #include "figure/tile_folder.hpp"
@@ -80,9 +81,9 @@ public:
         const auto space = std::filesystem::space(folder_.path(), unknown);
         const double needed = bytes_a_cell * cells * 4 / 3 * (1 - share_there());
         if (unknown || needed < static_cast<double>(space.available)) return;
-        throw bad_input("{}: the tiles of {} × {} cells take some {:.0f} GB, and {} has {:.0f} GB free", figure_.name,
-                        grouped(pyramid_.columns), grouped(pyramid_.rows), needed / 1e9, folder_.path().string(),
-                        static_cast<double>(space.available) / 1e9);
+        throw bad_input("{}: the tiles of {} × {} cells take some {}, and {} has {} free", figure_.name,
+                        grouped(pyramid_.columns), grouped(pyramid_.rows), bytes_text(needed), folder_.path().string(),
+                        bytes_text(static_cast<double>(space.available)));
     }
 
     /// The finest tiles of a part that are missing.

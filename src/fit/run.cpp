@@ -23,7 +23,7 @@ void write_text(const FilePlace& place, const std::string& text) {
 
 std::vector<std::string> sentences_of(const FitResult& result) {
     const auto& rung = result.chosen();
-    std::vector<std::string> all = result.track.notes;
+    std::vector<std::string> all;
     all.push_back(fmt::format("{}, {} parameters: rms {:.2g} rad, {:.2g} on pieces left out.", rung.name,
                               rung.parameters, rung.fit.rms, rung.left_out_rms));
     if (result.period)
@@ -79,7 +79,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
         throw_if_set(stop);
         return parts.publish();
     };
-    FitRun done{{.files = parts.keeping_finished(finish)}, sentences_of(result)};
+    FitRun done{{.files = parts.keeping_finished(finish), .warnings = result.track.notes}, sentences_of(result)};
     done.run.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
     return done;
 }

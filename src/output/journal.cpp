@@ -40,9 +40,20 @@ bool is_gone(std::string_view line) {
            kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// A name without a path: others in a lock file are ignored.
-bool is_plain(std::string_view name) {
-    return !name.empty() && name != "." && name != ".." && name.find('/') == std::string_view::npos;
+/// A note as a line, and back: no name has a '/', which stands for a line break in one.
+std::string as_line(std::string note) {
+    std::ranges::replace(note, '\n', '/');
+    return note + "\n";
+}
+std::string name_in(std::string_view line) {
+    std::string name(line);
+    std::ranges::replace(name, '/', '\n');
+    return name;
+}
+
+/// Others in a lock file are ignored.
+bool is_name(std::string_view name) {
+    return !name.empty() && name != "." && name != "..";
 }
 
 }  // namespace
@@ -165,7 +176,7 @@ void Journal::begin() {
 }
 
 void Journal::note(const std::string& line, bool synced) {
-    const auto text = line + "\n";
+    const auto text = as_line(line);
     const auto written = write(file_.number(), text.data(), text.size());
     if (written != static_cast<ssize_t>(text.size()))
         throw cannot(folder_.path() / name_, "written", written < 0 ? errno : ENOSPC);
@@ -180,13 +191,13 @@ Publication Journal::left() const {
         if (word == "publish") publication.state = Publication::State::publish;
         if (word == "withdraw") publication.state = Publication::State::withdraw;
         if (word == "withdrawn") publication = {.parts = std::move(publication.parts)};
-        if (word == "part" && is_plain(rest)) publication.parts.emplace_back(rest);
-        if (word == "remove" && is_plain(rest)) publication.removed.emplace_back(rest);
+        if (word == "part" && is_name(rest)) publication.parts.push_back(name_in(rest));
+        if (word == "remove" && is_name(rest)) publication.removed.push_back(name_in(rest));
         if (word == "place") {
             ino_t inode = 0;
             const auto [end, fault] = std::from_chars(rest.data(), rest.data() + rest.size(), inode);
             const auto name = rest.substr(std::min<std::size_t>(rest.size(), std::size_t(end - rest.data()) + 1));
-            if (fault == std::errc() && is_plain(name)) publication.steps.push_back({std::string(name), inode});
+            if (fault == std::errc() && is_name(name)) publication.steps.push_back({name_in(name), inode});
         }
     }
     return publication;

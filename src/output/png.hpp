@@ -26,7 +26,7 @@ void write_png(const FilePlace& place, const Picture& picture, const PngOptions&
 std::string png_bytes(const Picture& picture, const PngOptions& options = {});
 
 /// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it is no regular
-/// file or cannot be decoded.
+/// file, a checksum is wrong, it cannot be decoded, or its colours are not sRGB.
 Picture read_png(const FilePlace& place);
 
 /// The size that its header says. Throws as read_png().

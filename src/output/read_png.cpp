@@ -1,9 +1,12 @@
 #include "base/error.hpp"
 #include "output/png.hpp"
 
+#include <libdeflate.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -36,7 +39,20 @@ Stream open_png(const FilePlace& place) {
     return stream_of(open_file(place), "rb", place.path, "read");
 }
 
-/// Why the sizes in the file are impossible; "" where they are not. stb_image allocates by the length of a chunk and by
+/// Whether the chunk that starts so, and whose contents are read next, has the checksum at its end.
+bool has_its_checksum(std::FILE* file, const unsigned char (&start)[8]) {
+    std::array<unsigned char, std::size_t{1} << 16> block;
+    std::uint32_t sum = libdeflate_crc32(0, start + 4, 4);
+    for (std::uint64_t left = big_endian(start); left > 0;) {
+        const auto wanted = std::min<std::uint64_t>(left, block.size());
+        if (std::fread(block.data(), 1, wanted, file) != wanted) return false;
+        sum = libdeflate_crc32(sum, block.data(), wanted);
+        left -= wanted;
+    }
+    return std::fread(block.data(), 1, 4, file) == 4 && big_endian(block.data()) == sum;
+}
+
+/// Why the sizes in the file are impossible, or which part of it is damaged; "" where they are not. stb_image allocates by the length of a chunk and by
 /// the size in the header before it reads on, so a file of a hundred bytes could take gigabytes.
 /// Source  Portable Network Graphics (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE makes at most 1032 bytes of one.
 std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
@@ -51,16 +67,57 @@ std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
             return fmt::format("{}x{} pixels cannot be in {} bytes", width, height, bytes);
     }
     for (std::uint64_t at = signature; at + 8 <= bytes;) {
-        unsigned char chunk[8];  // length and type
-        if (std::fseek(file, static_cast<long>(at), SEEK_SET) != 0 || std::fread(chunk, 1, 8, file) != 8) break;
-        if (std::string_view(reinterpret_cast<const char*>(chunk + 4), 4) == "IEND") break;
-        if (chunk[4] < 'A') return fmt::format("there is no chunk at byte {}", at);  // zeros of a sparse file
-        if (big_endian(chunk) + around > bytes - at)
+        unsigned char start[8];  // length and type
+        if (std::fseek(file, static_cast<long>(at), SEEK_SET) != 0 || std::fread(start, 1, 8, file) != 8) break;
+        const std::string_view type(reinterpret_cast<const char*>(start + 4), 4);
+        if (!std::ranges::all_of(type, [](unsigned char c) { return std::isalpha(c); }))
+            return fmt::format("there is no chunk at byte {}", at);  // zeros of a sparse file
+        if (big_endian(start) + around > bytes - at)
             return fmt::format("the chunk at byte {} is longer than the file", at);
-        at += around + big_endian(chunk);
+        if (!has_its_checksum(file, start))
+            return fmt::format("the checksum of its chunk {} at byte {} is wrong: it was damaged", type, at);
+        if (type == "IEND") break;
+        at += around + big_endian(start);
     }
-    std::rewind(file);
     return {};
+}
+
+/// What a picture says of its colours other than sRGB; "" where nothing. Its numbers are compared as they are, so that
+/// they have to mean the same.
+/// Source  Portable Network Graphics, third edition (W3C, 2025), 4.3: of cICP, iCCP, sRGB and gAMA with cHRM the first
+/// that is there counts; 11.3.2.
+std::string other_colors(std::FILE* file) {
+    constexpr std::uint64_t srgb_gamma = 45455;
+    constexpr std::array<std::uint64_t, 8> srgb_primaries{31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
+    std::string gamma, primaries, profile;
+    bool is_srgb = false, is_coded_srgb = false;
+    const auto near = [](std::uint64_t a, std::uint64_t b, std::uint64_t most) {
+        return std::max(a, b) - std::min(a, b) <= most;
+    };
+    for (long at = 8; std::fseek(file, at, SEEK_SET) == 0;) {
+        unsigned char chunk[8 + 32]{};  // length, type and what these have
+        if (std::fread(chunk, 1, sizeof chunk, file) < 8) break;
+        const std::string_view type(reinterpret_cast<const char*>(chunk + 4), 4);
+        const unsigned char* const content = chunk + 8;
+        if (type == "IDAT" || type == "IEND") break;
+        if (type == "sRGB") is_srgb = true;
+        if (type == "iCCP") profile = "a colour profile (iCCP)";
+        if (type == "cICP") {
+            is_coded_srgb = content[0] == 1 && content[1] == 13 && content[2] == 0 && content[3] == 1;
+            if (!is_coded_srgb) return "a colour space of its own (cICP)";
+        }
+        if (type == "gAMA" && !near(big_endian(content), srgb_gamma, 1))
+            gamma = fmt::format("gamma {:g} (gAMA {}, sRGB has {})", static_cast<double>(big_endian(content)) / 1e5,
+                                big_endian(content), srgb_gamma);
+        if (type == "cHRM")
+            for (std::size_t i = 0; i < srgb_primaries.size(); ++i)
+                if (!near(big_endian(content + 4 * i), srgb_primaries[i], 100))  // as libpng
+                    primaries = "primaries of its own (cHRM)";
+        at += static_cast<long>(12 + big_endian(chunk));
+    }
+    if (is_coded_srgb) return {};
+    if (!profile.empty()) return profile;
+    return is_srgb ? "" : !gamma.empty() ? gamma : primaries;
 }
 
 }  // namespace
@@ -80,6 +137,9 @@ Picture read_png(const FilePlace& place) {
     if (fstat(fileno(file.get()), &status) != 0) throw cannot(place.path, "read");
     const auto claim = impossible_claim(file.get(), static_cast<std::uint64_t>(status.st_size));
     if (!claim.empty()) throw io_failed("{}: cannot be decoded as PNG: {}", place.path.string(), claim);
+    if (const auto colors = other_colors(file.get()); !colors.empty())
+        throw io_failed("{}: has {}; convert it to sRGB, as all pictures of Doppel are", place.path.string(), colors);
+    std::rewind(file.get());
 
     Size size;
     int channels = 0;

@@ -24,12 +24,15 @@ WrittenFiles written_files(const Folder& folder);
 /// The "Software" of a PNG in the folder; empty where it has none, or is no PNG.
 std::string maker_of_picture(const Folder& folder, const std::string& name);
 
+/// Whether a file there begins with these bytes.
+bool begins_with(const Folder& folder, const std::string& name, std::string_view start);
+
 /// What follows the end of a PDF of Doppel's, a comment: the program that made it.
 inline constexpr std::string_view pdf_mark = "%%EOF\n% Doppel";
 
 /// Whether Doppel made the regular file `name` there: a manifest lists it (as `within` + name), or its contents show it
 /// (a PNG of Doppel's, a manifest, the trials of a figure, a report or an SVG with a first comment "<!-- Doppel …", a PDF
-/// with a last one).
+/// with a last one, a manual page by its title).
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written,
                 const std::string& within = {});
 /// Whether manifests list it with a SHA-256, and it has none of these: somebody changed or replaced it.

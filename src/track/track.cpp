@@ -93,7 +93,8 @@ double number_of(const std::string& name, std::size_t line, std::string_view col
     if (fault != std::errc() || end != cell.data() + cell.size())
         throw bad_input("{}:{}: {} is no number", name, line, column);
     if (!std::isfinite(value))
-        throw bad_input("{}:{}: {} is {}; leave out rows without a measurement", name, line, column, cell);
+        throw bad_input("{}:{}: {} is {}; leave out rows without a measurement", name, line, column,
+                        std::isnan(value) ? "nan" : "infinite");
     return value;
 }
 
@@ -105,7 +106,13 @@ double pixel_angle(const std::string& name, std::size_t line, double dx, double 
 }
 
 std::array<double, 2> angles_of(const std::string& name, std::size_t line, const std::vector<double>& values) {
-    if (values.size() == 2) return {values[0], values[1]};
+    constexpr double most = 1e6;  // rad: 160 000 turns
+    if (values.size() == 2) {
+        for (std::size_t arm = 0; arm < 2; ++arm)
+            if (std::abs(values[arm]) > most)
+                throw bad_input("{}:{}: {} is beyond {} rad, which is no swing", name, line, angle_columns[arm], most);
+        return {values[0], values[1]};
+    }
     return {pixel_angle(name, line, values[2] - values[0], values[3] - values[1]),
             pixel_angle(name, line, values[4] - values[2], values[5] - values[3])};
 }

@@ -126,9 +126,10 @@ void demand_motion(const Track& track) {
         }
         if (most < std::max(least, 20 * track.noise[arm]))
             throw bad_input(
-                "{}: theta{} is flat: it moves by {:.2g} rad with a noise of {:.2g} rad, which tells no model; "
+                "{}: theta{} {}: it moves by {:.2g} rad with a noise of {:.2g} rad, which tells no model; "
                 "at least {} rad and 20 times the noise are wanted",
-                track.pieces.front().name, arm + 1, most, track.noise[arm], least);
+                track.pieces.front().name, arm + 1, most < least ? "is flat" : "is mostly noise", most,
+                track.noise[arm], least);
     }
     bool same = true;
     for (const auto& piece : track.pieces) same &= piece.angle[0] == piece.angle[1];

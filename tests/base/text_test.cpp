@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -44,6 +45,17 @@ TEST(Text, OnOneLineIsShownAndNotObeyed) {
               "\xef\xbf\xbd"
               "1m");  // the same escape as a single byte
     EXPECT_EQ(on_one_line(std::string_view("\0", 1)), " ");
+}
+
+TEST(Text, SizesForPeople) {
+    for (const auto& [bytes, text] : {std::pair(0.0, "0 bytes"),
+                                      {999.0, "999 bytes"},
+                                      {1000.0, "1 kB"},
+                                      {2.5e5, "250 kB"},
+                                      {1.5e6, "1.5 MB"},
+                                      {2e9, "2.0 GB"},
+                                      {17.6e12, "17.6 TB"}})
+        EXPECT_EQ(bytes_text(bytes), text);
 }
 
 TEST(Text, ShortenedEndsWithAWholeCharacter) {

@@ -1,9 +1,16 @@
 #include "base/threads.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace doppel {
@@ -20,6 +27,38 @@ TEST(Threads, AreAsManyAsWereWanted) {
     EXPECT_EQ(ran, 6);
     EXPECT_NO_THROW(need_threads(20));
 }
+
+#ifndef DOPPEL_SANITIZE  // which takes terabytes of address space
+TEST(Threads, NameTheLimitThatKeepsThemFromStarting) {
+    // a process of its own with room for less than a stack
+    const auto message_within = [](decltype(RLIMIT_AS) limited) {
+        std::array<int, 2> ends;
+        EXPECT_EQ(pipe(ends.data()), 0);
+        const pid_t child = fork();
+        if (child == 0) {
+            std::ifstream sizes("/proc/self/statm");
+            rlim_t pages = 0;
+            sizes >> pages;
+            const rlim_t most = limited == RLIMIT_NPROC ? 0 : pages * 4096 + (rlim_t{4} << 20);
+            const rlimit limit{most, most};
+            setrlimit(limited, &limit);
+            const std::string said = no_thread().what();
+            _exit(write(ends[1], said.data(), said.size()) < 0);
+        }
+        close(ends[1]);
+        std::string said(1000, '\0');
+        const auto count = read(ends[0], said.data(), said.size());
+        close(ends[0]);
+        waitpid(child, nullptr, 0);
+        said.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+        return said;
+    };
+    const auto says = [](const std::string& message, const char* words) { return message.find(words) != message.npos; };
+    const auto space = message_within(RLIMIT_AS), threads = message_within(RLIMIT_NPROC);
+    EXPECT_TRUE(says(space, "ulimit -v") && !says(space, "ulimit -u")) << space;
+    EXPECT_TRUE(says(threads, "ulimit -u") && !says(threads, "ulimit -v")) << threads;
+}
+#endif
 
 TEST(ShareOut, DoesEachPieceOnce) {
     for (const int jobs : {0, 1, 3, 50}) {

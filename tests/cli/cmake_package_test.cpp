@@ -76,6 +76,29 @@ TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
     EXPECT_EQ(run("diff -r golden kept").code, 0);
 }
 
+TEST(CmakeInstall, InstallsWhatIsBuiltOrNothing) {
+    const auto folder = test::fresh_folder();
+    // a build folder without manual pages, and one without the program
+    const auto build = fs::path(DOPPEL_TEST_OUTPUT).parent_path().string();
+    const auto made =
+        shell(folder, "mkdir -p half/tests && cp -r '" + build + "'/doppel '" + build + "'/generated '" + build +
+                          "'/changelog* half && for f in cmake_install.cmake "
+                          "tests/cmake_install.cmake; do [ ! -e '" +
+                          build + "'/$f ] || sed \"s|" + build + "|$PWD/half|g\" '" + build + "'/$f >half/$f; done");
+    ASSERT_EQ(made.code, 0) << made.err;
+    const auto half = shell(folder, "cmake --install half --prefix \"$PWD/first\" && first/bin/doppel list");
+    EXPECT_EQ(half.code, 0) << half.out << half.err;
+    EXPECT_NE(half.out.find("the manual pages and completions are not built"), std::string::npos) << half.out;
+    EXPECT_TRUE(fs::exists(folder / "first/share/doppel/presets/calm.toml"));
+    EXPECT_FALSE(fs::exists(folder / "first/share/man"));
+
+    fs::remove(folder / "half/doppel");
+    const auto none = shell(folder, "cmake --install half --prefix \"$PWD/second\"");
+    EXPECT_NE(none.code, 0);
+    EXPECT_NE(none.err.find("doppel: the program is not built"), std::string::npos) << none.err;
+    EXPECT_FALSE(fs::exists(folder / "second"));
+}
+
 TEST_F(CmakePackage, RefusesWhatMakesNoSense) {
     const std::string good = "NAME one PRESET calm GOLDEN golden ";
     const std::vector<std::pair<std::string, std::string>> calls{

@@ -125,5 +125,35 @@ TEST(CompareReports, ReplaceOnlyTheirOwn) {
     EXPECT_EQ(doppel(folder, {"compare", "one.png", "one.png", "--html", "a/../b", "--junit", "./b"}).code, 2);
 }
 
+TEST(CompareReports, ReplaceNoInputAndNoOtherFileOfDoppels) {
+    const auto folder = fresh_folder();
+    make(folder / "one/1.png", plain(10));
+    fs::copy(folder / "one", folder / "two");
+    ASSERT_EQ(doppel(folder, {"simulate", "calm", "--set", "scene.duration_s=0.1"}).code, 0);
+    ASSERT_EQ(doppel(folder, {"compare", "one", "two", "--junit", "r.xml"}).code, 0);
+    for (const std::string option : {"--junit", "--html"})
+        for (const std::string file : {"one/1.png", "two/1.png", "out/calm/calm.csv", "out/calm/calm.json", "r.xml"}) {
+            if (option == "--junit" && file == "r.xml") continue;
+            const auto before = bytes_of(folder / file);
+            const auto refused = doppel(folder, {"compare", "one", "two", option, file});
+            EXPECT_EQ(refused.code, 4) << option << file;
+            EXPECT_EQ(refused.out, "") << option << file;
+            EXPECT_NE(refused.err.find(file), std::string::npos) << refused.err;
+            EXPECT_EQ(bytes_of(folder / file), before) << option << file;
+            EXPECT_FALSE(fs::exists(folder / (file + ".part"))) << option << file;
+        }
+}
+
+TEST(CompareReports, AreNotForStandardOutput) {
+    const auto folder = fresh_folder();
+    make(folder / "one.png", plain(10));
+    for (const auto* option : {"--junit", "--html", "--out"}) {
+        const auto refused = doppel(folder, {"compare", "one.png", "one.png", option, "-"});
+        EXPECT_EQ(refused.code, 2) << option;
+        EXPECT_NE(refused.err.find("not written to standard output"), std::string::npos) << refused.err;
+        EXPECT_FALSE(fs::exists(folder / "-")) << option;
+    }
+}
+
 }  // namespace compare_report_test
 }  // namespace doppel

@@ -91,6 +91,28 @@ TEST(Compare, ADifferenceOfBeforeGoesWhenThePicturePasses) {
         EXPECT_TRUE(fs::exists(folder / "out/compare" / stays)) << stays;
 }
 
+TEST(Compare, ReplacesDifferencePicturesAlone) {
+    const auto folder = fresh_folder();
+    make_pictures(folder / "one", {{"1.png", 10}});
+    make_pictures(folder / "two", {{"1.png", 90}});
+    for (int again = 0; again < 2; ++again) EXPECT_EQ(doppel(folder, {"compare", "one", "two"}).code, 1);
+    make_pictures(folder / "out/compare", {{"1.diff.png", 0}});
+    const auto mine = test::bytes_of(folder / "out/compare/1.diff.png");
+    const auto refused = doppel(folder, {"compare", "one", "two"});
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_NE(refused.err.find("out/compare/1.diff.png is no difference picture"), std::string::npos) << refused.err;
+    EXPECT_EQ(test::bytes_of(folder / "out/compare/1.diff.png"), mine);
+}
+
+TEST(Compare, WhatCannotBeReadIsSaidPlainly) {
+    const auto folder = fresh_folder();
+    make_pictures(folder, {{"1.png", 10}});
+    const std::string name(300, 'n');  // more than a file system has
+    const auto refused = doppel(folder, {"compare", "1.png", name});
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_EQ(refused.err, "doppel: " + name + ": cannot be read: File name too long\n");
+}
+
 TEST(Compare, SeesOpacity) {
     const auto folder = fresh_folder();
     Picture picture({8, 8});

@@ -143,7 +143,7 @@ TEST(Faults, GoesOnWhereNobodyReadsItsProgress) {
     const auto folder = fresh_folder();
     const std::string run = R"sh(("$DOPPEL" render butterfly --size 64x64 --set 'system.integrator="taylor"' \
         --set scene.duration_s=0.1; echo $? >code) )sh";
-    for (const char* reader : {"| true", "2>&1 | true", ">/dev/full 2>&1"}) {
+    for (const char* reader : {"| true", "2>&1 | true", "2>/dev/full"}) {
         const auto result = shell(folder, run + reader);
         EXPECT_EQ(bytes_of(folder / "code"), "0\n") << reader << result.err;
         expect_whole(folder / "out", "mp4");
@@ -321,12 +321,14 @@ TEST(Faults, AMessageIsOneLineWhateverItQuotes) {
     const auto folder = fresh_folder();
     write_bytes(folder / "keys.toml", "\"a\\nb\\u001b[31m\" = 1\n");
     write_bytes(folder / "number.toml", "title = in\n");
-    for (const char* preset : {"keys.toml", "number.toml"}) {
+    write_bytes(folder / "nul.toml", "[system]\nmodel = \"a\\u0000b\"\n");
+    for (const char* preset : {"keys.toml", "number.toml", "nul.toml"}) {
         const auto result = doppel(folder, {"check", preset});
         EXPECT_EQ(result.code, 2);
         EXPECT_TRUE(one_line(result.err)) << result.err;
         EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
     }
+    EXPECT_TRUE(doppel(folder, {"check", "nul.toml"}).err.ends_with("it is \"a b\"\n"));
 }
 
 }  // namespace fault_test

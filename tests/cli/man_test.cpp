@@ -91,5 +91,26 @@ TEST(Man, RefusesWhatIsNoPage) {
     EXPECT_EQ(doppel(folder, {"man", "--all", "file"}).code, 4);
 }
 
+TEST(Man, ReplacesItsOwnPagesAlone) {
+    const auto folder = fresh_folder();
+    for (int again = 0; again < 2; ++again) ASSERT_EQ(doppel(folder, {"man", "--all", "man"}).code, 0);
+    const auto pages = listing(folder / "man");
+    const std::string mine = ".TH DOPPEL-STILL 1\nmine\n";
+    for (const bool is_link : {false, true}) {
+        const auto page = folder / "man/doppel-still.1", first = folder / "man/doppel.1";
+        fs::remove(page);
+        fs::remove(first);
+        write_bytes(is_link ? folder / "mine" : page, mine);
+        if (is_link) fs::create_symlink(folder / "mine", page);
+        const auto refused = doppel(folder, {"man", "--all", "man"});
+        EXPECT_EQ(refused.code, 4);
+        EXPECT_TRUE(one_line(refused.err) && refused.err.find("man/doppel-still.1") != std::string::npos)
+            << refused.err;
+        EXPECT_EQ(bytes_of(page), mine);
+        EXPECT_FALSE(fs::exists(first));
+        EXPECT_EQ(listing(folder / "man").size() + 1, pages.size());
+    }
+}
+
 }  // namespace man_test
 }  // namespace doppel

@@ -130,6 +130,8 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
          "--set system.mass_kg: [system] mass_kg[1] must be > 0; it is 0"},
         {{"check", "butterfly", "--set", "system.lenght_m=1"}, "did you mean \"length_m\"?"},
         {{"compare", "nothing.png", "stdout"}, "nothing.png: there is no such file or folder"},
+        {{"render", "butterfly", "-o", "-"}, "--out: this is not written to standard output; give a name, or ./- for"},
+        {{"man", "--all", "-"}, "--all: this is not written to standard output"},
     };
     for (const auto& [arguments, words] : cases) {
         const auto result = doppel(folder, arguments);
@@ -297,6 +299,18 @@ TEST(Program, ExitsWith130WithinASecondOfCtrlC) {
         EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1)) << command;  // measured 0.1 s
         EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
         EXPECT_TRUE(left_nothing(folder)) << command;
+    }
+}
+
+TEST(Program, WarningsAreNoProgress) {
+    const auto folder = fresh_folder();
+    for (const std::string style : {"none", "plain", "json"}) {
+        const auto result = doppel(folder, {"simulate", "butterfly", "--set", "system.integrator=\"euler\"", "--set",
+                                            "system.step_s=\"1/1200\"", "--progress", style});
+        EXPECT_EQ(result.code, 0) << result.err;
+        const auto& told = style == "json" ? result.out : result.err;
+        EXPECT_NE(told.find("the energy of side a changed by "), std::string::npos) << style << ": " << told;
+        EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), style == "none" ? 2 : 3) << style << ": " << told;
     }
 }
 

@@ -36,6 +36,39 @@ TEST(Streams, WhatCannotBePrintedIsExit4) {
     }
 }
 
+TEST(Streams, NamesOfFilesThatCannotBePrintedAreExit4) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "map.toml",
+                "[scene]\nkind = \"flip-map\"\n[flip_map]\nduration_s = 1\ncolumns = 8\nrows = 8\n");
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"simulate butterfly" + quick, "butterfly/butterfly.csv"},
+        {"render butterfly --size 64x64" + quick, "butterfly/butterfly.mp4"},
+        {"still butterfly --at 0 --size 64x64", "butterfly/butterfly.0s.png"},
+        {"figure fig6 --size 160x90", "fig6/fig6.png"},
+        {"figure map.toml --tiles", "map/map.html"},
+        {"init out/mine.toml", "mine.toml"}};
+    for (const auto& [command, file] : cases)
+        for (const std::string style : {"none", "plain"}) {
+            fs::remove_all(folder / "out");
+            fs::create_directory(folder / "out");
+            const auto line = "\"$DOPPEL\" " + command + (command.starts_with("init") ? "" : " --progress " + style);
+            const auto full = shell(folder, line + " >/dev/full");
+            EXPECT_EQ(full.code, 4) << command;
+            EXPECT_TRUE(full.err.ends_with("doppel: standard output cannot be written: No space left on device\n"))
+                << command << full.err;
+            EXPECT_TRUE(fs::exists(folder / "out" / file)) << command;
+            fs::remove_all(folder / "out");
+            fs::create_directory(folder / "out");
+            // there is nobody to tell
+            EXPECT_EQ(shell(folder, line + " >&-").code, 0) << command;
+            EXPECT_TRUE(fs::exists(folder / "out" / file)) << command;
+            fs::remove_all(folder / "out");
+            fs::create_directory(folder / "out");
+            const auto left = shell(folder, "(" + line + "; echo $? >code) | true");
+            EXPECT_EQ(bytes_of(folder / "code"), "0\n") << command << left.err;
+        }
+}
+
 TEST(Streams, JsonThatCannotBeWrittenIsToldWhenTheWorkIsDone) {
     const auto folder = fresh_folder();
     for (const auto& command : {"simulate butterfly" + quick, std::string("figure fig6 --size 160x90")}) {

@@ -280,7 +280,7 @@ TEST(Map, OfMoreCellsThanMemoryHoldsIsRefusedBeforeItStarts) {
         EXPECT_EQ(fault.code(), ExitCode::bad_input);
         message = fault.what();
     }
-    EXPECT_TRUE(message.starts_with("x: 1 048 576 × 1 048 576 cells take 17 592 GB of memory")) << message;
+    EXPECT_TRUE(message.starts_with("x: 1 048 576 × 1 048 576 cells take 17.6 TB of memory")) << message;
     EXPECT_FALSE(fs::exists(out));
     // and tiles where the disk is too small for them
     TileRun run;

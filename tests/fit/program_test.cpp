@@ -52,6 +52,21 @@ TEST(FitProgram, FitsARealPendulum) {
     EXPECT_EQ(read_png(folder / "out/lab/lab.png").size, (Size{1600, 1300}));
 }
 
+TEST(FitProgram, WhatWasLeftOutIsNoProgress) {
+    const auto folder = fresh_folder();
+    std::istringstream lines(bytes_of(lab[0]));
+    std::string track;
+    int number = 0;
+    for (std::string line; std::getline(lines, line); track += line + "\n")
+        if (++number == 500) line.replace(line.find(',') + 1, 1, "9");
+    test::write_bytes(folder / "odd.csv", track);
+    const auto result = test::doppel(folder, fit_of({folder / "odd.csv"}, {"--model", "point"}));
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_TRUE(result.err.starts_with("odd: 1 of ") &&
+                result.err.ends_with(" angles are far off their neighbours, and were left out\n"))
+        << result.err;
+}
+
 /// The largest difference of an angle between the sides of a table, rad, and its last time, s.
 std::pair<double, double> largest_difference(const fs::path& file) {
     std::istringstream table(bytes_of(file));

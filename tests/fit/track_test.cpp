@@ -57,6 +57,8 @@ TEST(FitTrack, RefusesWhatIsNoTable) {
     expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n1,x,2\n"}, 2, "a.csv:3: theta1_rad is no number");
     expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,nan\n"}, 2,
                    "a.csv:2: theta2_rad is nan; leave out rows without a measurement");
+    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n0.1,1e300,2\n"}, 2,
+                   "a.csv:3: theta1_rad is beyond 1000000 rad, which is no swing");
     expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n0.1,1,2\n0.05,1,2\n"}, 2,
                    "a.csv:4: time_s goes from 0.1 to 0.05; rows are wanted in the order of time");
     expect_refused({"time_s,x0_px,y0_px,x1_px,y1_px,x2_px,y2_px\n0,5,5,5,5,9,9\n"}, 2, "a.csv:2: two of pivot, joint");
@@ -73,7 +75,10 @@ TEST(FitTrack, RefusesWhatTellsNoModel) {
     track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 0.05, .amplitude = 0.01});
     for (auto& angle : track.pieces[0].angle)
         for (auto& value : angle) value *= 0.1;
-    expect_refused({csv_of(track.pieces[0])}, 2, "is flat");
+    expect_refused({csv_of(track.pieces[0])}, 2, "is mostly noise: it moves by 0.079 rad");
+    int row = 0;
+    expect_refused({changed([&](double, double, double b) { return std::pair(++row % 2 == 0 ? 90. : -90., b); })}, 2,
+                   "theta1 is mostly noise: it moves by 1.8e+02 rad");
 }
 
 TEST(FitTrack, RefusesMistakesOfUnitAndOrder) {

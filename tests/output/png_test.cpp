@@ -4,6 +4,7 @@
 #include "output/fixtures.hpp"
 
 #include <fmt/format.h>
+#include <libdeflate.h>
 #include <sys/stat.h>
 
 #include <chrono>
@@ -154,6 +155,17 @@ TEST(PngSink, StopsWhenAsked) {
     });
 }
 
+/// A chunk of PNG.
+std::string chunk_of(const std::string& type, const std::string& content) {
+    const auto number = [](std::size_t value) {
+        std::string bytes;
+        for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+        return bytes;
+    };
+    const auto checked = type + content;
+    return number(content.size()) + checked + number(libdeflate_crc32(0, checked.data(), checked.size()));
+}
+
 // Room is made only for what a file can hold: stb_image alone took 2 GB for the first and 1 GB for the second.
 TEST(Png, BelievesNoLengthBeyondItsFile) {
     const auto folder = fresh_folder();
@@ -167,6 +179,7 @@ TEST(Png, BelievesNoLengthBeyondItsFile) {
     const auto refused = [&](std::size_t at, std::string_view number, std::string_view words) {
         std::string changed = bytes;
         changed.replace(at, number.size(), number);
+        if (at == 16) changed.replace(8, 25, chunk_of("IHDR", changed.substr(16, 13)));
         std::ofstream(path, std::ios::binary) << changed;
         expect_error(ExitCode::io_failed, {"x.png", "decoded", std::string(words)}, [&] { read_png(path); });
     };
@@ -187,6 +200,58 @@ TEST(Png, BelievesNoLengthBeyondItsFile) {
     write_png(path, noise({8, 8}, 5));
     std::ofstream(path, std::ios::binary | std::ios::app) << "what follows the picture";
     EXPECT_EQ(read_png(path).rgba, noise({8, 8}, 5).rgba);
+}
+
+TEST(Png, AWrongChecksumIsAnError) {
+    const auto folder = fresh_folder();
+    const auto path = folder / "x.png";
+    write_png(path, noise({300, 300}, 5));
+    const auto bytes = test::bytes_of(path);
+    const auto data = bytes.find("IDAT") - 4, text = bytes.find("tEXt") - 4;
+    for (const auto& [at, words] : {std::pair(std::size_t{8 + 8 + 9}, std::string("its chunk IHDR at byte 8 ")),
+                                    {text + 12, fmt::format("its chunk tEXt at byte {} ", text)},
+                                    {data + 1000, fmt::format("its chunk IDAT at byte {} ", data)},
+                                    {bytes.size() - 1, fmt::format("its chunk IEND at byte {} ", bytes.size() - 12)}}) {
+        auto changed = bytes;
+        changed[at] ^= 1;
+        write_bytes(path, changed);
+        expect_error(ExitCode::io_failed, {"x.png", words + "is wrong"}, [&] { read_png(path); });
+    }
+}
+
+TEST(Png, ColorsOtherThanSrgbAreAnError) {
+    const auto folder = fresh_folder();
+    const auto path = folder / "x.png";
+    write_png(path, noise({8, 8}, 5));
+    const auto bytes = test::bytes_of(path);
+    const auto with = [&](const std::string& chunks) {
+        auto changed = bytes;
+        write_bytes(path, changed.insert(8 + 25, chunks));
+        return path;
+    };
+    const auto number = [](std::uint32_t value) {
+        return std::string{char(value >> 24), char(value >> 16 & 0xff), char(value >> 8 & 0xff), char(value & 0xff)};
+    };
+    const auto gamma = [&](std::uint32_t value) { return chunk_of("gAMA", number(value)); };
+    const auto primaries = [&](std::uint32_t red) {
+        std::string content;
+        for (const std::uint32_t value : {31270u, 32900u, red, 33000u, 30000u, 60000u, 15000u, 6000u})
+            content += number(value);
+        return chunk_of("cHRM", content);
+    };
+    const auto srgb = chunk_of("sRGB", std::string(1, '\0')), profile = chunk_of("iCCP", "mine"),
+               coded = chunk_of("cICP", {1, 13, 0, 1}), wide = chunk_of("cICP", {9, 16, 0, 1});
+    for (const auto& chunks : {gamma(45455), gamma(45455) + primaries(64000), primaries(64001), srgb, coded,
+                               srgb + gamma(100000), gamma(100000) + coded, profile + coded})
+        EXPECT_EQ(read_png(with(chunks)).rgba, noise({8, 8}, 5).rgba);
+    for (const auto& [chunks, words] : {std::pair(gamma(100000), "x.png: has gamma 1 (gAMA 100000, sRGB has 45455)"),
+                                        {gamma(0), "gAMA 0"},
+                                        {primaries(68000), "has primaries of its own (cHRM)"},
+                                        {gamma(45455) + primaries(68000), "(cHRM)"},
+                                        {profile, "has a colour profile (iCCP); convert it to sRGB"},
+                                        {wide, "has a colour space of its own (cICP)"},
+                                        {wide + srgb, "(cICP)"}})
+        expect_error(ExitCode::io_failed, {words}, [&] { read_png(with(chunks)); });
 }
 
 TEST(PngSink, HasThreadsForWhatFitsIntoMemory) {

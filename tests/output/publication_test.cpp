@@ -275,5 +275,24 @@ TEST(Journal, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
     EXPECT_EQ(contents(folder), (Contents{{"x.csv", "half a tab"}}));
 }
 
+// pictures that compare is given may have any name
+TEST(Journal, ANameOfSeveralLinesIsOneName) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "x.csv", "somebody's");
+    const std::string name = "y\nremove x.csv\npublish";
+    EXPECT_TRUE(killed_before(1'000'000, [&] {
+        Transaction killed(folder);
+        write_bytes(killed.file(name).path, "half a tab");
+        raise(SIGKILL);
+    }));
+    EXPECT_TRUE(fs::exists(folder / (name + ".part")));
+    { Transaction next(folder); }
+    EXPECT_EQ(contents(folder), (Contents{{"x.csv", "somebody's"}}));
+    Transaction files(folder);
+    write_bytes(files.file(name).path, "whole");
+    files.publish();
+    EXPECT_EQ(bytes_of(folder / name), "whole");
+}
+
 }  // namespace publication_test
 }  // namespace doppel

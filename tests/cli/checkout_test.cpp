@@ -1,0 +1,45 @@
+// The script "doppel" of a checkout, where it cannot build.
+#include "cli/sandbox.hpp"
+
+namespace doppel {
+namespace checkout_test {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+/// A checkout in which nothing is wanted from the system and nothing is built yet.
+fs::path checkout() {
+    const auto top = fresh_folder();
+    fs::copy_file(fs::path(DOPPEL_SOURCE_DIR) / "doppel", top / "doppel");
+    for (const char* part : {"CMakeLists.txt", "CMakePresets.json", "debian-packages.txt"}) write_bytes(top / part, "");
+    for (const char* part : {"cmake", "src", "shaders", "fonts", "presets", "packaging"})
+        fs::create_directory(top / part);
+    return top;
+}
+
+void expect_refused(const Outcome& result, const std::string& reason) {
+    EXPECT_EQ(result.code, 4) << result.err;  // 1 would mean that pictures differ
+    EXPECT_TRUE(one_line(result.err)) << result.err;
+    EXPECT_NE(result.err.find("/build/release cannot be written: " + reason + "; "), std::string::npos) << result.err;
+}
+
+TEST(Checkout, ThatCannotBeWrittenIsToldInALine) {
+    const auto top = checkout();
+    write_bytes(top / "build", "");
+    for (const char* line : {"./doppel compare a b", "./doppel list"})
+        expect_refused(shell(top, std::string("unset DOPPEL_BUILD; ") + line), "Not a directory");
+    fs::remove(top / "build");
+    if (can_mount(top))
+        expect_refused(shell_with_mounts(top,
+                                         "unset DOPPEL_BUILD; mount --bind . . && mount -o remount,ro,bind . && "
+                                         "cd \"$PWD\" && ./doppel compare a b"),
+                       "Read-only file system");
+}
+
+TEST(Checkout, ABuildThatFailsIsExit4) {
+    const auto result = shell(checkout(), "unset DOPPEL_BUILD; ./doppel compare a b");
+    EXPECT_EQ(result.code, 4) << result.err;
+}
+
+}  // namespace checkout_test
+}  // namespace doppel
