@@ -77,4 +77,10 @@ inline double energy_scale(double start_energy, double potential_range) {
     return std::abs(start_energy) > 1e-13 * potential_range ? std::abs(start_energy) : potential_range;
 }
 
+/// What the energy of a motion may gain, J: ten times all the energy there is; no true motion gains that, and a run that
+/// does has broken down.
+inline double greatest_gain(double start_energy, double kinetic_energy, double potential_range) {
+    return 10 * (potential_range + std::abs(start_energy) + kinetic_energy);
+}
+
 }  // namespace doppel

@@ -48,7 +48,7 @@ public:
         const auto chain = spec.chain->cast<double>();
         const auto start = motion_->observe();
         energy_scale_ = energy_scale(start.energy, chain.potential_range());
-        largest_energy_ = 10 * (chain.potential_range() + std::abs(start.energy) + start.kinetic_energy);
+        greatest_gain_ = greatest_gain(start.energy, start.kinetic_energy, chain.potential_range());
         reach_ = chain.reach();
     }
 
@@ -65,7 +65,7 @@ public:
         const auto seen = motion_->observe();
         energy_error_ = std::abs(seen.energy_change / energy_scale_);
         length_error_ = seen.length_error;
-        return std::isfinite(seen.energy) && std::isfinite(length_error_) && seen.energy_change <= largest_energy_ &&
+        return std::isfinite(seen.energy) && std::isfinite(length_error_) && seen.energy_change <= greatest_gain_ &&
                length_error_ <= reach_;
     }
     double time(long sample) const {
@@ -80,7 +80,7 @@ public:
 private:
     std::unique_ptr<Motion> motion_;
     Rational interval_;
-    double energy_scale_ = 1, largest_energy_ = 0, reach_ = 0, energy_error_ = 0, length_error_ = 0;
+    double energy_scale_ = 1, greatest_gain_ = 0, reach_ = 0, energy_error_ = 0, length_error_ = 0;
     long sample_ = 0;
 };
 

@@ -101,8 +101,21 @@ MotionSpec spec_of(const WorkProblem& problem, const Solver& solver, const Setti
     return spec;
 }
 
-/// Worst energy and length errors, as seen some 240 times on the way.
-void find_worst_errors(const WorkProblem& problem, MotionSpec spec, Rung& rung, const std::atomic<bool>& stop) {
+/// Tells a run that broke down: not finite, or energy or rods out of all proportion.
+class Proportion {
+public:
+    Proportion(const WorkProblem& problem, const Observation& start)
+        : gain_(greatest_gain(start.energy, start.kinetic_energy, problem.energy_unit)), size_(problem.size) {}
+    bool holds(const Observation& seen) const {
+        return std::isfinite(seen.energy_change) && seen.energy_change <= gain_ && seen.length_error <= size_;
+    }
+
+private:
+    double gain_, size_;  // J, m
+};
+
+/// Worst energy and length errors, as seen some 240 times on the way. False where the run broke down.
+bool find_worst_errors(const WorkProblem& problem, MotionSpec spec, Rung& rung, const std::atomic<bool>& stop) {
     constexpr long samples_wanted = 240;
     long samples = samples_wanted;
     if (const long steps = spec.steps_per_sample; steps > 0) {
@@ -114,18 +127,20 @@ void find_worst_errors(const WorkProblem& problem, MotionSpec spec, Rung& rung, 
         spec.sample_interval = *quotient(spec.sample_interval, {samples, 1});
     }
     const auto motion = make_motion(spec);
-    const double scale = energy_scale(motion->observe().energy, problem.energy_unit);
+    const auto start = motion->observe();
+    const Proportion proportion(problem, start);
+    const double scale = energy_scale(start.energy, problem.energy_unit);
     double energy = 0, length = 0;
     for (long i = 0; i < samples; ++i) {
         motion->advance(stop);
         const auto seen = motion->observe();
+        if (!proportion.holds(seen)) return false;
         energy = std::max(energy, std::abs(seen.energy_change) / scale);
         length = std::max(length, seen.length_error);
-        if (!std::isfinite(seen.energy_change)) energy = length = std::numeric_limits<double>::infinity();
     }
-    if (!std::isfinite(energy)) energy = length = NAN;
     rung.energy_error = problem.conserves_energy ? energy : NAN;
     rung.length_error = length;
+    return true;
 }
 
 /// Seconds of CPU for one advance of a motion of `spec`; `first_s` is what it took the first time.
@@ -145,6 +160,7 @@ Rung motion_rung(const WorkProblem& problem, const ReferenceSolution& solution, 
     rung.setting = setting.value;
     const auto motion_spec = spec_of(problem, solver, setting);
     const auto motion = make_motion(motion_spec);
+    const Proportion proportion(problem, motion->observe());
     const auto take_effort = [&] {
         rung.evaluations = static_cast<double>(motion->effort().evaluations);
         rung.steps = static_cast<double>(motion->effort().steps);
@@ -152,9 +168,11 @@ Rung motion_rung(const WorkProblem& problem, const ReferenceSolution& solution, 
     try {
         const double first_s = cpu_of([&] { motion->advance(stop); });
         take_effort();
-        rung.error = problem.error(motion->observe(), solution.reference);
+        const auto end = motion->observe();
+        if (!proportion.holds(end) || (spec.watched && !find_worst_errors(problem, motion_spec, rung, stop)))
+            return rung;
+        rung.error = problem.error(end, solution.reference);
         if (!std::isfinite(rung.error)) return rung;
-        if (spec.watched) find_worst_errors(problem, motion_spec, rung, stop);
         if (spec.timed) rung.cpu_s = timed(motion_spec, first_s, stop);
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::method_failed) throw;
@@ -164,19 +182,33 @@ Rung motion_rung(const WorkProblem& problem, const ReferenceSolution& solution, 
     return rung;
 }
 
+/// A chain in the state θ1 … θN, ω1 … ωN.
+Observation observed(const Pendulum<double>& chain, std::span<const double> state) {
+    Observation seen;
+    seen.bobs = bobs_of_angles(chain, State<double, Eigen::Dynamic>(Eigen::Map<const Eigen::VectorXd>(
+                                          state.data(), static_cast<Eigen::Index>(state.size()))));
+    seen.energy = energy(seen.bobs, chain.gravity);
+    seen.kinetic_energy = kinetic_energy(seen.bobs);
+    return seen;
+}
+
 Rung external_rung(const WorkProblem& problem, const ReferenceSolution& solution, const ExternalMethod& method,
                    const Setting& setting, const LadderSpec& spec) {
     auto rung = no_rung;
     rung.setting = setting.value;
-    const auto& chain = *problem.motion.chain;
+    const auto chain = problem.motion.chain->cast<double>();
+    auto release = chain.angle;
+    release.insert(release.end(), chain.rate.begin(), chain.rate.end());
+    const auto start = observed(chain, release);
     try {
-        const auto run = method.make(chain.cast<double>(), problem.duration(), setting.value);
+        const auto run = method.make(chain, problem.duration(), setting.value);
         const double first_s = cpu_of([&] { run->run(); });
         rung.evaluations = static_cast<double>(run->evaluations());
         rung.steps = static_cast<double>(run->steps());
-        Observation seen;
-        for (std::size_t i = 0; i < chain.links(); ++i) seen.bobs.push_back({.theta = run->state()[i]});
-        rung.error = problem.error(seen, solution.reference);
+        auto end = observed(chain, run->state());
+        end.energy_change = end.energy - start.energy;
+        if (!Proportion(problem, start).holds(end)) return rung;
+        rung.error = problem.error(end, solution.reference);
         if (!std::isfinite(rung.error)) rung.error = NAN;
         if (!spec.timed) return rung;
         const long runs = runs_for(first_s);

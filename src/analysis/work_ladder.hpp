@@ -82,7 +82,8 @@ struct Solver {
 
 inline constexpr double study_step = 1.0 / 30000;  // s
 
-/// What one setting of a method came to; NaN where a number could not be had.
+/// What one setting of a method came to; NaN where a number could not be had. A run has failed that gives up, is no
+/// longer finite, or whose energy or rods are out of all proportion (analysis/difference.hpp).
 struct Rung {
     double setting;                     // step, s, or tolerance
     double error;                       // WorkProblem::error()
@@ -90,6 +91,7 @@ struct Rung {
     double cpu_s;                       // of one run
     double evaluations, steps;
 
+    bool failed() const { return !std::isnan(setting) && !std::isfinite(error); }
     /// Whether it has the study's step, as nearly as whole steps allow.
     bool is_study() const { return std::abs(setting / study_step - 1) < 1e-3; }
 };
@@ -103,7 +105,7 @@ struct LadderSpec {
 
 /// A solver's settings from coarse to fine: steps by factors of √2, 1/30000 s among them, or tolerances by half
 /// decades. The ladder ends where the errors are at the floor, fall below `least_error`, or another rung would take too
-/// many evaluations; never because of the time. The study's step is always among it. A rung that breaks down has no
+/// many evaluations; never because of the time. The study's step is always among it. A rung that fails has no
 /// numbers. CPU times are those of the thread for the whole motion, without setting it up, after a run that warms the
 /// caches; short runs are repeated. Throws Error (exit 130) soon after `stop` is set.
 std::vector<Rung> run_ladder(const WorkProblem& problem, const ReferenceSolution& solution, const Solver& solver,

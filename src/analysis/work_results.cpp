@@ -35,7 +35,7 @@ Ladder merged(std::size_t problem, const Solver& solver, const std::vector<std::
         for (const auto& rungs : repeats)
             if (i < rungs.size() && std::isfinite(rungs[i].cpu_s)) times.push_back(rungs[i].cpu_s);
         auto& spread = ladder.spread.emplace_back(0);
-        if (times.empty()) continue;
+        if (times.empty() || ladder.rungs[i].failed()) continue;  // the repeats do not look on the way
         std::sort(times.begin(), times.end());
         ladder.rungs[i].cpu_s = quantile(times, 0.5);
         spread = (quantile(times, 0.75) - quantile(times, 0.25)) / 2 / ladder.rungs[i].cpu_s;

@@ -35,6 +35,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> unused_ke
 
 bool is_used(const FieldTable& table, std::string_view key, std::string_view kind) {
     if (table.name.starts_with("[[")) return key == "scene" || key == "column";
+    if (key == "difference") return true;
     return (table.key() == "scene" || table.key() == "system") &&
            std::ranges::find(used_keys, key) != used_keys.end() &&
            std::ranges::find(unused_keys, std::pair(kind, key)) == unused_keys.end();
@@ -44,6 +45,7 @@ bool is_used(const FieldTable& table, std::string_view key, std::string_view kin
 std::string starting_value(const ListedField& field, std::string_view kind) {
     if (field.key == "column") return "\"distance\"";
     if (field.key == "scene") return "\"butterfly\"";
+    if (field.key == "difference") return "0.003";  // degrees, as in the study
     auto value = field.example();
     if (kind != "links") return value;
     // of chains of one link, which the longer ones are made of
@@ -82,8 +84,8 @@ std::string first_lines(const fs::path& file, std::string_view kind) {
 /// [a] or [b].
 std::string side_lines(std::string_view side, std::string_view kind) {
     auto text = fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", side);
-    // the twins of a sweep differ in its parameter
-    if (side == "b" && kind != "sweep") text += "angle_deg = [90.003, 90]\n";
+    // the twins of a sweep or map differ in its parameter
+    if (side == "b" && kind != "sweep" && kind != "map") text += "angle_deg = [90.003, 90]\n";
     return kind == pair_kind ? text + table_lines(side_text_table(), kind) : text;
 }
 

@@ -35,7 +35,16 @@ public:
         check_distinct(table, "methods", methods_);
         for (const auto precision : {Precision::in_double, Precision::in_quad})
             for (const auto& name : methods_) add_ladder(table, name, precision);
-        for (const auto& [begin, ladder] : ladders_) check_methods(table, make_scene(pair_of(begin)));
+        bool differ = false;
+        for (const auto& [begin, ladder] : ladders_) {
+            const auto scene = make_scene(pair_of(begin));
+            check_methods(table, scene);
+            differ |= !are_one(scene);
+        }
+        if (!differ)
+            throw table.fault("methods",
+                              "step two sides that are the same; let [b] differ from [a], or name methods "
+                              "\"one/other\" for the two");
         settings_ = resolved_pair(pair_) + table.finish();
     }
 

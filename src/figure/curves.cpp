@@ -40,8 +40,11 @@ public:
             curve.pair = reader.pair({&entry});
             entry.finish();
         }
+        bool differ = false;
         for (const auto& curve : curves_) {
-            samples_ = make_scene(curve.pair).samples;  // reports faults now
+            const auto scene = make_scene(curve.pair);  // reports faults now
+            samples_ = scene.samples;
+            differ |= !are_one(scene);
             if (quantity_ == "log_ratio" && released_alike(curve.pair.a, curve.pair.b))
                 throw table.fault("quantity",
                                   "\"log_ratio\" takes sides that are released differently: there is no "
@@ -49,6 +52,9 @@ public:
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
                 throw table.fault("check_tolerance", "takes methods that go by a tolerance on both sides");
         }
+        if (!differ)
+            throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
+                              quantity_);
         settings_ = resolved_settings(own);
     }
 

@@ -79,14 +79,19 @@ public:
         auto& plot = figure.panels.back();
         plot.square = true;
         if (has_outline()) plot.curves.push_back(forbidden_outline());
-        const auto found = check_findings(numbers);
-        figure.captions.push_back(fmt::format(
-            "{} × {} releases{}.{} Taylor series of order 16 in "
-            "SIMD lanes at tolerance {}: of {} releases drawn by lot, {} flip within 0.01 s of a reference at 10⁻¹⁴ "
-            "(so of all, with 95 % confidence, {:.1f} % at least), half of them within {} s.",
-            frame_.x.count, frame_.y.count, is_at_rest() ? " from rest" : "",
-            has_outline() ? " Inside the line no rod has the energy to flip." : "", scientific(spec_.tolerance),
-            checked_, found.agreeing, 100 * share_at_least(found.agreeing, checked_), scientific(found.median)));
+        figure.captions.push_back(
+            fmt::format("{} × {} releases{}.{} Taylor series of order 16 in SIMD lanes at tolerance {}{}.",
+                        frame_.x.count, frame_.y.count, is_at_rest() ? " from rest" : "",
+                        has_outline() ? " Inside the line no rod has the energy to flip." : "",
+                        scientific(spec_.tolerance), check_words(check_findings(numbers))));
+    }
+
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        for (std::size_t row = 0; row < row_trials(); ++row)
+            if (std::any_of(numbers[row].begin(), numbers[row].end(), [](double time) { return std::isfinite(time); }))
+                return std::nullopt;
+        return fmt::format("none of the {} × {} releases flips within {} s: there is no time to draw", frame_.x.count,
+                           frame_.y.count, spec_.duration);
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -101,8 +106,9 @@ public:
         return {{"share_that_flips", flipped / all},
                 {"share_forbidden_by_energy", forbidden / all},
                 {"checked_releases", static_cast<double>(checked_)},
-                {"checked_within_10_ms", checked_ == 0 ? 1 : static_cast<double>(found.agreeing) / checked_},
-                {"within_10_ms_at_least", share_at_least(found.agreeing, checked_)},
+                {"checked_that_flip", static_cast<double>(found.flip)},
+                {"checked_within_10_ms", found.flip == 0 ? NAN : static_cast<double>(found.agreeing) / found.flip},
+                {"within_10_ms_at_least", share_at_least(found.agreeing, found.flip)},
                 {"checked_median_error_s", found.median}};
     }
 
@@ -181,22 +187,39 @@ private:
     }
 
     struct CheckFindings {
-        int agreeing = 0;   // of the checked: within 10 ms of the reference, or no flip in both
-        double median = 0;  // s, of those that flip in both
+        int flip = 0;         // of the checked: in the map, by the reference, or both
+        int agreeing = 0;     // of these: within 10 ms of the reference
+        double median = NAN;  // s, of those that flip in both
     };
     CheckFindings check_findings(std::span<const TrialNumbers> numbers) const {
         constexpr double near = 0.01;
         std::vector<double> errors;
-        int agreeing = 0;
+        CheckFindings found;
         for (std::size_t trial = row_trials(); trial < numbers.size(); ++trial)
             for (const auto& [ours, reference] : rows_of<CheckRow>(numbers[trial])) {
                 const bool both = std::isfinite(ours) && std::isfinite(reference);
                 if (both) errors.push_back(std::abs(ours - reference));
-                agreeing += both ? errors.back() <= near : std::isfinite(ours) == std::isfinite(reference);
+                found.flip += std::isfinite(ours) || std::isfinite(reference);
+                found.agreeing += both && errors.back() <= near;
             }
-        if (errors.empty()) return {agreeing, 0};
+        if (errors.empty()) return found;
         std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-        return {agreeing, errors[errors.size() / 2]};
+        found.median = errors[errors.size() / 2];
+        return found;
+    }
+
+    /// What a caption says of them, after the tolerance.
+    std::string check_words(const CheckFindings& found) const {
+        if (checked_ == 0) return "";
+        const auto drawn = fmt::format(": of {} releases drawn by lot, ", checked_);
+        if (found.flip == 0)
+            return drawn + fmt::format("none flips within {} s, nor by a reference at 10⁻¹⁴", spec_.duration);
+        return drawn +
+               fmt::format(
+                   "{} flip, {} of them within 0.01 s of a reference at 10⁻¹⁴ (so of all that flip, with "
+                   "95 % confidence, {:.1f} % at least){}",
+                   found.flip, found.agreeing, 100 * share_at_least(found.agreeing, found.flip),
+                   std::isnan(found.median) ? "" : fmt::format(", half of them within {} s", scientific(found.median)));
     }
 
     /// Where the release has just the energy for a flip: Σ W_i cosθ_i = Σ W_i − 2 min W_i (integrate/flips.hpp), by θ1.

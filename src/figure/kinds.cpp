@@ -1,6 +1,7 @@
 #include "figure/kinds.hpp"
 
 #include "scene/captions.hpp"
+#include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
 
@@ -157,6 +158,14 @@ bool released_alike(const SideSpec& a, const SideSpec& b) {
     return a.mass_kg == b.mass_kg && a.length_m == b.length_m && a.angle_deg == b.angle_deg &&
            a.omega_deg_per_s == b.omega_deg_per_s &&
            std::equal(a.particles.begin(), a.particles.end(), b.particles.begin(), b.particles.end(), same);
+}
+
+bool are_one(const Scene& scene) {
+    auto twice_a = scene.preset, twice_b = scene.preset;
+    twice_a.b = twice_a.a;
+    twice_b.a = twice_b.b;
+    twice_b.a.model = twice_b.b.model = twice_a.a.model;  // by which the sides were made is compared below
+    return scene.a.motion.model == scene.b.motion.model && resolved_sides(twice_a) == resolved_sides(twice_b);
 }
 
 std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::string& apart) {

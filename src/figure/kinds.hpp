@@ -113,6 +113,9 @@ std::string pair_subtitle(const Scene& scene, const Varied& varied = {}, const s
 /// Whether both sides are released alike: then their distance at the start is 0.
 bool released_alike(const SideSpec& a, const SideSpec& b);
 
+/// Whether both sides are one system, released and stepped alike: they move identically.
+bool are_one(const Scene& scene);
+
 /// An entry of the list of kinds.
 struct FigureKind {
     enum class System { none, release, physical_release, pair };  // what moves

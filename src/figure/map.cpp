@@ -69,7 +69,8 @@ public:
         if (x_.keeps_method && y_.keeps_method) step_by_series(pair_);
         measurement_.emplace(table, "quantity", quantity_, twins(0, 0), x_.keeps_method && y_.keeps_method,
                              exponent_spec_);
-        make_scene(twins(frame_.y.count - 1, frame_.x.count - 1));  // reports faults now
+        demand_apart(table, quantity_, x_, difference_,
+                     {make_scene(twins(0, 0)), make_scene(twins(frame_.y.count - 1, frame_.x.count - 1))});
         make_frame(table);
         const bool is_shaken = x_name_ == "system.pivot.frequency_hz" && y_name_ == "system.pivot.amplitude_m" &&
                                pair_.a.particles.empty() && pair_.a.links() == 1 &&
@@ -132,11 +133,11 @@ public:
     bool fits_cell(std::span<const double> numbers) const override { return measurement_->fits(numbers); }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        Drawn drawn;
         for (int row = 0; row < frame_.y.count; ++row)
-            for (int column = 0; column < frame_.x.count; ++column)
-                if (!std::isnan(at(numbers, row, column))) return std::nullopt;
-        return fmt::format("none of the {} × {} pairs has a {}: {}", frame_.x.count, frame_.y.count, name_of(quantity_),
-                           measurement_->words().none);
+            for (int column = 0; column < frame_.x.count; ++column) drawn.add(at(numbers, row, column));
+        return nothing_drawn(quantity_, measurement_->words(), drawn,
+                             fmt::format("{} × {}", frame_.x.count, frame_.y.count), pair_.duration_s.text());
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

@@ -2,6 +2,7 @@
 
 #include "scene/numeric_key.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace doppel {
@@ -96,6 +97,35 @@ Parameter parameter_of(FigureReader& reader, const TomlReader& table, std::strin
         parameter.every = 30;
     }
     return parameter;
+}
+
+void demand_apart(const TomlReader& table, Quantity quantity, const Parameter& parameter, const Quad& difference,
+                  const EndPairs& ends) {
+    if (!is_of_distance(quantity)) return;
+    const auto name = name_of(quantity);
+    const auto same = std::count_if(ends.begin(), ends.end(), are_one);
+    const bool are_all = same == std::ssize(ends);
+    if (are_all && parameter.is_of_one_side)
+        throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
+                          name);
+    if (are_all || (difference != 0 && same > 0))
+        throw table.fault(
+            "difference", "must set the two of a pair apart, which \"{}\" compares; {}: give {}{}.difference", name,
+            difference == 0 ? "it is 0, and both sides are the same" : text_of(difference) + " is lost in rounding",
+            difference == 0 ? "" : "a greater ", table.bare_name());
+    const auto start = [](const Scene& scene) -> double {
+        try {
+            return PairRun(scene).next(false).distance;
+        } catch (const BreakDown&) {  // told when it is run
+            return NAN;
+        }
+    };
+    if (quantity == Quantity::divergence &&
+        std::all_of(ends.begin(), ends.end(), [&](const Scene& scene) { return start(scene) == 0; }))
+        throw table.fault(
+            "quantity",
+            "\"divergence\" takes sides that are released differently: there is no ratio to a distance of "
+            "0; \"distance_at_end\" and \"parting_time\" need none");
 }
 
 std::string varied_subtitle(Preset pair, std::span<const Parameter* const> parameters, std::span<const Quad> values,

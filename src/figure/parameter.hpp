@@ -3,6 +3,7 @@
 #include "figure/kinds.hpp"
 #include "figure/quantity.hpp"
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -41,6 +42,15 @@ struct Parameter {
 /// The parameter that `key` of the table names. Throws Error (exit 2) where the pair has no such number.
 Parameter parameter_of(FigureReader& reader, const TomlReader& table, std::string_view key, const std::string& name,
                        const Preset& pair);
+
+/// The first and the last pair of a sweep or map.
+using EndPairs = std::array<Scene, 2>;
+
+/// Throws Error (exit 2), of the table's `difference` or `quantity`, where a quantity that compares the two of a pair
+/// has nothing to compare: they are one in all pairs, or `difference` is lost in rounding in one of them, or `divergence`
+/// has no first distance.
+void demand_apart(const TomlReader& table, Quantity quantity, const Parameter& parameter, const Quad& difference,
+                  const EndPairs& ends);
 
 /// What moves, how it is stepped and how far twins are apart, of pairs that are alike but for the parameters, whose first
 /// values are those of `pair`.

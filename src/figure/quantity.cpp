@@ -13,11 +13,6 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-bool is_of_distance(Quantity quantity) {
-    return quantity == Quantity::divergence || quantity == Quantity::distance_at_end ||
-           quantity == Quantity::parting_time;
-}
-
 QuantityWords words_of(Quantity quantity, const std::string& seconds) {
     switch (quantity) {
         case Quantity::divergence:
@@ -140,6 +135,23 @@ private:
 };
 
 }  // namespace
+
+std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
+                                         const std::string& pairs, const std::string& seconds) {
+    if (words.logarithmic ? drawn.above_0 : drawn.any) return std::nullopt;
+    const auto name = fmt::format(
+        "{} {}", quantity == Quantity::exponent || quantity == Quantity::energy_error ? "an" : "a", name_of(quantity));
+    if (drawn.any)
+        return fmt::format("none of the {} pairs has {} above 0, which alone a logarithmic scale can show", pairs,
+                           name);
+    if (words.none_is_bad)
+        return fmt::format(
+            "every one of the {} pairs broke down within {} s; take a finer step or tolerance, or a shorter "
+            "scene.duration_s",
+            pairs, seconds);
+    return fmt::format("none of the {} pairs has {}: {}{}", pairs, name, words.none,
+                       quantity == Quantity::parting_time ? ", or apart from the start" : "");
+}
 
 void step_by_series(Preset& pair) {
     constexpr double most_exact = 1e-13;  // rad, that a swing in double keeps

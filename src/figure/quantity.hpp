@@ -25,6 +25,12 @@ inline constexpr std::string_view quantity_help =
     "largest "
     "Lyapunov exponent, the time of the first flip, the largest energy error, or how far an angle goes from its start";
 
+/// Whether it compares the two of a pair by their distances.
+constexpr bool is_of_distance(Quantity quantity) {
+    return quantity == Quantity::divergence || quantity == Quantity::distance_at_end ||
+           quantity == Quantity::parting_time;
+}
+
 /// What figures say of a quantity.
 struct QuantityWords {
     std::string label;                 // of an axis, with the unit
@@ -35,6 +41,19 @@ struct QuantityWords {
     bool is_of_side_a = false;  // alone: what sets the two apart does not matter
     std::string method = {};    // by which it is found, where not by the preset's
 };
+
+/// Whether any of the numbers is one, and one above 0.
+struct Drawn {
+    bool any = false, above_0 = false;
+    void add(double number) {
+        any |= std::isfinite(number);
+        above_0 |= std::isfinite(number) && number > 0;
+    }
+};
+/// Why a picture of them has nothing in it; nothing where it has. `pairs` = how many there are,
+/// each over so many seconds.
+std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
+                                         const std::string& pairs, const std::string& seconds);
 
 /// Where both sides ask for an accuracy and can be stepped by Taylor series in lanes: steps them so, as exactly as double
 /// does, in place of a choice of the method for every pair. It costs less than the rough methods.

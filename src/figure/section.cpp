@@ -101,6 +101,12 @@ public:
                         grouped(std::lround(exponent_spec_.duration_s))));
     }
 
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        for (const auto& orbit : numbers)
+            if (orbit_of(orbit).crossings > 0) return std::nullopt;
+        return fmt::format("no orbit comes back to θ₁ = 0 within {:g} s; take a higher energy_J", spec_.longest_s);
+    }
+
     std::string subtitle() const override {
         return fmt::format("Poincaré sections θ₁ = 0, ω₁ > 0 of a double pendulum, {}; energies above hanging at rest",
                            links_words(release_));

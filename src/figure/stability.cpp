@@ -106,6 +106,13 @@ public:
             blow_up, duration_.value(), blow_up));
     }
 
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        for (const auto& trial : numbers)
+            if (std::any_of(trial.begin(), trial.end(), [](double error) { return std::isfinite(error); }))
+                return std::nullopt;
+        return "every release blows up at every step and tolerance; take finer ones";
+    }
+
     std::string subtitle() const override { return swept_words(release_, parameter_->is_ratio); }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

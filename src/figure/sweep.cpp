@@ -27,7 +27,7 @@ public:
         if (exponent_ && quantity_ != Quantity::exponent)
             measurements_.emplace_back(table, "exponent", Quantity::exponent, first, parameter_.keeps_method,
                                        exponent_spec_);
-        make_scene(twins(trials_ - 1));  // reports faults now
+        demand_apart(table, quantity_, parameter_, difference_, {make_scene(first), make_scene(twins(trials_ - 1))});
         subtitle_ = varied_subtitle(pair_, std::array{&std::as_const(parameter_)}, std::array{value(0)}, difference_,
                                     measurements_.front().words());
     }
@@ -115,15 +115,11 @@ public:
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
-        if (measurements_.size() > 1 || without(numbers) < trials_) return std::nullopt;
-        const auto seconds = pair_.duration_s.text();
-        if (!measurements_.front().words().none_is_bad)
-            return fmt::format("none of the {} pairs has a {}: {}", trials_, name_of(quantity_),
-                               measurements_.front().words().none);
-        return fmt::format(
-            "every one of the {} pairs broke down within {} s; take a finer step or tolerance, or a shorter "
-            "scene.duration_s",
-            trials_, seconds);
+        if (measurements_.size() > 1) return std::nullopt;
+        Drawn drawn;
+        for (const auto& trial : numbers) drawn.add(trial[0]);
+        return nothing_drawn(quantity_, measurements_.front().words(), drawn, fmt::format("{}", trials_),
+                             pair_.duration_s.text());
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -194,13 +190,16 @@ private:
         return pair;
     }
 
-    /// How many pairs have no such number. Of those released alike there is no ratio to their first distance: none is
+    /// How many pairs have no such number. Of two that are one there is no ratio to their first distance: it is not
     /// missing.
     std::size_t without(std::span<const TrialNumbers> numbers) const {
-        const auto pair = twins(0);
-        if (quantity_ == Quantity::divergence && released_alike(pair.a, pair.b)) return 0;
-        return static_cast<std::size_t>(
-            std::count_if(numbers.begin(), numbers.end(), [](const auto& trial) { return !std::isfinite(trial[0]); }));
+        std::size_t missing = 0;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            if (std::isfinite(numbers[i][0])) continue;
+            const auto pair = twins(i);
+            missing += quantity_ != Quantity::divergence || !released_alike(pair.a, pair.b);
+        }
+        return missing;
     }
 
     std::string label_of_first() const {

@@ -108,17 +108,38 @@ public:
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (const auto& ladder : merged_ladders(numbers))
-            for (const auto& rung : ladder.rungs)
-                add_row(table, problems_.all[ladder.problem].name, name_of(ladder.solver.model), ladder.solver.name(),
-                        rung.setting, rung.error, rung.energy_error, rung.length_error, rung.cpu_s, rung.evaluations,
-                        rung.steps);
+            for (const auto& rung : ladder.rungs) {
+                for (const std::string_view word :
+                     {std::string_view(problems_.all[ladder.problem].name), name_of(ladder.solver.model)})
+                    table.add(word);
+                table.add(std::string_view(ladder.solver.name()));
+                table.add_or_empty(rung.setting);
+                if (rung.failed())
+                    table.add(std::string_view("failed"));
+                else
+                    table.add_or_empty(rung.error);
+                for (const double number :
+                     {rung.energy_error, rung.length_error, rung.cpu_s, rung.evaluations, rung.steps})
+                    table.add_or_empty(number);
+                table.end_row();
+            }
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
-        for (const auto& trial : numbers.subspan(problems_.all.size()))
-            for (const auto& rung : rows_of<Rung>(trial))
-                if (std::isfinite(rung.error)) return std::nullopt;
-        return "every run of every method broke down; raise work_precision.most_evaluations for finer settings";
+        bool any = false;
+        for (const auto& ladder : merged_ladders(numbers)) {
+            if (!useful_rungs(ladder, cost_, {0, most_error_shown}).empty()) return std::nullopt;
+            for (const auto& rung : ladder.rungs) {
+                any |= std::isfinite(rung.error);
+                if (ladder.solver.is_study() && rung.is_study() && !rung.failed()) return std::nullopt;
+            }
+        }
+        if (!any)
+            return "every run of every method broke down; raise work_precision.most_evaluations for finer settings";
+        return fmt::format(
+            "no run of any method errs by less than {:g}{}; raise work_precision.most_evaluations, or take a "
+            "shorter motion",
+            most_error_shown, has_angles() ? " rad" : " of the size");
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {

@@ -19,6 +19,8 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
 std::span<const std::string_view> standard_problem_names();
 WorkProblems problem_of(Preset film);
 
+inline constexpr double most_error_shown = 1;  // rad, or of the size
+
 /// Everything that the diagram of one problem shows.
 struct WorkDiagram {
     std::size_t index;

@@ -13,7 +13,6 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr double rounding = 0x1p-53;
-constexpr double most_shown = 1;  // rad
 
 /// Methods of a family share a hue of the palette; of two, the second is dashed.
 struct Look {
@@ -38,7 +37,7 @@ Look look_of(std::string_view method) {
 /// The errors shown.
 ErrorRange range_of(const WorkDiagram& diagram) {
     constexpr double at_floor = 10;
-    return {std::isnan(diagram.floor) ? rounding : at_floor * diagram.floor, most_shown};
+    return {std::isnan(diagram.floor) ? rounding : at_floor * diagram.floor, most_error_shown};
 }
 
 /// An error may be 0 by luck, which a logarithmic axis has no place for.
@@ -109,7 +108,7 @@ void add_study(const WorkDiagram& diagram, Plot& plot) {
 /// The limits of the axes: from the least useful accuracy down to the floors, where errors come near them.
 void fit(const WorkDiagram& diagram, Plot& plot) {
     constexpr double of_use = 0.03, near = 100;
-    double least = most_shown, cheapest = std::numeric_limits<double>::infinity();
+    double least = most_error_shown, cheapest = std::numeric_limits<double>::infinity();
     for (const auto& curve : plot.curves)
         for (std::size_t i = 0; i < curve.x.size(); ++i) {
             least = std::fmin(least, curve.y[i]);
@@ -117,7 +116,7 @@ void fit(const WorkDiagram& diagram, Plot& plot) {
         }
     if (std::isfinite(cheapest)) plot.x.low = 0.5 * cheapest;
     plot.y.low = least / 4;
-    plot.y.high = 20 * most_shown;  // room for the study's label
+    plot.y.high = 20 * most_error_shown;  // room for the study's label
     if (!(least < near * diagram.floor)) return;
     const double grown = diagram.floor / rounding;
     const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);

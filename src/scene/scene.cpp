@@ -211,8 +211,7 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
     : scene_(scene), side_(side), name_(name), motion_(motion_of(scene, side, name)) {
     const auto start = motion_->observe();
     energy_scale_ = doppel::energy_scale(start.energy, side.energy_unit);
-    // ten times all the energy there is: no true motion gains that
-    largest_energy_ = 10 * (side.energy_unit + std::abs(start.energy) + start.kinetic_energy);
+    greatest_gain_ = greatest_gain(start.energy, start.kinetic_energy, side.energy_unit);
     longest_rod_ = side.reach;
 }
 
@@ -231,7 +230,7 @@ BreakDown SideRun::broken(const std::string& what) const {
 
 void SideRun::watch(const Observation& seen) {
     if (const auto fault = not_finite(seen, side_.has_angles)) throw broken(*fault);
-    if (seen.energy_change > largest_energy_)
+    if (seen.energy_change > greatest_gain_)
         throw broken(
             fmt::format("the energy has grown by {:.3g} J, more than ten times what there is", seen.energy_change));
     if (seen.length_error > longest_rod_)

@@ -171,7 +171,7 @@ private:
     const Side& side_;
     char name_;
     std::unique_ptr<Motion> motion_;
-    double energy_scale_ = 1, largest_energy_ = 0, longest_rod_ = 0;  // J, J, m
+    double energy_scale_ = 1, greatest_gain_ = 0, longest_rod_ = 0;  // J, J, m
     long tick_ = -1;
 };
 

@@ -33,6 +33,17 @@ const std::vector<Ladder> ladders{ladder(0, "slow", Model::angles, {7, 8, 9, 10}
                                   ladder(0, "", Model::angles, {1, 1, 1, 1}, &two),
                                   ladder(0, "", Model::angles, {0.5, 0.5, 0.5, 0.5}, &one)};
 
+/// The first repeat alone looks for break-downs on the way.
+TEST(Merged, LeavesOutTheTimesOfFailedRuns) {
+    const Rung good{.setting = 0.1, .error = 0.01, .cpu_s = 3}, bad{.setting = 0.2, .error = NAN, .cpu_s = NAN},
+        unseen{.setting = 0.2, .error = 0, .cpu_s = 1};
+    const auto ladder = merged(0, {Model::angles, "slow"}, {{bad, good}, {unseen, good}});
+    EXPECT_TRUE(ladder.rungs[0].failed());
+    EXPECT_TRUE(std::isnan(ladder.rungs[0].cpu_s));
+    EXPECT_FALSE(ladder.rungs[1].failed());
+    EXPECT_EQ(ladder.rungs[1].cpu_s, 3);
+}
+
 TEST(Ranked, IsByTheSumOfTheRanks) {
     using Names = std::vector<std::string>;
     // at 0.1: fast, even, slow on both

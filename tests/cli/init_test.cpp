@@ -121,6 +121,24 @@ TEST(Init, WritesAFigureThatIsDrawn) {
                                         "section.crossings=10", "--set", "chart.scale=0.25"});
     EXPECT_EQ(figure.code, 0) << figure.err;
     EXPECT_TRUE(fs::exists(folder / "out/mine/mine.png"));
+    // twins that differ
+    for (const auto& [kind, small, column] :
+         {std::tuple{"sweep", std::vector<std::string>{"sweep.step=30", "scene.duration_s=2"}, "average_log_ratio"},
+          {"map", {"map.columns=8", "map.rows=8", "scene.duration_s=5"}, "flip_time_s"},
+          {"map",
+           {"map.columns=4", "map.rows=4", "scene.duration_s=1", "map.quantity=\"divergence\""},
+           "average_log_ratio"}}) {
+        const std::string file = std::string(kind) + ".toml";
+        doppel(folder, {"init", "--figure", kind});
+        std::vector<std::string> arguments{"figure", file, "--set", "chart.scale=0.25"};
+        for (const auto& set : small) arguments.insert(arguments.end(), {"--set", set});
+        const auto drawn = doppel(folder, arguments);
+        EXPECT_EQ(drawn.code, 0) << kind << drawn.err;
+        const auto table = bytes_of(folder / "out" / kind / (std::string(kind) + ".csv"));
+        EXPECT_NE(table.find(column), std::string::npos) << table;
+        const std::string last = table.substr(table.rfind(',', table.size()) + 1);
+        EXPECT_GT(last.size(), 4u) << kind << last;  // a number, and the end of its line
+    }
     EXPECT_EQ(doppel(folder, {"init", "--figure", "pair"}).code, 2);
     EXPECT_EQ(doppel(folder, {"init"}).err, "doppel: init wants the name of the new file: doppel init FILE.toml\n");
     EXPECT_EQ(doppel(folder, {"init", "mine.toml", "--figure", "sweep"}).err,

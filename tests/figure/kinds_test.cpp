@@ -225,6 +225,52 @@ TEST(FlipMap, ForbidsWhatTheEnergyForbids) {
     EXPECT_LT(found.at("within_10_ms_at_least"), 1);  // a few that were drawn by lot are not all
 }
 
+/// A part of the map, and what its caption and findings say of the releases that were checked.
+TEST(FlipMap, CountsOnlyChecksThatFlip) {
+    struct Checked {
+        std::string caption;
+        std::map<std::string, double> found;
+        long flip = 0;  // by either of the two
+    };
+    const auto checked = [](const std::string& range) {
+        const auto figure = figure_of(
+            "flip-map", {"flip_map.columns=8", "flip_map.rows=8", "flip_map.duration_s=5", "flip_map.checked=20",
+                         "flip_map.theta1_range_deg=" + range, "flip_map.theta2_range_deg=" + range});
+        const auto trials = computed(figure);
+        Figure page;
+        figure.experiment->draw(trials, page);
+        Checked made{.caption = page.captions.back(), .found = findings_of(figure)};
+        for (std::size_t t = trials.size() - 2; t < trials.size(); ++t)  // ten releases each: ours, reference, ours …
+            for (std::size_t i = 0; i < trials[t].size(); i += 2)
+                made.flip += std::isfinite(trials[t][i]) || std::isfinite(trials[t][i + 1]);
+        return made;
+    };
+    const auto still = checked("[-30, 30]");
+    EXPECT_EQ(still.flip, 0);
+    EXPECT_EQ(still.found.at("checked_that_flip"), 0);
+    EXPECT_TRUE(std::isnan(still.found.at("checked_within_10_ms")));
+    EXPECT_EQ(still.found.at("within_10_ms_at_least"), 0);
+    EXPECT_TRUE(std::isnan(still.found.at("checked_median_error_s")));
+    EXPECT_NE(still.caption.find("of 20 releases drawn by lot, none flips within 5 s, nor by a reference at 10⁻¹⁴."),
+              std::string::npos)
+        << still.caption;
+    EXPECT_EQ(still.caption.find('%'), std::string::npos) << still.caption;
+    const auto all = checked("[-180, 180]");
+    EXPECT_GT(all.flip, 5);  // measured 12
+    EXPECT_LT(all.flip, 20);
+    EXPECT_EQ(all.found.at("checked_that_flip"), all.flip);
+    EXPECT_EQ(all.found.at("checked_within_10_ms"), 1);
+    // of n that all agree the share is at least 0.05^(1/n)
+    const double least = std::pow(0.05, 1.0 / static_cast<double>(all.flip));
+    EXPECT_NEAR(all.found.at("within_10_ms_at_least"), least, 1e-9);  // measured 1e-16
+    EXPECT_NE(
+        all.caption.find(fmt::format("of 20 releases drawn by lot, {0} flip, {0} of them within 0.01 s of a reference "
+                                     "at 10⁻¹⁴ (so of all that flip, with 95 % confidence, {1:.1f} % at least)",
+                                     all.flip, 100 * least)),
+        std::string::npos)
+        << all.caption;
+}
+
 TEST(Curves, CheckToleranceTellsUntilWhenTheyStand) {
     const auto found = findings_of(figure_of("fig2-left", {"scene.duration_s=2", "system.integrator=\"dop853\"",
                                                            "system.tolerance=1e-10", "curves.check_tolerance=1e-12"}));

@@ -59,7 +59,7 @@ TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
 }
 
 TEST(FigurePreset, DrawsOnlyLettersThatTheFontHas) {
-    const std::string scene = "\n[scene]\nkind = \"curves\"\n[[curve]]\ncolumn = \"one\"\n";
+    const std::string scene = "\n[scene]\nkind = \"curves\"\n[b]\nangle_deg = 91\n[[curve]]\ncolumn = \"one\"\n";
     const auto refusal = [](const std::string& text) { return error_of([&] { figure_from(text); }).second; };
     const std::string lacks = " holds \"双\" (U+53CC), which the built-in font lacks; ";
     for (const std::string key : {"title", "subtitle", "erratum"}) {
@@ -67,7 +67,7 @@ TEST(FigurePreset, DrawsOnlyLettersThatTheFontHas) {
         EXPECT_EQ(message.rfind("presets/x.toml:1:1: " + key + lacks, 0), 0u) << message;
     }
     EXPECT_EQ(refusal("captions = [\"a\", \"双\"]" + scene).rfind("presets/x.toml:1:1: captions" + lacks, 0), 0u);
-    EXPECT_EQ(refusal(scene + "label = \"双\"").rfind("presets/x.toml:6:1: [[curve]] 1 label" + lacks, 0), 0u);
+    EXPECT_EQ(refusal(scene + "label = \"双\"").rfind("presets/x.toml:8:1: [[curve]] 1 label" + lacks, 0), 0u);
     EXPECT_EQ(refusal(scene), "nothing was thrown");
 }
 
@@ -149,7 +149,7 @@ TEST(FigurePreset, OfASweepSaysWhatWasSet) {
     for (const auto& [set, words] : std::vector<std::pair<std::string, std::string>>{
              {"sweep.difference=0.25", "two links in angles, θ₂ = 0, twins 0.25° apart; explicit"},
              {"sweep.difference=-0.25", ", twins 0.25° apart; explicit"},
-             {"sweep.difference=0", "two links in angles, θ₂ = 0; explicit Euler, 1/30 000 s"},
+             {"sweep.quantity=\"energy_error\"", "two links in angles, θ₂ = 0; explicit Euler, 1/30 000 s"},
              {"system.angle_deg=[0, 30.5]", "two links in angles, θ₂ = 30.5°, twins"},
              {"system.omega_deg_per_s=[0, 5]", ", θ₂ = 0, ω = 0/5 °/s, twins"},
              {"system.integrator=\"rk4\"", "; "},

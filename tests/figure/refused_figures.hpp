@@ -159,6 +159,29 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{"links", "[system]\nlinks = 2", "", {"one link"}},
     RefusedFigure{"links", "[system]\nlinks = 1\n[links]\nfrom = 5\nto = 3", ":7:1: [links] to", {"it is 3"}},
     RefusedFigure{"links", "[system]\nlinks = 1\nintegrator = \"rk4\"", ":5:1: [system] has no \"integrator\"", {}},
+    RefusedFigure{"sweep", "[sweep]\nto = 90", ": [sweep] difference", {"\"divergence\"", "give sweep.difference"}},
+    RefusedFigure{"sweep", "[sweep]\nquantity = \"distance_at_end\"", ": [sweep] difference", {"the same"}},
+    RefusedFigure{"sweep",
+                  "[sweep]\ndifference = 1e-300",
+                  ":4:1: [sweep] difference",
+                  {"1e-300 is lost in rounding", "give a greater sweep.difference"}},
+    RefusedFigure{"sweep",
+                  "[sweep]\nparameter = \"system.gravity_m_per_s2\"\nfrom = 9\nto = 10\ndifference = 0.01",
+                  ": [sweep] quantity",
+                  {"\"divergence\"", "released differently", "\"distance_at_end\""}},
+    RefusedFigure{"sweep",
+                  "[sweep]\nparameter = \"system.step_s\"\nfrom = 0.001\nto = 0.002\npoints = 2\n"
+                  "quantity = \"parting_time\"",
+                  ":8:1: [sweep] quantity",
+                  {"\"parting_time\"", "let [b] differ from [a]"}},
+    RefusedFigure{"map", "[map]\nquantity = \"divergence\"", ": [map] difference", {"give map.difference"}},
+    RefusedFigure{
+        "map", "[map]\nquantity = \"parting_time\"\ndifference = -1e-300", ":5:1: [map] difference", {"-1e-300"}},
+    RefusedFigure{"curves", "[curves]\nquantity = \"distance\"", ":4:1: [curves] quantity", {"let [b] differ"}},
+    RefusedFigure{"convergence",
+                  "[convergence]\nmethods = [\"rk4\"]",
+                  ":4:1: [convergence] methods",
+                  {"the same", "let [b] differ", "\"one/other\""}},
     RefusedFigure{"fractal", "", ":2:1: [scene] kind", {"\"sweep\"", "it is \"fractal\""}}};
 
 }  // namespace doppel

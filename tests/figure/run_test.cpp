@@ -73,7 +73,10 @@ TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
 
 TEST(FigureRun, ManifestHasNullForWhatIsNoNumber) {
     const auto out = fresh_folder();
-    run_figure(small_sweep({"sweep.difference=0"}), {.out = out});
+    // every pair breaks down, and exponents are drawn
+    run_figure(figure_of("fig2-right", {"sweep.from=60", "sweep.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
+                                        "system.step_s=1", "sweep.exponent=true", "sweep.exponent_duration_s=10"}),
+               {.out = out});
     EXPECT_TRUE(manifest_of(out, "fig2-right")["findings"]["greatest_average_log_ratio"].is_null());
 }
 
@@ -167,15 +170,49 @@ TEST(FigureRun, DrawsASweepOfWhichSomeBreakDown) {
 
 TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
     const auto out = fresh_folder() / "out";
-    const auto twice_the_same = figure_of("fig6", {"scene.duration_s=0.5", "a.model=\"angles\"", "b.model=\"angles\"",
-                                                   "curves.logarithmic=true"}),
-               no_step = figure_of("why-they-part",
-                                   {"scene.duration_s=\"1/2\"", "b.model=\"angles\"", "convergence.methods=[\"rk4\"]",
-                                    "convergence.halvings=1", "convergence.quad_halvings=1"}),
-               at_rest = figure_of("drift", {"drift.duration_s=10", "drift.methods=[\"rk4\"]", "drift.projected=[]",
-                                             "system.angle_deg=[0, 0]"});
-    for (const auto* figure : {&twice_the_same, &no_step, &at_rest})
-        expect_error(ExitCode::method_failed, {figure->name + ": "}, [&] { run_figure(*figure, {.out = out}); });
+    // both hang at rest, each under its own gravity
+    const auto at_rest = [](const std::string& kind, const std::string& keys) {
+        return figure_from("[scene]\nkind = \"" + kind +
+                           "\"\nduration_s = \"1/2\"\n[system]\nangle_deg = [0, 0]\n[b]\ngravity_m_per_s2 = 9\n" +
+                           keys);
+    };
+    const std::string over_lengths = "parameter = \"system.length_m\"\n",
+                      cells = "columns = 3\nrows = 3\nx_from = 1\nx_to = 2\ny_from = 1\ny_to = 2\n";
+    const std::vector<std::pair<FigurePreset, std::string>> all{
+        {at_rest("curves", "[curves]\nlogarithmic = true\n"), "nothing is greater than 0"},
+        {at_rest("convergence", "[convergence]\nmethods = [\"rk4\"]\nhalvings = 1\nquad_halvings = 1\n"),
+         "the two sides never part"},
+        {at_rest("sweep", "[sweep]\nfrom = 1\nto = 3\nquantity = \"distance_at_end\"\n" + over_lengths),
+         "none of the 3 pairs has a distance_at_end above 0"},
+        {at_rest("sweep", "[sweep]\nfrom = 1\nto = 3\nquantity = \"energy_error\"\n" + over_lengths),
+         "none of the 3 pairs has an energy_error above 0"},
+        {at_rest("map",
+                 "[map]\nquantity = \"energy_error\"\nx_parameter = \"system.length_m\"\ny_parameter = "
+                 "\"system.mass_kg\"\n" +
+                     cells),
+         "none of the 3 × 3 pairs has an energy_error above 0"},
+        {at_rest("map", "[map]\nx_to = 10\nx_from = -10\ny_to = 10\ny_from = -10\ncolumns = 3\nrows = 3\n"),
+         "none of the 3 × 3 pairs has a flip_time: no flip within 1/2 s"},
+        {figure_of("flip-map", {"flip_map.columns=4", "flip_map.rows=4", "flip_map.theta1_range_deg=[-30, 30]",
+                                "flip_map.theta2_range_deg=[-30, 30]", "flip_map.checked=0"}),
+         "none of the 4 × 4 releases flips within 20 s"},
+        {figure_of("stability", {"stability.methods=[\"euler\"]", "stability.rows=2", "stability.columns=2",
+                                 "stability.step_from_s=0.5", "stability.step_to_s=1"}),
+         "every release blows up"},
+        {figure_of("poincare", {"system.gravity_m_per_s2=1e-12", "section.energy_J=[1e-12]", "section.orbits=2",
+                                "section.exponent_duration_s=10"}),
+         "no orbit comes back"},
+        {figure_of("speed-accuracy", {"chart.cost=\"evaluations\"", "work_precision.problems=[\"P4\"]",
+                                      "work_precision.methods=[\"semi-implicit-euler\"]",
+                                      "work_precision.models=[\"angles\"]", "work_precision.most_evaluations=150"}),
+         "no run of any method"},
+        {figure_of("drift",
+                   {"drift.duration_s=10", "drift.methods=[\"rk4\"]", "drift.projected=[]", "system.angle_deg=[0, 0]"}),
+         "no method makes an error"}};
+    for (const auto& [figure, words] : all) {
+        SCOPED_TRACE(words);
+        expect_error(ExitCode::method_failed, {figure.name + ": ", words}, [&] { run_figure(figure, {.out = out}); });
+    }
     EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
 }
 

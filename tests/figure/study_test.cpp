@@ -177,10 +177,16 @@ TEST(Sweep, EndsWhereItWasTold) {
 }
 
 TEST(Sweep, LeavesOutTwinsThatAreOne) {
-    // neither an angle nor a mass differs: no ratio to take a logarithm of
-    const auto table = table_of(figure_of("fig2-right", {"sweep.difference=0", "sweep.to=1", "scene.duration_s=1"}));
+    // at 1 kg neither an angle nor a mass differs: no ratio to take a logarithm of, and nothing broke down
+    const auto figure =
+        figure_of("fig2-right", {"sweep.parameter=\"b.mass_kg[0]\"", "sweep.difference=0", "sweep.from=1", "sweep.to=2",
+                                 "system.angle_deg=[90, 0]", "scene.duration_s=1"});
+    const auto trials = computed(figure);
+    const Table table(table_text(figure, trials));
     ASSERT_EQ(table.rows.size(), 2u);
-    for (const auto& row : table.rows) EXPECT_TRUE(std::isnan(row[1]));
+    EXPECT_TRUE(std::isnan(table.rows[0][1]));
+    EXPECT_TRUE(std::isfinite(table.rows[1][1]));
+    for (const auto& finding : figure.experiment->findings(trials)) EXPECT_NE(finding.key, "trials_broken_down");
 }
 
 TEST(Sweep, ExponentTellsRegularFromChaotic) {

@@ -218,7 +218,7 @@ TEST(Tiles, OfAnotherThemeOrScaleAreAnothers) {
     TileRun run;
     const std::string map =
         "title = \"x\"\n[scene]\nkind = \"map\"\nduration_s = 0.5\n[map]\ncolumns = 6\nrows = 4\nquantity = "
-        "\"divergence\"\n";
+        "\"divergence\"\ndifference = 0.01\n";
     run(figure_from(map));
     for (const std::string other : {"[chart]\ntheme = \"dark\"\n", "color_range = [0.3, 0.5]\n"}) {
         const auto [code, message] = refusal(run, figure_from(map + other));
