@@ -38,6 +38,7 @@ Json text_schema(const ListedField& field) {
     Json schema{{"type", "string"}};
     if (!field.choices.empty()) schema["enum"] = field.choices;
     if (field.is_needed()) schema["minLength"] = 1;
+    if (field.is_drawn) schema["maxLength"] = most_letters;
     if (!field.pattern.empty()) schema["pattern"] = field.pattern;
     return schema;
 }
@@ -72,10 +73,11 @@ Json value_schema(const ListedField& field) {
     if (is(type_words<std::vector<double>>()))
         return field.most > 0 ? list_schema(number, 1, field.most)
                               : Json{{"anyOf", {number, list_schema(number, 1, 0)}}};
-    if (field.is_list()) return list_schema(text_schema(field), is(type_words<Panels>()) ? 1 : 0, 0);
+    const std::size_t texts = field.is_drawn ? most_texts : 0;
+    if (field.is_list()) return list_schema(text_schema(field), is(type_words<Panels>()) ? 1 : 0, texts);
     if (is(type_words<QuadPair>()) || is(type_words<Range>())) return pair;
     if (is(type_words<ChosenText>()))
-        return {{"anyOf", {{{"type", "boolean"}}, text_schema(field), list_schema(text_schema(field), 0, 0)}}};
+        return {{"anyOf", {{{"type", "boolean"}}, text_schema(field), list_schema(text_schema(field), 0, texts)}}};
     if (is(type_words<EndSpec>())) return {{"anyOf", {text_schema(field), pair}}};
     if (is(type_words<Size>())) return list_schema(whole, 2, 2);
     if (is(type_words<Color>())) return color;

@@ -31,7 +31,8 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
         json["steps_per_sample"] = side.motion.steps_per_sample;
     }
     if (side.choice)
-        json["accuracy"] = {{"asked_rad", side.choice->accuracy},
+        json["accuracy"] = {{"unit", side.has_angles ? "rad" : fmt::format("{:g} m, the size", side.reach)},
+                            {"asked_rad", side.choice->accuracy},
                             {"estimated_error_rad", side.choice->estimated_error},
                             {"horizon_s", scene.time(side.choice->horizon)},
                             {"holds_to_the_end", side.choice->horizon == scene.samples},

@@ -26,7 +26,7 @@ std::unique_ptr<Stepper<Scalar>> make_mechanism_stepper(const MotionSpec& spec);
 namespace {
 
 /// A fast rotation or drive is checked for interruption every so many rad; some 0.1 s of work.
-constexpr double most_unwatched = 1e4;
+constexpr double most_unwatched = 2e3;
 
 /// A model and the method that steps it, from sample to sample.
 template <class Scalar>

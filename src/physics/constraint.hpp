@@ -63,6 +63,8 @@ struct Anchor {
     std::size_t particle;
     Place<Scalar> place;  // m
 
+    friend bool operator==(const Anchor&, const Anchor&) = default;
+
     template <class Vector>
     std::array<Scalar, rows> value(const Vector& q) const {
         const Place<Scalar> r = part_of(q, particle) - place;
@@ -99,6 +101,8 @@ struct Rod {
     std::size_t a;
     End<Scalar> b;
     Scalar length;  // m, > 0
+
+    friend bool operator==(const Rod&, const Rod&) = default;
 
     template <class Vector>
     std::array<Scalar, rows> value(const Vector& q) const {
@@ -146,6 +150,8 @@ struct SlotLine {
     Place<Scalar> point;      // m
     Place<Scalar> direction;  // not zero; a picture draws the slot from `point` to `point` + `direction`
 
+    friend bool operator==(const SlotLine&, const SlotLine&) = default;
+
     template <class Vector>
     std::array<Scalar, rows> value(const Vector& q) const {
         const Place<Scalar> r = part_of(q, particle) - point;
@@ -182,6 +188,8 @@ struct SlotCircle {
     Scalar radius;         // m, > 0
 
     Rod<Scalar> rod() const { return {particle, centre, radius}; }
+
+    friend bool operator==(const SlotCircle&, const SlotCircle&) = default;
 
     template <class Vector>
     std::array<Scalar, rows> value(const Vector& q) const {

@@ -30,6 +30,8 @@ struct Gravity {
 
     Scalar g = Scalar(98) / Scalar(10);  // m/s²
 
+    friend bool operator==(const Gravity&, const Gravity&) = default;
+
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector&, const Vector&, Sum& a) const {
         for (Eigen::Index i = 0; i < masses.m.size(); ++i) a[2 * i + 1] -= g;
@@ -58,6 +60,8 @@ struct Spring {
     Scalar stiffness;            // N/m, > 0
     Scalar length;               // m, ≥ 0, at rest
     Scalar damping = Scalar(0);  // N s/m, ≥ 0
+
+    friend bool operator==(const Spring&, const Spring&) = default;
 
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector& v, Sum& sum) const {
@@ -111,6 +115,8 @@ struct Attraction {
     std::size_t a, b;
     Scalar constant = newton_constant<Scalar>();  // G, m³/(kg s²)
 
+    friend bool operator==(const Attraction&, const Attraction&) = default;
+
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector&, Sum& sum) const {
         const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
@@ -143,6 +149,8 @@ struct Droplet {
     Place<Scalar> place;                          // p, m
     Scalar mass;                                  // M, kg, > 0
     Scalar constant = newton_constant<Scalar>();  // G, m³/(kg s²)
+
+    friend bool operator==(const Droplet&, const Droplet&) = default;
 
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector&, Sum& sum) const {

@@ -18,6 +18,8 @@ struct Particle {
     Scalar mass;                                                   // kg, > 0
     Place<Scalar> place;                                           // m, at t = 0
     Place<Scalar> velocity = Place<Scalar>(Scalar(0), Scalar(0));  // m/s, at t = 0
+
+    friend bool operator==(const Particle&, const Particle&) = default;
 };
 
 /// What a mechanism is made of and how it is released. Constraints and forces name particles by their index, from 0;
@@ -27,6 +29,8 @@ struct Assembly {
     std::vector<Particle<Scalar>> particles;
     std::vector<Constraint<Scalar>> constraints;
     std::vector<Force<Scalar>> forces;
+
+    friend bool operator==(const Assembly&, const Assembly&) = default;
 
     /// The same in another scalar.
     template <class To>

@@ -1,6 +1,7 @@
 #include "scene/captions.hpp"
 
 #include "plot/axis.hpp"
+#include "scene/side_keys.hpp"
 
 #include <fmt/ranges.h>
 
@@ -111,7 +112,7 @@ std::string control_words(const Side& side) {
 }
 
 /// Of side b, or of side a.
-std::vector<Statement> statements(const Scene& scene, bool of_b) {
+std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDifference>& differences, bool of_b) {
     const auto &spec = of_b ? scene.preset.b : scene.preset.a, &other = of_b ? scene.preset.a : scene.preset.b;
     const auto& side = of_b ? scene.b : scene.a;
     std::vector<Statement> all;
@@ -123,6 +124,8 @@ std::vector<Statement> statements(const Scene& scene, bool of_b) {
     }
     for (auto& text : physical_differences(spec.physical, other.physical)) all.push_back({std::move(text)});
     say_particles(scene.preset.a, scene.preset.b, of_b, all);
+    for (const auto& difference : differences)
+        if (difference.any().is_of_part) all.push_back({difference.words(of_b)});
     const auto place = [](const QuadPair& xy) { return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1])); };
     const auto is_droplet = [](const ForceSpec& force) { return std::holds_alternative<DropletSpec>(force.part); };
     const auto droplet = std::find_if(spec.forces.begin(), spec.forces.end(), is_droplet);
@@ -227,7 +230,8 @@ std::string roughly(double value) {
 
 std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
     if (scene.a.replay || scene.b.replay) return captions_of_tracks(scene);
-    const std::array all{statements(scene, false), statements(scene, true)};
+    const auto differences = differing_keys(scene.preset.a, scene.preset.b);
+    const std::array all{statements(scene, differences, false), statements(scene, differences, true)};
     std::array<SideCaptions, 2> words;
     if (differ_in_kind(scene.preset.a, scene.preset.b)) return captions_of_kinds(scene, all);
     for (std::size_t side = 0; side < 2; ++side) {
@@ -240,6 +244,9 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
             else if (statement.is_start_angle && wording == Wording::exact)
                 start.push_back(text);
         }
+        // what no statement is about
+        for (std::size_t i = 0, said = differs.size(); said == 0 && i < differences.size(); ++i)
+            differs.push_back(differences[i].words(side == 1));
         const bool says_nothing = differs.empty();
         if (says_nothing) differs.push_back(side == 0 ? "a" : "b, the same");
         // a heading holds two statements; more go to the note

@@ -27,6 +27,11 @@ inline constexpr Bounds positive{.low = 0, .is_open = true}, not_negative{.low =
 constexpr Bounds from_to(double low, double high, std::string_view zero = {}) {
     return {.low = low, .high = high, .zero = zero};
 }
+/// Of an angle, deg.
+inline constexpr Bounds angle_bounds{.low = -1e6, .high = 1e6, .why = "more leaves no digits to move by"};
+
+/// What pictures show of one text, and how many texts of one list.
+inline constexpr std::size_t most_letters = 1000, most_texts = 20;
 
 /// The values beside which a key counts.
 struct Only {
@@ -48,7 +53,7 @@ struct Field {
     std::string_view each = {};                    // what the numbers of an array are: "one a link"
     std::span<const std::string_view> names = {};  // of a string, or of those of a list: the choices
     std::string_view needed_by = {};               // an entry of this kind must have it
-    bool is_drawn = false;                         // pictures show it: of letters that the font has
+    bool is_drawn = false;                         // pictures show it: of letters that the font has, not too many
     std::size_t most = 0;                          // numbers of an array that may have 1 or more
     std::span<const std::string_view> known = {};  // names that it takes, where not the reader checks them
     std::string_view pattern = {};                 // of a string's form: a regular expression, for the schema

@@ -44,6 +44,7 @@ std::string ListedField::takes() const {
     if (!choices.empty() && is_list()) text = "list of " + text;
     if (most > 0) text = fmt::format("1 to {} {}", most, text);
     if (const auto range = range_text(); !range.empty()) text += ", " + range;
+    if (is_drawn && choices.empty()) text += fmt::format(", at most {} letters", most_letters);
     return text;
 }
 
@@ -144,6 +145,7 @@ std::vector<FieldTable> film_tables() {
     precision_fields(system, side);
     particle.fields.push_back(
         {"name", "text", "", "by which constraints and forces call it", std::string(must_be_given)});
+    particle.fields.back().is_drawn = true;
     part_fields(particle, released);
     torque.fields.push_back({"name", "text", "", "by which `[a]` and `[b]` change it", "none"});
     part_fields(torque, static_cast<const TorqueSpec&>(TorqueSpec()));

@@ -42,6 +42,7 @@ struct ListedField {
     Bounds bounds = {};
     std::size_t most = 0;           // as in Field
     std::string_view pattern = {};  // as in Field
+    bool is_drawn = false;          // as in Field
 
     bool is_list() const { return type.starts_with("list"); }
     bool is_needed() const { return by_default == must_be_given; }
@@ -74,7 +75,7 @@ struct FieldTable {
             choices.insert(choices.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
         }
         fields.push_back({field.key, type_words<T>(), field.unit, field.help, default_text(field, by_default),
-                          std::move(choices), field.bounds, field.most, field.pattern});
+                          std::move(choices), field.bounds, field.most, field.pattern, field.is_drawn});
     }
     template <class Visit>
     void table(std::string_view key, const Visit& visit) {

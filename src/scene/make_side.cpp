@@ -41,18 +41,23 @@ std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEnt
                         spec.links() == 1 ? "one link" : fmt::format("{} links", spec.links()))};
 }
 
-/// What of a link's mass is at its end, kg: that of a body is along it.
-double end_mass(const SideSpec& spec, std::size_t link) {
+/// What of each link's mass is at its end, kg: that of a body is along it.
+std::vector<double> end_masses(const SideSpec& spec) {
     const auto& physical = spec.physical;
-    const bool is_body = !physical.is_none() && (!physical.center_m.empty() || physical.inertia_kg_m2[link] != 0);
-    return is_body ? 0 : static_cast<double>(spec.mass_kg[link]);
+    const bool is_physical = !physical.is_none(), has_centers = !physical.center_m.empty();
+    std::vector<double> masses;
+    for (std::size_t i = 0; i < spec.links(); ++i) {
+        const bool is_body = is_physical && (has_centers || physical.inertia_kg_m2[i] != 0);
+        masses.push_back(is_body ? 0 : static_cast<double>(spec.mass_kg[i]));
+    }
+    return masses;
 }
 
 /// What pictures and errors are measured by, in double.
 void measure(const SideSpec& spec, Side& side) {
     if (side.motion.chain) {
         const auto chain = side.motion.chain->cast<double>();
-        for (std::size_t i = 0; i < chain.links(); ++i) side.mass.push_back(end_mass(spec, i));
+        side.mass = end_masses(spec);
         side.gravity = chain.gravity;
         side.energy_unit = chain.potential_range();
         side.reach = chain.reach();
@@ -66,7 +71,7 @@ void measure(const SideSpec& spec, Side& side) {
         side.pivot_reach = std::hypot(physical.pivot.x, physical.pivot.y);
         constexpr float heavy = 3.2f;  // a body is drawn as broad as that
         for (std::size_t i = 0; i < side.lines.size(); ++i)
-            if (physical.chain.mass[i] > end_mass(spec, i)) side.lines[i].width = heavy;
+            if (physical.chain.mass[i] > side.mass[i]) side.lines[i].width = heavy;
     }
     if (!side.motion.parts) return;
     const auto parts = side.motion.parts->cast<double>();

@@ -2,6 +2,7 @@
 
 #include "scene/captions.hpp"
 #include "scene/preset_fields.hpp"
+#include "scene/side_keys.hpp"
 
 #include <fmt/ranges.h>
 
@@ -121,21 +122,6 @@ void visit_side(SideSpec& side, const Place& place, Visitor& visit) {
         if (auto* particle = entry_named(side.particles, place.entry)) part_fields(visit, *particle);
 }
 
-/// The unit at the end of a key, "_N_per_m", goes.
-std::string words_of(std::string_view key) {
-    constexpr std::array<std::string_view, 16> units{
-        "_m3_per_kg_s2", "_N_s2_per_m2", "_N_s_per_m", "_deg_per_s", "_m_per_s2", "_N_per_m", "_m_per_s", "_per_s",
-        "_N_m_s2",       "_N_m_s",       "_N_m",       "_kg_m2",     "_deg",      "_kg",      "_hz",      "_m"};
-    for (const auto unit : units)
-        if (key.ends_with(unit)) {
-            key.remove_suffix(unit.size());
-            break;
-        }
-    std::string words(key.ends_with("_s") ? key.substr(0, key.size() - 2) : key);
-    std::replace(words.begin(), words.end(), '_', ' ');
-    return words;
-}
-
 std::string label_of(const NumericKey& key, const Field& field) {
     const Place place(key.inside);
     static constexpr std::array<std::array<std::string_view, 3>, 4> of_links{
@@ -143,7 +129,7 @@ std::string label_of(const NumericKey& key, const Field& field) {
          {"mass_kg", "mass", "m"},
          {"length_m", "length", "l"},
          {"omega_deg_per_s", "rate at the start", "ω"}}};
-    auto words = words_of(place.key);
+    auto words = words_of_key(place.key);
     if (place.table.empty())
         for (const auto& [name, meaning, symbol] : of_links)
             if (place.key == name)

@@ -14,11 +14,11 @@ namespace doppel {
 /// [system.pivot]
 template <class Visit, class Pivot>
 void pivot_fields(Visit& visit, Pivot& pivot) {
-    visit({"direction_deg", "of the motion, from the x axis: 90 = up", "deg"}, pivot.direction_deg);
+    visit({"direction_deg", "of the motion, from the x axis: 90 = up", "deg", angle_bounds}, pivot.direction_deg);
     visit({"amplitude_m", "half the way to and fro; 0 = the pivot stays where it is", "m", not_negative},
           pivot.amplitude_m);
     visit({"frequency_hz", "swings a second", "Hz", positive}, pivot.frequency_hz);
-    visit({"phase_deg", "of the cosine at t = 0", "deg"}, pivot.phase_deg);
+    visit({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, pivot.phase_deg);
 }
 
 /// [[system.torque]], without `name`.
@@ -29,7 +29,7 @@ void part_fields(Visit& visit, Torque& torque) requires std::is_same_v<std::remo
           torque.joint);
     visit({"amplitude_N_m", "torque", "N m"}, torque.amplitude_N_m);
     visit({"frequency_hz", "swings a second", "Hz", not_negative}, torque.frequency_hz);
-    visit({"phase_deg", "of the cosine at t = 0", "deg"}, torque.phase_deg);
+    visit({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, torque.phase_deg);
 }
 
 /// What a real chain has besides, but torques.

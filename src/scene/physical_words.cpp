@@ -32,10 +32,16 @@ std::vector<std::string> physical_differences(const PhysicalSpec& one, const Phy
                          std::string_view unit) {
         if (values == others) return;
         const bool is_none = std::all_of(values.begin(), values.end(), [](const Quad& value) { return value == 0; });
+        if (is_none) return all.push_back(fmt::format("no {}", name));
+        constexpr std::size_t most_listed = 3;
+        if (values.size() > most_listed && values.size() == others.size()) {
+            const auto first = std::mismatch(values.begin(), values.end(), others.begin()).first;
+            return all.push_back(
+                fmt::format("{} of link {} {} {}", name, first - values.begin() + 1, text_of(*first), unit));
+        }
         std::vector<std::string> texts;
         for (const auto& value : values) texts.push_back(text_of(value));
-        all.push_back(is_none ? fmt::format("no {}", name)
-                              : fmt::format("{} {} {}", name, fmt::join(texts, "/"), unit));
+        all.push_back(fmt::format("{} {} {}", name, fmt::join(texts, "/"), unit));
     };
     say("rod mass", one.rod_mass_kg, other.rod_mass_kg, "kg");
     say("centre of mass", one.center_m, other.center_m, "m");

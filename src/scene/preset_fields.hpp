@@ -62,9 +62,8 @@ void link_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
 template <class Visit, class Side>
 void chain_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
     link_fields(visit, side, masses);
-    constexpr Bounds turns{.low = -1e6, .high = 1e6, .why = "more leaves no digits to move by"};
     constexpr std::string_view from_vertical = "at the start, from the downward vertical, counter-clockwise";
-    visit({"angle_deg", from_vertical, "deg", turns, "", {}, "one a link"}, side.angle_deg);
+    visit({"angle_deg", from_vertical, "deg", angle_bounds, "", {}, "one a link"}, side.angle_deg);
     visit({"omega_deg_per_s", "rates at the start", "deg/s", {}, "", {}, "one a link"}, side.omega_deg_per_s);
 }
 

@@ -4,11 +4,11 @@
 #include "output/folder.hpp"
 #include "output/written.hpp"
 #include "scene/preset_fields.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <toml++/toml.h>
 
 #include <cmath>
-#include <sstream>
 
 namespace doppel {
 
@@ -168,10 +168,37 @@ Json file_json(std::uintmax_t bytes, const std::string& sha256) {
 
 }  // namespace
 
+namespace {
+
+/// A number of more digits than double is written with, 17, is text.
+Json json_of(const toml::node& node, const TomlText& text) {
+    if (const auto* table = node.as_table()) {
+        Json object = Json::object();
+        for (auto&& [key, value] : *table) object[std::string(key.str())] = json_of(value, text);
+        return object;
+    }
+    if (const auto* array = node.as_array()) {
+        Json list = Json::array();
+        for (const auto& element : *array) list.push_back(json_of(element, text));
+        return list;
+    }
+    if (const auto* number = node.as_floating_point()) {
+        const auto& at = node.source().begin;
+        const Quad exact = parse_quad(text.literal_at(at.line, at.column));
+        constexpr std::size_t of_double = 17;
+        auto decimals = text_of(exact);
+        if (significant_digits(decimals).size() > of_double) return decimals;
+        return number->get();
+    }
+    if (const auto* whole = node.as_integer()) return whole->get();
+    if (const auto* flag = node.as_boolean()) return flag->get();
+    return node.value_or<std::string>("");
+}
+
+}  // namespace
+
 Json json_of_toml(const std::string& toml) {
-    std::ostringstream text;
-    text << toml::json_formatter{toml::parse(toml)};
-    return Json::parse(text.str());
+    return json_of(toml::parse(toml), TomlText(toml));
 }
 
 Json program_json() {

@@ -100,6 +100,7 @@ std::string resolved_chain(const SideSpec& side);
 
 using Json = nlohmann::ordered_json;
 
+/// Of a document without dates. A number of more than 17 digits, which double has not, is text: "90.0000000000000000001".
 Json json_of_toml(const std::string& toml);
 
 /// Version and revision.

@@ -32,55 +32,6 @@ std::optional<double> Scene::horizon() const {
 
 namespace {
 
-constexpr const char* remedy = "both sides would move identically. Set precision = \"quad\"";
-
-void check_rounding(const Scene& scene, const char* key, const std::vector<Quad>& a, const std::vector<Quad>& b) {
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-        if (a[i] == b[i] || static_cast<double>(a[i]) != static_cast<double>(b[i])) continue;
-        throw bad_input("{}: {}[{}] is {} on side a and {} on side b, the same number in double: {}", scene.preset.name,
-                        key, i, text_of(a[i]), text_of(b[i]), remedy);
-    }
-}
-
-/// The pull of every droplet on the first particle, m/s².
-void check_droplets(const Scene& scene, const Side& side) {
-    if (!side.motion.parts) return;
-    const auto parts = side.motion.parts->cast<double>();
-    for (const auto& force : parts.forces) {
-        const auto* droplet = std::get_if<Droplet<double>>(&force);
-        if (!droplet) continue;
-        const double pull =
-            droplet->constant * droplet->mass / (parts.particles.front().place - droplet->place).squaredNorm();
-        const double rounding = std::nextafter(side.gravity, 2 * side.gravity) - side.gravity;
-        if (pull >= rounding) continue;
-        throw bad_input("{}: the droplet pulls with {:.2g} m/s², below the rounding of g in double ({:.2g}): {}",
-                        scene.preset.name, pull, rounding, remedy);
-    }
-}
-
-/// Throws Error (exit 2) where what sets the sides apart is lost in double: two numbers that differ and round to the
-/// same, or a droplet whose pull vanishes next to gravity.
-void check_precision(const Scene& scene) {
-    for (const auto* side : {&scene.a, &scene.b})
-        if (side->motion.precision == Precision::in_double) check_droplets(scene, *side);
-    if (scene.a.motion.precision == Precision::in_quad && scene.b.motion.precision == Precision::in_quad) return;
-    const auto &a = scene.preset.a, &b = scene.preset.b;
-    if (differ_in_kind(a, b) || !a.track.is_none() || !b.track.is_none()) return;
-    check_rounding(scene, "mass_kg", a.mass_kg, b.mass_kg);
-    check_rounding(scene, "length_m", a.length_m, b.length_m);
-    check_rounding(scene, "angle_deg", a.angle_deg, b.angle_deg);
-    check_rounding(scene, "omega_deg_per_s", a.omega_deg_per_s, b.omega_deg_per_s);
-    check_rounding(scene, "gravity_m_per_s2", {a.gravity_m_per_s2}, {b.gravity_m_per_s2});
-    for (std::size_t i = 0; i < std::min(a.particles.size(), b.particles.size()); ++i) {
-        const auto &one = a.particles[i], &other = b.particles[i];
-        const auto numbers = [](const ParticleSpec& p) {
-            return std::vector<Quad>{p.position_m[0], p.position_m[1], p.velocity_m_per_s[0], p.velocity_m_per_s[1],
-                                     p.mass_kg};
-        };
-        check_rounding(scene, one.name.c_str(), numbers(one), numbers(other));
-    }
-}
-
 /// Errors say whose they are.
 Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::atomic<bool>& stop) {
     try {
@@ -170,7 +121,7 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
             "a drive have none such, and tracks tell none",
             preset.name);
     scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
-    check_precision(scene);
+    check_difference(scene);
     check_tracks(scene);
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
     return scene;

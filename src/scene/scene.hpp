@@ -129,6 +129,10 @@ struct Scene {
 /// accuracy is out of reach; exit 130 soon after `stop` is set (choosing by accuracy takes runs of its own).
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 
+/// Throws Error (exit 2) where what sets the sides apart is lost in their precision: a number of any key that differs and
+/// is the same to compute with; all of the system; or the pull of a droplet, beside gravity.
+void check_difference(const Scene& scene);
+
 /// Both sides and how they differ at one sample.
 struct PairState {
     long sample = 0;  // the last one that is over

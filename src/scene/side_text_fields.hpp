@@ -19,7 +19,8 @@ void track_fields(Visit& visit, Spec& track) {
     const Only of_file{.holds = !track.is_none()};
     visit({"start_s", "the file's time at which the motion begins", "s", {}, "the first sample", of_file},
           track.start_s);
-    visit({"offset_deg", "what the encoders show at rest, which is subtracted", "deg", {}, "", of_file, "one an arm"},
+    visit({"offset_deg", "what the encoders show at rest, which is subtracted", "deg", angle_bounds, "", of_file,
+           "one an arm"},
           track.offset_deg);
 }
 

@@ -123,8 +123,11 @@ bool TomlReader::from_command_line(std::string_view key) {
 }
 
 void TomlReader::demand_drawable(std::string_view key, std::string_view text) const {
+    const auto letters = static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xc0) != 0x80; }));
+    if (letters > most_letters) throw fault(key, "must have at most {} letters; it has {}", most_letters, letters);
     if (!typeface_) return;
-    if (const auto fault = not_drawable(text, *typeface_)) throw this->fault(key, "{}", *fault);
+    if (const auto lacking = not_drawable(text, *typeface_)) throw fault(key, "{}", *lacking);
 }
 
 void TomlReader::demand_title(const std::string& name) {

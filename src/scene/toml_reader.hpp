@@ -47,6 +47,9 @@ private:
 /// the text still has.
 using TomlTexts = std::map<std::string, TomlText>;
 
+/// Those of a decimal that tell it from others of its size: "9003" of "090.030e1".
+std::string significant_digits(std::string_view decimal);
+
 /// That of figures.
 inline const Typeface built_in_typeface;
 
@@ -112,7 +115,7 @@ public:
 
     /// Throws where `name`, which is shown where there is no title, has a letter that no font has.
     void demand_title(const std::string& name);
-    /// Throws where no font has a letter of `text`, the value of `key`.
+    /// Throws where `text`, the value of `key`, has too many letters, or one that no font has.
     void demand_drawable(std::string_view key, std::string_view text) const;
     const toml::table* read_table(std::string_view key);
     /// The tables of [[key]]; none where it is absent.

@@ -26,6 +26,14 @@ std::string written(const Quad& value) {
 
 }  // namespace
 
+std::string significant_digits(std::string_view decimal) {
+    std::string digits;
+    for (const char c : decimal.substr(0, decimal.find_first_of("eE")))
+        if (c >= '0' && c <= '9' && !(c == '0' && digits.empty())) digits += c;
+    while (digits.ends_with('0')) digits.pop_back();
+    return digits;
+}
+
 bool TomlReader::counts(const Field& field) {
     const auto& only = field.only;
     if (only.hides && !only.holds) hidden_.emplace(field.key, only.beside);
@@ -103,18 +111,25 @@ double TomlReader::number(std::string_view key, std::string_view element, const 
 }
 
 Quad TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, const Quad&) const {
+    const auto name = fmt::format("{}{}", key, element);
     const double rounded = number(key, element, node, 0.0);
     if (const auto* whole = node.as_integer()) return Quad(whole->get());
     const auto& origin = node.source().path;
     const auto text = texts_->find(origin ? *origin : path_);
     if (text == texts_->end()) return Quad(rounded);
     const auto& at = node.source().begin;
-    const Quad value = parse_quad(text->second.literal_at(at.line, at.column)) + 0;
+    const auto literal = text->second.literal_at(at.line, at.column);
+    const Quad value = parse_quad(literal) + 0;
     // the literal found must be the number that was read, or its place was mistaken
     constexpr double rounding = 1e-15, least = 1e-322;
     if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))
         throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", place(key), subject(key),
                         rounded);
+    constexpr std::size_t always_held = 33;
+    const auto digits = significant_digits(literal);
+    if (digits.size() > always_held && digits != significant_digits(text_of(value)))
+        throw bad_input("{}: {} must have at most 34 digits, which quad holds; it has {}", place(key), subject(name),
+                        digits.size());
     return value;
 }
 
@@ -183,6 +198,8 @@ std::vector<std::string> TomlReader::texts_in(const Field& field, const toml::no
             throw fault(field.key, "must be an array of strings; {} is {}", shown(element), kind_of(element));
         texts.push_back(element.as_string()->get());
     }
+    if (field.is_drawn && texts.size() > most_texts)
+        throw fault(field.key, "must be at most {} texts; they are {}", most_texts, texts.size());
     return texts;
 }
 
@@ -276,7 +293,11 @@ void TomlReader::read(const Field& field, const toml::node& node, Rational& into
     } else if (const auto* whole = node.as_integer()) {
         value = reduced(whole->get(), 1);
     } else {
-        value = rational_from_decimal(number(field.key, "", node, 0.0));
+        // of all digits that are written, or of none
+        const Quad decimal = number(field.key, "", node, Quad());
+        value = rational_from_decimal(static_cast<double>(decimal));
+        const Quad rounding = parse_quad("1e-32") * abs(decimal);
+        if (value && abs(Quad(value->as<Quad>() - decimal)) > rounding) value.reset();
     }
     if (!value) throw fault(field.key, "has more digits than Doppel counts with; it is {}", shown(node));
     if (value->numerator < (field.bounds.is_open ? 1 : 0))

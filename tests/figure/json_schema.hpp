@@ -2,7 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <regex>
 #include <stdexcept>
 #include <string>
@@ -39,6 +41,11 @@ private:
         if (keyword == "multipleOf")
             return !value.is_number() || std::remainder(value.get<double>(), wanted.get<double>()) == 0;
         if (keyword == "minLength") return !value.is_string() || value.get<std::string>().size() >= wanted;
+        if (keyword == "maxLength") {  // of characters
+            const auto text = value.is_string() ? value.get<std::string>() : std::string();
+            return std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xc0) != 0x80; }) <=
+                   wanted.get<std::ptrdiff_t>();
+        }
         if (keyword == "pattern")
             return !value.is_string() ||
                    std::regex_search(value.get<std::string>(), std::regex(wanted.get<std::string>()));

@@ -48,6 +48,7 @@ TEST(Manifest, SaysHowFarARunCanBePredicted) {
     const auto chosen = manifest_of("horizon", {});
     EXPECT_EQ(chosen["horizon_s"],
               std::min(chosen["a"]["accuracy"]["horizon_s"], chosen["b"]["accuracy"]["horizon_s"]));
+    EXPECT_EQ(chosen["a"]["accuracy"]["unit"], "rad");
     EXPECT_GT(chosen["horizon_s"], 25);  // measured 32.3, of 40
     EXPECT_LT(chosen["horizon_s"], 40);
 }

@@ -78,6 +78,34 @@ TEST(Captions, OfMechanismsSayWhatDiffers) {
     EXPECT_EQ(loop[1].heading, "bob pushed at 1 mm/s");
 }
 
+TEST(Captions, NeverCallSidesTheSameThatDiffer) {
+    const auto headings = [](const std::string& text) {
+        const auto said = side_captions(make_scene(read_preset({"x", "x.toml", text, "x.toml"})));
+        return said[0].heading + " | " + said[1].heading;
+    };
+    const std::string bead =
+        "[system]\nintegrator = \"rk4\"\n[[system.particle]]\nname = \"u\"\n[[system.force]]\nkind = \"spring\"\n"
+        "name = \"s\"\nfrom = \"u\"\nto = [0, 2]\n[[system.constraint]]\nkind = \"slot-line\"\nname = \"rail\"\n"
+        "particle = \"u\"\n";
+    EXPECT_EQ(headings(bead + "[[b.force]]\nname = \"s\"\nstiffness_N_per_m = 2"),
+              "spring \"s\" stiffness 1 N/m | spring \"s\" stiffness 2 N/m");
+    EXPECT_EQ(headings(bead + "[[b.force]]\nkind = \"spring\"\nfrom = \"u\"\nto = [1, 0]"),
+              "no spring 2 | with spring 2");
+    EXPECT_EQ(headings(bead + "[[b.constraint]]\nname = \"rail\"\ndirection = [1, 0.5]"),
+              "slot-line \"rail\" direction 1/0 | slot-line \"rail\" direction 1/0.5");
+    EXPECT_EQ(headings("[system.pivot]\namplitude_m = 0.1\n[b.pivot]\nphase_deg = 90"),
+              "pivot phase 0 deg | pivot phase 90 deg");
+    EXPECT_EQ(headings("[[system.torque]]\nname = \"t\"\namplitude_N_m = 1\n[[b.torque]]\nname = \"t\"\njoint = 2"),
+              "torque \"t\" joint 1 | torque \"t\" joint 2");
+    EXPECT_EQ(headings("[system]\nmodel = \"constraints\"\nstabilise = \"baumgarte\"\n[b]\nstabilise_rate_per_s = 20"),
+              "stabilise rate 10 1/s | stabilise rate 20 1/s");
+    EXPECT_EQ(headings("[scene]\nduration_s = 1\n[system]\naccuracy = 1e-3\n[b]\nprecision = \"quad\""),
+              "precision \"double\" | precision \"quad\"");
+    EXPECT_EQ(headings("[system]\nlinks = 5\n[b]\njoint_viscous_N_m_s = [0, 0, 0, 0, 0.1]"),
+              "no viscous friction | viscous friction of link 5 0.1 N m s");
+    EXPECT_EQ(headings(""), "a | b, the same");
+}
+
 TEST(Captions, InPlainWordsHaveNoSymbols) {
     const auto scene = scene_of("pendulum-portrait", {"scene.duration_s=2"});
     const auto said = side_captions(scene, Wording::plain);

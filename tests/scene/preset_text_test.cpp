@@ -41,6 +41,24 @@ std::string utf8_of(char32_t c) {
     return {byte(0xf0 | c >> 18), byte(0x80 | (c >> 12 & 0x3f)), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
 }
 
+TEST(DrawnText, IsOfAtMostAThousandLetters) {
+    const auto of = [](std::size_t letters) {
+        std::string text;
+        for (std::size_t i = 0; i < letters; ++i) text += "\xce\xb8";  // θ
+        return '"' + text + '"';
+    };
+    for (const std::string key : {"title", "subtitle"}) {
+        EXPECT_NO_THROW(read(key + " = " + of(1000))) << key;
+        EXPECT_EQ(refusal(key + " = " + of(1001)),
+                  "x.toml:1:1: " + key + " must have at most 1000 letters; it has 1001");
+    }
+    for (const std::string key : {"label", "note"})
+        EXPECT_EQ(refusal("[b]\n" + key + " = " + of(1001)),
+                  "x.toml:2:1: [b] " + key + " must have at most 1000 letters; it has 1001");
+    EXPECT_EQ(refusal("[[system.particle]]\nname = " + of(10'000)),
+              "x.toml:2:1: [[system.particle]] 1 name must have at most 1000 letters; it has 10000");
+}
+
 TEST(PresetText, EveryCharacterComesBackFromTheResolvedPreset) {
     // in blocks, and each control character by itself
     std::vector<std::string> texts;

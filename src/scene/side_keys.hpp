@@ -1,0 +1,39 @@
+#pragma once
+
+#include "scene/preset.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace doppel {
+
+/// One key of a side, with what it holds.
+struct SideKey {
+    std::string place;               // the entry that has it, "spring 1", or "pivot"; empty: the side itself
+    std::string_view key, unit;      // without `key`: that there is such an entry
+    std::vector<Quad> numbers = {};  // which mean all their decimals
+    std::string text = {};           // TOML, where it holds no such numbers
+    bool is_of_part = false;         // of a constraint, a spring or an attraction
+
+    /// "spring 1 stiffness_N_per_m"
+    std::string name() const;
+};
+
+/// A key that sets two sides apart, on each of them; nothing where a side has no such key.
+struct KeyDifference {
+    std::optional<SideKey> a, b;
+
+    const SideKey& any() const { return a ? *a : *b; }
+    /// As captions tell it of side b, or of side a: "spring 1 stiffness 2 N/m", "no spring 1".
+    std::string words(bool of_b) const;
+};
+
+/// By all keys that decide how sides move: what hangs, what acts on it, how it is stepped.
+std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b);
+
+/// A key without the unit at its end, in words: "stiffness" of "stiffness_N_per_m".
+std::string words_of_key(std::string_view key);
+
+}  // namespace doppel
