@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "fit/flow.hpp"
+#include "fit/variation.hpp"
 #include "track/regression.hpp"
 
 #include <algorithm>
@@ -44,17 +45,26 @@ std::vector<Part> parts_of(const Track& track, const std::vector<TrackSegment>& 
     return parts;
 }
 
-/// Whether the motion of one part ends where the next begins.
-bool meet(const Track& track, const Fit& fit, const Part& one, const Part& next) {
-    constexpr double near = 0.3;  // rad
-    const auto& times = track.pieces[one.segment.piece].time_s;
-    Flow<double> flow(arms_of(fit.model, fit.parameters), one.start, fit.rules.step_s);
-    const double length = times[next.segment.first] - times[one.segment.first];
-    if (!flow.reach(length)) return false;
+/// Whether the motion of one part follows the samples of the next to its end, and an error of its start grows no more
+/// than a hundredfold until then: beyond, the cost has many minima, and normal equations lose their digits.
+bool leads(const Track& track, const Fit& fit, const Part& one, const Part& next) {
+    constexpr double near = 0.3, most_growth = 100;  // rad; of an angle, per angle or per rate over the pendulum's own
+    const auto& piece = track.pieces[one.segment.piece];
+    using Number = Dual<double, 4>;
+    ArmState<Number> start;
+    for (std::size_t q = 0; q < 4; ++q) start[q] = Number::variable(one.start[q], static_cast<Eigen::Index>(q));
+    const VaryingArms<4> arms{.arms = arms_of(fit.model, fit.parameters), .direction = {}};
+    Flow<Number, VaryingArms<4>> flow(arms, start, fit.rules.step_s);
     const double rate = std::sqrt(fit.parameters[index_of(gravity_2)]);
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-        if (std::abs(flow.angle(arm, length) - next.start[arm]) > near) return false;
-        if (std::abs(flow.state()[arm + 2] - next.start[arm + 2]) > 2 * near * rate) return false;
+    for (auto i = next.segment.first; i < next.segment.last; ++i) {
+        const double t = piece.time_s[i] - piece.time_s[one.segment.first];
+        if (!flow.reach(t)) return false;
+        for (std::size_t arm = 0; arm < 2; ++arm) {
+            if (!piece.is_outlier[arm][i] && std::abs(flow.angle_value(arm, t) - piece.angle[arm][i]) > near)
+                return false;
+            const auto& by = flow.state()[arm].tangent;
+            if (std::hypot(by.head<2>().norm(), rate * by.tail<2>().norm()) > most_growth) return false;
+        }
     }
     return true;
 }
@@ -64,7 +74,28 @@ std::vector<Part> joined(const Track& track, const Fit& fit, const std::vector<P
     for (std::size_t k = 0; k < parts.size(); ++k) {
         result.push_back(parts[k]);
         const bool pair = k + 1 < parts.size() && parts[k + 1].whole == parts[k].whole;
-        if (pair && meet(track, fit, parts[k], parts[k + 1])) result.back().segment.last = parts[++k].segment.last;
+        if (pair && leads(track, fit, parts[k], parts[k + 1])) result.back().segment.last = parts[++k].segment.last;
+    }
+    return result;
+}
+
+/// Parts that do not follow their samples, halved; what begins anew is guessed.
+std::vector<Part> without_lost(const Track& track, const Fit& fit, const std::vector<Part>& parts) {
+    constexpr double lost = 0.1;  // rad, rms
+    constexpr std::size_t least_samples = 16;
+    std::vector<Part> result;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const auto& sums = fit.sums[k];
+        const auto& segment = parts[k].segment;
+        const bool is_lost = sums.squares > lost * lost * static_cast<double>(sums.count);
+        if (!is_lost || segment.size() < least_samples) {
+            result.push_back(parts[k]);
+            continue;
+        }
+        const auto middle = segment.first + segment.size() / 2;
+        for (const auto& half :
+             {TrackSegment{segment.piece, segment.first, middle}, TrackSegment{segment.piece, middle, segment.last}})
+            result.push_back({half, parts[k].whole, guessed_start(track, half)});
     }
     return result;
 }
@@ -85,7 +116,14 @@ Fit fitted(const Track& track, std::vector<Part>& parts, Fit fit, int jobs, cons
 }
 
 Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
-    const auto regression = regress(glimpses_of(track, stop));
+    // a swing of little acceleration wants longer windows than its noise alone
+    Regression regression;
+    for (const double longer : {1.0, 1.5, 2.25}) {
+        const auto other = regress(glimpses_of(track, stop, longer));
+        if (longer == 1 ||
+            (other.is_physical && (!regression.is_physical || other.unexplained < regression.unexplained)))
+            regression = other;
+    }
     if (!regression.is_physical)
         throw method_failed(
             "{}: no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
@@ -107,12 +145,14 @@ std::pair<Fit, std::vector<Part>> fitted_in_parts(const Track& track, const std:
     fit.rules.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
     fit.model.fitted = {inertia, coupling, gravity_1, gravity_2, offset_1, offset_2};
     fit = fitted(track, parts, std::move(fit), jobs, stop);
+    parts = without_lost(track, fit, parts);
     fit.model.fitted = {inertia,   coupling,  gravity_1,   gravity_2,   viscous_1, viscous_2,
                         coulomb_1, coulomb_2, quadratic_1, quadratic_2, offset_1,  offset_2};
     for (auto joins = most; joins > 1; joins /= 2) {
         fit = fitted(track, parts, std::move(fit), jobs, stop);
-        parts = joined(track, fit, parts);
+        parts = joined(track, fit, without_lost(track, fit, parts));
     }
+    fit = fitted(track, parts, std::move(fit), jobs, stop);
     return {std::move(fit), std::move(parts)};
 }
 
@@ -137,7 +177,9 @@ Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop)
     division.units.clear();
     fit.starts.clear();
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        if (!by_piece || k == 0 || parts[k].segment.piece != parts[k - 1].segment.piece) division.units.emplace_back();
+        const bool is_new = k == 0 || (by_piece ? parts[k].segment.piece != parts[k - 1].segment.piece
+                                                : parts[k].whole != parts[k - 1].whole);
+        if (is_new) division.units.emplace_back();
         division.units.back().push_back(k);
         division.segments.push_back(parts[k].segment);
         fit.starts.push_back(parts[k].start);

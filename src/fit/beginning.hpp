@@ -10,9 +10,11 @@ struct Beginning {
     Fit fit;
 };
 
-/// The equations of motion are regressed, which needs no start; then stretches of a quarter of the division's, or less where the
-/// motion does not stay finite, are fitted, which follow the samples from almost any start, and joined as far as one leads to the next. A stretch of
-/// motion so chaotic that its parts do not meet stays cut. Throws Error: exit 3 where no double pendulum moves so, 130.
+/// The equations of motion are regressed, which needs no start; then stretches of a quarter of the division's, or less
+/// where the motion does not stay finite, are fitted, which follow the samples from almost any start. Those that do not are
+/// halved; others are joined as far as one leads through the next. A stretch of motion so chaotic that an error of its start
+/// would grow more than a hundredfold stays cut. Units are those of the division. Throws Error: exit 3 where no double pendulum
+/// moves so, 130.
 Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -108,7 +108,14 @@ public:
         return sum;
     }
 
-    /// The value alone of a Scalar with derivatives.
+    /// The values alone of a Scalar with derivatives.
+    double angle_value(std::size_t arm, double t) const {
+        const auto of = weights(t);
+        const auto values = nodes(arm);
+        double sum = 0;
+        for (std::size_t k = 0; k < 6; ++k) sum += of.angle[k] * values[k]->value;
+        return sum;
+    }
     double angle_rate(std::size_t arm, double t) const {
         const auto of = rate_weights(t - static_cast<double>(done_ - 1) * step_, step_);
         const auto values = nodes(arm);

@@ -115,7 +115,6 @@ Fit nearer_start(const Track& track, const std::vector<TrackSegment>& segments, 
     auto one = placed(first);
     if (before.starts.empty() || before.model.point_masses != model.point_masses) return one;
     auto other = placed(before);
-    if (!fits(model, coulomb_1)) return other;
     one.rules = other.rules;
     evaluate_fit(track, segments, one, jobs, stop);
     evaluate_fit(track, segments, other, jobs, stop);

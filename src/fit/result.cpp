@@ -52,7 +52,8 @@ void demand_loss(const Track& track, const ModelLadder& ladder, int jobs, const 
         if (error.code() != ExitCode::method_failed) throw;
         return;
     }
-    if (loss.share > -sure * loss.standard_error || loss.rms > most_left(track)) return;
+    const bool is_sure = loss.share < -sure * loss.standard_error;  // not where the error is not a number
+    if (!is_sure || loss.rms > most_left(track)) return;
     throw method_failed(
         "{}: the swing gains energy, {:.2g} ± {:.1g} % of its energy of motion a second, and a pendulum that swings "
         "freely loses it: time_s must grow as time did, and nothing may drive the pendulum",

@@ -94,10 +94,10 @@ Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s) {
     return glimpse;
 }
 
-std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop) {
+std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop, double longer) {
     constexpr Eigen::Index degree = 4;
     std::vector<Glimpse> all;
-    const double window = window_of(track);
+    const double window = longer * window_of(track);
     for (const auto& piece : track.pieces)
         for (double time = piece.time_s.front() + window / 2; time < piece.time_s.back() - window / 2;
              time += window / 2) {

@@ -15,8 +15,8 @@ struct Glimpse {
 /// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone.
 Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s);
 
-/// At moments half a window apart; the window is as long as the noise asks for.
-std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop);
+/// At moments half a window apart; the window is as long as the noise asks for, or `longer` times that.
+std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop, double longer = 1);
 
 /// Angles and rates at the first sample of a segment, from a polynomial of its first tenth of a second or more.
 ArmState<double> guessed_start(const Track& track, const TrackSegment& segment);
