@@ -1,7 +1,7 @@
 #include "figure/kinds.hpp"
 
 #include "scene/captions.hpp"
-#include "scene/resolved.hpp"
+#include "scene/side_keys.hpp"
 
 #include <fmt/ranges.h>
 
@@ -161,11 +161,9 @@ bool released_alike(const SideSpec& a, const SideSpec& b) {
 }
 
 bool are_one(const Scene& scene) {
-    auto twice_a = scene.preset, twice_b = scene.preset;
-    twice_a.b = twice_a.a;
-    twice_b.a = twice_b.b;
-    twice_b.a.model = twice_b.b.model = twice_a.a.model;  // by which the sides were made is compared below
-    return scene.a.motion.model == scene.b.motion.model && resolved_sides(twice_a) == resolved_sides(twice_b);
+    auto b = scene.preset.b;
+    b.model = scene.preset.a.model;  // what was made of them is compared
+    return scene.a.motion.model == scene.b.motion.model && differing_keys(scene.preset.a, b).empty();
 }
 
 std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::string& apart) {
