@@ -33,9 +33,7 @@ public:
         visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000)},
               spec_.samples);
         constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true};
-        visit({"tolerance",
-               "relative error of a step of dop853, of the motion and of its tangents", "",
-               tolerances},
+        visit({"tolerance", "relative error of a step of dop853, of the motion and of its tangents", "", tolerances},
               spec_.tolerance);
     }
 

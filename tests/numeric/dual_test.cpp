@@ -1,8 +1,8 @@
 #include "numeric/dual.hpp"
-#include "numeric/elimination.hpp"
 
 #include "integrate/euler.hpp"
 #include "integrate/runge_kutta.hpp"
+#include "numeric/elimination.hpp"
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/bob.hpp"
