@@ -5,6 +5,7 @@
 #include "physics/bob.hpp"
 #include "physics/pendulums.hpp"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 namespace doppel {
