@@ -26,7 +26,8 @@ std::unique_ptr<Stepper<Scalar>> make_mechanism_stepper(const MotionSpec& spec);
 namespace {
 
 /// A fast rotation or drive is checked for interruption every so many rad; some 0.1 s of work.
-constexpr double most_unwatched = 2e3;
+template <class Scalar>
+constexpr double most_unwatched = std::is_same_v<Scalar, double> ? 2e3 : 100;
 
 /// A model and the method that steps it, from sample to sample.
 template <class Scalar>
@@ -56,7 +57,7 @@ public:
                     fastest = std::max(fastest, static_cast<double>(motor.frequency));
             }
             const double whole =
-                std::max(follows_turns ? interval / Turns::longest : 1, interval * fastest / most_unwatched);
+                std::max(follows_turns ? interval / Turns::longest : 1, interval * fastest / most_unwatched<Scalar>);
             portions_ = static_cast<long>(std::ceil(std::min(whole, 1e12)));
             portion_ = spec.sample_interval.as<Scalar>() / Scalar(portions_);
         } else {
