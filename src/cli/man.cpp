@@ -256,14 +256,14 @@ using Pages = std::vector<std::pair<std::string, std::string>>;
 
 /// All or none, in place of older pages alone.
 void write_pages(const std::filesystem::path& folder, const Pages& pages) {
-    Transaction files(folder, "man", "manual");
-    for (const auto& [file, page] : pages) files.demand(file);
+    Transaction parts(folder, "man", "manual");
+    for (const auto& [name, page] : pages) parts.demand(name);
     for (const auto& [name, page] : pages) {
-        OutputFile file(files.file(name));
+        OutputFile file(parts.file(name));
         file.write(page);
         file.close();
     }
-    files.publish();
+    parts.publish();
 }
 
 Pages all_pages(const CLI::App& app) {
