@@ -46,7 +46,7 @@ Track energetic_track(unsigned seed) {
 }
 
 // Of 200 of these tracks 15 were once refused or fitted to a wrong motion: over stretches too long for their chaos, from starts that
-// the model before had spoilt. The suite has some of these; DOPPEL_LONG_FIT=1 runs all, in some four minutes.
+// the model before had spoilt. The suite has some of these; DOPPEL_LONG_FIT=1 runs all, in some two minutes.
 TEST(FitStudy, EnergeticTracksAreFittedToTheirNoise) {
     std::vector<unsigned> seeds{16, 80, 86, 122, 191};
     if (std::getenv("DOPPEL_LONG_FIT")) {
