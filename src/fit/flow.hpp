@@ -1,9 +1,13 @@
 #pragma once
 
 #include "integrate/dormand_prince.hpp"
+#include "integrate/events.hpp"
 #include "track/model.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
+#include <optional>
 #include <utility>
 
 namespace doppel {
@@ -74,27 +78,55 @@ inline std::array<double, 6> rate_weights(double t, double h) {
             (30 * s2 - 60 * s3 + 30 * s4) / h,  -12 * s2 + 28 * s3 - 15 * s4,    h * (1.5 * s2 - 4 * s3 + 2.5 * s4)};
 }
 
+template <class Scalar>
+double value_of(const Scalar& x) {
+    if constexpr (requires { x.tangent; })
+        return x.value;
+    else
+        return x;
+}
+
+/// The arms of a model, which may carry derivatives, too.
+template <class Model>
+auto& arms_in(Model& model) {
+    if constexpr (requires { model.arms; })
+        return model.arms;
+    else
+        return model;
+}
+
 /// The motion from one start, step after step, to be asked for angles at ascending times.
+///
+/// Of sharp dry friction each step keeps to one law and counts as far as that holds, until a joint comes to rest or is let
+/// go. Then the slope f jumps, and with it how the state changes with what fixes the time t* of the event:
+///     ∂y after = ∂y before + (f before − f after) ∂t*,   ∂t* = −∂ω/ω′ of the joint's rate ω
 template <class Scalar, class Model = Arms<Scalar>>
 class Flow {
 public:
     Flow(const Model& arms, const ArmState<Scalar>& start, double step)
-        : arms_(arms), step_(step), before_(start), slope_before_(arms.rate(start)) {
+        : arms_(arms), step_(step), before_(start), slope_before_(start) {
+        arms_in(arms_).take_modes(value_of(start[2]), value_of(start[3]));
+        slope_before_ = arms_.rate(start);
         go_on();
     }
 
     /// Steps on until `t` (s from the start) is in the last step. False where the motion left what is finite.
     bool reach(double t) {
-        while (t > static_cast<double>(done_) * step_) {
-            std::swap(before_, after_);
-            std::swap(slope_before_, slope_after_);
+        while (t > end()) {
+            if (event_) {
+                if (!turn_over()) return false;
+            } else {
+                std::swap(before_, after_);
+                std::swap(slope_before_, slope_after_);
+                ++done_;
+            }
             if (!go_on()) return false;
         }
         return true;
     }
 
     /// For a time in the last step, or a little outside.
-    AngleWeights weights(double t) const { return {t - static_cast<double>(done_ - 1) * step_, step_}; }
+    AngleWeights weights(double t) const { return {t - begin(), step_}; }
     /// What these weights weigh, of one arm, 0 or 1.
     std::array<const Scalar*, 6> nodes(std::size_t arm) const {
         return {&before_[arm], &before_[arm + 2], &slope_before_[arm + 2],
@@ -109,39 +141,113 @@ public:
     }
 
     /// The values alone of a Scalar with derivatives.
-    double angle_value(std::size_t arm, double t) const {
-        const auto of = weights(t);
-        const auto values = nodes(arm);
-        double sum = 0;
-        for (std::size_t k = 0; k < 6; ++k) sum += of.angle[k] * values[k]->value;
-        return sum;
-    }
-    double angle_rate(std::size_t arm, double t) const {
-        const auto of = rate_weights(t - static_cast<double>(done_ - 1) * step_, step_);
-        const auto values = nodes(arm);
-        double sum = 0;
-        for (std::size_t k = 0; k < 6; ++k) sum += of[k] * values[k]->value;
-        return sum;
+    double angle_value(std::size_t arm, double t) const { return weighed(arm, weights(t).angle); }
+    double angle_rate(std::size_t arm, double t) const { return weighed(arm, rate_weights(t - begin(), step_)); }
+    ArmState<double> values_at(double t) const {
+        return {angle_value(0, t), angle_value(1, t), angle_rate(0, t), angle_rate(1, t)};
     }
 
-    /// Its state at the end of the last step, at `time()` s.
+    /// Its state at the end of the last step, at `time()` s; where an event cut that, as the law before would have it.
     const ArmState<Scalar>& state() const { return after_; }
-    double time() const { return static_cast<double>(done_) * step_; }
+    double time() const { return origin_ + static_cast<double>(done_ + 1) * step_; }
 
 private:
+    struct Event {
+        double after;  // s into the step
+        std::size_t joint;
+    };
+
+    double begin() const { return origin_ + static_cast<double>(done_) * step_; }
+    double end() const { return event_ ? begin() + event_->after : time(); }
+
+    static ArmState<double> values(const ArmState<Scalar>& y) {
+        return {value_of(y[0]), value_of(y[1]), value_of(y[2]), value_of(y[3])};
+    }
+    static double rate_of(const ArmState<double>& y, std::size_t joint) { return joint == 0 ? y[2] : y[3] - y[2]; }
+    double weighed(std::size_t arm, const std::array<double, 6>& by) const {
+        const auto all = nodes(arm);
+        double sum = 0;
+        for (std::size_t k = 0; k < 6; ++k) sum += by[k] * value_of(*all[k]);
+        return sum;
+    }
+
     bool go_on() {
         after_ = before_;
         slope_after_ = slope_before_;
         take_step(arms_, step_, after_, slope_after_);
-        ++done_;
+        event_.reset();
         constexpr double fastest = 1e4;  // rad/s
-        return after_[2] < Scalar(fastest) && after_[2] > Scalar(-fastest) && after_[3] < Scalar(fastest) &&
-               after_[3] > Scalar(-fastest);
+        const bool is_finite = after_[2] < Scalar(fastest) && after_[2] > Scalar(-fastest) &&
+                               after_[3] < Scalar(fastest) && after_[3] > Scalar(-fastest);
+        if (is_finite && arms_in(arms_).is_sharp())
+            for (std::size_t joint = 0; joint < 2; ++joint) find_event(joint);
+        return is_finite;
+    }
+
+    /// 0 or more while the joint keeps to its mode, at t seconds into the step.
+    double margin(std::size_t joint, double t) const {
+        const auto& law = arms_in(arms_);
+        if (law.modes[joint] == 0) return most_held(joint) - std::abs(law.holding(values_at(begin() + t))[joint]);
+        const auto by = rate_weights(t, step_);
+        return law.modes[joint] * rate_of({0, 0, weighed(0, by), joint == 0 ? 0 : weighed(1, by)}, joint);
+    }
+    double most_held(std::size_t joint) const {
+        constexpr double rounding = 1e-12;
+        return arms_in(arms_).p[index_of(FitParameter::coulomb_1) + joint] * (1 + rounding);
+    }
+
+    /// An event of this joint before those already found: at the end, or where its rate is nearest to rest before.
+    void find_event(std::size_t joint) {
+        double last = event_ ? event_->after : step_;
+        if (!(margin(joint, last) < 0)) {
+            const int mode = arms_in(arms_).modes[joint];
+            const double slope = mode * rate_of(values(slope_before_), joint);
+            const double slope_then = mode * rate_of(values(slope_after_), joint);
+            if (!(slope < 0 && slope_then > 0)) return;
+            last = std::min(last, step_ * slope / (slope - slope_then));
+            if (!(margin(joint, last) < 0)) return;
+        }
+        event_ = {bisect_event(0.0, last, step_, [&](double t) { return margin(joint, t); }), joint};
+    }
+
+    /// Goes to the event and on by the law that holds from there. False where they are too many to end.
+    bool turn_over() {
+        constexpr double at_once = 100, a_step = 4;  // events
+        const auto [after, joint] = *event_;
+        take_step(arms_, after, before_, slope_before_);
+        auto& law = arms_in(arms_);
+        int& mode = law.modes[joint];
+        const bool was_held = mode == 0;
+        auto at_rest = values(before_);
+        at_rest[joint + 2] = joint == 0 ? 0 : at_rest[2];
+        if (law.is_held(1)) at_rest[3] = at_rest[2];
+        mode = 0;
+        const double torque = law.holding(at_rest)[joint];
+        if (was_held || std::abs(torque) > most_held(joint)) mode = torque < 0 ? -1 : 1;
+        const auto slope = arms_.rate(before_);
+        if constexpr (requires(Scalar y) { y.tangent; }) {
+            const double rate_slope = rate_of(values(slope_before_), joint);
+            if (!was_held && rate_slope != 0) {
+                auto rate = before_[2].tangent;
+                if (joint == 1) rate = before_[3].tangent - before_[2].tangent;
+                for (std::size_t q = 2; q < 4; ++q)
+                    before_[q].tangent -= ((slope_before_[q].value - slope[q].value) / rate_slope) * rate;
+            }
+        }
+        if (law.is_held(0)) before_[2] = Scalar(0);
+        if (law.is_held(1)) before_[3] = before_[2];
+        slope_before_ = arms_.rate(before_);
+        origin_ = begin() + after;
+        done_ = 0;
+        ++events_;
+        return events_ < at_once + a_step * origin_ / step_;
     }
 
     Model arms_;
-    double step_;
-    long done_ = 0;
+    double step_, origin_ = 0;  // s, of the last event or the start
+    long done_ = 0;             // steps since
+    double events_ = 0;
+    std::optional<Event> event_;  // that cuts the last step
     ArmState<Scalar> before_, slope_before_, after_, slope_after_;
 };
 

@@ -105,18 +105,17 @@ void attribute(const Fit& fit, const Fit& start, const Uncertainty& uncertainty,
     const Eigen::Matrix4d of_start = start.sums[0].starts.inverse() * std::pow(uncertainty.inflation, 2);
     ArmState<Number> state;
     for (std::size_t q = 0; q < 4; ++q) state[q] = Number::variable(start.starts[0][q], static_cast<Eigen::Index>(q));
-    auto slope = arms.rate(state);
     constexpr double beyond = 1.7, steps = 2;  // as fine as a standard error is known
     const double step = steps * fit.rules.step_s;
     const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
-    for (double t = step; t < end; t += step) {
-        take_step(arms, step, state, slope);
-        if (!isfinite(state[0]) || !isfinite(state[1])) return;
+    Flow<Number, VaryingArms<most>> flow(arms, state, step);
+    for (double t = 0.5 * step; t < end; t += step) {
+        if (!flow.reach(t)) return;
         if (t < prediction.data_s) continue;
         double from_start = 0, from_parameters = 0;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            const Eigen::Vector4d by_start = state[arm].tangent.head<4>();
-            const Eigen::VectorXd by_parameters = state[arm].tangent(directions);
+            const Eigen::Vector4d by_start = flow.state()[arm].tangent.template head<4>();
+            const Eigen::VectorXd by_parameters = flow.state()[arm].tangent(directions);
             from_start = std::max(from_start, by_start.dot(of_start * by_start));
             from_parameters = std::max(from_parameters, by_parameters.dot(of_parameters * by_parameters));
         }

@@ -29,6 +29,7 @@ std::vector<Plan> plans_of(Bodies bodies) {
     std::vector<Plan> plans;
     const auto add = [&](bool point, const std::string& words, int friction, Drag drag = Drag::own, int reading = 0) {
         plans.push_back({(point ? "point masses, " : "compound, ") + words, model_of(point, friction, drag, reading)});
+        plans.back().model.dry = DryLaw::sharp;
     };
     const bool only_point = bodies == Bodies::point;
     if (bodies != Bodies::compound) {
@@ -215,6 +216,21 @@ Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments) {
     return moved(fit, places, change);
 }
 
+Fit of_better_law(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, const FitEffort& effort,
+                  const std::atomic<bool>& stop) {
+    if (!fits(fit.model, coulomb_1)) return fit;
+    Fit other = fit;
+    other.model.dry = fit.model.dry == DryLaw::sharp ? DryLaw::smooth : DryLaw::sharp;
+    other.sums.clear();
+    try {
+        other = fit_model(track, segments, std::move(other), effort, stop);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::method_failed) throw;
+        return fit;
+    }
+    return other.rms < fit.rms ? other : fit;
+}
+
 ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic<bool>& stop,
                   const std::function<void(std::size_t done, std::size_t of)>& report) {
     ModelLadder ladder;
@@ -229,7 +245,9 @@ ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic
         FittedModel rung{.name = plan.name, .model = plan.model};
         const auto start = nearer_start(track, segments, plan.model, before, first, jobs, stop);
         try {
-            rung.fit = fit_model(track, segments, start, {.step_share = 0.2, .relative = roughly, .jobs = jobs}, stop);
+            const FitEffort effort{.step_share = 0.2, .relative = roughly, .jobs = jobs};
+            rung.fit = of_better_law(track, segments, fit_model(track, segments, start, effort, stop), effort, stop);
+            rung.model = rung.fit.model;
         } catch (const Error& error) {  // of this model alone
             if (error.code() != ExitCode::method_failed || (plan.name == plans.back().name && ladder.rungs.empty()))
                 throw;

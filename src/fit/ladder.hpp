@@ -41,6 +41,10 @@ Division divide(const Track& track, double segment_s = 0);
 /// equations of the others. Starts move along.
 Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments);
 
+/// The fit, or that of the other law of dry friction where this leaves less: both have as many parameters.
+Fit of_better_law(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, const FitEffort& effort,
+                  const std::atomic<bool>& stop);
+
 /// All models, from the smallest. `chosen` is the smallest that predicts pieces left out as well as the best does.
 struct ModelLadder {
     Division division;

@@ -24,7 +24,7 @@ std::optional<Period> find_period(const Track& track, const Division& division, 
     if (pieces < 3) return std::nullopt;
     double shortest = track.pieces[0].duration();
     for (const auto& piece : track.pieces) shortest = std::min(shortest, piece.duration());
-    const auto arms = arms_of(fit.model, fit.parameters);
+    auto arms = arms_of(fit.model, fit.parameters);
     const double step = fit.rules.step_s, rate = std::sqrt(fit.parameters[index_of(FitParameter::gravity_2)]);
     // the state at the start of each piece, and the motion of each far beyond its end
     std::vector<ArmState<double>> starts(pieces);
@@ -34,9 +34,13 @@ std::optional<Period> find_period(const Track& track, const Division& division, 
     std::vector<std::vector<ArmState<double>>> motions;
     for (std::size_t k = 0; k + 1 < pieces; ++k) {
         throw_if_set(stop);
-        auto state = starts[k], slope = arms.rate(state);
+        Flow<double> flow(arms, starts[k], step);
         auto& motion = motions.emplace_back();
-        for (std::size_t i = 0; i < looks; ++i, take_step(arms, step, state, slope)) motion.push_back(state);
+        for (std::size_t i = 0; i < looks; ++i) {
+            const double t = static_cast<double>(i) * step;
+            flow.reach(t);
+            motion.push_back(flow.values_at(t));
+        }
     }
     // how far the ends are off, whole turns aside, for each interval
     const auto off = [&](std::size_t look) {
@@ -64,6 +68,7 @@ std::optional<Period> find_period(const Track& track, const Division& division, 
     for (std::size_t k = 0; k + 1 < pieces; ++k) {
         const auto& state = motions[k][best];
         if (square_distance(state, starts[k + 1], rate) > 0.25) continue;
+        arms.take_modes(state[2], state[3]);
         const auto slope = arms.rate(state);
         for (std::size_t q = 0; q < 4; ++q) {
             const double unit = q < 2 ? 1 : rate, d = (starts[k + 1][q] - state[q]) / unit, v = slope[q] / unit;

@@ -79,12 +79,17 @@ const char* drag_key(const ModelSpec& model) {
     return model.drag == Drag::own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2";
 }
 
+/// Of rates within which dry friction turns over, °/s.
+double dry_width(const ModelSpec& model) {
+    return model.dry == DryLaw::sharp ? 0 : coulomb_width_deg_per_s;
+}
+
 Json pendulum_json(const FittedPendulum& p, const ModelSpec& model) {
     return {{"convention", p.rule},           {"gravity_m_per_s2", p.gravity},
             {"B_kg_m2", p.second_inertia},    {"mass_kg", p.mass},
             {"length_m", p.length},           {"center_m", p.center},
             {"inertia_kg_m2", p.inertia},     {"joint_viscous_N_m_s", p.viscous},
-            {"joint_coulomb_N_m", p.coulomb}, {"joint_coulomb_width_deg_per_s", coulomb_width_deg_per_s},
+            {"joint_coulomb_N_m", p.coulomb}, {"joint_coulomb_width_deg_per_s", dry_width(model)},
             {drag_key(model), p.quadratic}};
 }
 
@@ -154,7 +159,12 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
         add("inertia_kg_m2", p.inertia);
     }
     if (any(p.viscous)) add("joint_viscous_N_m_s", p.viscous);
-    if (any(p.coulomb)) add("joint_coulomb_N_m", p.coulomb);
+    if (any(p.coulomb)) {
+        if (rung.model.dry == DryLaw::smooth)
+            text += fmt::format("# fitted as turning over within {} deg/s; here it does so at once\n",
+                                dry_width(rung.model));
+        add("joint_coulomb_N_m", p.coulomb);
+    }
     if (any(p.quadratic)) add(drag_key(rung.model), p.quadratic);
     const auto& start = rung.fit.starts.front();
     const auto errors = start_errors(rung.fit, result.uncertainty);

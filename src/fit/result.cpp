@@ -120,6 +120,8 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
         auto uncertainty = uncertainty_of(result.track, segments, rung.fit, jobs, stop);
         if (!uncertainty.is_white) return uncertainty;
         rung.fit = fit_model(result.track, segments, rung.fit, {.jobs = jobs}, stop);
+        rung.fit = of_better_law(result.track, segments, rung.fit, {.jobs = jobs}, stop);
+        rung.model = rung.fit.model;
         return uncertainty_of(result.track, segments, rung.fit, jobs, stop);
     };
     result.uncertainty = finish(ladder.rungs[ladder.chosen]);
@@ -161,17 +163,29 @@ std::string horizon_sentence(const FitResult& result) {
                    : "No horizon: stretches are too short to predict from.";
     const auto& h = *result.horizon;
     const auto left = h.left_by[0] + h.left_by[1] + h.left_by[2];
-    const auto words = h.median_s ? fmt::format("for {:.1f} s (median)", *h.median_s)
-                                  : fmt::format("for longer than the track shows, {:.1f} s", h.longest_s);
-    const auto [least, most] = std::minmax_element(h.predictions.begin(), h.predictions.end(),
-                                                   [](const auto& a, const auto& b) { return a.data_s < b.data_s; });
-    const auto from = fmt::format("{:.1f}", least->data_s), to = fmt::format("{:.1f}", most->data_s);
-    auto sentence = fmt::format("Predictions from {}{} s of data stay within {:.2g} rad {}", from,
-                                from == to ? "" : " to " + to, h.limit, words);
-    const auto count = static_cast<double>(h.predictions.size());
-    if (left == 0)  // (1 − p)ⁿ = 5 %
-        return sentence + fmt::format("; none of {} left: at 95 % confidence at most {:.0f} % would.", count,
-                                      100 * (1 - portable_pow(0.05, 1 / count)));
+    const auto span = [&](auto member) {
+        const auto [least, most] =
+            std::minmax_element(h.predictions.begin(), h.predictions.end(),
+                                [&](const Prediction& a, const Prediction& b) { return a.*member < b.*member; });
+        const auto from = fmt::format("{:.1f}", (*least).*member), to = fmt::format("{:.1f}", (*most).*member);
+        return from == to ? from : from + " to " + to;
+    };
+    auto sentence =
+        fmt::format("Predictions from {} s of data stay within {:.2g} rad ", span(&Prediction::data_s), h.limit);
+    if (left == 0) {
+        // of those seen for the median time or longer: (1 − p)ⁿ = 5 %
+        std::vector<double> seen;
+        for (const auto& p : h.predictions) seen.push_back(p.within_s);
+        std::sort(seen.begin(), seen.end());
+        const auto count = seen.size() - seen.size() / 2;
+        return sentence + fmt::format(
+                              "as long as the track shows them, {} s; of the {} seen for {:.1f} s or more none "
+                              "left by then: at 95 % confidence at most {:.0f} % would.",
+                              span(&Prediction::within_s), count, seen[seen.size() / 2],
+                              100 * (1 - portable_pow(0.05, 1 / static_cast<double>(count))));
+    }
+    sentence += h.median_s ? fmt::format("for {:.1f} s (median)", *h.median_s)
+                           : fmt::format("for longer than the track shows, {:.1f} s", h.longest_s);
     constexpr std::array<const char*, 3> names{"the model", "the start", "the parameters"};
     std::string because;
     for (std::size_t k = 0; k < names.size(); ++k)

@@ -12,10 +12,11 @@ namespace {
 
 constexpr int offsets = 2, readings = 6;  // room for the parameters of reading: an even number
 
-/// Whether there is any, or some to be found.
-bool has_friction(const ModelSpec& model, const Parameters& parameters) {
-    return std::any_of(model.fitted.begin(), model.fitted.end(), is_friction) ||
-           std::any_of(parameters.begin() + index_of(FitParameter::viscous_1), parameters.begin() + dynamic_count,
+/// Whether there is any of these kinds of friction, or some to be found.
+bool has_any(const ModelSpec& model, const Parameters& parameters, FitParameter first, FitParameter last) {
+    const auto is_one = [&](FitParameter parameter) { return parameter >= first && parameter <= last; };
+    return std::any_of(model.fitted.begin(), model.fitted.end(), is_one) ||
+           std::any_of(parameters.begin() + index_of(first), parameters.begin() + index_of(last) + 1,
                        [](double value) { return value != 0; });
 }
 
@@ -234,7 +235,9 @@ Parameters completed(const ModelSpec& model, Parameters parameters) {
 
 Arms<double> arms_of(const ModelSpec& model, const Parameters& parameters) {
     const auto all = completed(model, parameters);
-    Arms<double> arms{.p = {}, .drag = model.drag, .has_friction = has_friction(model, all)};
+    using enum FitParameter;
+    Arms<double> arms{.p = {}, .drag = model.drag, .has_friction = has_any(model, all, viscous_1, quadratic_2)};
+    if (has_any(model, all, coulomb_1, coulomb_2)) arms.dry = model.dry;
     std::copy_n(all.begin(), dynamic_count, arms.p.begin());
     return arms;
 }

@@ -13,6 +13,7 @@ namespace doppel {
 struct ModelSpec {
     bool point_masses = false;  // then D1 = A D2/C, and gravity_1 is not among `fitted`
     Drag drag = Drag::own;
+    DryLaw dry = DryLaw::smooth;
     std::vector<FitParameter> fitted;
     bool may_gain = false;  // friction may be negative
 

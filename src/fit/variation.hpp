@@ -38,8 +38,10 @@ Accelerations accelerations_of(const Arms<double>& arms, const ArmState<double>&
     const bool is_carried = arms.drag == Drag::carried;
     if (arms.has_friction) {
         const double between = w2 - w1, x1 = w1 / coulomb_width, x2 = between / coulomb_width;
-        const double root1 = 1 / std::sqrt(1 + x1 * x1), root2 = 1 / std::sqrt(1 + x2 * x2);
-        dry1 = x1 * root1, dry2 = x2 * root2;
+        const bool is_sharp = arms.is_sharp();
+        const double root1 = is_sharp ? 0 : 1 / std::sqrt(1 + x1 * x1),
+                     root2 = is_sharp ? 0 : 1 / std::sqrt(1 + x2 * x2);
+        dry1 = is_sharp ? arms.modes[0] : x1 * root1, dry2 = is_sharp ? arms.modes[1] : x2 * root2;
         const double u = is_carried ? w2 + c * w1 : w2, drag_slope = 2 * of(quadratic_2) * std::abs(u);
         square1 = std::abs(w1) * w1, square2 = std::abs(u) * u;
         const double torque = of(quadratic_2) * square2;
@@ -61,13 +63,21 @@ Accelerations accelerations_of(const Arms<double>& arms, const ArmState<double>&
             by_w2.first -= c * drag_slope;
         }
     }
-    const double a = of(inertia), inverse = 1 / (a - c * c);
-    const Pair alpha{(r.first - c * r.second) * inverse, (a * r.second - c * r.first) * inverse};
+    // α or its derivatives, of both right sides: with held joints in other equations of the same kind
+    const double a = of(inertia), inverse = 1 / (a - c * c), together = 1 / (a + 2 * c + 1);
+    const bool holds_1 = arms.is_held(0), holds_2 = arms.is_held(1);
+    const auto solved = [&](double first, double second) -> Pair {
+        if (holds_1) return {0, holds_2 ? 0 : second};
+        if (holds_2) return {(first + second) * together, (first + second) * together};
+        return {(first - c * second) * inverse, (a * second - c * first) * inverse};
+    };
+    const Pair alpha = solved(r.first, r.second);
     Accelerations result;
     result.value = {alpha.first, alpha.second};
     const auto solve = [&](auto& rows, auto column, double first, double second) {
-        rows[0][column] = (first - c * second) * inverse;
-        rows[1][column] = (a * second - c * first) * inverse;
+        const Pair slopes = solved(first, second);
+        rows[0][column] = slopes.first;
+        rows[1][column] = slopes.second;
     };
     // by an angle between the arms
     const Pair turn{-c * w2 * w2 - s * by_c.first + s * alpha.second, c * w1 * w1 - s * by_c.second + s * alpha.first};

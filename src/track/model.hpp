@@ -75,9 +75,11 @@ enum class Drag {
     carried,  // what its air meets: u = ω2 + (C/B) cos(θ1 − θ2) ω1, the joint's motion added
 };
 
-/// Dry friction turns over within about this rate. It is not fitted: as long as a joint passes through rest within some
-/// hundredths of a second, the motion does not tell it (measured: from 0.1 °/s to 10 °/s the residual of a real track
-/// changes by 1 %).
+/// How dry friction turns over where a joint does.
+enum class DryLaw {
+    smooth,  // within some degrees a second
+    sharp,   // at once: c sign(ω), and a joint that has come to rest stays where c holds it, as `simulate` has it
+};
 inline constexpr double coulomb_width_deg_per_s = 5, coulomb_width = coulomb_width_deg_per_s * std::numbers::pi / 180;
 
 template <class Scalar>
@@ -90,6 +92,8 @@ using ArmState = std::array<Scalar, 4>;  // θ1, θ2 from the downward vertical,
 ///     Q1 = j1 − j2 + k1 |ω1| ω1 [+ C cosδ k2 |u| u],   Q2 = j2 + k2 |u| u,   u = ω2, or of drag that is carried as above
 ///     j = b ω + c f(ω/width),   f(x) = x/√(1 + x²),   with the joint's own rate, ω1 or ω2 − ω1
 ///
+/// Of the sharp law f is the joint's mode, ±1 or 0, until the next event (fit/flow.hpp): at 0 the joint is held.
+///
 /// Source  Landau & Lifshitz, Mechanics, §5 problem 1 and §25; the carried drag: a point of the second arm at the
 ///         distance B/(m2 a2) of its centre of oscillation moves through the air with that distance times u.
 template <class Scalar>
@@ -97,28 +101,61 @@ struct Arms {
     std::array<Scalar, dynamic_count> p;
     Drag drag = Drag::own;
     bool has_friction = true;
+    DryLaw dry = DryLaw::smooth;
+    std::array<int, 2> modes{1, 1};  // of the sharp law: signs of the joints' rates, 0 where one is held
+
+    /// The modes of joints that turn as in this state.
+    void take_modes(double w1, double w2) { modes = {w1 < 0 ? -1 : 1, w2 < w1 ? -1 : 1}; }
+    bool is_sharp() const { return has_friction && dry == DryLaw::sharp; }
+    bool is_held(std::size_t joint) const { return is_sharp() && modes[joint] == 0; }
 
     ArmState<Scalar> rate(const ArmState<Scalar>& y) const {
+        const auto [r1, r2, cosine] = sides(y);
+        const auto alpha = accelerations(r1, r2, cosine);
+        return {y[2], y[3], alpha[0], alpha[1]};
+    }
+
+    /// The torques over B that hold the held joints, > 0 against a joint that would turn forwards.
+    std::array<Scalar, 2> holding(const ArmState<Scalar>& y) const {
+        const auto [r1, r2, cosine] = sides(y);
+        const auto alpha = accelerations(r1, r2, cosine);
+        const Scalar middle = r2 - cosine * alpha[0] - alpha[1];
+        return {Scalar(r1 - p[index_of(FitParameter::inertia)] * alpha[0] - cosine * alpha[1] + middle), middle};
+    }
+
+private:
+    /// Both right sides, and the factor of the other arm's acceleration on both left.
+    struct Sides {
+        Scalar r1, r2, cosine;
+    };
+    Sides sides(const ArmState<Scalar>& y) const {
         const auto of = [&](FitParameter parameter) -> const Scalar& { return p[index_of(parameter)]; };
         const Scalar &w1 = y[2], &w2 = y[3];
         const SinCos<Scalar> between(Scalar(y[0] - y[1])), first(y[0]), second(y[1]);
         const Scalar cosine = of(FitParameter::coupling) * between.cos, sine = of(FitParameter::coupling) * between.sin;
-        // both right sides
         Scalar r1 = -sine * (w2 * w2) - of(FitParameter::gravity_1) * first.sin;
         Scalar r2 = sine * (w1 * w1) - of(FitParameter::gravity_2) * second.sin;
         if (has_friction) add_friction(w1, w2, cosine, r1, r2);
-        // solved for the accelerations
-        const Scalar& a = of(FitParameter::inertia);
-        const Scalar inverse = Scalar(1) / (a - cosine * cosine);
-        return {w1, w2, Scalar((r1 - cosine * r2) * inverse), Scalar((a * r2 - cosine * r1) * inverse)};
+        return {r1, r2, cosine};
     }
 
-private:
+    /// Of A α1 + cosine α2 = r1 + torques that hold joints, cosine α1 + α2 = r2 + such.
+    std::array<Scalar, 2> accelerations(const Scalar& r1, const Scalar& r2, const Scalar& cosine) const {
+        const Scalar& a = p[index_of(FitParameter::inertia)];
+        if (is_held(0)) return {Scalar(0), is_held(1) ? Scalar(0) : r2};
+        if (is_held(1)) {
+            const Scalar together = (r1 + r2) / (a + Scalar(2) * cosine + Scalar(1));
+            return {together, together};
+        }
+        const Scalar inverse = Scalar(1) / (a - cosine * cosine);
+        return {Scalar((r1 - cosine * r2) * inverse), Scalar((a * r2 - cosine * r1) * inverse)};
+    }
+
     void add_friction(const Scalar& w1, const Scalar& w2, const Scalar& cosine, Scalar& r1, Scalar& r2) const {
         using std::abs;
         const auto of = [&](FitParameter parameter) -> const Scalar& { return p[index_of(parameter)]; };
-        const Scalar pivot = joint(w1, of(FitParameter::viscous_1), of(FitParameter::coulomb_1));
-        const Scalar middle = joint(Scalar(w2 - w1), of(FitParameter::viscous_2), of(FitParameter::coulomb_2));
+        const Scalar pivot = joint(0, w1, of(FitParameter::viscous_1), of(FitParameter::coulomb_1));
+        const Scalar middle = joint(1, Scalar(w2 - w1), of(FitParameter::viscous_2), of(FitParameter::coulomb_2));
         r1 += middle - pivot - of(FitParameter::quadratic_1) * (abs(w1) * w1);
         r2 -= middle;
         if (drag == Drag::own) {
@@ -130,8 +167,9 @@ private:
         }
     }
 
-    static Scalar joint(const Scalar& rate, const Scalar& viscous, const Scalar& coulomb) {
+    Scalar joint(std::size_t number, const Scalar& rate, const Scalar& viscous, const Scalar& coulomb) const {
         using std::sqrt;
+        if (dry == DryLaw::sharp) return viscous * rate + coulomb * Scalar(modes[number]);
         const Scalar x = rate * Scalar(1 / coulomb_width);
         return viscous * rate + coulomb * (x / sqrt(Scalar(Scalar(1) + x * x)));
     }

@@ -83,11 +83,14 @@ TEST(FitVariation, AccelerationsChangeAsDualNumbersSay) {
     using Number = Dual<double, all>;
     for (const auto drag : {Drag::own, Drag::carried})
         for (const bool point : {false, true})
-            for (const double sign : {1.0, -1.0}) {
+            for (const auto modes : {std::array{1, 1}, {-1, 1}, {0, 1}, {1, 0}, {0, 0}, {9, 9}}) {
+                const bool is_sharp = modes[0] < 9;
+                const double sign = modes[0] == 1 ? 1 : -1;
                 auto p = lab_arms();
                 if (point) p = completed({.point_masses = true}, p);
                 Arms<Number> dual{.p = {}, .drag = drag};
                 VaryingArms<all> written{.arms = arms(p, drag), .direction = {}, .point_masses = point};
+                if (is_sharp) dual.dry = written.arms.dry = DryLaw::sharp, dual.modes = written.arms.modes = modes;
                 written.direction.fill(-1);
                 for (std::size_t k = 0; k < dynamic_count; ++k) {
                     const auto place = 4 + static_cast<Eigen::Index>(k);
@@ -106,6 +109,28 @@ TEST(FitVariation, AccelerationsChangeAsDualNumbersSay) {
                     EXPECT_LT((rate[q].tangent - expected[q].tangent).cwiseAbs().maxCoeff(), 1e-12);
                 }
             }
+}
+
+/// Joints that turn over, stick and slip: a swing of much dry friction until it rests.
+TEST(FitFlow, SharpFrictionMovesAsThePhysicsRoomHasIt) {
+    auto p = lab_arms();
+    at(p, coulomb_1) = 4, at(p, coulomb_2) = 3;
+    constexpr std::size_t samples = 501;
+    constexpr long hz = 100;
+    const auto expected = simulated_angles(fitted_pendulum(p, false, {}), {1.5, -0.8, 1, -2}, hz, samples);
+    auto law = arms(p, Drag::own);
+    law.dry = DryLaw::sharp;
+    Flow<double> flow(law, {1.5, -0.8, 1, -2}, 1.0 / 512);
+    double worst = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+        const double t = static_cast<double>(i) / hz;
+        ASSERT_TRUE(flow.reach(t));
+        for (std::size_t arm = 0; arm < 2; ++arm)
+            worst = std::max(worst, std::abs(flow.angle(arm, t) - expected[i][arm]));
+    }
+    EXPECT_LT(worst, 1e-8);         // measured 1.3e-9
+    EXPECT_EQ(flow.state()[2], 0);  // it has come to rest
+    EXPECT_EQ(flow.state()[3], 0);
 }
 
 TEST(FitFlow, IsOfOrderFive) {

@@ -3,6 +3,7 @@
 #include "fit/flow.hpp"
 #include "fit/ladder.hpp"
 #include "fit/physical.hpp"
+#include "integrate/motion.hpp"
 
 #include <fmt/format.h>
 
@@ -73,6 +74,33 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
     }
     track.noise = {measuring.noise, measuring.noise};
     return track;
+}
+
+/// Angles as "simulate" has them, sharp dry friction with its events: `samples` of them at `hz` a second.
+inline std::vector<std::array<double, 2>> simulated_angles(const FittedPendulum& made, const ArmState<double>& start,
+                                                           long hz, std::size_t samples) {
+    const auto list = [](const std::array<double, 2>& pair) { return std::vector<double>{pair[0], pair[1]}; };
+    PhysicalPendulum<double> pendulum;
+    pendulum.chain = {list(made.mass), list(made.length), {start[0], start[1]}, {start[2], start[3]}};
+    pendulum.chain.gravity = made.gravity;
+    pendulum.center = list(made.center), pendulum.inertia = list(made.inertia);
+    pendulum.friction.viscous = list(made.viscous), pendulum.friction.coulomb = list(made.coulomb);
+    pendulum.friction.arm_quadratic = list(made.quadratic);
+    MotionSpec spec;
+    spec.chain = pendulum.chain.cast<Quad>();
+    spec.physical = pendulum.cast<Quad>();
+    spec.method = "dop853";
+    spec.tolerance = Quad(1e-12);
+    spec.sample_interval = {1, hz};
+    const auto motion = make_motion(spec);
+    const std::atomic<bool> never = false;
+    std::vector<std::array<double, 2>> angles;
+    for (std::size_t i = 0; i < samples; ++i) {
+        if (i > 0) motion->advance(never);
+        const auto bobs = motion->observe().bobs;
+        angles.push_back({bobs[0].theta, bobs[1].theta});
+    }
+    return angles;
 }
 
 /// Every piece, and the order of pieces, backwards in time.
