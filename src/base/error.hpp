@@ -1,17 +1,16 @@
 #pragma once
 
+#include "base/text.hpp"
+
 #include <fmt/format.h>
 
 #include <atomic>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace doppel {
-
-std::string on_one_line(std::string_view text);  // base/text.hpp
 
 /// What the process answers with; one number a kind of outcome.
 enum class ExitCode { done = 0, differs = 1, bad_input = 2, method_failed = 3, io_failed = 4, interrupted = 130 };

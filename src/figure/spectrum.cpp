@@ -86,10 +86,9 @@ public:
 
     std::string subtitle() const override {
         const auto physical = physical_words(release_.physical);
-        return fmt::format("{}{} {}, {}; tangent equations in canonical variables, {}",
+        return fmt::format("{}{} {}, {}; tangent equations in canonical variables, dop853",
                            pendulum_words(release_.links()), physical.empty() ? "" : fmt::format(" with {},", physical),
-                           released_words(release_), links_words(release_),
-                           release_.physical.is_none() ? "taylor" : "dop853");
+                           released_words(release_), links_words(release_));
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {

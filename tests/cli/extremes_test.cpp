@@ -5,6 +5,8 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <sstream>
+#include <string>
 
 namespace doppel {
 namespace extremes_test {
@@ -41,7 +43,9 @@ void expect_answer(const std::string& command, const Request& asked) {
     EXPECT_EQ(code, asked.code) << what << "\n" << message;
     for (const auto& name : made) EXPECT_FALSE(name.ends_with(".part") || name.ends_with(".lock")) << what << name;
     if (code == 0) {
-        EXPECT_EQ(message, "") << what;
+        std::istringstream warnings(message);  // at most that a step is too coarse
+        for (std::string warning; std::getline(warnings, warning);)
+            EXPECT_NE(warning.find("% of its range"), std::string::npos) << what << "\n" << message;
         EXPECT_TRUE(made.contains("butterfly/butterfly.csv")) << what;
         return;
     }

@@ -178,7 +178,8 @@ TEST(Program, TheLongestNameLeavesRoomForEveryEnding) {
         folder, {"simulate", name + ".toml", "--set", "system.step_s=\"1/3\"", "--set", "scene.sample_hz=3", "--set",
                  "scene.duration_s=3000", "--set", "system.model=\"constraints\"", "--progress", "none"});
     EXPECT_EQ(failed.code, 3) << failed.err;
-    write_bytes(folder / (name + ".toml"), "title = \"long\"\n[scene]\nkind = \"sweep\"\nduration_s = 0.1\n");
+    write_bytes(folder / (name + ".toml"),
+                "title = \"long\"\n[scene]\nkind = \"sweep\"\nduration_s = 0.1\n[sweep]\ndifference = 0.01\n");
     for (const auto& shard : {std::vector<std::string>{"--shard", "100000/100000"}, {}}) {
         const auto result =
             doppel(folder, with({"figure", name + ".toml", "--progress", "none", "--out", "figures"}, shard));
