@@ -149,7 +149,8 @@ private:
     std::vector<Scalar> coefficients_, inverse_;
 };
 
-/// A number whose operations a tape takes down. One without a tape is a constant.
+/// A number whose operations a tape takes down. One without a tape is a constant. All bytes 0 are the constant 0: so Eigen 5
+/// sets vectors to zero.
 template <class S>
 class Taped {
 public:
@@ -163,12 +164,12 @@ public:
     template <class Number>
     requires(std::is_arithmetic_v<Number> && !std::is_same_v<Number, Scalar>) Taped(Number constant)
         : value(Scalar(constant)) {}
-    Taped(const Scalar& now, Tape<Scalar>& tape, int node) : value(now), tape_(&tape), node_(node) {}
+    Taped(const Scalar& now, Tape<Scalar>& tape, int node) : value(now), tape_(&tape), next_(node + 1) {}
 
     static Taped argument(const Scalar& now, Tape<Scalar>& tape) { return {now, tape, tape.add(Operation::argument)}; }
 
     /// −1 of a constant.
-    int node() const { return node_; }
+    int node() const { return next_ - 1; }
 
     friend Taped operator+(const Taped& a, const Taped& b) { return of(Operation::sum, a.value + b.value, a, b); }
     friend Taped operator-(const Taped& a, const Taped& b) {
@@ -186,22 +187,22 @@ public:
     friend Taped sqrt(const Taped& a) {
         using std::sqrt;
         const Scalar root = sqrt(a.value);
-        return a.tape_ ? Taped(root, *a.tape_, a.tape_->add(Operation::root, a.node_)) : Taped(root);
+        return a.tape_ ? Taped(root, *a.tape_, a.tape_->add(Operation::root, a.node())) : Taped(root);
     }
     /// Until it changes its sign.
     friend Taped abs(const Taped& a) {
         using std::abs;
         if (!a.tape_) return Taped(Scalar(abs(a.value)));
-        const Taped size(abs(a.value), *a.tape_, a.tape_->add(Operation::size, a.node_));
-        a.tape_->note_event(size.node_);
+        const Taped size(abs(a.value), *a.tape_, a.tape_->add(Operation::size, a.node()));
+        a.tape_->note_event(size.node());
         return size;
     }
     /// √(a² + b²), until it vanishes: neither is a constant.
     friend Taped norm(const Taped& a, const Taped& b) {
         using std::sqrt;
         const Taped size(sqrt(Scalar(a.value * a.value + b.value * b.value)), *a.tape_,
-                         a.tape_->add(Operation::norm, a.node_, b.node_));
-        a.tape_->note_event(size.node_);
+                         a.tape_->add(Operation::norm, a.node(), b.node()));
+        a.tape_->note_event(size.node());
         return size;
     }
 
@@ -218,16 +219,16 @@ private:
     static Taped of(Operation operation, const Scalar& now, const Taped& a, const Taped& b) {
         auto* tape = a.tape_ ? a.tape_ : b.tape_;
         if (!tape) return Taped(now);
-        return {now, *tape, tape->add(operation, a.node_, b.node_, a.tape_ ? b.value : a.value)};
+        return {now, *tape, tape->add(operation, a.node(), b.node(), a.tape_ ? b.value : a.value)};
     }
     static void noted(const Taped& a, const Taped& b) {
         if (!a.tape_ && !b.tape_) return;
         const auto difference = a - b;
-        difference.tape_->note_event(difference.node_);
+        difference.tape_->note_event(difference.node());
     }
 
     Tape<Scalar>* tape_ = nullptr;
-    int node_ = -1;
+    int next_ = 0;  // after its node; 0 of a constant
 };
 
 template <class S>
