@@ -135,13 +135,18 @@ double spent_by_children() {
 /// By its own time, whatever else the machine does.
 TEST(Completion, IsSoonThere) {
     const auto folder = fresh_folder();
-    double best = 1;
+#ifdef DOPPEL_SANITIZE
+    const double most = 1;  // measured 0.1 s, with another build beside it 0.25
+#else
+    const double most = 0.2;  // measured 0.02 s
+#endif
+    double best = 10;
     for (int i = 0; i < 5; ++i) {
         const double before = spent_by_children();
         EXPECT_EQ(doppel(folder, {"complete", "bash", "figure", "fig2-right", "--set", "sweep."}).code, 0);
         best = std::min(best, spent_by_children() - before);
     }
-    EXPECT_LT(best, 0.2);  // measured 0.02 s, with sanitizers 0.1
+    EXPECT_LT(best, most);
 }
 
 /// A bash on a terminal.
