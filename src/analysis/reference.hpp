@@ -14,8 +14,8 @@ struct Reference {
 };
 
 /// The end after `seconds`, by Taylor series in quad, twice: a chain in angles and as particles on rods, which have no
-/// equation in common; a mechanism at two tolerances, and so orders. Of `spec` only what moves, and whether it is a
-/// mechanism, matters.
+/// equation in common; links with mass, friction or a drive and mechanisms at two tolerances, and so orders. Of `spec` only
+/// what moves, and whether it is a mechanism, matters.
 ///
 /// Throws Error: exit 3 where the two differ by more than `allowed`, or a step cannot be made; exit 130 soon after
 /// `stop` is set.

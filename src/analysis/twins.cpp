@@ -24,20 +24,14 @@ public:
     }
 
     void start(const TwinRun& run, int width) {
-        if (side_.method == "taylor")
-            series_.emplace(members_, side_.tolerance, run.sample_interval, width);
-        else
-            batch_.emplace(members_, side_.model, side_.method,
-                           run.sample_interval / static_cast<double>(side_.steps_per_sample), width);
+        batch_.emplace(members_, side_.model, side_.method,
+                       run.sample_interval / static_cast<double>(side_.steps_per_sample), width);
         seen_.resize(members_.size());
         update();
     }
 
     void advance() {
-        if (series_)
-            series_->advance();
-        else
-            batch_->advance(side_.steps_per_sample);
+        batch_->advance(side_.steps_per_sample);
         update();
     }
 
@@ -46,7 +40,7 @@ public:
 private:
     void update() {
         for (std::size_t i = 0; i < members_.size(); ++i) {
-            series_ ? series_->read(i, state_) : batch_->read(i, state_);
+            batch_->read(i, state_);
             if (side_.model == Model::angles)
                 place_angles(members_[i], state_, seen_[i]);
             else
@@ -56,18 +50,15 @@ private:
 
     TwinSide side_;
     std::vector<Pendulum<double>> members_;
-    std::optional<Batch> batch_;         // of a fixed step
-    std::optional<TaylorBatch> series_;  // of Taylor series
+    std::optional<Batch> batch_;
     State<double, Eigen::Dynamic> state_;
     std::vector<Bobs<double>> seen_;
 };
 
 }  // namespace
 
-std::size_t twins_block(const std::string& method, int width) {
-    constexpr std::size_t of_taylor = 64;  // whose lanes take the next member as soon as one is done
-    if (method == "taylor") return of_taylor;
-    return 2 * static_cast<std::size_t>(width == 0 ? register_widths().back() : width);
+std::size_t twins_block() {
+    return 2 * static_cast<std::size_t>(register_widths().back());
 }
 
 void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch, const std::atomic<bool>& stop,

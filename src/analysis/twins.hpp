@@ -2,7 +2,6 @@
 
 #include "analysis/difference.hpp"
 #include "integrate/batch.hpp"
-#include "integrate/taylor_batch.hpp"
 
 #include <atomic>
 #include <cmath>
@@ -21,8 +20,7 @@ struct Twins {
 struct TwinSide {
     Model model = Model::angles;
     std::string method = "euler";
-    long steps_per_sample = 250;  // of a fixed step
-    double tolerance = 0;         // of "taylor"
+    long steps_per_sample = 250;
     friend bool operator==(const TwinSide&, const TwinSide&) = default;
 };
 
@@ -32,8 +30,8 @@ struct TwinRun {
     long samples = 0;                    // without the one at the start
 };
 
-/// How many pendulums are best stepped at once by a method at a register width, 0 for the widest.
-std::size_t twins_block(const std::string& method, int width = 0);
+/// How many pendulums are best stepped at once.
+std::size_t twins_block();
 
 /// Steps all twins side by side; `watch` sees every trial at every sample 0 … N, the samples in their order.
 ///

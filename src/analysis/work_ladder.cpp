@@ -229,7 +229,7 @@ bool Solver::serves(const WorkProblem& problem) const {
         case WorkProblem::Kind::chain:
             return true;
         case WorkProblem::Kind::bodies:
-            return model != Model::mechanism && !external;
+            return model == Model::angles && !external;
         case WorkProblem::Kind::mechanism:
             return model == Model::mechanism && !external;
     }

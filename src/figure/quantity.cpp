@@ -58,20 +58,15 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
     return {};
 }
 
-/// How all pairs are stepped in lanes, where they can be: plain chains in double by explicit methods of fixed step, or by
-/// Taylor series.
+/// How all pairs are stepped in lanes, where they can be: plain chains in double by the methods of Batch.
 std::optional<TwinRun> lanes_of(const Scene& scene) {
     TwinRun run{.sample_interval = 1 / scene.preset.sample_hz.value(), .samples = scene.samples};
     const auto take = [](const Side& side, TwinSide& into) {
         const auto& motion = side.motion;
-        into = {motion.model, motion.method, motion.steps_per_sample, static_cast<double>(motion.tolerance)};
-        if (side.choice || motion.physical || motion.model == Model::mechanism ||
-            motion.precision != Precision::in_double || motion.stabilise != Stabilise::none)
-            return false;
-        if (motion.method == "taylor")
-            return TaylorBatch::serves(motion.model, motion.chain->links()) &&
-                   into.tolerance >= TaylorBatch::least_tolerance;
-        return Batch::serves(motion.method);
+        into = {motion.model, motion.method, motion.steps_per_sample};
+        return !side.choice && !motion.physical && motion.model != Model::mechanism &&
+               motion.precision == Precision::in_double && motion.stabilise == Stabilise::none &&
+               Batch::serves(motion.method, motion.chain->links());
     };
     if (!take(scene.a, run.a) || !take(scene.b, run.b)) return std::nullopt;
     if (scene.a.motion.chain->links() != scene.b.motion.chain->links()) return std::nullopt;
@@ -158,14 +153,14 @@ void step_by_series(Preset& pair) {
     const auto serves = [&](const SideSpec& side) {
         return side.physical.is_none() && side.accuracy && *side.accuracy >= Quad(most_exact) && !side.is_mechanism() &&
                (side.model == ModelChoice::automatic || side.model == ModelChoice::angles) &&
-               side.precision == Precision::in_double && TaylorBatch::serves(Model::angles, side.links());
+               side.precision == Precision::in_double && (side.links() == 2 || side.links() == 3);
     };
     if (!serves(pair.a) || !serves(pair.b)) return;
     for (auto* side : {&pair.a, &pair.b}) {
         side->accuracy.reset();
         side->step_s.reset();
         side->integrator = "taylor";
-        side->tolerance = parse_quad("1e-15");  // the least of TaylorBatch, to all digits
+        side->tolerance = parse_quad("1e-15");  // to all digits of double
     }
 }
 
@@ -202,7 +197,7 @@ std::size_t Measurement::together(bool shared) const {
     if (!run_) return 1;
     // a pendulum that two neighbours share is stepped once
     const bool is_shared = shared || !is_of_distance(quantity_);
-    return twins_block(run_->a.method) / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
+    return twins_block() / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
 }
 
 void Measurement::append(std::span<const Preset> pairs, std::span<TrialNumbers> into,

@@ -46,9 +46,8 @@ public:
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
         if (ladders_.empty())
-            throw table.fault(
-                "models", "must name one that serves; {} takes {}", problems_.all[0].name,
-                problems_.all[0].kind == WorkProblem::Kind::bodies ? "\"angles\" or \"constraints\"" : "\"mechanism\"");
+            throw table.fault("models", "must name one that serves; {} takes {}", problems_.all[0].name,
+                              problems_.all[0].kind == WorkProblem::Kind::bodies ? "\"angles\"" : "\"mechanism\"");
     }
 
     template <class Visit>

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "integrate/runge_kutta.hpp"
+#include "numeric/compensated.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <cmath>
@@ -51,9 +52,9 @@ public:
     }
 
     void advance(const Scalar& seconds) {
-        move(seconds);
+        add_compensated(offset_, lost_, seconds);
         while (offset_ > span_) {
-            move(-span_);
+            add_compensated(offset_, lost_, Scalar(-span_));
             step(seconds);
         }
         sample();
@@ -71,15 +72,6 @@ private:
         for (const auto& row : pair.error) needs |= !is_zero(row[end]);
         return needs;
     }();
-
-    /// offset ← offset + seconds; what the sum rounds away is kept and comes in with the next.
-    void move(const Scalar& seconds) {
-        const Scalar add = seconds + lost_;
-        const Scalar sum = offset_ + add;
-        const Scalar part = sum - offset_;
-        lost_ = (offset_ - (sum - part)) + (add - part);
-        offset_ = sum;
-    }
 
     /// One step that the tolerance accepts, from y1. `seconds`, the interval asked for, tells when h has vanished.
     void step(const Scalar& seconds) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "integrate/lane_series.hpp"
-#include "integrate/segment_series.hpp"
 #include "integrate/taylor_series.hpp"
+#include "numeric/subnormals.hpp"
 #include "physics/angle_chain.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -43,6 +45,7 @@ public:
     }
 
     void expand(const State& y) {
+        const NoSubnormals here;
         chain_.update(y);
         term(0).x.setConstant(Scalar(1));
         term(0).rate = y.tail(links_);
@@ -52,19 +55,26 @@ public:
     }
 
     void move(const Scalar& h, State& change) const {
-        for (Eigen::Index i = 0; i < links_; ++i) {
-            Scalar angle(0), rate(0);
+        const NoSubnormals here;
+        constexpr Eigen::Index some = 64;  // links at a time: they stay in the cache
+        for (Eigen::Index first = 0; first < links_; first += some) {
+            const auto size = std::min(some, links_ - first);
+            auto angle = change.segment(first, size), rate = change.segment(links_ + first, size);
+            angle.setZero();
+            rate.setZero();
             for (int k = order_; k > 0; --k) {
-                const Scalar& c = term(k).rate[i];
+                const auto c = term(k).rate.segment(first, size);
                 angle = (angle + c * inverse(k + 1)) * h;
                 rate = (rate + c) * h;
             }
-            change[i] = (angle + term(0).rate[i]) * h;
-            change[links_ + i] = rate;
+            angle = (angle + term(0).rate.segment(first, size)) * h;
         }
     }
 
     double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
+
+    /// Coefficient k of the rate of a link, rad/s^(k+1).
+    double rate(int k, int link) const { return plain_value(term(k).rate[link]); }
 
     double longest_step() const {
         return longest_chain_step(plain_value(chain_.pendulum.reach()), plain_value(chain_.pendulum.gravity));
@@ -83,7 +93,7 @@ private:
 
     /// F_k, ω_{k+1} and r_{k+2} from all before.
     void next(int k) {
-        for (Eigen::Index i = 0; i < links_; ++i) multiply(k, i);
+        multiply(k);
         const auto &s = chain_.s, &c = chain_.c;
         const Half& across = term(k).across;
         Half& along = term(k).along;
@@ -109,19 +119,32 @@ private:
         }
     }
 
-    /// R_k over the length, and F_k across.
-    void multiply(int k, Eigen::Index i) {
-        Scalar x(0), y(0), across(0);
-        for (int j = 1; j <= k + 1; ++j) {
-            const Scalar& rate = term(k + 1 - j).rate[i];
-            x += term(j).x[i] * rate;
-            y += term(j).y[i] * rate;
-            if (j > k) break;
-            across += term(j).x[i] * term(k - j).across[i] + term(j).y[i] * term(k - j).along[i];
+    /// R_k over the length, and F_k across: of some links at a time, which stay in the registers.
+    void multiply(int k) {
+        constexpr Eigen::Index some = 16;
+        for (Eigen::Index first = 0; first < links_; first += some) {
+            const auto size = std::min(some, links_ - first);
+            Scalar x[some], y[some], across[some];
+            std::fill_n(x, size, Scalar(0));
+            std::fill_n(y, size, Scalar(0));
+            std::fill_n(across, size, Scalar(0));
+            for (int j = 1; j <= k + 1; ++j) {
+                const Scalar *xj = term(j).x.data() + first, *yj = term(j).y.data() + first;
+                const Scalar* rate = term(k + 1 - j).rate.data() + first;
+                for (Eigen::Index i = 0; i < size; ++i) {
+                    x[i] += xj[i] * rate[i];
+                    y[i] += yj[i] * rate[i];
+                }
+                if (j > k) break;
+                const Scalar *force = term(k - j).across.data() + first, *pull = term(k - j).along.data() + first;
+                for (Eigen::Index i = 0; i < size; ++i) across[i] += xj[i] * force[i] + yj[i] * pull[i];
+            }
+            for (Eigen::Index i = 0; i < size; ++i) {
+                known_[first + i] = x[i];
+                along_[first + i] = y[i];
+                term(k).across[first + i] = -across[i];
+            }
         }
-        known_[i] = x;
-        along_[i] = y;
-        term(k).across[i] = -across;
     }
 
     /// The greatest |ω_k|.
@@ -154,13 +177,41 @@ Pendulum<Scalar> chain_of(const DoublePendulum<Scalar>& d) {
     return {{d.m1, d.m2}, {d.l1, d.l2}, {Scalar(0), Scalar(0)}, {Scalar(0), Scalar(0)}, d.g};
 }
 
-/// The series of a model in angles: of double in lanes.
+/// Of two or three links of double: in lanes, but where a mass is much lighter than the next, which costs the mass matrix of
+/// the lanes its digits.
+template <int N>
+class FewLinksSeries {
+public:
+    using State = doppel::State<double, 2 * N>;
+
+    FewLinksSeries(const Pendulum<double>& p, int order) : lanes_(p, order) {
+        constexpr double light = 1.0 / 64;
+        for (std::size_t k = 0; k + 1 < N; ++k)
+            if (p.mass[k] < light * p.mass[k + 1] && !careful_) careful_.emplace(p, order);
+    }
+
+    void expand(const State& y) { careful_ ? careful_->expand(y) : lanes_.expand(y); }
+    void move(double h, State& change) const { careful_ ? careful_->move(h, change) : lanes_.move(h, change); }
+    double size(int k) const { return careful_ ? careful_->size(k) : lanes_.size(k); }
+    double longest_step() const { return lanes_.longest_step(); }
+    double rate(int k, int link) const { return careful_ ? careful_->rate(k, link) : lanes_.rate(k, link); }
+
+private:
+    LaneSeries<N> lanes_;
+    std::optional<AngleSeries<double, N>> careful_;
+};
+
+/// The series of a model in angles.
 template <class Model, int N>
 struct ChainSeries {
     using Scalar = typename Model::Scalar;
-    static constexpr bool is_double = std::is_same_v<Scalar, double>;
-    using InLanes = std::conditional_t<N == 2 || N == 3, LaneSeries<N>, SegmentSeries>;
-    using Series = std::conditional_t<is_double, InLanes, AngleSeries<Scalar, N>>;
+    static constexpr auto series = [] {
+        if constexpr (std::is_same_v<Scalar, double> && (N == 2 || N == 3))
+            return std::type_identity<FewLinksSeries<N>>();
+        else
+            return std::type_identity<AngleSeries<Scalar, N>>();
+    }();
+    using Series = typename decltype(series)::type;
     struct type : Series {
         type(const Model& model, int order) : Series(chain_of(model), order) {}
     };

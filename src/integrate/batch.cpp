@@ -2,15 +2,7 @@
 
 #include "base/error.hpp"
 #include "integrate/batch_kernel.hpp"
-#include "integrate/batch_table.hpp"
 #include "integrate/widths.hpp"
-#include "physics/angle_chain.hpp"
-#include "physics/rod_chain.hpp"
-
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <array>
 
 namespace doppel {
 
@@ -18,50 +10,45 @@ BatchBlock::~BatchBlock() = default;
 
 namespace {
 
-constexpr auto method_names = []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array{std::tuple_element_t<I, BatchMethods>::method.name...};
-}
-(std::make_index_sequence<std::tuple_size_v<BatchMethods>>());
-
-/// The number of a method in BatchMethods; their count where it is none of them.
-std::size_t method_number(std::string_view name) {
-    return static_cast<std::size_t>(std::find(method_names.begin(), method_names.end(), name) - method_names.begin());
-}
-
-/// A long chain on its own.
-BatchBlock* make_lone_block(const BatchRequest& request, std::size_t member) {
-    const auto pendulum = pendulum_of<double>(request, member);
-    return request.constraints ? with_method<RodChain<double, Eigen::Dynamic>>(request, pendulum)
-                               : with_method<AngleChain<double, Eigen::Dynamic>>(request, pendulum);
+/// The numbers of pendulums by quantity: that of link j of member i is at [j · members + i].
+std::vector<double> gathered(std::span<const Pendulum<double>> members,
+                             const std::vector<double> Pendulum<double>::*quantity) {
+    std::vector<double> all;
+    for (std::size_t j = 0; j < members[0].links(); ++j)
+        for (const auto& member : members) all.push_back((member.*quantity)[j]);
+    return all;
 }
 
 }  // namespace
 
-bool Batch::serves(std::string_view method) {
-    return method_number(method) < method_names.size();
+bool Batch::serves(std::string_view method, std::size_t links) {
+    return (method == Euler::method.name || method == Rk4::method.name) && (links == 2 || links == 3);
 }
 
-Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string_view method, double step, int width) {
-    const BatchTable table(members);
-    auto* make = make_lone_block;
-    if (table.links <= batch_links) {
-        width_ = chosen_width(width);
-        block_ = static_cast<std::size_t>(batch_block(width_));
-        make = at_width(width_, []<int chosen>() { return make_batch_block<chosen>; });
-    }
-    if (!serves(method))
-        throw bad_input("\"{}\" does not step many pendulums side by side; these do: {}", method,
-                        fmt::join(method_names, ", "));
+Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string_view method, double step, int width)
+    : width_(chosen_width(width)), block_(static_cast<std::size_t>(batch_block(width_))) {
+    if (members.empty()) throw bad_input("a batch needs at least one pendulum");
+    const auto links = members[0].links();
+    for (const auto& member : members)
+        if (member.links() != links)
+            throw bad_input("the pendulums of a batch have as many links each: not {} and {}", links, member.links());
+    if (!serves(method, links))
+        throw bad_input("two or three links are stepped side by side, by euler or rk4: not {} by {}", links, method);
+    const auto mass = gathered(members, &Pendulum<double>::mass), length = gathered(members, &Pendulum<double>::length),
+               angle = gathered(members, &Pendulum<double>::angle), rate = gathered(members, &Pendulum<double>::rate);
+    std::vector<double> gravity;
+    for (const auto& member : members) gravity.push_back(member.gravity);
+    const auto make = at_width(width_, []<int chosen>() { return make_batch_block<chosen>; });
     const BatchRequest request{.members = members.size(),
-                               .links = table.links,
-                               .mass = table.mass.data(),
-                               .length = table.length.data(),
-                               .angle = table.angle.data(),
-                               .rate = table.rate.data(),
-                               .gravity = table.gravity.data(),
+                               .links = links,
+                               .mass = mass.data(),
+                               .length = length.data(),
+                               .angle = angle.data(),
+                               .rate = rate.data(),
+                               .gravity = gravity.data(),
                                .step = step,
                                .constraints = model == Model::constraints,
-                               .method = method_number(method)};
+                               .by_rk4 = method == Rk4::method.name};
     for (std::size_t first = 0; first < members.size(); first += block_) blocks_.emplace_back(make(request, first));
 }
 

@@ -15,32 +15,31 @@ class BatchBlock;
 /// Many pendulums of the same number of links, each with its own masses, lengths, gravity and release, stepped side by
 /// side in the registers of this processor. Every one ends, to the last bit, as it would alone and at every width.
 ///
-/// Chains of up to 4 links are stepped in lanes, longer ones one by one. One thread steps one batch; several batches may
-/// be stepped at once.
+/// One thread steps one batch; several batches may be stepped at once.
 class Batch {
 public:
     /// In angles or as particles on rods. `width` doubles to a register: one of register_widths(), or 0 for the widest.
-    /// Errors  Error (exit 2) where there is no pendulum, they differ in their links, the method is none of the explicit
-    ///         ones of fixed step, or this processor has no such width.
+    /// Errors  Error (exit 2) where there is no pendulum, they differ in their links, serves() says no, or this processor
+    ///         has no such width.
     Batch(std::span<const Pendulum<double>> members, Model model, std::string_view method, double step, int width = 0);
     ~Batch();
     Batch(Batch&&) noexcept;
 
     void advance(long steps);  // without allocation
 
-    int width() const { return width_; }  // 1 where they are stepped one by one
+    int width() const { return width_; }
 
     /// The state of a member as its model keeps it: (θ1 … θN, ω1 … ωN) or (x1, y1 … , vx1, vy1 …).
     State<double, Eigen::Dynamic> state(std::size_t member) const;
     /// The same into `y`, which keeps its memory.
     void read(std::size_t member, State<double, Eigen::Dynamic>& y) const;
 
-    /// Whether a method steps batches: explicit, of fixed step.
-    static bool serves(std::string_view method);
+    /// Whether chains of so many links are stepped side by side by that method: two or three by "euler" or "rk4".
+    static bool serves(std::string_view method, std::size_t links);
 
 private:
-    std::size_t block_ = 1;  // members to a block
-    int width_ = 1;
+    int width_;
+    std::size_t block_;  // members to a block
     std::vector<std::unique_ptr<BatchBlock>> blocks_;
 };
 

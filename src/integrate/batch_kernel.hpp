@@ -6,16 +6,11 @@
 #include "physics/pendulum.hpp"
 
 #include <cstddef>
-#include <tuple>
-#include <utility>
 
 namespace doppel {
 
 // What integrate/batch.cpp and the code for one kind of processor (integrate/batch_width.cpp) share: only plain numbers
 // pass between them, so that no function of a common type is compiled twice for different processors under one name.
-
-/// The methods that step many pendulums side by side: of fixed step and explicit, so that all lanes do the same.
-using BatchMethods = std::tuple<Euler, SemiImplicitEuler, Midpoint, Rk4>;
 
 /// Pendulums of one shape, stored by quantity: quantity j of member i is at [j · members + i].
 struct BatchRequest {
@@ -24,10 +19,8 @@ struct BatchRequest {
     const double* gravity;                       // one a member
     double step;                                 // s
     bool constraints;                            // the model: else angles
-    std::size_t method;                          // its number in BatchMethods
+    bool by_rk4;                                 // else by Euler
 };
-
-inline constexpr std::size_t batch_links = 4;  // the longest chain that is stepped in lanes
 
 /// Some members that are stepped side by side.
 class BatchBlock {
@@ -55,7 +48,7 @@ BatchBlock* make_batch_block<4>(const BatchRequest& request, std::size_t first);
 template <>
 BatchBlock* make_batch_block<8>(const BatchRequest& request, std::size_t first);
 
-/// The block of one model and one method, in lanes or, alone, in double.
+/// The block of one model and one method.
 template <class Model, class Which>
 class SteppedBlock final : public BatchBlock {
 public:
@@ -69,12 +62,7 @@ public:
     std::size_t dimensions() const override { return static_cast<std::size_t>(stepper_.state().size()); }
     void read(std::size_t lane, double* entries) const override {
         const auto& y = stepper_.state();
-        for (Eigen::Index i = 0; i < y.size(); ++i) {
-            if constexpr (is_lanes<Scalar>)
-                entries[i] = y[i][static_cast<int>(lane)];
-            else
-                entries[i] = y[i];
-        }
+        for (Eigen::Index i = 0; i < y.size(); ++i) entries[i] = y[i][static_cast<int>(lane)];
     }
 
 private:
@@ -87,13 +75,10 @@ template <class Pack>
 Pendulum<Pack> pendulum_of(const BatchRequest& request, std::size_t first) {
     Pendulum<Pack> pendulum;
     const auto fill = [&](Pack& side, const double* values) {
-        if constexpr (is_lanes<Pack>)
-            for (int lane = 0; lane < Pack::width; ++lane) {
-                const std::size_t member = first + static_cast<std::size_t>(lane);
-                side.set(lane, values[member < request.members ? member : request.members - 1]);
-            }
-        else
-            side = values[first];
+        for (int lane = 0; lane < Pack::width; ++lane) {
+            const std::size_t member = first + static_cast<std::size_t>(lane);
+            side.set(lane, values[member < request.members ? member : request.members - 1]);
+        }
     };
     const auto fill_all = [&](std::vector<Pack>& sides, const double* values) {
         sides.resize(request.links);
@@ -110,15 +95,8 @@ Pendulum<Pack> pendulum_of(const BatchRequest& request, std::size_t first) {
 /// The block with the method asked for.
 template <class Model>
 BatchBlock* with_method(const BatchRequest& request, const Pendulum<typename Model::Scalar>& pendulum) {
-    BatchBlock* block = nullptr;
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-        ((request.method == I
-              ? void(block = new SteppedBlock<Model, std::tuple_element_t<I, BatchMethods>>(pendulum, request.step))
-              : void()),
-         ...);
-    }
-    (std::make_index_sequence<std::tuple_size_v<BatchMethods>>());
-    return block;
+    if (request.by_rk4) return new SteppedBlock<Model, Rk4>(pendulum, request.step);
+    return new SteppedBlock<Model, Euler>(pendulum, request.step);
 }
 
 }  // namespace doppel

@@ -13,30 +13,16 @@ namespace {
 struct ThisBuild;
 using Pack = Lanes<batch_block(compiled_width), ThisBuild>;
 
-template <int links>
-BatchBlock* with_links(const BatchRequest& request, const Pendulum<Pack>& pendulum) {
-    if (request.constraints) return with_method<RodChain<Pack, links>>(request, pendulum);
-    if constexpr (links == 2) return with_method<DoublePendulum<Pack>>(request, pendulum);
-    return with_method<AngleChain<Pack, links>>(request, pendulum);
-}
-
 }  // namespace
 
 template <>
 BatchBlock* make_batch_block<compiled_width>(const BatchRequest& request, std::size_t first) {
     const auto pendulum = pendulum_of<Pack>(request, first);
-    switch (request.links) {
-        case 1:
-            return with_links<1>(request, pendulum);
-        case 2:
-            return with_links<2>(request, pendulum);
-        case 3:
-            return with_links<3>(request, pendulum);
-        case 4:
-            return with_links<4>(request, pendulum);
-        default:
-            return nullptr;
-    }
+    if (request.links == 2)
+        return request.constraints ? with_method<RodChain<Pack, 2>>(request, pendulum)
+                                   : with_method<DoublePendulum<Pack>>(request, pendulum);
+    return request.constraints ? with_method<RodChain<Pack, 3>>(request, pendulum)
+                               : with_method<AngleChain<Pack, 3>>(request, pendulum);
 }
 
 }  // namespace doppel

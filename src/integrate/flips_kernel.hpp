@@ -15,6 +15,7 @@ namespace doppel {
 template <class Number>
 struct FlipChain {
     Number gravity;  // g / l1, 1/s²
+    Number ratio;    // m1 / m2
     Number masses;   // 1 + m1 / m2
     Number longer;   // L = l2 / l1
     Number pull;     // −1 / L
@@ -49,7 +50,7 @@ struct FlipSeries {
         Pack a, b;
     };
     Term term[order + 1];
-    Pack determinant;  // 1 / (1 + m1/m2 − cos²D)
+    Pack determinant;  // 1 / (m1/m2 + sin²D)
 
     /// Sets out from the angles and rates in term[0].
     [[gnu::always_inline]] void start(const FlipChain<Pack>& by) {
@@ -58,7 +59,7 @@ struct FlipSeries {
         term[0].cos1 = one.cos * by.gravity;
         term[0].sin_d = d.sin;
         term[0].cos_d = d.cos;
-        determinant = Pack(1) / (by.masses - d.cos * d.cos);
+        determinant = Pack(1) / (by.ratio + d.sin * d.sin);
     }
 
     /// The tensions of power k, and from them all else of power k + 1.
@@ -146,17 +147,15 @@ struct FlipRequest {
     const std::atomic<bool>* stop;
 };
 
-enum class FlipOutcome { found, stopped, broken };
-
-/// In the code for registers of `width` doubles (cmake/widths.cmake).
+/// In the code for registers of `width` doubles (cmake/widths.cmake). False where it was stopped.
 template <int width>
-FlipOutcome find_flips(const FlipRequest& request);
+bool find_flips(const FlipRequest& request);
 template <>
-FlipOutcome find_flips<2>(const FlipRequest& request);
+bool find_flips<2>(const FlipRequest& request);
 template <>
-FlipOutcome find_flips<4>(const FlipRequest& request);
+bool find_flips<4>(const FlipRequest& request);
 template <>
-FlipOutcome find_flips<8>(const FlipRequest& request);
+bool find_flips<8>(const FlipRequest& request);
 
 /// The motion of one rod on one step of length h, s: the coefficients of its angle and of its rate, and where it ends.
 struct RodOnStep {

@@ -15,17 +15,17 @@ class FlipLanes {
 public:
     explicit FlipLanes(const FlipRequest& request) : request_(request) {}
 
-    FlipOutcome run() {
+    bool run() {
         for (auto& group : groups_)
             for (int lane = 0; lane < Pack::width; ++lane) {
                 group.trial[lane] = none;
                 take_next(group, lane);
             }
         while (busy_ > 0) {
-            if (request_.stop->load(std::memory_order_relaxed)) return FlipOutcome::stopped;
+            if (request_.stop->load(std::memory_order_relaxed)) return false;
             for (int i = 0; i < steps_between_looks; ++i) step();
         }
-        return broken_ ? FlipOutcome::broken : FlipOutcome::found;
+        return true;
     }
 
 private:
@@ -35,8 +35,9 @@ private:
     static constexpr int steps_between_looks = 64;
     static constexpr double least_step = 1e-9;  // s; where no more is allowed the numbers have broken down
     static constexpr double never = std::numeric_limits<double>::infinity();
+    static constexpr double broken = std::numeric_limits<double>::quiet_NaN();
     static constexpr std::size_t none = ~std::size_t(0);
-    static constexpr FlipStart hanging{.chain = {1, 2, 1, -1, 1}, .theta = {}, .omega = {}};
+    static constexpr FlipStart hanging{.chain = {1, 1, 2, 1, -1, 1}, .theta = {}, .omega = {}};
 
     struct Group {
         FlipChain<Pack> chain;
@@ -94,8 +95,7 @@ private:
         const double time = group.time[lane] + flip;
         const bool breaks = !(h > least_step);
         if (!(time <= group.time[lane] + h) && group.time[lane] + h < request_.duration && !breaks) return false;
-        broken_ |= breaks;
-        request_.times[group.trial[lane]] = time <= request_.duration ? time : never;
+        request_.times[group.trial[lane]] = time <= request_.duration ? time : breaks ? broken : never;
         return true;
     }
 
@@ -119,6 +119,7 @@ private:
         const FlipStart& start = is_left ? request_.starts[next_] : hanging;
         const auto& chain = start.chain;
         group.chain.gravity.set(lane, chain.gravity);
+        group.chain.ratio.set(lane, chain.ratio);
         group.chain.masses.set(lane, chain.masses);
         group.chain.longer.set(lane, chain.longer);
         group.chain.pull.set(lane, chain.pull);
@@ -134,7 +135,6 @@ private:
     FlipRequest request_;
     std::size_t next_ = 0;
     int busy_ = 0;  // lanes with a pendulum
-    bool broken_ = false;
     Group groups_[registers];
 };
 
@@ -143,7 +143,7 @@ struct ThisBuild;
 }  // namespace
 
 template <>
-FlipOutcome find_flips<compiled_width>(const FlipRequest& request) {
+bool find_flips<compiled_width>(const FlipRequest& request) {
     return FlipLanes<Lanes<compiled_width, ThisBuild>>(request).run();
 }
 

@@ -2,9 +2,11 @@
 
 #include "integrate/force_series.hpp"
 #include "integrate/rod_bundle.hpp"
+#include "integrate/stabilise.hpp"
 #include "integrate/taylor_series.hpp"
 #include "numeric/subnormals.hpp"
 #include "physics/mechanism.hpp"
+#include "physics/rod_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +54,8 @@ public:
         if (reach_ > 0) longest_ = std::min(longest_, longest_chain_step(reach_, plain_value(gravity_)));
     }
 
-    void expand(const State& y) {
+    template <class Y>
+    void expand(const Y& y) {
         const NoSubnormals here;
         const auto n = here_.size();
         places_[0] = y.head(n);
@@ -68,7 +71,8 @@ public:
         checked_gradients_ = gradients_;
     }
 
-    void move(const Scalar& h, State& change) {
+    template <class Y>
+    void move(const Scalar& h, Y& change) {
         const NoSubnormals here;
         check_path(h);
         const auto n = here_.size();
@@ -242,5 +246,16 @@ template <class Scalar>
 struct SeriesOf<Mechanism<Scalar>> {
     using type = MechanismSeries<Scalar>;
 };
+/// A chain of particles on rods is the mechanism of its parts.
+template <class Scalar, int N>
+struct SeriesOf<RodChain<Scalar, N>> {
+    struct type : MechanismSeries<Scalar> {
+        type(const RodChain<Scalar, N>& model, int order)
+            : MechanismSeries<Scalar>(Mechanism<Scalar>(parts_of(model.pendulum)), order) {}
+    };
+};
+/// Projected after every step, the motion is the same.
+template <HasSeries Model>
+struct SeriesOf<Projected<Model>> : SeriesOf<Model> {};
 
 }  // namespace doppel

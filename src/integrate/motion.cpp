@@ -39,7 +39,7 @@ public:
         if (spec.physical) {
             physical_ = spec.physical->cast<Scalar>();
             const auto links = static_cast<Eigen::Index>(spec.chain->links());
-            layout_.emplace(*physical_, model_ == Model::angles ? links : 2 * links);
+            layout_.emplace(*physical_, links);
         }
         if (model_ == Model::mechanism) mechanism_.emplace(spec.parts->cast<Scalar>());
         if (spec.wants_tension && model_ == Model::mechanism) weighed_.emplace(spec.parts->cast<double>());
@@ -66,7 +66,7 @@ public:
             step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
         }
         if (follows_turns) turns_ = Turns(pendulum_->template cast<double>().angle);
-        update_turns(0);
+        if (follows_turns) turns_.update(y_, 0);
         const auto pivot = pivot_of(y_);
         if (physical_) move_with(bobs, pivot);
         start_energy_ = energies_of(y_, bobs, pivot).total;
@@ -158,21 +158,8 @@ private:
         const PivotPlace<Scalar> at(physical_->pivot, layout_->time_of(y));
         return {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y};
     }
-    /// Of a physical pendulum the state of its links alone, places and velocities relative to the pivot's.
-    State chain_state(const State& y) const {
-        if (!physical_) return y;
-        State alone = layout_->of_links(y);
-        if (model_ == Model::angles || !physical_->pivot.moves()) return alone;
-        const auto pivot = pivot_of(y);
-        const auto half = alone.size() / 2;
-        for (Eigen::Index i = 0; i < half; i += 2) {
-            alone[i] -= pivot.x;
-            alone[i + 1] -= pivot.y;
-            alone[half + i] -= pivot.vx;
-            alone[half + i + 1] -= pivot.vy;
-        }
-        return alone;
-    }
+    /// Of a physical pendulum the state of its links alone.
+    State chain_state(const State& y) const { return layout_ ? layout_->of_links(y) : y; }
     static Bob<double> in_double(const Bob<Scalar>& bob) {
         const auto plain = [](const Scalar& x) { return static_cast<double>(x); };
         return {plain(bob.mass), plain(bob.x),     plain(bob.y),    plain(bob.vx),
@@ -200,15 +187,8 @@ private:
     void follow_turns(double seconds) {
         if (!turns_.followed()) return;
         stepper_->read(y_);
-        update_turns(seconds);
+        turns_.update(y_, seconds);
     }
-    void update_turns(double seconds) {
-        if (physical_)
-            turns_.update(chain_state(y_), seconds);
-        else
-            turns_.update(y_, seconds);  // not copied
-    }
-
     std::unique_ptr<Stepper<Scalar>> stepper_;
     Model model_;
     bool adaptive_, wants_tension_ = false;
@@ -235,6 +215,8 @@ std::unique_ptr<Motion> make_motion(const MotionSpec& spec) {
         throw bad_input("in angles the rods keep their length by themselves; there is nothing to stabilise");
     if (spec.stabilise != Stabilise::none && !method->stabilised)
         throw bad_input("the method \"{}\" keeps the constraints itself; there is nothing to stabilise", spec.method);
+    if (spec.physical && spec.model != Model::angles)
+        throw bad_input("links with mass, friction or a drive move in angles, not as particles on rods");
     if (spec.physical && spec.wants_tension)
         throw bad_input(
             "the force in a rod is that of point masses on massless rods; with links that have mass, friction or a "

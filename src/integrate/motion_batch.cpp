@@ -73,7 +73,7 @@ namespace {
 bool are_stepped_alike(std::span<const MotionSpec> specs) {
     const auto& one = specs.front();
     return one.chain && one.model != Model::mechanism && one.precision == Precision::in_double &&
-           one.stabilise == Stabilise::none && Batch::serves(one.method) &&
+           one.stabilise == Stabilise::none && Batch::serves(one.method, one.chain->links()) &&
            std::all_of(specs.begin(), specs.end(), [&](const MotionSpec& spec) {
                return spec.chain && spec.chain->links() == one.chain->links() && spec.model == one.model &&
                       spec.precision == one.precision && spec.stabilise == one.stabilise && spec.method == one.method &&

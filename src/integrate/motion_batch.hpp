@@ -12,8 +12,8 @@ namespace doppel {
 
 /// Many motions that are stepped together from sample to sample, each as it would be alone, to the last bit.
 ///
-/// Chains that differ in their masses, lengths, gravity and release only, and go by an explicit method of fixed step,
-/// are stepped side by side in the registers of this processor (integrate/batch.hpp), all others one by one.
+/// Chains of two or three links that differ in their masses, lengths, gravity and release only, by Euler's or the classical
+/// Runge–Kutta method, are stepped side by side (integrate/batch.hpp), all others one by one.
 class MotionBatch {
 public:
     /// On `jobs` threads; what comes of it does not depend on them. Throws what make_motion() does.

@@ -7,7 +7,6 @@
 #include "physics/angle_chain.hpp"
 #include "physics/mechanism.hpp"
 #include "physics/physical_chain.hpp"
-#include "physics/physical_rods.hpp"
 #include "physics/rod_chain.hpp"
 
 namespace doppel {
@@ -65,7 +64,6 @@ std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
 /// compilation takes longer than they save).
 template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_constraints_stepper(const MotionSpec& spec) {
-    if (spec.physical) return stepper_on_stabilised<PhysicalRods<Scalar>>(spec.physical->cast<Scalar>(), spec);
     const auto p = spec.chain->cast<Scalar>();
     if constexpr (std::is_same_v<Scalar, double>) {
         if (p.links() == 2) return stepper_on_stabilised<RodChain<Scalar, 2>>(p, spec);

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "integrate/taylor_series.hpp"
+#include "numeric/roots.hpp"
 #include "numeric/tape.hpp"
 #include "physics/physical_chain.hpp"
-#include "physics/physical_rods.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +57,11 @@ public:
     }
 
     void move(const Scalar& h, State& change) const {
-        for (Eigen::Index i = 0; i < change.size(); ++i) change[i] = value(series(i), order_ + 1, h, false);
+        for (Eigen::Index i = 0; i < change.size(); ++i) {
+            Scalar sum(0);
+            for (int k = order_ + 1; k > 0; --k) sum = (sum + series(i)[k]) * h;
+            change[i] = sum;
+        }
     }
 
     double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
@@ -78,34 +82,31 @@ public:
     double first_event(double h) const {
         const double beyond = 0.1 * std::cbrt(plain_value(std::numeric_limits<Scalar>::epsilon())) * h;
         double first = h;
-        for (const int node : tape_.events()) {
-            const auto* x = tape_.series(node);
-            const auto* lead = std::find_if(x, x + order_ + 1, [](const Scalar& c) { return c != Scalar(0); });
-            if (lead == x + order_ + 1) continue;
-            const auto at = [&](double t) { return plain_value(value(x, order_, Scalar(t), true)); };
-            const bool starts_below = *lead < Scalar(0);
-            constexpr int parts = 16;
-            for (double low = 0, part = first / parts; low < first; low += part) {
-                if ((at(low + part) < 0) == starts_below) continue;
-                double high = low + part;
-                for (int i = 0; i < 60 && high - low > 0.5 * beyond; ++i) {
-                    const double middle = 0.5 * (low + high);
-                    ((at(middle) < 0) == starts_below ? low : high) = middle;
-                }
-                first = std::min(first, high + beyond);
-                break;
+        std::vector<double> powers;  // of t / first, made to start below 0
+        const auto at = [&](double t) {
+            struct {
+                double value = 0, rate = 0;
+            } now;
+            for (auto c = powers.rbegin(); c != powers.rend(); ++c) {
+                now.rate = now.rate * t + now.value;
+                now.value = now.value * t + *c;
             }
+            return now;
+        };
+        for (const int node : tape_.events()) {
+            const auto *x = tape_.series(node), *end = x + order_ + 1;
+            x = std::find_if(x, end, [](const Scalar& c) { return c != Scalar(0); });
+            if (x == end) continue;
+            powers.clear();
+            for (Scalar scale = *x < Scalar(0) ? Scalar(1) : Scalar(-1); x != end; ++x, scale *= Scalar(first))
+                powers.push_back(plain_value(Scalar(*x * scale)));
+            const auto rises = Bernstein::of_powers(powers, 1).rises();
+            if (!rises.empty()) first = std::min(first, root(rises.front(), at) * first + beyond);
         }
         return first;
     }
 
 private:
-    /// Σ_{k=first}^{last} c_k h^k, where first is 0 or 1.
-    static Scalar value(const Scalar* c, int last, const Scalar& h, bool with_first) {
-        Scalar sum(0);
-        for (int k = last; k > 0; --k) sum = (sum + c[k]) * h;
-        return with_first ? Scalar(sum + c[0]) : sum;
-    }
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
     /// The greatest coefficient k of the rates of angles or places.
     Scalar greatest_of(int k) const {
@@ -131,10 +132,6 @@ private:
 template <class Scalar>
 struct SeriesOf<PhysicalChain<Scalar>> {
     using type = TapedSeries<PhysicalChain<Scalar>, PhysicalChain<Taped<Scalar>>>;
-};
-template <class Scalar>
-struct SeriesOf<PhysicalRods<Scalar>> {
-    using type = TapedSeries<PhysicalRods<Scalar>, PhysicalRods<Taped<Scalar>>>;
 };
 
 }  // namespace doppel

@@ -4,9 +4,9 @@
 #include "integrate/angle_series.hpp"
 #include "integrate/mechanism_series.hpp"
 #include "integrate/methods.hpp"
-#include "integrate/rod_series.hpp"
 #include "integrate/stepper.hpp"
 #include "integrate/taped_series.hpp"
+#include "numeric/compensated.hpp"
 #include "numeric/roots.hpp"
 
 #include <algorithm>
@@ -58,7 +58,7 @@ public:
     }
 
     void advance(const Scalar& seconds) {
-        add(offset_, offset_lost_, seconds);
+        add_compensated(offset_, offset_lost_, seconds);
         while (offset_ > step_) next_step(plain_value(seconds));
         at(offset_);
     }
@@ -114,9 +114,9 @@ private:
     void next_step(double seconds) {
         if (steps_ > 0) {
             series_.move(step_, change_);
-            for (Eigen::Index i = 0; i < base_.size(); ++i) add(base_[i], lost_[i], change_[i]);
+            for (Eigen::Index i = 0; i < base_.size(); ++i) add_compensated(base_[i], lost_[i], change_[i]);
             project(model_, base_);
-            add(offset_, offset_lost_, -step_);
+            add_compensated(offset_, offset_lost_, Scalar(-step_));
             if constexpr (HasEvents<Model>)
                 if (ends_at_event_) {
                     model_.settle(base_);
@@ -193,13 +193,6 @@ private:
         const double whole = std::floor(a), part = a - whole;
         const auto power = std::bit_cast<double>((static_cast<std::int64_t>(whole) + 1023) << 52);
         return power * (1 + part * (0.6565 + 0.3435 * part));
-    }
-
-    /// sum + lost ← sum + lost + more, all but exactly. Source  Knuth, The Art of Computer Programming 2, §4.2.2.
-    static void add(Scalar& sum, Scalar& lost, const Scalar& more) {
-        const Scalar all = more + lost, total = sum + all, part = total - sum;
-        lost = (sum - (total - part)) + (all - part);
-        sum = total;
     }
 
     Model& model_;

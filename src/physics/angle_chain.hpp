@@ -1,7 +1,7 @@
 #pragma once
 
+#include "numeric/chain_matrix.hpp"
 #include "numeric/state.hpp"
-#include "numeric/tridiagonal.hpp"
 #include "physics/pendulum.hpp"
 
 #include <array>
@@ -31,10 +31,10 @@ struct AngleChain {
     Pendulum<Scalar> pendulum;
     Half w;                  // 1/kg, inverse masses
     Half length, by_length;  // m, 1/m
-    Half sin, cos;           // of the angles of the last update()
+    Half sin, cos;           // of θ_1 and of each angle between neighbours, θ_k − θ_{k−1}, of the last update()
     Half s, c;               // of the angle between a rod and the next, over the mass between them, 1/kg
     Half tension;            // N
-    Tridiagonal<Scalar, N> matrix;
+    ChainMatrix<Scalar, N> matrix;
 
     explicit AngleChain(const Pendulum<Scalar>& p)
         : pendulum(p),
@@ -46,7 +46,9 @@ struct AngleChain {
           s(w),
           c(w),
           tension(w),
-          matrix(rows(p)) {
+          matrix(rows(p)),
+          turned_(w),
+          squares_(w) {
         const auto n = w.size();
         for (Eigen::Index k = 0; k < n; ++k) {
             const auto i = static_cast<std::size_t>(k);
@@ -66,12 +68,12 @@ struct AngleChain {
     }
     /// The same at the start of a step and at one of its stages.
     void rate(const State& y, State& dydt, Angles& angles) {
-        angles.start(y, sin, cos);
+        angles.start(turned(y), sin, cos);
         factor();
         rate_of_angles(y, dydt);
     }
     void rate_of_stage(const State& y, State& dydt, const Angles& angles) {
-        angles.at(y, sin, cos);
+        angles.at(turned(y), sin, cos);
         factor();
         rate_of_angles(y, dydt);
     }
@@ -79,7 +81,7 @@ struct AngleChain {
     /// For the angles that `y` begins with: all that depends on them alone, the matrix factored.
     template <class Y>
     void update(const Y& y) {
-        take_sin_cos(y, sin, cos);
+        take_sin_cos(turned(y), sin, cos);
         factor();
     }
 
@@ -106,17 +108,25 @@ struct AngleChain {
 private:
     static Eigen::Index rows(const Pendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.links()); }
 
+    /// A sine of the difference of two angles keeps its digits where the difference is small.
+    template <class Y>
+    const Half& turned(const Y& y) {
+        turned_[0] = y[0];
+        for (Eigen::Index k = 1; k < w.size(); ++k) turned_[k] = y[k] - y[k - 1];
+        return turned_;
+    }
+
     /// From sines and cosines: s, c and the matrix, factored.
     void factor() {
         const auto n = w.size();
         for (Eigen::Index k = 0; k + 1 < n; ++k) {
-            s[k] = (sin[k + 1] * cos[k] - cos[k + 1] * sin[k]) * w[k];
-            c[k] = (cos[k + 1] * cos[k] + sin[k + 1] * sin[k]) * w[k];
+            s[k] = sin[k + 1] * w[k];
+            c[k] = cos[k + 1] * w[k];
             matrix.upper[k] = matrix.lower[k] = -c[k];
-            matrix.diagonal[k + 1] = w[k] + w[k + 1];
+            squares_[k] = s[k] * s[k];
         }
-        matrix.diagonal[0] = w[0];
-        matrix.factor(pendulum.mass[0], by_last_);
+        matrix.factor(
+            w, [](Eigen::Index) { return Scalar(1); }, squares_, pendulum.mass[0], by_last_);
     }
 
     void rate_of_angles(const State& y, State& dydt) {
@@ -132,7 +142,8 @@ private:
         }
     }
 
-    Scalar by_last_;  // the inverse of the last entry of the diagonal, kg; that of the first is m_1
+    Half turned_, squares_;  // the angles whose sines are taken, rad; s², 1/kg²
+    Scalar by_last_;         // the inverse of the last entry of the diagonal, kg; that of the first is m_1
 };
 
 /// The double pendulum in angles (Lagrange): two point masses on massless rigid rods, swinging in a vertical plane

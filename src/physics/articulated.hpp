@@ -11,9 +11,12 @@ namespace doppel {
 ///
 /// With n = (sinθ, −cosθ) along a link, t = (cosθ, sinθ) across it, joint at p, centre at p + a n, end at p + l n and
 /// J = I + m a² about the joint, what hangs at the end takes the force A p″ + b of whatever moves the end. So
-///     (J + l² t·At) θ″ = c − h·p″ ,     h = m a t + l A t ,     c = l² ω² t·An − l t·b + τ ,
-/// and the whole takes the force A₊ p″ + b₊ at p, with d = J + l² t·At:
-///     A₊ = m + A − h hᵀ / d ,     b₊ = b + h c / d − ω² (m a n + l A n) − m g⃗ .
+///     d θ″ = c − h·p″ ,     d = J + l² t·At ,     h = m a t + l A t ,     c = l² ω² t·An − l t·b + τ ,
+/// and the whole takes the force A₊ p″ + b₊ at p,
+///     A₊ = m + A − h hᵀ / d ,     b₊ = b + h c / d − ω² (m a n + l A n) .
+/// Gravity is a pivot that is accelerated upwards.
+/// A massless link passes no force across itself: A₊ and b₊ lose all digits there by subtraction. So they are kept by their
+/// parts across and along the link, with det A, as sums of products in which those of a light link do not cancel.
 /// Source  Featherstone 2008, Rigid Body Dynamics Algorithms, §7.2, in the plane.
 template <class S>
 class ArticulatedBodies {
@@ -26,32 +29,54 @@ public:
         : links_(p.chain.links()), still_(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))) {
         for (std::size_t i = 0; i < links_.size(); ++i) {
             auto& link = links_[i];
+            const Scalar beyond = p.chain.length[i] - p.center[i];
             link.mass = p.chain.mass[i];
             link.length = p.chain.length[i];
+            link.inertia = p.inertia[i];
             link.first = link.mass * p.center[i];
-            link.second = p.inertia[i] + link.first * p.center[i];
+            link.second = link.inertia + link.first * p.center[i];
+            link.rest = link.inertia - link.first * beyond;
+            link.at_end = link.mass * beyond * beyond;
         }
     }
 
-    /// For the sines and cosines of the angles.
+    /// For the sines and cosines of θ_1 and of each angle between neighbours, θ_k − θ_{k−1}: where that is small its own sine
+    /// keeps digits that a difference would lose.
     void factor(const Half& sin, const Half& cos) {
-        Scalar xx(0), xy(0), yy(0);  // A
+        for (std::size_t i = 0; i < links_.size(); ++i) {
+            auto& link = links_[i];
+            const Scalar &s = sin[static_cast<Eigen::Index>(i)], &c = cos[static_cast<Eigen::Index>(i)];
+            if (i == 0) {
+                link.across = {c, s};
+            } else {
+                auto& above = links_[i - 1];
+                above.sin = s;
+                above.cos = c;
+                link.across = {above.across.x * c - above.across.y * s, above.across.y * c + above.across.x * s};
+            }
+            link.along = {link.across.y, Scalar(-link.across.x)};
+        }
+        Matrix a{Scalar(0), Scalar(0), Scalar(0), Scalar(0)};
         for (std::size_t i = links_.size(); i-- > 0;) {
             auto& link = links_[i];
-            const auto k = static_cast<Eigen::Index>(i);
-            link.along = {sin[k], Scalar(-cos[k])};
-            link.across = {cos[k], sin[k]};
-            const auto times_a = [&](const Vector& v) { return Vector{xx * v.x + xy * v.y, xy * v.x + yy * v.y}; };
-            const Vector a_across = times_a(link.across);
-            link.a_along = times_a(link.along);
-            link.h = link.across * link.first + a_across * link.length;
-            link.by_d = Scalar(1) / Scalar(link.second + link.length * link.length * dot(link.across, a_across));
-            const Vector h_by_d = link.h * link.by_d;
-            xx += link.mass - link.h.x * h_by_d.x;
-            xy -= link.h.x * h_by_d.y;
-            yy += link.mass - link.h.y * h_by_d.y;
+            if (i + 1 < links_.size()) {
+                const Scalar &s = link.sin, &c = link.cos;
+                const Scalar sc = s * c, ss = s * s, cc = c * c, twice = Scalar(2) * sc * a.mixed;
+                a = {a.along * ss + twice + a.across * cc, (a.along - a.across) * sc + a.mixed * (cc - ss),
+                     a.along * cc - twice + a.across * ss, a.determinant};
+            }
+            link.a = a;
+            link.h_across = link.first + link.length * a.across;
+            link.h_along = link.length * a.mixed;
+            link.by_d = Scalar(1) / Scalar(link.second + link.length * link.length * a.across);
+            link.carried = (a.along * link.second + link.length * link.length * a.determinant) * link.by_d;
+            const Scalar& m = link.mass;
+            const Scalar whole = m * (m + a.along + a.across) + a.determinant;  // det (m + A)
+            a = {(m * link.inertia + a.across * (link.inertia + link.at_end)) * link.by_d,
+                 a.mixed * link.rest * link.by_d, m + link.carried,
+                 (link.inertia * whole + link.at_end * (m * a.across + a.determinant)) * link.by_d};
         }
-        xx_ = xx, xy_ = xy, yy_ = yy;
+        whole_ = a;
     }
 
     /// θ″ under torques τ on the links, forces on their ends (none where empty), gravity g, at rates ω, where the pivot is
@@ -59,43 +84,66 @@ public:
     template <class Rates>
     Vector accelerate(const Half& torque, const std::vector<Vector>& on_ends, const Rates& omega, const Scalar& gravity,
                       const Vector& pivot, Half& alpha) {
-        Vector b{Scalar(0), Scalar(0)};
+        Scalar across(0), along(0);  // b
         for (std::size_t i = links_.size(); i-- > 0;) {
             const auto& link = links_[i];
             const auto k = static_cast<Eigen::Index>(i);
-            if (!on_ends.empty()) b = b - on_ends[i];
+            if (i + 1 < links_.size()) {
+                const Scalar turned = link.sin * along + link.cos * across;
+                along = link.cos * along - link.sin * across;
+                across = turned;
+            }
+            if (!on_ends.empty()) {
+                across -= dot(link.across, on_ends[i]);
+                along -= dot(link.along, on_ends[i]);
+            }
             const Scalar square = omega[k] * omega[k], l_square = link.length * square;
-            const Scalar c = link.length * (l_square * dot(link.across, link.a_along) - dot(link.across, b)) +
-                             torque[k] - link.first * gravity * link.along.x;
-            alpha[k] = c * link.by_d;
-            b = b + link.h * alpha[k] - link.along * Scalar(link.first * square) - link.a_along * l_square;
-            b.y += link.mass * gravity;
+            const Scalar pulled = across - l_square * link.a.mixed;
+            alpha[k] = (torque[k] - link.length * pulled) * link.by_d;
+            along += link.h_along * ((torque[k] - link.length * across) * link.by_d) - square * link.first -
+                     l_square * link.carried;
+            across = (pulled * link.rest + link.h_across * torque[k]) * link.by_d;
         }
-        Vector p = pivot;
+        const auto& top = links_[0];
+        const Vector lifted{pivot.x, Scalar(pivot.y + gravity)};
+        Scalar p_across = dot(top.across, lifted), p_along = dot(top.along, lifted);  // p″
+        const Vector force = top.across * Scalar(whole_.across * p_across + whole_.mixed * p_along + across) +
+                             top.along * Scalar(whole_.mixed * p_across + whole_.along * p_along + along);
         for (std::size_t i = 0; i < links_.size(); ++i) {
             const auto& link = links_[i];
             const auto k = static_cast<Eigen::Index>(i);
-            alpha[k] -= dot(link.h, p) * link.by_d;
-            p = p + link.across * Scalar(link.length * alpha[k]) -
-                link.along * Scalar(link.length * (omega[k] * omega[k]));
+            const Scalar led = alpha[k] - link.h_along * p_along * link.by_d;
+            alpha[k] = led - link.h_across * p_across * link.by_d;
+            const Scalar end_across = p_across * link.rest * link.by_d + link.length * led;
+            const Scalar end_along = p_along - link.length * (omega[k] * omega[k]);
+            p_across = link.cos * end_across - link.sin * end_along;
+            p_along = link.cos * end_along + link.sin * end_across;
         }
-        return {xx_ * pivot.x + xy_ * pivot.y + b.x, xy_ * pivot.x + yy_ * pivot.y + b.y};
+        return force;
     }
 
     /// a ← M⁻¹ f: the rates that belong to momenta f, or the accelerations by torques f alone.
     void solve_mass(const Half& f, Half& a) { accelerate(f, {}, still_, Scalar(0), {Scalar(0), Scalar(0)}, a); }
 
+    /// Of two by two, symmetric, by its parts across and along a link, kg.
+    struct Matrix {
+        Scalar across, mixed, along, determinant;  // t·At, t·An, n·An
+    };
     struct Link {
-        Scalar mass, length, first, second;  // m, l, m a, J
-        Vector along, across, a_along, h;    // n, t, A n, h
-        Scalar by_d;                         // 1/d
+        Scalar mass, length, inertia, first, second;  // m, l, I, m a, J
+        Scalar rest, at_end;                          // J − m a l, m (l − a)²
+        Vector along, across;                         // n, t
+        Scalar sin{0}, cos{0};                        // of the angle to the next link
+        Matrix a;
+        Scalar h_across, h_along, by_d;  // of h; 1/d
+        Scalar carried;                  // n·A₊n − m
     };
     const std::vector<Link>& links() const { return links_; }
 
 private:
     std::vector<Link> links_;
-    Half still_;  // no rates
-    Scalar xx_{0}, xy_{0}, yy_{0};
+    Matrix whole_;  // A₊ of the first link
+    Half still_;    // no rates
 };
 
 }  // namespace doppel

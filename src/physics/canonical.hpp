@@ -76,20 +76,28 @@ struct Canonical<AngleChain<S, N>> {
     Model& model;
     Half mass;          // μ, kg
     Half p, omega;      // N m s, rad/s
+    Half sin, cos;      // of the angles
     Half above, below;  // m/s and N s: of the velocities v, of the momenta P, one component at a time
 
     explicit Canonical(Model& chain)
-        : model(chain), mass(chain.w), p(chain.w), omega(chain.w), above(chain.w), below(chain.w) {
+        : model(chain),
+          mass(chain.w),
+          p(chain.w),
+          omega(chain.w),
+          sin(chain.w),
+          cos(chain.w),
+          above(chain.w),
+          below(chain.w) {
         Scalar sum(0);
         for (Eigen::Index k = mass.size() - 1; k >= 0; --k) mass[k] = sum += chain.pendulum.mass[at(k)];
     }
 
     void momenta(const State& y, State& z) {
         const auto n = mass.size();
-        model.update(y);
+        update(y);
         z.head(n) = y.head(n);
         z.tail(n).setZero();
-        for (const Half* t : {&model.cos, &model.sin}) {
+        for (const Half* t : {&cos, &sin}) {
             Scalar v(0), sum(0);
             for (Eigen::Index k = 0; k < n; ++k) above[k] = v += length(k) * y[n + k] * (*t)[k];
             for (Eigen::Index k = n - 1; k >= 0; --k) {
@@ -111,7 +119,7 @@ struct Canonical<AngleChain<S, N>> {
         solve(z);
         for (Eigen::Index k = 0; k < n; ++k) {
             dzdt[k] = omega[k];
-            dzdt[n + k] = -length(k) * (omega[k] * model.tension[k] + model.pendulum.gravity * mass[k] * model.sin[k]);
+            dzdt[n + k] = -length(k) * (omega[k] * model.tension[k] + model.pendulum.gravity * mass[k] * sin[k]);
         }
     }
 
@@ -119,8 +127,18 @@ private:
     static std::size_t at(Eigen::Index k) { return static_cast<std::size_t>(k); }
     const Scalar& length(Eigen::Index k) const { return model.pendulum.length[at(k)]; }
 
+    void update(const State& y) {
+        model.update(y);
+        sin[0] = model.sin[0];
+        cos[0] = model.cos[0];
+        for (Eigen::Index k = 1; k < mass.size(); ++k) {
+            sin[k] = sin[k - 1] * model.cos[k] + cos[k - 1] * model.sin[k];
+            cos[k] = cos[k - 1] * model.cos[k] - sin[k - 1] * model.sin[k];
+        }
+    }
+
     void solve(const State& z) {
-        model.update(z);
+        update(z);
         p = z.tail(mass.size());
         model.solve_mass(p, omega);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "physics/force.hpp"
+#include "physics/pendulum.hpp"
 
 #include <fmt/format.h>
 
@@ -56,6 +57,22 @@ struct Assembly {
         return true;
     }
 };
+
+/// A chain as its parts: bobs, rods and gravity, where there is any.
+template <class Scalar>
+Assembly<Scalar> parts_of(const Pendulum<Scalar>& chain) {
+    const auto start = released_as_particles<Scalar, Eigen::Dynamic>(chain);
+    const auto n = static_cast<Eigen::Index>(chain.links());
+    Assembly<Scalar> parts;
+    for (std::size_t k = 0; k < chain.links(); ++k) {
+        const auto i = 2 * static_cast<Eigen::Index>(k);
+        parts.particles.push_back({chain.mass[k], start.template segment<2>(i), start.template segment<2>(2 * n + i)});
+        const End<Scalar> above = k == 0 ? End<Scalar>(Place<Scalar>(Scalar(0), Scalar(0))) : End<Scalar>(k - 1);
+        parts.constraints.push_back(Rod<Scalar>{k, above, chain.length[k]});
+    }
+    if (chain.gravity != Scalar(0)) parts.forces.push_back(Gravity<Scalar>{chain.gravity});
+    return parts;
+}
 
 /// "rod 2–4", "rod 2–fixed", "anchor of particle 1", "gravity": a part as messages call it.
 template <class Part>

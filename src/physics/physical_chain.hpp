@@ -32,7 +32,8 @@ public:
           layout(p, links(p), with_work),
           forces_(p),
           bodies_(p),
-          sin_(Half::Zero(links(p))),
+          turned_(Half::Zero(links(p))),
+          sin_(turned_),
           cos_(sin_),
           rates_(sin_),
           alpha_(sin_),
@@ -106,10 +107,7 @@ public:
     const std::vector<int>& modes() const { return slides_; }
 
     /// For Hamilton's form (Canonical), at the angles of y = (q, …).
-    void take_angles(const State& y) {
-        take_sin_cos(y, sin_, cos_);
-        bodies_.factor(sin_, cos_);
-    }
+    void take_angles(const State& y) { factor(y); }
     void solve_mass(const Half& f, Half& a) { bodies_.solve_mass(f, a); }
     /// Without Coulomb's friction.
     const PhysicalForces<Scalar>& forces_at(const Half& omega, const Scalar& t, const Planar<Scalar>& pivot_velocity) {
@@ -198,11 +196,17 @@ private:
             rates[i] = !is_held(i) ? Scalar(omega[i]) : i == 0 ? Scalar(0) : Scalar(rates[i - 1]);
     }
 
+    void factor(const State& y) {
+        turned_[0] = y[0];
+        for (Eigen::Index i = 1; i < turned_.size(); ++i) turned_[i] = y[i] - y[i - 1];
+        take_sin_cos(turned_, sin_, cos_);
+        bodies_.factor(sin_, cos_);
+    }
+
     /// rates_ ← omega, where held joints rest, alpha_ at them, and holding_, the torques that hold these.
     template <class Rates>
     Pivot accelerate(const State& y, const Rates& omega) {
-        take_sin_cos(y, sin_, cos_);
-        bodies_.factor(sin_, cos_);
+        factor(y);
         const Scalar t = layout.time_of(y);
         const PivotPlace<Scalar> pivot(pendulum.pivot, t);
         rest(omega, rates_);
@@ -229,7 +233,7 @@ private:
         for (Eigen::Index i = 0; i < sin_.size(); ++i) {
             using std::abs;
             const Scalar own = pendulum.chain.length[at(i)] * rates_[i];
-            const Planar<Scalar> across{cos_[i], sin_[i]};
+            const Planar<Scalar>& across = bodies_.links()[at(i)].across;
             forces_.update_air(i, across, v, rates_[i]);
             v = v + across * own;
             // on a circle the speed vanishes again and again, and its root says so no more: |ω| does
@@ -267,7 +271,8 @@ private:
 
     PhysicalForces<Scalar> forces_;
     ArticulatedBodies<Scalar> bodies_;
-    Half sin_, cos_, rates_, alpha_;
+    Half turned_, sin_, cos_;  // of θ_1 and of each angle between neighbours
+    Half rates_, alpha_;
     Half holding_;             // of held joints, N m
     std::vector<int> slides_;  // the sign of a joint's rate in Coulomb's law until the next event; 0 where it is held
     bool has_modes_ = false;   // slides_ are those of a motion

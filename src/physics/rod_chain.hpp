@@ -1,6 +1,7 @@
 #pragma once
 
-#include "numeric/tridiagonal.hpp"
+#include "numeric/chain_matrix.hpp"
+#include "numeric/compensated.hpp"
 #include "physics/bob.hpp"
 #include "physics/rod_pulls.hpp"
 
@@ -25,14 +26,22 @@ struct RodChain {
     using State = doppel::State<Scalar, times<4, N>>;
     using Half = doppel::State<Scalar, times<2, N>>;  // positions, velocities or accelerations
     using Multipliers = doppel::State<Scalar, N>;     // one a rod
-    using Matrix = Tridiagonal<Scalar, N>;
 
+    Pendulum<Scalar> pendulum;
     Multipliers w;   // 1/kg, inverse masses: the diagonal of M⁻¹
     Multipliers l2;  // m², squared lengths
     Scalar g;        // m/s²
 
     explicit RodChain(const Pendulum<Scalar>& p)
-        : w(rows(p)), l2(rows(p)), g(p.gravity), matrix_(rows(p)), lambda_(Multipliers::Zero(rows(p))) {
+        : pendulum(p),
+          w(Multipliers::Zero(rows(p))),
+          l2(w),
+          g(p.gravity),
+          matrix_(rows(p)),
+          lambda_(w),
+          squares_(w),
+          crosses_(w),
+          products_(w) {
         for (Eigen::Index k = 0; k < w.size(); ++k) {
             const auto i = static_cast<std::size_t>(k);
             w[k] = Scalar(1) / p.mass[i];
@@ -41,6 +50,9 @@ struct RodChain {
         if constexpr (N == 2 || N == 3) {
             pulls_ = RodPulls<Scalar>(w, g);
             by_rho2_ = w[0] / w[1];
+            const Scalar never(std::numeric_limits<double>::infinity());
+            for (Eigen::Index k = 0; k + 1 < N; ++k)
+                least_motion_ = select(w[k + 1] * Scalar(8) < w[k], never, least_motion_);
         }
     }
 
@@ -111,8 +123,7 @@ struct RodChain {
 
     /// x ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ x
     void solve(const Half& q1, const Half& q0, Multipliers& x) {
-        fill(q1, q0, matrix_);
-        matrix_.factor();
+        factor(q1, q0);
         matrix_.solve(x);
     }
 
@@ -130,17 +141,39 @@ private:
         return x * x + y * y;
     }
 
+    /// r_k × r_{k+1}, to all digits also where the rods are nearly aligned.
+    template <class Vector>
+    static Scalar cross(const Vector& q, Eigen::Index k) {
+        const auto rod = [&](Eigen::Index of, Eigen::Index axis) {
+            return of == 0 ? Compensated<Scalar>{q[axis], Scalar(0)}
+                           : exact_difference<Scalar>(q[2 * of + axis], q[2 * of - 2 + axis]);
+        };
+        const auto x = rod(k, 0), y = rod(k, 1), next_x = rod(k + 1, 0), next_y = rod(k + 1, 1);
+        const auto plus = exact_product(x.value, next_y.value), minus = exact_product(y.value, next_x.value);
+        const auto all = exact_difference(plus.value, minus.value);
+        const Scalar rest =
+            (x.value * next_y.rest + x.rest * next_y.value) - (y.value * next_x.rest + y.rest * next_x.value);
+        return all.value + (all.rest + ((plus.rest - minus.rest) + rest));
+    }
+
     void rate_of_any(const State& y, State& dydt) {
         const auto n = w.size();
         const auto q = y.head(2 * n), v = y.tail(2 * n);
         find_multipliers(q, v);
         dydt.head(2 * n) = v;
         auto a = dydt.tail(2 * n);
+        // r_k″ = α_k turned r_k − (|u_k|² / |r_k|²) r_k: along a rod the forces on a light mass would all but cancel
+        Scalar x(0), y_up(0);
         for (Eigen::Index k = 0; k < n; ++k) {
-            a[2 * k] = Scalar(0);
-            a[2 * k + 1] = -g;
+            Scalar across = k == 0 ? Scalar(-(g * q[0])) : Scalar(crosses_[k - 1] * lambda_[k - 1]);
+            if (k + 1 < n) across -= crosses_[k] * lambda_[k + 1];
+            const Scalar by_square = Scalar(1) / squares_[k];
+            const Scalar alpha = across * by_square, beta = square(v, k) * by_square;
+            x -= alpha * along(q, k, 1) + beta * along(q, k, 0);
+            y_up += alpha * along(q, k, 0) - beta * along(q, k, 1);
+            a[2 * k] = x;
+            a[2 * k + 1] = y_up;
         }
-        pull_on(q, lambda_, a);
     }
 
     void rate_of_few(const State& y, State& dydt) {
@@ -170,13 +203,13 @@ private:
 
         Scalar motion(0);
         for (const auto& rate : u) motion += dot(rate, rate);
-        const auto moves = motion > Scalar(0);
+        const auto moves = motion > least_motion_;
         if (!all_of(moves)) [[unlikely]]
-            take_resting(moves, y, dydt);
+            take_carefully(moves, y, dydt);
     }
-    /// In equilibrium, these sums leave exactly nothing.
+    /// In equilibrium these sums leave exactly nothing, and they keep the digits of a light mass.
     template <class Mask>
-    [[gnu::noinline]] void take_resting(const Mask& moves, const State& y, State& dydt) {
+    [[gnu::noinline]] void take_carefully(const Mask& moves, const State& y, State& dydt) {
         State careful = dydt;
         rate_of_any(y, careful);
         for (Eigen::Index i = 0; i < y.size(); ++i) dydt[i] = select(moves, dydt[i], careful[i]);
@@ -184,25 +217,31 @@ private:
 
     template <class Vector>
     void find_multipliers(const Vector& q, const Vector& v) {
-        fill(q, q, matrix_);
+        factor(q, q);
         for (Eigen::Index k = 0; k < w.size(); ++k) lambda_[k] = -square(v, k);
         lambda_[0] += g * q[1];
-        matrix_.factor();
         matrix_.solve(lambda_);
     }
 
     /// J(q1) M⁻¹ Jᵀ(q0)
     template <class Vector>
-    void fill(const Vector& q1, const Vector& q0, Matrix& matrix) const {
+    void factor(const Vector& q1, const Vector& q0) {
         const auto dot = [&](Eigen::Index one, Eigen::Index zero) {
             return along(q1, one, 0) * along(q0, zero, 0) + along(q1, one, 1) * along(q0, zero, 1);
         };
-        for (Eigen::Index k = 0; k < w.size(); ++k) {
-            matrix.diagonal[k] = dot(k, k) * (k == 0 ? w[0] : Scalar(w[k - 1] + w[k]));
-            if (k + 1 == w.size()) break;
-            matrix.upper[k] = -(dot(k, k + 1) * w[k]);
-            matrix.lower[k] = -(dot(k + 1, k) * w[k]);
+        const auto last = w.size() - 1;
+        for (Eigen::Index k = 0; k <= last; ++k) {
+            squares_[k] = dot(k, k);
+            if (k == last) break;
+            matrix_.upper[k] = -(dot(k, k + 1) * w[k]);
+            matrix_.lower[k] = -(dot(k + 1, k) * w[k]);
+            crosses_[k] = w[k] * cross(q1, k);
+            products_[k] = crosses_[k] * (&q1 == &q0 ? crosses_[k] : Scalar(w[k] * cross(q0, k)));
         }
+        const Scalar whole = last > 0 ? Scalar(w[last - 1] + w[last]) : w[last];
+        matrix_.factor(
+            w, [&](Eigen::Index k) { return squares_[k]; }, products_, Scalar(1) / Scalar(w[0] * squares_[0]),
+            Scalar(1) / Scalar(whole * squares_[last]));
     }
 
     template <class Positions, class Vector>
@@ -215,11 +254,14 @@ private:
             }
     }
 
-    Matrix matrix_;
-    Multipliers lambda_;
+    ChainMatrix<Scalar, N> matrix_;
+    Multipliers lambda_;                        // N/m
+    Multipliers squares_, crosses_, products_;  // |r_k|², w_k r_k × r_{k+1}, its square (of RATTLE's two places)
     // of two or three rods
     RodPulls<Scalar> pulls_;
     Scalar by_rho2_{1};
+    Scalar least_motion_{
+        0};  // Σ |u_k|² above which pulls_ serves: nowhere with masses much lighter than the next, m²/s²
 };
 
 /// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) of bobs.

@@ -28,7 +28,7 @@ std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEnt
         return {Model::mechanism, "particles, constraints and forces of its own take the general mechanism"};
     if (spec.is_mechanism())
         return {Model::mechanism, "a chain with further constraints or forces takes the general mechanism"};
-    if (!spec.physical.is_none() && method.angles && spec.stabilise == Stabilise::none)
+    if (!spec.physical.is_none())
         return {Model::angles, fmt::format("{}: rigid bodies in angles, at a cost that grows with the links",
                                            physical_words(spec.physical))};
     if (!method.angles) return {Model::constraints, fmt::format("\"{}\" steps particles on their rods", method.name)};
@@ -240,21 +240,6 @@ auto made(const ParticleNames& by_name, const auto& spec) {
         spec.part);
 }
 
-/// Bobs and rods of the chain.
-Assembly<Quad> parts_of(const Pendulum<Quad>& chain) {
-    const auto start = released_as_particles<Quad, Eigen::Dynamic>(chain);
-    const auto n = static_cast<Eigen::Index>(chain.links());
-    Assembly<Quad> assembly;
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        assembly.particles.push_back({chain.mass[k], Place<Quad>(start[2 * i], start[2 * i + 1]),
-                                      Place<Quad>(start[2 * n + 2 * i], start[2 * n + 2 * i + 1])});
-        const End<Quad> above = i == 0 ? End<Quad>(Place<Quad>(Quad(0), Quad(0))) : End<Quad>(k - 1);
-        assembly.constraints.push_back(Rod<Quad>{k, above, chain.length[k]});
-    }
-    return assembly;
-}
-
 }  // namespace
 
 Assembly<Quad> assembly_of(const SideSpec& spec) {
@@ -270,7 +255,8 @@ Assembly<Quad> assembly_of(const SideSpec& spec) {
     }
     const ParticleNames by_name(names, assembly);
     for (const auto& part : spec.constraints) assembly.constraints.push_back(made(by_name, part));
-    if (spec.gravity_m_per_s2 != 0) assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
+    if (!spec.particles.empty() && spec.gravity_m_per_s2 != 0)
+        assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
     for (const auto& part : spec.forces) assembly.forces.push_back(made(by_name, part));
     return assembly;
 }

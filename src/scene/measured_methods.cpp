@@ -122,13 +122,11 @@ std::vector<MeasuredMethod> measured_methods(const SideSpec& spec, double accura
     auto all = methods_in_table(links, !spec.physical.is_none(), std::max(accuracy, finest_in_table));
     std::erase_if(all, [&](const MeasuredMethod& measured) {
         const bool is_mechanism = measured.model == Model::mechanism;
-        if (!spec.physical.is_none() && spec.model == ModelChoice::automatic && measured.model != Model::angles)
-            return true;
+        if (!spec.physical.is_none() && measured.model != Model::angles) return true;
         if (is_mechanism ? !spec.is_mechanism() && spec.model != ModelChoice::mechanism : spec.is_mechanism())
             return true;
         // a fixed step looks for events at its end alone
-        if (spec.physical.has_coulomb() && (measured.model != Model::angles || !find_method(measured.method)->adaptive))
-            return true;
+        if (spec.physical.has_coulomb() && !find_method(measured.method)->adaptive) return true;
         if (spec.stabilise != Stabilise::none &&
             (measured.model == Model::angles || !find_method(measured.method)->angles))
             return true;

@@ -146,19 +146,6 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
                          key);
 }
 
-/// Joints with Coulomb's friction come to rest at the end of a step, by methods whose steps end so, in angles.
-void check_sticking(TomlReader& table, const SideSpec& side) {
-    if (!side.physical.has_coulomb()) return;
-    constexpr std::string_view why = "such joints come to rest, which is computed in angles";
-    if (side.model == ModelChoice::constraints)
-        throw table.fault("model", "\"constraints\" cannot be with joint_coulomb_N_m: {}", why);
-    if (side.stabilise != Stabilise::none)
-        throw table.fault("stabilise", "is for constraints, which cannot be with joint_coulomb_N_m: {}", why);
-    if (!side.accuracy && !find_method(side.integrator)->stabilised)
-        throw table.fault("integrator", "\"{}\" cannot end a step at rest, as joints with joint_coulomb_N_m come to",
-                          side.integrator);
-}
-
 void check_masses(TomlReader& table, const SideSpec& side) {
     for (std::size_t i = 0; i < side.links(); ++i)
         if (side.mass_kg[i] + side.physical.rod_mass_kg[i] == 0)
@@ -174,11 +161,16 @@ void check_physical(TomlReader& table, const SideSpec& side) {
                           : !side.constraints.empty() ? "constraint"
                                                       : "particle",
                           "cannot be beside links with mass, friction or a drive, which are for chains alone");
-    if (side.model == ModelChoice::mechanism)
-        throw table.fault("model",
-                          "\"mechanism\" has no links with mass, friction or drive; \"angles\" and "
-                          "\"constraints\" have them");
-    check_sticking(table, side);
+    constexpr std::string_view why = "links with mass, friction or a drive move in angles";
+    if (side.model == ModelChoice::mechanism || side.model == ModelChoice::constraints)
+        throw table.fault("model", "must be \"angles\" or \"auto\", not \"{}\": {}", name_of(side.model), why);
+    if (side.stabilise != Stabilise::none) throw table.fault("stabilise", "is for constraints; {}", why);
+    const auto& method = *find_method(side.integrator);
+    if (!side.accuracy && !method.angles)
+        throw table.fault("integrator", "\"{}\" steps particles on rods; {}", side.integrator, why);
+    if (!side.accuracy && physical.has_coulomb() && !method.stabilised)
+        throw table.fault("integrator", "\"{}\" cannot end a step at rest, as joints with joint_coulomb_N_m come to",
+                          side.integrator);
     check_masses(table, side);
 }
 

@@ -106,8 +106,6 @@ std::map<std::string, std::string> hashes() {
         all[fmt::format("twins {} angles 2", method)] = hash_of_twins({Model::angles, method, 250}, 2);
         all[fmt::format("twins {} constraints 3", method)] = hash_of_twins({Model::constraints, method, 250}, 3);
     }
-    for (const std::size_t links : {2u, 3u})
-        all[fmt::format("twins taylor angles {}", links)] = hash_of_twins({Model::angles, "taylor", 0, 1e-12}, links);
     return all;
 }
 

@@ -104,7 +104,7 @@ std::vector<double> kernel_flips(const std::vector<Release>& releases, const Fli
     std::vector<double> times(releases.size(), -1);
     const std::atomic<bool> stop{false};
     std::vector<FlipStart> starts;
-    for (const auto& [theta1, theta2] : releases) starts.push_back({{9.8, 2, 1, -1, 0.3}, {theta1, theta2}, {0, 0}});
+    for (const auto& [theta1, theta2] : releases) starts.push_back({{9.8, 1, 2, 1, -1, 0.3}, {theta1, theta2}, {0, 0}});
     find_flips<2>({.duration = spec.duration,
                    .allowed = std::log2(spec.tolerance),
                    .count = starts.size(),
@@ -313,6 +313,19 @@ ExitCode refusal(const Pendulum<double>& p, const FlipSpec& spec, std::size_t ti
         return error.code();
     }
     return ExitCode::done;
+}
+
+TEST(Flips, ThatBreakDownHaveNoTimeAndSpoilNoOther) {
+    // gravity so strong that a swing takes 1e-15 s
+    const auto calm = released({}, {2.5, 1});
+    auto wild = calm;
+    wild.gravity = 1e30;
+    const std::vector<Pendulum<double>> all{calm, wild, calm};
+    std::vector<double> times(all.size());
+    first_flips(all, {}, times, false);
+    EXPECT_TRUE(std::isnan(times[1])) << times[1];
+    EXPECT_EQ(times[0], flips({{2.5, 1}})[0]);
+    EXPECT_EQ(times[2], times[0]);
 }
 
 TEST(Flips, AreNotLookedForInVain) {

@@ -1,10 +1,9 @@
 #include "integrate/mechanism_series.hpp"
 
 #include "allocations.hpp"
-#include "integrate/rod_series.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
-#include "physics/chain_parts.hpp"
+#include "physics/mechanism.hpp"
 #include "physics/mechanisms.hpp"
 
 #include <gtest/gtest.h>
@@ -81,31 +80,6 @@ TEST(MechanismSeries, SolvesTheEquationsOfMotionOrderByOrder) {
             const double h = 2e-3, ratio = residual(parts, order, 2 * h) / residual(parts, order, h);
             EXPECT_NEAR(std::log2(ratio), order, 0.2) << order;  // measured within 0.1
         }
-    }
-}
-
-TEST(MechanismSeries, OfAChainIsThatOfItsRods) {
-    Pendulum<Quad> p{{Quad(1), Quad(0.4), Quad(2)},
-                     {Quad(1), Quad(0.7), Quad(1.2)},
-                     {Quad(0.3), Quad(2), Quad(-1)},
-                     {Quad(1), Quad(-2), Quad(0.5)},
-                     Quad(9.8)};
-    RodChain<Quad, 3> chain(p);
-    const auto y = chain.start(p);
-    const auto parts = parts_of(p);
-    Mechanism<Quad> mechanism(parts);
-    for (int order : {5, 20, 42}) {
-        RodSeries<Quad, 3> rods(chain, order);
-        MechanismSeries<Quad> series(mechanism, order);
-        rods.expand(y);
-        series.expand(mechanism.start(parts));
-        EXPECT_DOUBLE_EQ(series.longest_step(), rods.longest_step());
-        for (int k = 0; k <= order; ++k) EXPECT_NEAR(series.size(k) / rods.size(k), 1, 1e-15) << k;  // measured 0
-        auto expected = y;
-        State<Quad, Eigen::Dynamic> change(12);
-        rods.move(Quad(0.05), expected);
-        series.move(Quad(0.05), change);
-        EXPECT_LT(static_cast<double>(Quad((change - expected).cwiseAbs().maxCoeff())), 7e-35);  // measured 1e-35
     }
 }
 

@@ -58,8 +58,8 @@ void expect_each_as_alone(const std::vector<MotionSpec>& specs, int jobs, int wi
 TEST(MotionBatch, EachGoesAsItWouldAlone) {
     const int wide = register_widths().back();
     for (const auto model : {Model::angles, Model::constraints})
-        for (const std::size_t links : {1u, 2u, 3u, 4u, 5u})
-            expect_each_as_alone(fan(model, "euler", links, 70), 2, links <= 4 ? wide : 1);
+        for (const std::size_t links : {1u, 2u, 3u, 4u})
+            expect_each_as_alone(fan(model, "euler", links, 70), 2, links == 2 || links == 3 ? wide : 1);
     expect_each_as_alone(fan(Model::angles, "rk4", 2, 70), 2, wide);
     expect_each_as_alone(fan(Model::constraints, "rk4", 2, 130), 3, wide);
     expect_each_as_alone(fan(Model::angles, "taylor", 2, 70), 2, 1);

@@ -5,7 +5,7 @@
 #include "integrate/registry.hpp"
 #include "integrate/stabilise.hpp"
 #include "integrate/support.hpp"
-#include "physics/chain_parts.hpp"
+#include "physics/mechanism.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <cmath>

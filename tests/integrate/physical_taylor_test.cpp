@@ -179,6 +179,21 @@ TEST(PhysicalTaylor, ADriveHoldsTwoLinksUpright) {
     EXPECT_LT(furthest(), radians(5));  // measured 3.0°
 }
 
+TEST(PhysicalTaylor, SeesARateThatDipsBelowZeroAndBackWithinAStep) {
+    // ω = 0.99 + sin t but for the drag |ω| ω, which turns over twice in 0.28 s of steps of some seconds
+    PhysicalPendulum<double> p = physical(Pendulum<double>{{1}, {1}, {0}, {0.99}, 0});
+    p.friction.arm_quadratic = {0.01};
+    p.torques = {{0, 1, 1, 0}};
+    const auto end = [&](auto which, double tolerance) {
+        PhysicalChain<double> model(p);
+        typename decltype(which)::template Stepper<PhysicalChain<double>> stepper(
+            model, PhysicalChain<double>::start(p), tolerance);
+        stepper.advance(6.0);
+        return stepper.state()[0];
+    };
+    EXPECT_NEAR(end(Taylor(), 1e-12), end(Dop853(), 1e-14), 1e-11);
+}
+
 TEST(PhysicalTaylor, CoulombsFrictionTakesAsMuchOfEverySwing) {
     // of a small one: 2 c / (m g l) of the amplitude at each turn, until it sticks, and then for ever
     const double c = 1e-3, start = 0.0103, each = 2 * c / 9.8;

@@ -5,7 +5,7 @@
 #include "integrate/runge_kutta.hpp"
 #include "physics/bob.hpp"
 #include "physics/canonical.hpp"
-#include "physics/chain_parts.hpp"
+#include "physics/mechanism.hpp"
 #include "physics/mechanisms.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
 #include "numeric/quad.hpp"
-#include "physics/chain_parts.hpp"
+#include "physics/mechanism.hpp"
 #include "physics/mechanisms.hpp"
 
 #include <gtest/gtest.h>

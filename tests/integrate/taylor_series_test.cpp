@@ -108,46 +108,5 @@ TEST(TaylorSeries, GivesTheSameBitsWithTwoLanesAndFour) {
     expect_same_bits<3>();
 }
 
-/// y(h) − y(0).
-template <class Series, class Scalar>
-State<Scalar, Eigen::Dynamic> change_by(Series series, const State<Scalar, Eigen::Dynamic>& y, const Scalar& h) {
-    State<Scalar, Eigen::Dynamic> change = y;
-    series.expand(y);
-    series.move(h, change);
-    return change;
-}
-
-TEST(TaylorSeries, SegmentsHoldTheSameCoefficients) {
-    using Exact = AngleSeries<Quad, Eigen::Dynamic>;
-    for (const std::size_t links : {1, 2, 4, 7, 8, 9, 16, 17, 23, 40, 65}) {
-        const auto p = uneven(links);
-        const auto y = AngleChain<double, Eigen::Dynamic>::start(p);
-        const State<Quad, Eigen::Dynamic> exact_y = y.template cast<Quad>();
-        for (int k = 2; k <= 24; ++k) {
-            const auto of = [&](int order) { return change_by(SegmentSeries(p, order), y, 1.0); };
-            const auto exactly = [&](int order) { return change_by(Exact(p.cast<Quad>(), order), exact_y, Quad(1)); };
-            const State<double, Eigen::Dynamic> found = (of(k) - of(k - 1)).tail(y.size() / 2);
-            const State<Quad, Eigen::Dynamic> exact = (exactly(k) - exactly(k - 1)).tail(y.size() / 2);
-            const auto size = static_cast<double>(Quad(exact.cwiseAbs().maxCoeff()));
-            const State<double, Eigen::Dynamic> error = found - exact.template cast<double>();
-            EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-12 * size) << links << " links, order " << k;
-        }
-    }
-}
-
-TEST(TaylorSeries, SegmentsGiveTheSameBitsWithTwoLanesFourAndEight) {
-    for (const std::size_t links : {1, 5, 8, 19, 70})
-        for (const double turned : {0.0, 2e5}) {
-            auto p = uneven(links);
-            p.angle[0] += turned;  // beyond 1e5 rad the sine is the C library's
-            const auto y = AngleChain<double, Eigen::Dynamic>::start(p);
-            for (const int order : {1, 5, 8, 13, 24, 33}) {
-                const auto narrow = change_by(SegmentSeries(p, order, 2), y, 0.02);
-                for (const int width : register_widths())
-                    EXPECT_EQ(narrow, change_by(SegmentSeries(p, order, width), y, 0.02)) << links << " " << width;
-            }
-        }
-}
-
 }  // namespace taylor_series_test
 }  // namespace doppel

@@ -2,6 +2,7 @@
 
 #include "integrate/pendulums.hpp"
 #include "integrate/runge_kutta.hpp"
+#include "integrate/support.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
 #include "physics/bob.hpp"
@@ -298,6 +299,22 @@ TEST(Taylor, SaysWhenTheMotionBlowsUp) {
     p.rate = {1e9, -3e9};
     EXPECT_EQ(error_of(ExitCode::method_failed, [&] { end_of<AngleChain<double, 2>>(p, 1e9, 1e-12); }).substr(0, 17),
               "taylor: a step of");
+}
+
+TEST(Taylor, KeepsTheDigitsOfALightMass) {
+    Pendulum<double> p{{1e-5, 1}, {1, 1}, {1, 1.001}, {0, 0}, 9.8};
+    for (const std::size_t links : {2u, 3u}) {
+        if (links == 3) p = {{1e-5, 1, 0.5}, {1, 1, 0.7}, {1, 1.001, 0.5}, {0, 0, 0}, 9.8};
+        const auto end = [&](const char* tolerance, Precision precision) {
+            auto spec = stepping(Model::angles, "taylor", p, 1);
+            spec.sample_interval = {2, 1};
+            spec.tolerance = parse_quad(tolerance);
+            spec.precision = precision;
+            return Course(spec).advance(1);
+        };
+        const auto found = end("1e-15", Precision::in_double), truth = end("1e-26", Precision::in_quad);
+        for (std::size_t i = 0; i < links; ++i) EXPECT_NEAR(found.bobs[i].theta, truth.bobs[i].theta, 4e-12) << links;
+    }
 }
 
 }  // namespace taylor_test

@@ -1,6 +1,6 @@
 #include "base/error.hpp"
 #include "numeric/quad.hpp"
-#include "physics/chain_parts.hpp"
+#include "physics/mechanism.hpp"
 #include "physics/mechanisms.hpp"
 
 #include <gtest/gtest.h>

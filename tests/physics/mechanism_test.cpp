@@ -3,7 +3,6 @@
 #include "allocations.hpp"
 #include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
-#include "physics/chain_parts.hpp"
 #include "physics/mechanisms.hpp"
 #include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"

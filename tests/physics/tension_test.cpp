@@ -1,6 +1,6 @@
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/chain_parts.hpp"
+#include "physics/mechanism.hpp"
 #include "physics/mechanisms.hpp"
 #include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"

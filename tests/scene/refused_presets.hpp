@@ -75,20 +75,23 @@ inline const std::vector<RefusedPreset> refused_system{
     RefusedPreset{"[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
                   R"(presets/x.toml:2:1: [system] stabilise is not for "rattle6", which keeps the constraints itself)"},
     RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nmodel = \"constraints\"",
-                  "presets/x.toml:3:1: [system] model \"constraints\" cannot be with joint_coulomb_N_m: such joints "
-                  "come to rest, which is computed in angles"},
-    RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nstabilise = \"projection\"",
-                  "presets/x.toml:3:1: [system] stabilise is for constraints, which cannot be with joint_coulomb_N_m: "
-                  "such joints come to rest, which is computed in angles"},
+                  "presets/x.toml:3:1: [system] model must be \"angles\" or \"auto\", not \"constraints\": links with "
+                  "mass, friction or a drive move in angles"},
+    RefusedPreset{
+        "[system]\njoint_coulomb_N_m = [0, 0.1]\nstabilise = \"projection\"",
+        "presets/x.toml:3:1: [system] stabilise is for constraints; links with mass, friction or a drive move "
+        "in angles"},
     RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"gauss4\"",
                   "presets/x.toml:3:1: [system] integrator \"gauss4\" cannot end a step at rest, as joints with "
                   "joint_coulomb_N_m come to"},
-    RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"rattle\"",
-                  "presets/x.toml:3:1: [system] integrator \"rattle\" cannot end a step at rest, as joints with "
-                  "joint_coulomb_N_m come to"},
-    RefusedPreset{"[system]\nrod_mass_kg = [1, 1]\nmodel = \"mechanism\"",
-                  "presets/x.toml:3:1: [system] model \"mechanism\" has no links with mass, friction or drive; "
-                  "\"angles\" and \"constraints\" have them"},
+    RefusedPreset{
+        "[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"rattle\"",
+        "presets/x.toml:3:1: [system] integrator \"rattle\" steps particles on rods; links with mass, friction "
+        "or a drive move in angles"},
+    RefusedPreset{
+        "[system]\nrod_mass_kg = [1, 1]\nmodel = \"mechanism\"",
+        "presets/x.toml:3:1: [system] model must be \"angles\" or \"auto\", not \"mechanism\": links with mass, "
+        "friction or a drive move in angles"},
     RefusedPreset{
         "[system]\nstabilise = \"tape\"",
         R"(presets/x.toml:2:1: [system] stabilise must be "none", "baumgarte" or "projection"; it is "tape")"},

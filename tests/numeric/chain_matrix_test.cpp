@@ -1,0 +1,93 @@
+#include "numeric/chain_matrix.hpp"
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace doppel {
+namespace chain_matrix_test {
+
+/// J M⁻¹ J′ᵀ of rods r and r′, which are near each other as those of two steps, with masses from 1/4 to 4.
+template <int N>
+struct Rods {
+    using Column = typename ChainMatrix<double, N>::Column;
+    Column w;
+    Eigen::Matrix2Xd one, zero;
+
+    explicit Rods(std::mt19937& random, Eigen::Index rows) : w(Column::Zero(rows)), one(2, rows), zero(2, rows) {
+        std::uniform_real_distribution<double> any(-1, 1);
+        for (Eigen::Index k = 0; k < rows; ++k) {
+            w[k] = std::exp2(2 * any(random));
+            const double angle = 3 * any(random), length = 1.5 + any(random);
+            one.col(k) << length * std::sin(angle), -length * std::cos(angle);
+            zero.col(k) = one.col(k) + 0.1 * Eigen::Vector2d(any(random), any(random));
+        }
+    }
+    double above(Eigen::Index k) const { return k == 0 ? 0 : w[k - 1]; }
+    double dot(Eigen::Index i, Eigen::Index j) const { return one.col(i).dot(zero.col(j)); }
+    double cross(const Eigen::Matrix2Xd& r, Eigen::Index k) const {
+        return r(0, k) * r(1, k + 1) - r(1, k) * r(0, k + 1);
+    }
+
+    Eigen::MatrixXd dense() const {
+        const auto n = w.size();
+        Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
+        for (Eigen::Index k = 0; k < n; ++k) {
+            all(k, k) = (above(k) + w[k]) * dot(k, k);
+            if (k + 1 == n) break;
+            all(k, k + 1) = -w[k] * dot(k, k + 1);
+            all(k + 1, k) = -w[k] * dot(k + 1, k);
+        }
+        return all;
+    }
+    ChainMatrix<double, N> factored() const {
+        const auto n = w.size();
+        ChainMatrix<double, N> matrix(n);
+        Column c = w;
+        for (Eigen::Index k = 0; k + 1 < n; ++k) {
+            matrix.upper[k] = -w[k] * dot(k, k + 1);
+            matrix.lower[k] = -w[k] * dot(k + 1, k);
+            c[k] = w[k] * w[k] * (cross(one, k) * cross(zero, k));
+        }
+        matrix.factor(
+            w, [&](Eigen::Index k) { return dot(k, k); }, c, 1 / (w[0] * dot(0, 0)),
+            1 / ((above(n - 1) + w[n - 1]) * dot(n - 1, n - 1)));
+        return matrix;
+    }
+};
+
+template <int N>
+void expect_solved(Eigen::Index rows) {
+    std::mt19937 random(5);
+    for (int i = 0; i < 100; ++i) {
+        const Rods<N> rods(random, rows);
+        typename Rods<N>::Column x = rods.w;
+        x.setRandom();
+        const Eigen::VectorXd expected = rods.dense().partialPivLu().solve(Eigen::VectorXd(x));
+        rods.factored().solve(x);
+        EXPECT_LT((x - expected).norm(), 1e-13 * (1 + expected.norm())) << rows << " rows";
+    }
+}
+
+TEST(ChainMatrix, SolvesWhatADenseMatrixDoes) {
+    expect_solved<1>(1);
+    expect_solved<2>(2);
+    expect_solved<3>(3);
+    expect_solved<4>(4);
+    for (const Eigen::Index rows : {1, 2, 3, 4, 5, 8, 33}) expect_solved<Eigen::Dynamic>(rows);
+}
+
+TEST(ChainMatrix, RoundsAlikeWhetherItsRowsAreKnownEarlyOrLate) {
+    std::mt19937 early_random(7), late_random(7);
+    const Rods<3> early(early_random, 3);
+    const Rods<Eigen::Dynamic> late(late_random, 3);
+    Eigen::Vector3d x(1, -2, 3);
+    Eigen::VectorXd y = x;
+    early.factored().solve(x);
+    late.factored().solve(y);
+    EXPECT_EQ(Eigen::VectorXd(x), y);
+}
+
+}  // namespace chain_matrix_test
+}  // namespace doppel
