@@ -152,17 +152,6 @@ TEST(Twins, ApartInGravityAloneAreTwo) {
     EXPECT_GT(averages[0], averages[1] + 1);  // measured 9.5 and 0.56
 }
 
-TEST(Twins, OfMoreLinksThanLanesTake) {
-    Pendulum<double> p{{1, 1, 1, 1, 1}, {1, 1, 1, 1, 1}, {0.5, 0.4, 0.3, 0.2, 0.1}, {0, 0, 0, 0, 0}, 9.8};
-    Twins twins{p, p};
-    twins.b.angle[0] += 1e-4;
-    for (const auto model : {Model::angles, Model::constraints}) {
-        auto run = both(model);
-        run.samples = 5;
-        EXPECT_EQ(averages_of({twins}, run).front(), average_of_films(twins, run)) << static_cast<int>(model);
-    }
-}
-
 TEST(Twins, ThatAreOneHaveNoAverage) {
     const auto run = both(Model::constraints);
     const Twins one{released(90, 90), released(90, 90)}, two{released(90, 90), released(91, 90)};
