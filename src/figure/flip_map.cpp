@@ -85,21 +85,17 @@ public:
                         frame_.x.count, frame_.y.count, is_at_rest() ? " from rest" : "",
                         has_outline() ? " Inside the line no rod has the energy to flip." : "",
                         scientific(spec_.tolerance), check_words(check_findings(numbers))));
-        std::size_t broken = 0;
-        for (std::size_t row = 0; row < row_trials(); ++row)
-            broken += static_cast<std::size_t>(
-                std::count_if(numbers[row].begin(), numbers[row].end(), [](double time) { return std::isnan(time); }));
-        if (broken > 0)
-            figure.captions.push_back(fmt::format(
-                "{} of them broke down (no step of 10⁻⁹ s met the tolerance): their cells are empty.", broken));
+        if (const auto broken = broken_words(numbers); !broken.empty())
+            figure.captions.push_back(broken + ": their cells are empty.");
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         for (std::size_t row = 0; row < row_trials(); ++row)
             if (std::any_of(numbers[row].begin(), numbers[row].end(), [](double time) { return std::isfinite(time); }))
                 return std::nullopt;
-        return fmt::format("none of the {} × {} releases flips within {} s: there is no time to draw", frame_.x.count,
-                           frame_.y.count, spec_.duration);
+        const auto broken = broken_words(numbers);
+        return fmt::format("none of the {} × {} releases flips within {} s{}: there is no time to draw", frame_.x.count,
+                           frame_.y.count, spec_.duration, broken.empty() ? "" : "; " + broken);
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -137,6 +133,15 @@ private:
                        .high = spec_.duration,
                        .logarithmic = true};
         frame_.is_mirrored = is_at_rest() && theta1_.low == -theta1_.high && theta2_.low == -theta2_.high;
+    }
+
+    /// "3 of the releases broke down …"; empty where none did.
+    std::string broken_words(std::span<const TrialNumbers> numbers) const {
+        long broken = 0;
+        for (std::size_t row = 0; row < row_trials(); ++row)
+            broken += std::count_if(numbers[row].begin(), numbers[row].end(), [](double t) { return std::isnan(t); });
+        if (broken == 0) return "";
+        return fmt::format("{} of the releases broke down (no step of 10⁻⁹ s met the tolerance)", broken);
     }
 
     bool is_at_rest() const { return pendulum_.rate[0] == 0 && pendulum_.rate[1] == 0; }

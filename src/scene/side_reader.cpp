@@ -163,7 +163,7 @@ void check_physical(TomlReader& table, const SideSpec& side) {
                           "cannot be beside links with mass, friction or a drive, which are for chains alone");
     constexpr std::string_view why = "links with mass, friction or a drive move in angles";
     if (side.model == ModelChoice::mechanism || side.model == ModelChoice::constraints)
-        throw table.fault("model", "must be \"angles\" or \"auto\", not \"{}\": {}", name_of(side.model), why);
+        throw table.fault("model", "\"{}\" is not for such a chain: {}", name_of(side.model), why);
     if (side.stabilise != Stabilise::none) throw table.fault("stabilise", "is for constraints; {}", why);
     const auto& method = *find_method(side.integrator);
     if (!side.accuracy && !method.angles)

@@ -226,6 +226,17 @@ TEST(FlipMap, ForbidsWhatTheEnergyForbids) {
 }
 
 /// A part of the map, and what its caption and findings say of the releases that were checked.
+TEST(FlipMap, LeavesCellsEmptyThatBreakDown) {
+    // gravity so strong that some swings take steps below 1e-9 s
+    const auto figure = figure_of("flip-map", {"system.gravity_m_per_s2=3e15", "flip_map.columns=16",
+                                               "flip_map.rows=16", "flip_map.duration_s=1e-6", "flip_map.checked=5"});
+    const auto trials = computed(figure);
+    Figure page;
+    figure.experiment->draw(trials, page);
+    EXPECT_NE(page.captions.back().find("of the releases broke down"), std::string::npos) << page.captions.back();
+    EXPECT_GT(findings_of(figure).at("share_that_flips"), 0);
+}
+
 TEST(FlipMap, CountsOnlyChecksThatFlip) {
     struct Checked {
         std::string caption;

@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"poincare", {"section.energy_J=[9.8]", "section.orbits=2", "section.crossings=5"}, false},
         Case{"flip-map",
              {"flip_map.columns=8", "flip_map.rows=8", "flip_map.duration_s=3", "flip_map.checked=15"},
-             false},
+             true},
         Case{"links", {"links.to=3", "links.duration_s=5"}, false},
         Case{
             "drift", {"drift.duration_s=20", "drift.methods=[\"rk4\", \"rattle\"]", "drift.projected=[\"rk4\"]"}, true},

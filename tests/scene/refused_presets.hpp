@@ -75,8 +75,8 @@ inline const std::vector<RefusedPreset> refused_system{
     RefusedPreset{"[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
                   R"(presets/x.toml:2:1: [system] stabilise is not for "rattle6", which keeps the constraints itself)"},
     RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nmodel = \"constraints\"",
-                  "presets/x.toml:3:1: [system] model must be \"angles\" or \"auto\", not \"constraints\": links with "
-                  "mass, friction or a drive move in angles"},
+                  "presets/x.toml:3:1: [system] model \"constraints\" is not for such a chain: links with mass, "
+                  "friction or a drive move in angles"},
     RefusedPreset{
         "[system]\njoint_coulomb_N_m = [0, 0.1]\nstabilise = \"projection\"",
         "presets/x.toml:3:1: [system] stabilise is for constraints; links with mass, friction or a drive move "
@@ -88,10 +88,9 @@ inline const std::vector<RefusedPreset> refused_system{
         "[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"rattle\"",
         "presets/x.toml:3:1: [system] integrator \"rattle\" steps particles on rods; links with mass, friction "
         "or a drive move in angles"},
-    RefusedPreset{
-        "[system]\nrod_mass_kg = [1, 1]\nmodel = \"mechanism\"",
-        "presets/x.toml:3:1: [system] model must be \"angles\" or \"auto\", not \"mechanism\": links with mass, "
-        "friction or a drive move in angles"},
+    RefusedPreset{"[system]\nrod_mass_kg = [1, 1]\nmodel = \"mechanism\"",
+                  "presets/x.toml:3:1: [system] model \"mechanism\" is not for such a chain: links with mass, friction "
+                  "or a drive move in angles"},
     RefusedPreset{
         "[system]\nstabilise = \"tape\"",
         R"(presets/x.toml:2:1: [system] stabilise must be "none", "baumgarte" or "projection"; it is "tape")"},
