@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fit/ladder.hpp"
+#include "fit/beginning.hpp"
 
 namespace doppel {
 

@@ -3,9 +3,6 @@
 #include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
-#include "fit/variation.hpp"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -25,10 +22,10 @@ double start_of(const Track& track, const TrackSegment& segment) {
 /// The start, fitted to the first seconds of a unit alone, and its normal matrix.
 Fit fitted_start(const Track& track, const TrackSegment& segment, const Fit& fit, const ArmState<double>& guess,
                  const std::atomic<bool>& stop) {
-    Fit start{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = {guess}};
+    Fit start{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = {guess}, .sums = {}};
     start.model.fitted.clear();
     return fit_model(track, {segment}, start,
-                     {.most_passes = 10, .finds_scale = false, .finds_step = false, .relative = 1e-5}, stop);
+                     {.most_passes = 10, .finds_scale = false, .step_share = 0, .relative = 1e-5}, stop);
 }
 
 /// A start and the motion from it.
@@ -43,12 +40,9 @@ struct Run {
         double largest = 0;
         for (std::size_t arm = 0; arm < 2; ++arm) {
             if (piece.is_outlier[arm][sample]) continue;
-            const auto& p = fit.parameters;
-            const double at = t + (arm == 1 ? p[index_of(FitParameter::lag)] : 0);
-            if (!flow.reach(at)) return std::nullopt;
-            const double shown = p[index_of(FitParameter::offset_1) + arm] +
-                                 p[index_of(FitParameter::scale_1) + arm] * flow.angle(arm, at);
-            double off = piece.angle[arm][sample] - shown;
+            const auto shown = shown_angle(fit.parameters, flow, arm, t);
+            if (!shown) return std::nullopt;
+            double off = piece.angle[arm][sample] - *shown;
             constexpr double turn = 2 * std::numbers::pi;
             if (!is_first) off -= turn * std::round(off / turn);  // a piece may count turns anew
             largest = std::max(largest, std::abs(off));
@@ -89,34 +83,20 @@ bool follow(const Track& track, const TrackSegment& segment, std::size_t first_p
 /// When one standard error of start, or of parameters, has grown to the limit.
 void attribute(const Fit& fit, const Fit& start, const Uncertainty& uncertainty, double limit, Prediction& prediction) {
     constexpr int most = 4 + static_cast<int>(dynamic_count);
-    using Number = Dual<double, most>;
-    VaryingArms<most> arms{
-        .arms = arms_of(fit.model, fit.parameters), .direction = {}, .point_masses = fit.model.point_masses};
-    arms.direction.fill(-1);
-    std::vector<Eigen::Index> directions, places;
-    for (std::size_t k = 0; k < uncertainty.parameters.size(); ++k) {
-        const auto parameter = uncertainty.parameters[k];
-        if (!is_dynamic(parameter)) continue;
-        directions.push_back(4 + static_cast<Eigen::Index>(index_of(parameter)));
-        places.push_back(static_cast<Eigen::Index>(k));
-        arms.direction[index_of(parameter)] = directions.back();
-    }
-    const Eigen::MatrixXd of_parameters = uncertainty.covariance(places, places);
-    const Eigen::Matrix4d of_start = start.sums[0].starts.inverse() * std::pow(uncertainty.inflation, 2);
-    ArmState<Number> state;
-    for (std::size_t q = 0; q < 4; ++q) state[q] = Number::variable(start.starts[0][q], static_cast<Eigen::Index>(q));
+    const auto& fitted = fit.model.fitted;
+    const auto moving = std::count_if(fitted.begin(), fitted.end(), is_dynamic);  // the first of them
+    const Eigen::MatrixXd of_parameters = uncertainty.covariance.topLeftCorner(moving, moving);
+    const Eigen::Matrix4d of_start = inverse_of(start.sums[0].matrix) * std::pow(uncertainty.inflation, 2);
     constexpr double beyond = 1.7, steps = 2;  // as fine as a standard error is known
     const double step = steps * fit.rules.step_s;
     const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
-    Flow<Number, VaryingArms<most>> flow(arms, state, step);
-    for (double t = 0.5 * step; t < end; t += step) {
+    auto flow = varied_flow<most>(fit.model, fit.parameters, start.starts[0], step);
+    for (double t = prediction.data_s; t < end; t += step) {
         if (!flow.reach(t)) return;
-        if (t < prediction.data_s) continue;
         double from_start = 0, from_parameters = 0;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            const Eigen::Vector4d by_start = flow.state()[arm].tangent.template head<4>();
-            const Eigen::VectorXd by_parameters = flow.state()[arm].tangent(directions);
-            from_start = std::max(from_start, by_start.dot(of_start * by_start));
+            const Eigen::VectorXd by = flow.angle(arm, t).tangent, by_parameters = by.segment(4, moving);
+            from_start = std::max(from_start, by.head<4>().dot(of_start * by.head<4>()));
             from_parameters = std::max(from_parameters, by_parameters.dot(of_parameters * by_parameters));
         }
         const auto note = [&](double square, std::optional<double>& when) {

@@ -1,23 +1,12 @@
 #pragma once
 
-#include "fit/ladder.hpp"
+#include "fit/beginning.hpp"
 #include "fit/uncertainty.hpp"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace doppel {
-
-/// Pieces that follow one another at even intervals on a clock that each begins anew.
-struct Period {
-    double seconds = 0, standard_error = 0;
-};
-
-/// The interval at which the fitted motion leads from each piece to the next; nothing where no interval up to four
-/// times a piece stands out.
-std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit,
-                                  const std::atomic<bool>& stop);
 
 /// A prediction from the beginning of a unit of the track. Every unit is judged by parameters that were fitted without
 /// it and without the first.

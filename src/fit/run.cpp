@@ -59,9 +59,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     const auto finish = [&] {
         write_text(preset, fitted_preset(result, name));
         parts.finished(name + ".toml");
-        Csv rows(table, residual_columns());
-        write_residuals(result, rows);
-        rows.finish();
+        write_residuals(result, table);
         parts.finished(name + ".residuals.csv");
         throw_if_set(stop);
         const auto list = compose(fit_page(result, name), page_size, light);

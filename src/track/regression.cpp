@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "numeric/portable_math.hpp"
+#include "numeric/sin_cos.hpp"
 
 #include <Eigen/QR>
 
@@ -116,20 +117,6 @@ std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& st
     return all;
 }
 
-ArmState<double> guessed_start(const Track& track, const TrackSegment& segment) {
-    const auto& piece = track.pieces[segment.piece];
-    const double begin = piece.time_s[segment.first], window = window_of(track);
-    auto last = segment.first;
-    while (last < segment.last && (piece.time_s[last] <= begin + window || last < segment.first + 6)) ++last;
-    ArmState<double> start{};
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-        const auto fit =
-            local_fit(piece, arm, {segment.first, last}, begin, 3).value_or(LocalFit{piece.angle[arm][segment.first]});
-        start[arm] = fit.angle, start[arm + 2] = fit.rate;
-    }
-    return start;
-}
-
 Regression regress(const std::vector<Glimpse>& glimpses) {
     Regression result;
     const auto count = static_cast<Eigen::Index>(glimpses.size());
@@ -153,12 +140,8 @@ Regression regress(const std::vector<Glimpse>& glimpses) {
     };
     result.unexplained = std::max(share(right - second * of_second, right),
                                   share(driven * coupling - first * of_first, driven * coupling));
-    auto& p = result.parameters;
-    p[index_of(FitParameter::inertia)] = of_first[0];
-    p[index_of(FitParameter::coupling)] = coupling;
-    p[index_of(FitParameter::gravity_1)] = of_first[1];
-    p[index_of(FitParameter::gravity_2)] = of_second[1];
-    p[index_of(FitParameter::scale_1)] = p[index_of(FitParameter::scale_2)] = 1;
+    result.inertia = of_first[0], result.coupling = coupling;
+    result.gravity = {of_first[1], of_second[1]};
     result.is_physical = std::isfinite(of_first.sum() + of_second.sum()) && coupling > 0 && of_first[0] > 0 &&
                          of_first[1] > 0 && of_second[1] > 0;
     return result;

@@ -35,13 +35,6 @@ std::vector<double> oddness_of(const TrackPiece& piece, std::size_t arm) {
     return odd;
 }
 
-double median_size(std::vector<double> values) {
-    for (auto& value : values) value = std::abs(value);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// The noise, and samples that stand out of it alone: their neighbours deviate the other way.
 void find_noise(Track& track, const std::atomic<bool>& stop) {
     constexpr double far = 12, of_cubic = 1.39;  // the deviation of noise of 1 from a cubic of the same noise
@@ -232,6 +225,13 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
 }
 
 }  // namespace
+
+double median_size(std::vector<double> values) {
+    for (auto& value : values) value = std::abs(value);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 void check_track(Track& track, const std::atomic<bool>& stop) {
     drop_crumbs(track);

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "fit/beginning.hpp"
+
+#include <optional>
+
+namespace doppel {
+
+/// Pieces that follow one another at even intervals on a clock that each begins anew.
+struct Period {
+    double seconds = 0, standard_error = 0;
+};
+
+/// The interval at which the fitted motion leads from each piece to the next; nothing where no interval up to four
+/// times a piece stands out.
+std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit,
+                                  const std::atomic<bool>& stop);
+
+}  // namespace doppel
