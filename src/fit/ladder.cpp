@@ -89,24 +89,14 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
     return mean <= std::max(negligible, std::sqrt(variance / count));
 }
 
-/// The nearer of two places to start from: where the model before ended, and where all began.
-Fit nearer_start(const Track& track, const std::vector<TrackSegment>& segments, const ModelSpec& model,
-                 const Fit& before, const Fit& first, int jobs, const std::atomic<bool>& stop) {
-    const auto placed = [&](Fit fit) {
-        fit.model = model;
-        for (std::size_t k = index_of(viscous_1); k < dynamic_count; ++k)
-            if (!model.fits(static_cast<FitParameter>(k))) fit.parameters[k] = 0;
-        fit.parameters = completed(model, fit.parameters);
-        fit.sums.clear();
-        return fit;
-    };
-    auto one = placed(first);
-    if (before.starts.empty() || before.model.point_masses != model.point_masses) return one;
-    auto other = placed(before);
-    one.rules = other.rules;
-    evaluate_fit(track, segments, one, jobs, stop);
-    evaluate_fit(track, segments, other, jobs, stop);
-    return one.cost < other.cost ? one : other;
+/// Another model at the same parameters, without the friction that it leaves out.
+Fit as_model(const ModelSpec& model, Fit fit) {
+    fit.model = model;
+    fit.sums.clear();
+    for (auto k = index_of(viscous_1); k <= index_of(quadratic_2); ++k)
+        if (!model.fits(static_cast<FitParameter>(k))) fit.parameters[k] = 0;
+    fit.parameters = completed(model, fit.parameters);
+    return fit;
 }
 
 /// Whether samples scatter about the model no more than from one to the next.
@@ -151,9 +141,17 @@ ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic
         throw_if_set(stop);
         FittedModel rung{.name = plan.name, .fit = {}, .left_out = {}};
         const auto& segments = ladder.division.segments;
-        const auto& before = rungs.empty() ? Fit{} : rungs.back().fit;
         try {
-            rung.fit = fit_model(track, segments, nearer_start(track, segments, plan.model, before, first, jobs, stop),
+            // from the nearer of two places: where all began, and where the model before ended
+            auto start = as_model(plan.model, first);
+            if (!rungs.empty() && rungs.back().fit.model.point_masses == plan.model.point_masses) {
+                auto other = as_model(plan.model, rungs.back().fit);
+                start.rules = other.rules;
+                evaluate_fit(track, segments, start, jobs, stop);
+                evaluate_fit(track, segments, other, jobs, stop);
+                if (other.cost <= start.cost) start = std::move(other);
+            }
+            rung.fit = fit_model(track, segments, std::move(start),
                                  {.step_share = 0.2, .relative = roughly, .jobs = jobs}, stop);
         } catch (const Error& error) {  // of this model alone
             if (error.code() != ExitCode::method_failed || (plan.name == plans.back().name && rungs.empty())) throw;

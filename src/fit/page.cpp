@@ -125,7 +125,6 @@ Plot horizon_plot(const FitResult& result) {
             Curve curve{.hue = left ? 1 : 0, .quiet = !left};
             double largest = 0;
             for (std::size_t i = 0; i < p.time_s.size(); ++i) {
-                if (std::isnan(p.error[i])) continue;
                 largest = std::max(largest, p.error[i]);
                 curve.x.push_back(p.time_s[i]);
                 curve.y.push_back(largest);

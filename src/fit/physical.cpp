@@ -21,12 +21,13 @@ FittedPendulum fitted_pendulum(const Parameters& parameters, const ModelSpec& mo
     body.chain = {.mass = {m1, m2}, .length = {l1, (model.point_masses ? 1 : 2) * a2}, .gravity = g};
     body.center = {a1, a2};
     body.inertia = {model.point_masses ? 0 : of_rod * m1 * a1 * a1, i2};
-    const auto take = [&](FitParameter first, FitParameter other, std::vector<double>& list) {
-        if (of(first) != 0 || of(other) != 0) list = {b * of(first), b * of(other)};
+    const auto friction = [&](FitParameter first, FitParameter other) {
+        return std::vector{b * of(first), b * of(other)};
     };
-    take(viscous_1, viscous_2, body.friction.viscous);
-    take(coulomb_1, coulomb_2, body.friction.coulomb);
-    take(quadratic_1, quadratic_2, model.drag == Drag::own ? body.friction.arm_quadratic : body.friction.air_quadratic);
+    body.friction.viscous = friction(viscous_1, viscous_2);
+    body.friction.coulomb = friction(coulomb_1, coulomb_2);
+    (model.drag == Drag::own ? body.friction.arm_quadratic : body.friction.air_quadratic) =
+        friction(quadratic_1, quadratic_2);
     return {body, b,
             model.point_masses ? "points at the ends of massless rods"
             : share == of_rod  ? "each arm a uniform rod about its own centre of mass"

@@ -31,18 +31,6 @@ std::string source_words(const Track& track) {
     return names.size() == 1 ? names[0] : fmt::format("{} and {} more", names[0], names.size() - 1);
 }
 
-Json ladder_json(const FitResult& result) {
-    Json all = Json::array();
-    for (const auto& rung : result.ladder.rungs)
-        all.push_back({{"model", rung.name},
-                       {"parameters", rung.parameters},
-                       {"rms_rad", rung.fit.rms},
-                       {"left_out_rms_rad", rung.left_out_rms},
-                       {"passes", rung.fit.passes},
-                       {"step_s", rung.fit.rules.step_s}});
-    return all;
-}
-
 Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
     Json ratios = Json::object();
     for (const auto parameter : rung.fit.model.fitted) {
@@ -64,17 +52,14 @@ Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
             {"left_out_rms_rad", rung.left_out_rms}};
 }
 
-using FrictionList = std::pair<const char*, std::vector<double>>;
-
-/// The lists of friction as presets name them, those that there are.
-std::vector<FrictionList> friction_of(const FittedPendulum& pendulum) {
+/// The lists of friction as presets name them.
+std::vector<std::pair<std::string, std::vector<double>>> friction_of(const FittedPendulum& pendulum) {
     const auto& friction = pendulum.body.friction;
-    std::vector<FrictionList> lists{{"joint_viscous_N_m_s", friction.viscous},
-                                    {"joint_coulomb_N_m", friction.coulomb},
-                                    {"arm_drag_quadratic_N_m_s2", friction.arm_quadratic},
-                                    {"air_drag_quadratic_N_m_s2", friction.air_quadratic}};
-    std::erase_if(lists, [](const auto& list) { return list.second.empty(); });
-    return lists;
+    const bool own = friction.air_quadratic.empty();
+    return {{"joint_viscous_N_m_s", friction.viscous},
+            {"joint_coulomb_N_m", friction.coulomb},
+            {own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2",
+             own ? friction.arm_quadratic : friction.air_quadratic}};
 }
 
 Json pendulum_json(const FittedPendulum& p) {
@@ -84,20 +69,6 @@ Json pendulum_json(const FittedPendulum& p) {
                  {"inertia_kg_m2", p.body.inertia}};
     for (const auto& [key, values] : friction_of(p)) json[key] = values;
     return json;
-}
-
-/// Where each segment of the chosen model's fit begins.
-Json starts_json(const FitResult& result) {
-    Json all = Json::array();
-    const auto& segments = result.ladder.division.segments;
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-        const auto& y = result.chosen().fit.starts[k];
-        all.push_back({{"piece", segments[k].piece},
-                       {"time_s", result.track.pieces[segments[k].piece].time_s[segments[k].first]},
-                       {"angle_rad", {y[0], y[1]}},
-                       {"rate_rad_per_s", {y[2], y[3]}}});
-    }
-    return all;
 }
 
 Json horizon_json(const FitResult& result) {
@@ -198,7 +169,7 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
         source_words(result.track), rung.name, rung.left_out_rms, name);
     text += fmt::format("# Angles tell ratios alone: gravity and the second mass are given, {}.\n", p.rule);
     text += fmt::format("title = {}\n\n[scene]\nduration_s = 30\n\n[system]\n", toml_text(name + ", as measured"));
-    const auto add = [&](const char* key, const auto& values) {
+    const auto add = [&](const std::string& key, const auto& values) {
         text += fmt::format("{} = [{:.10g}, {:.10g}]\n", key, values[0], values[1]);
     };
     add("mass_kg", p.body.chain.mass);
@@ -207,7 +178,8 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
         add("center_m", p.body.center);
         add("inertia_kg_m2", p.body.inertia);
     }
-    for (const auto& [key, values] : friction_of(p)) add(key, values);
+    for (const auto& [key, values] : friction_of(p))
+        if (values[0] != 0 || values[1] != 0) add(key, values);
     const auto& start = rung.fit.starts.front();
     const auto errors = start_errors(rung.fit, result.uncertainty);
     text += fmt::format("gravity_m_per_s2 = {}\n", p.body.chain.gravity);
@@ -226,6 +198,22 @@ Json fit_json(const FitResult& result) {
         const auto file = on_one_line(std::filesystem::proximate(piece.name, ignored).string());
         if (files.empty() || files.back() != file) files.push_back(file);
     }
+    Json ladder = Json::array(), starts = Json::array();
+    for (const auto& rung : result.ladder.rungs)
+        ladder.push_back({{"model", rung.name},
+                          {"parameters", rung.parameters},
+                          {"rms_rad", rung.fit.rms},
+                          {"left_out_rms_rad", rung.left_out_rms},
+                          {"passes", rung.fit.passes},
+                          {"step_s", rung.fit.rules.step_s}});
+    for (std::size_t k = 0; k < result.ladder.division.segments.size(); ++k) {
+        const auto& segment = result.ladder.division.segments[k];
+        const auto& y = result.chosen().fit.starts[k];
+        starts.push_back({{"piece", segment.piece},
+                          {"time_s", track.pieces[segment.piece].time_s[segment.first]},
+                          {"angle_rad", {y[0], y[1]}},
+                          {"rate_rad_per_s", {y[2], y[3]}}});
+    }
     Json json = {{"doppel", program_json()},
                  {"track",
                   {{"files", files},
@@ -236,8 +224,8 @@ Json fit_json(const FitResult& result) {
                    {"left_out_angles", track.outliers()},
                    {"notes", track.notes}}},
                  {"model", model_json(result.chosen(), result.uncertainty)},
-                 {"starts", starts_json(result)},
-                 {"ladder", ladder_json(result)},
+                 {"starts", starts},
+                 {"ladder", ladder},
                  {"residuals",
                   {{"like_noise", result.uncertainty.is_white},
                    {"neighbour_correlation", result.uncertainty.neighbour},

@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
-#include "fit/flow.hpp"
 #include "numeric/portable_math.hpp"
 #include "track/regression.hpp"
 
@@ -141,24 +140,20 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
     }
 }
 
-/// The largest change of an angle, rad, when the integrator's step is halved.
-double step_error(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit,
+/// The largest change of a residual, rad, when the integrator's step is halved.
+double step_error(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit, int jobs,
                   const std::atomic<bool>& stop) {
-    const auto arms = arms_of(fit.model, fit.parameters);
+    auto fine = fit;
+    fine.model.fitted.clear();
+    fine.rules.step_s /= 2;
+    evaluate_fit(track, segments, fine, jobs, stop);
     double largest = 0;
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-        throw_if_set(stop);
-        const auto& times = track.pieces[segments[k].piece].time_s;
-        const double length = times[segments[k].last - 1] - times[segments[k].first];
-        Flow<double> whole(arms, fit.starts[k], fit.rules.step_s), half(arms, fit.starts[k], fit.rules.step_s / 2);
-        constexpr int probes = 16;
-        for (int probe = 1; probe <= probes; ++probe) {
-            const double t = length * probe / probes;
-            if (!whole.reach(t) || !half.reach(t)) return std::numeric_limits<double>::infinity();
-            for (std::size_t arm = 0; arm < 2; ++arm)
-                largest = std::max(largest, std::abs(whole.angle(arm, t) - half.angle(arm, t)));
-        }
-    }
+    for (std::size_t k = 0; k < segments.size(); ++k)
+        for (std::size_t i = 0; i < segments[k].size(); ++i)
+            for (std::size_t arm = 0; arm < 2; ++arm) {
+                const double change = fine.sums[k].residuals[i][arm] - fit.sums[k].residuals[i][arm];
+                if (std::abs(change) > largest) largest = std::abs(change);  // not where it is no number
+            }
     return largest;
 }
 
@@ -254,7 +249,7 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
                 std::max(effort.most_passes - fit.passes, 2), effort.jobs, stop);
         const double noise = std::min(fit.rules.scale[0], fit.rules.scale[1]);
         const bool is_coarse = effort.step_share > 0 && fit.rules.step_s > least_step &&
-                               step_error(track, segments, fit, stop) > effort.step_share * noise;
+                               step_error(track, segments, fit, effort.jobs, stop) > effort.step_share * noise;
         if (fit.passes >= effort.most_passes || (is_settled && !is_coarse)) break;
         if (is_coarse) fit.rules.step_s /= 2;
         if (effort.finds_scale) {

@@ -11,10 +11,11 @@ struct Glimpse {
     std::array<double, 2> angle, rate, acceleration;
 };
 
-/// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone.
-Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s);
+/// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone; the longest of all is as long
+/// as the noise asks for, or `longer` times that.
+Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s, double longer = 1);
 
-/// At moments half a window apart; the window is as long as the noise asks for, or `longer` times that.
+/// At moments half a window apart.
 std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop, double longer = 1);
 
 /// The equations of motion, which are linear in the parameters, fitted to glimpses: no start needed, but accelerations
