@@ -63,7 +63,7 @@ std::vector<Part> parts_of(const Track& track, const std::vector<TrackSegment>& 
 bool leads(const Track& track, const Fit& fit, const Part& one, const Part& next) {
     constexpr double near = 0.3, most_growth = 100;  // rad; of an angle, per angle or per rate over the pendulum's own
     const auto& piece = track.pieces[one.segment.piece];
-    auto flow = varied_flow<4>(fit.model, fit.parameters, one.start, fit.rules.step_s);
+    auto flow = varied_flow<few_directions>(fit.model, fit.parameters, one.start, fit.rules.step_s);
     const double rate = std::sqrt(fit.of(gravity_2));
     for (auto i = next.segment.first; i < next.segment.last; ++i) {
         const double t = piece.time_s[i] - piece.time_s[one.segment.first];
@@ -72,7 +72,7 @@ bool leads(const Track& track, const Fit& fit, const Part& one, const Part& next
             const auto angle = flow.angle(arm, t);
             if (!piece.is_outlier[arm][i] && std::abs(angle.value - piece.angle[arm][i]) > near) return false;
             const auto& by = angle.tangent;
-            if (std::hypot(by.head<2>().norm(), rate * by.tail<2>().norm()) > most_growth) return false;
+            if (std::hypot(by.head<2>().norm(), rate * by.segment<2>(2).norm()) > most_growth) return false;
         }
     }
     return true;
@@ -105,16 +105,15 @@ std::vector<Part> without_lost(const Track& track, const Fit& fit, const std::ve
 }
 
 /// Fits the parts; their starts move along.
-Fit fitted(const Track& track, std::vector<Part>& parts, Fit fit, int jobs, const std::atomic<bool>& stop) {
-    std::vector<TrackSegment> segments;
+Fit fitted(const FitJob& job, std::vector<Part>& parts, Fit fit) {
+    fit.segments.clear();
     fit.starts.clear();
     fit.sums.clear();  // of another division, or another model
     for (const auto& part : parts) {
-        segments.push_back(part.segment);
+        fit.segments.push_back(part.segment);
         fit.starts.push_back(part.start);
     }
-    fit = fit_model(track, segments, std::move(fit),
-                    {.most_passes = 10, .step_share = 0, .relative = 1e-3, .jobs = jobs}, stop);
+    fit = fit_model(job, std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
     for (std::size_t k = 0; k < parts.size(); ++k) parts[k].start = fit.starts[k];
     return fit;
 }
@@ -138,31 +137,31 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
 }
 
 /// Fits parts, joined as far as one leads to the next.
-std::pair<Fit, std::vector<Part>> fitted_in_parts(const Track& track, const std::vector<TrackSegment>& segments,
-                                                  long most, const Parameters& guess, int jobs,
-                                                  const std::atomic<bool>& stop) {
+std::pair<std::vector<Part>, Fit> fitted_in_parts(const FitJob& job, const std::vector<TrackSegment>& segments,
+                                                  long most, const Parameters& guess) {
+    const auto& track = job.track;
     auto parts = parts_of(track, segments, most);
-    Fit fit{.model = {}, .rules = {}, .parameters = guess, .starts = {}, .sums = {}};
+    Fit fit{.model = {}, .rules = {}, .parameters = guess, .segments = {}, .starts = {}, .sums = {}};
     fit.rules.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
     fit.model.fitted = {inertia, coupling, gravity_1, gravity_2, offset_1, offset_2};
-    fit = fitted(track, parts, std::move(fit), jobs, stop);
+    fit = fitted(job, parts, std::move(fit));
     parts = without_lost(track, fit, parts);
     fit.model.fitted = {inertia,   coupling,  gravity_1,   gravity_2,   viscous_1, viscous_2,
                         coulomb_1, coulomb_2, quadratic_1, quadratic_2, offset_1,  offset_2};
     for (auto joins = most; joins > 1; joins /= 2) {
-        fit = fitted(track, parts, std::move(fit), jobs, stop);
+        fit = fitted(job, parts, std::move(fit));
         parts = joined(track, fit, without_lost(track, fit, parts));
     }
-    fit = fitted(track, parts, std::move(fit), jobs, stop);
-    return {std::move(fit), std::move(parts)};
+    fit = fitted(job, parts, std::move(fit));
+    return {std::move(parts), std::move(fit)};
 }
 
 }  // namespace
 
-Division divide(const Track& track, double segment_s) {
+Division divide(const Track& track) {
     constexpr double longest = 3, shortest = 0.5, wanted = 8;
     constexpr std::size_t few_pieces = 4;
-    const double length = segment_s > 0 ? segment_s : std::clamp(track.duration() / wanted, shortest, longest);
+    const double length = std::clamp(track.duration() / wanted, shortest, longest);
     const bool by_piece = track.pieces.size() >= few_pieces;
     Division division;
     for (std::size_t piece = 0; piece < track.pieces.size(); ++piece) {
@@ -177,29 +176,25 @@ Division divide(const Track& track, double segment_s) {
     return division;
 }
 
-Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop) {
-    const auto division = divide(track);
-    const auto guess = regressed(track, stop);
+std::pair<Units, Fit> begin_fit(const FitJob& job) {
+    auto division = divide(job.track);
+    const auto guess = regressed(job.track, job.stop);
     constexpr long quarters = 4, shortest = 16;
     const auto begun = [&] {
         for (auto most = quarters;; most *= 2) try {
-                return fitted_in_parts(track, division.segments, most, guess, jobs, stop);
+                return fitted_in_parts(job, division.segments, most, guess);
             } catch (const Error& error) {  // shorter ones may stay finite
                 if (error.code() != ExitCode::method_failed || most == shortest) throw;
             }
     };
-    auto [fit, parts] = begun();
+    const auto [parts, fit] = begun();
     // units as they were, of the segments as they are
-    Beginning beginning{
-        .division = {.segments = {}, .units = std::vector<std::vector<std::size_t>>(division.units.size())},
-        .fit = std::move(fit)};
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        for (std::size_t u = 0; u < division.units.size(); ++u)
-            if (std::count(division.units[u].begin(), division.units[u].end(), parts[k].whole) > 0)
-                beginning.division.units[u].push_back(k);
-        beginning.division.segments.push_back(parts[k].segment);
+    for (auto& unit : division.units) {
+        const auto wholes = std::exchange(unit, {});
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            if (std::count(wholes.begin(), wholes.end(), parts[k].whole) > 0) unit.push_back(k);
     }
-    return beginning;
+    return {division.units, fit};
 }
 
 }  // namespace doppel

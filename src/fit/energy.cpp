@@ -8,19 +8,18 @@
 
 namespace doppel {
 
-EnergyLoss energy_loss(const Track& track, const std::vector<TrackSegment>& segments, const Fit& start, int jobs,
-                       const std::atomic<bool>& stop) {
+EnergyLoss energy_loss(const FitJob& job, const Fit& start) {
     using enum FitParameter;
     Fit fit = start;
     fit.model = model_of(start.model.point_masses, 1, start.model.drag, 2);
     fit.model.may_gain = true;
     fit.sums.clear();  // of fewer parameters
-    fit = fit_model(track, segments, std::move(fit), {.step_share = 0.2, .relative = 1e-4, .jobs = jobs}, stop);
-    const auto uncertainty = uncertainty_of(track, segments, fit, jobs, stop);
+    fit = fit_model(job, std::move(fit), {.step_share = 0.2, .relative = 1e-4});
+    const auto uncertainty = uncertainty_of(job, fit);
     // means over the motion, over B: what the friction of both joints takes per unit of b1 and b2, and the energy of motion
     std::array<double, 2> taken{};
     double energy = 0;
-    for (const auto& [angle, rate, acceleration] : glimpses_of(track, stop)) {
+    for (const auto& [angle, rate, acceleration] : glimpses_of(job.track, job.stop)) {
         const auto [w1, w2] = rate;
         taken[0] += w1 * w1, taken[1] += (w2 - w1) * (w2 - w1);
         energy +=

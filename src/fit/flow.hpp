@@ -177,8 +177,7 @@ private:
         const bool was_held = law_.is_held(joint);
         law_.settle(joint, values(before_));
         arms_.modes = law_.modes;
-        if constexpr (requires(Scalar y) { y.tangent; })
-            if (!was_held) shift_tangents(joint, arms_.rate(before_));
+        if (!was_held) shift_tangents(joint, arms_.rate(before_));
         if (law_.is_held(0)) before_[2] = Scalar(0);
         if (law_.is_held(1)) before_[3] = before_[2];
         slope_before_ = arms_.rate(before_);
@@ -186,11 +185,13 @@ private:
         return events_ < at_once + a_step * origin_ / step_;
     }
     void shift_tangents(std::size_t joint, const ArmState<Scalar>& slope) {
-        auto rate = before_[joint + 2], acceleration = slope_before_[joint + 2];
-        if (joint == 1) rate -= before_[2], acceleration -= slope_before_[2];
-        if (acceleration.value == 0) return;
-        for (std::size_t q = 2; q < 4; ++q)
-            before_[q].tangent -= ((slope_before_[q].value - slope[q].value) / acceleration.value) * rate.tangent;
+        if constexpr (requires(Scalar y) { y.tangent; }) {
+            auto rate = before_[joint + 2], acceleration = slope_before_[joint + 2];
+            if (joint == 1) rate -= before_[2], acceleration -= slope_before_[2];
+            if (acceleration.value == 0) return;
+            for (std::size_t q = 2; q < 4; ++q)
+                before_[q].tangent -= ((slope_before_[q].value - slope[q].value) / acceleration.value) * rate.tangent;
+        }
     }
 
     Arms<Scalar> arms_;
@@ -201,6 +202,12 @@ private:
     std::optional<Event> event_;  // that cuts the last step
     ArmState<Scalar> before_, slope_before_, after_, slope_after_;
 };
+
+/// How many directions there are for a start and few parameters or none, and for all.
+constexpr int few_directions = 8, all_directions = 4 + static_cast<int>(dynamic_count);
+extern template class Flow<double>;
+extern template class Flow<Dual<double, few_directions>>;
+extern template class Flow<Dual<double, all_directions>>;
 
 /// With derivatives by the start (directions 0 to 3) and by the first N − 4 fitted parameters that move the arms (from 4 on).
 template <int N>

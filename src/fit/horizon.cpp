@@ -18,13 +18,13 @@ double time_of(const Track& track, const TrackSegment& segment, std::size_t samp
 }
 
 /// The start, fitted to the first seconds of a unit alone, and its normal matrix; nothing where no motion stays finite.
-std::optional<Fit> fitted_start(const Track& track, const TrackSegment& segment, const Fit& fit,
-                                const ArmState<double>& guess, const std::atomic<bool>& stop) {
-    Fit start{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = {guess}, .sums = {}};
-    start.model.fitted.clear();
+std::optional<Fit> fitted_start(const FitJob& job, const TrackSegment& segment, const Fit& fit,
+                                const ArmState<double>& guess) {
+    auto start = fit.without_sums();
+    start.segments = {segment}, start.starts = {guess}, start.model.fitted.clear();
     try {
-        return fit_model(track, {segment}, start,
-                         {.most_passes = 10, .finds_scale = false, .step_share = 0, .relative = 1e-5}, stop);
+        return fit_model(job, std::move(start),
+                         {.most_passes = 10, .finds_scale = false, .step_share = 0, .relative = 1e-5});
     } catch (const Error& error) {  // of this prediction alone
         if (error.code() != ExitCode::method_failed) throw;
         return std::nullopt;
@@ -59,7 +59,6 @@ bool follow(const Track& track, const TrackSegment& segment, bool is_first_piece
 
 /// When one standard error of start, or of parameters, has grown to the limit.
 void attribute(const Fit& fit, const Fit& start, const Uncertainty& uncertainty, double limit, Prediction& prediction) {
-    constexpr int most = 4 + static_cast<int>(dynamic_count);
     const auto& fitted = fit.model.fitted;
     const auto moving = std::count_if(fitted.begin(), fitted.end(), is_dynamic);  // the first of them
     const Eigen::MatrixXd of_parameters = uncertainty.covariance.topLeftCorner(moving, moving);
@@ -67,7 +66,7 @@ void attribute(const Fit& fit, const Fit& start, const Uncertainty& uncertainty,
     constexpr double looked_at_s = 40, beyond = 1.7, steps = 2;  // as fine as a standard error is known
     const double step = steps * fit.rules.step_s;
     const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
-    auto flow = varied_flow<most>(fit.model, fit.parameters, start.starts[0], step);
+    auto flow = varied_flow<all_directions>(fit.model, fit.parameters, start.starts[0], step);
     for (double t = prediction.data_s; t < end; t += step) {
         if (!flow.reach(t)) return;
         double from_start = 0, from_parameters = 0;
@@ -94,13 +93,14 @@ std::size_t limit_of(const Prediction& prediction) {
     return start < parameters ? 1 : 2;
 }
 
-Prediction predict(const Track& track, const Division& division, std::size_t unit, const Fit& fit,
-                   const Uncertainty& uncertainty, double limit, const std::atomic<bool>& stop) {
+Prediction predict(const FitJob& job, const Units& units, std::size_t unit, const Fit& fit,
+                   const Uncertainty& uncertainty, double limit) {
+    const auto& track = job.track;
     constexpr double data_s = 2, most_of_unit = 0.75;  // something must be left to predict
-    const auto& own = division.units[unit];
-    auto segment = division.segments[own.front()];
+    const auto& own = units[unit];
+    auto segment = fit.segments[own.front()];
     const auto& times = track.pieces[segment.piece].time_s;
-    const double begin = times[segment.first], length = times[division.segments[own.back()].last - 1] - begin;
+    const double begin = times[segment.first], length = times[fit.segments[own.back()].last - 1] - begin;
     const auto end = std::upper_bound(times.begin(), times.end(), begin + std::min(data_s, most_of_unit * length));
     segment.last = static_cast<std::size_t>(end - times.begin());
     Prediction prediction{.start_s = time_of(track, segment, segment.first),
@@ -109,18 +109,17 @@ Prediction predict(const Track& track, const Division& division, std::size_t uni
                           .error = {}};
     // each unit after is judged by parameters that know neither it nor the first
     std::optional<Fit> start;
-    for (std::size_t judged = unit; judged < division.units.size(); ++judged) {
+    for (std::size_t judged = unit; judged < units.size(); ++judged) {
         auto out = own;
-        if (judged != unit) out.insert(out.end(), division.units[judged].begin(), division.units[judged].end());
+        if (judged != unit) out.insert(out.end(), units[judged].begin(), units[judged].end());
         const auto without = fit_without(fit, out);
-        const auto next =
-            fitted_start(track, segment, without, start ? start->starts[0] : without.starts[own.front()], stop);
+        const auto next = fitted_start(job, segment, without, start ? start->starts[0] : without.starts[own.front()]);
         if (!next) break;
         start = next;
         Flow<double> flow(arms_of(start->model, start->parameters), start->starts[0], start->rules.step_s);
-        const auto& follows = division.units[judged];
+        const auto& follows = units[judged];
         if (!std::all_of(follows.begin(), follows.end(), [&](std::size_t k) {
-                const auto& other = division.segments[k];
+                const auto& other = fit.segments[k];
                 return follow(track, other, other.piece == segment.piece, limit, *start, flow, prediction);
             }))
             break;
@@ -144,14 +143,14 @@ std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
     return std::nullopt;
 }
 
-Horizon measure_horizon(const Track& track, const Division& division, const Fit& fit, const Uncertainty& uncertainty,
-                        int jobs, const std::atomic<bool>& stop) {
+Horizon measure_horizon(const FitJob& job, const Units& units, const Fit& fit, const Uncertainty& uncertainty) {
     Horizon horizon;
     constexpr double noises = 5;  // so that no single sample's noise ends a prediction
-    horizon.limit = std::max(horizon.limit, noises * std::max(track.noise[0], track.noise[1]));
-    std::vector<Prediction> all(division.units.size());
-    parallel_for(all.size(), jobs,
-                 [&](std::size_t u) { all[u] = predict(track, division, u, fit, uncertainty, horizon.limit, stop); });
+    horizon.limit = std::max(horizon.limit, noises * std::max(job.track.noise[0], job.track.noise[1]));
+    std::vector<Prediction> all(units.size());
+    parallel_for(all.size(), job.threads, [&](std::size_t u) {
+        all[u] = predict({job.track, job.stop}, units, u, fit, uncertainty, horizon.limit);
+    });
     std::vector<std::pair<double, bool>> times;
     for (auto& prediction : all) {
         if (prediction.time_s.empty()) continue;

@@ -33,8 +33,7 @@ struct Horizon {
 /// Source  Kaplan & Meier 1958
 std::optional<double> median_of(std::vector<std::pair<double, bool>> times);
 
-/// Predicts from every unit of the division; `track.start_s` says where pieces are.
-Horizon measure_horizon(const Track& track, const Division& division, const Fit& fit, const Uncertainty& uncertainty,
-                        int jobs, const std::atomic<bool>& stop);
+/// Predicts from every unit of the division; the track's `start_s` says where pieces are.
+Horizon measure_horizon(const FitJob& job, const Units& units, const Fit& fit, const Uncertainty& uncertainty);
 
 }  // namespace doppel

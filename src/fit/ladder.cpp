@@ -38,18 +38,16 @@ std::vector<Plan> plans_of(Bodies bodies) {
 }
 
 /// Mean square residual of segments whose starts alone are fitted, rad²; infinite where no motion stays finite.
-double mean_square_without(const Track& track, const Division& division, const std::vector<std::size_t>& unit,
-                           const Fit& fit, const std::atomic<bool>& stop) {
-    Fit alone{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = {}, .sums = {}};
-    std::vector<TrackSegment> segments;
+double mean_square_of(const FitJob& job, const std::vector<std::size_t>& unit, const Fit& fit) {
+    auto alone = fit.without_sums();
+    alone.segments.clear(), alone.starts.clear(), alone.model.fitted.clear();
     for (const auto k : unit) {
-        segments.push_back(division.segments[k]);
+        alone.segments.push_back(fit.segments[k]);
         alone.starts.push_back(fit.starts[k]);
     }
-    alone.model.fitted.clear();
     try {
-        alone = fit_model(track, segments, alone,
-                          {.most_passes = 8, .finds_scale = false, .step_share = 0, .relative = 1e-3}, stop);
+        alone = fit_model(job, std::move(alone),
+                          {.most_passes = 8, .finds_scale = false, .step_share = 0, .relative = 1e-3});
     } catch (const Error& error) {
         if (error.code() != ExitCode::method_failed) throw;
         return std::numeric_limits<double>::infinity();
@@ -57,18 +55,16 @@ double mean_square_without(const Track& track, const Division& division, const s
     return alone.rms * alone.rms;
 }
 
-void leave_out(const Track& track, const Division& division, FittedModel& rung, int jobs,
-               const std::atomic<bool>& stop) {
-    const auto units = division.units.size();
-    rung.left_out.assign(units, 0);
-    parallel_for(units, jobs, [&](std::size_t u) {
-        const auto without = fit_without(rung.fit, division.units[u]);
-        rung.left_out[u] = mean_square_without(track, division, division.units[u], without, stop);
+void leave_out(const FitJob& job, const Units& units, FittedModel& rung) {
+    rung.left_out.assign(units.size(), 0);
+    parallel_for(units.size(), job.threads, [&](std::size_t u) {
+        const auto& unit = units[u];
+        rung.left_out[u] = mean_square_of({job.track, job.stop}, unit, fit_without(rung.fit, unit));
     });
     double squares = 0, samples = 0;
-    for (std::size_t u = 0; u < units; ++u)
-        for (const auto k : division.units[u]) {
-            const auto size = static_cast<double>(division.segments[k].size());
+    for (std::size_t u = 0; u < units.size(); ++u)
+        for (const auto k : units[u]) {
+            const auto size = static_cast<double>(rung.fit.segments[k].size());
             squares += size * rung.left_out[u];
             samples += size;
         }
@@ -130,34 +126,32 @@ ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
     return model;
 }
 
-ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic<bool>& stop,
+ModelLadder climb(const FitJob& job, Bodies bodies,
                   const std::function<void(std::size_t done, std::size_t of)>& report) {
     constexpr double roughly = 5e-4;  // enough to compare
     const auto plans = plans_of(bodies);
-    auto [division, first] = begin_fit(track, jobs, stop);
-    ModelLadder ladder{.division = std::move(division), .rungs = {}};
+    auto [units, first] = begin_fit(job);
+    ModelLadder ladder{.units = std::move(units), .rungs = {}};
     auto& rungs = ladder.rungs;
     for (const auto& plan : plans) {
-        throw_if_set(stop);
+        throw_if_set(job.stop);
         FittedModel rung{.name = plan.name, .fit = {}, .left_out = {}};
-        const auto& segments = ladder.division.segments;
         try {
             // from the nearer of two places: where all began, and where the model before ended
             auto start = as_model(plan.model, first);
             if (!rungs.empty() && rungs.back().fit.model.point_masses == plan.model.point_masses) {
                 auto other = as_model(plan.model, rungs.back().fit);
                 start.rules = other.rules;
-                evaluate_fit(track, segments, start, jobs, stop);
-                evaluate_fit(track, segments, other, jobs, stop);
+                evaluate_fit(job, start);
+                evaluate_fit(job, other);
                 if (other.cost <= start.cost) start = std::move(other);
             }
-            rung.fit = fit_model(track, segments, std::move(start),
-                                 {.step_share = 0.2, .relative = roughly, .jobs = jobs}, stop);
+            rung.fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = roughly});
         } catch (const Error& error) {  // of this model alone
             if (error.code() != ExitCode::method_failed || (plan.name == plans.back().name && rungs.empty())) throw;
             continue;
         }
-        leave_out(track, ladder.division, rung, jobs, stop);
+        leave_out(job, ladder.units, rung);
         rung.parameters = rung.fit.free_count();
         rungs.push_back(std::move(rung));
         report(rungs.size(), plans.size());
@@ -166,7 +160,7 @@ ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic
         if (rungs[k].left_out_rms < rungs[ladder.best].left_out_rms) ladder.best = k;
     const auto& best = rungs[ladder.best];
     const auto is_as_good = [&](const FittedModel& rung) {
-        return serves(rung, best) && (!like_noise(track, best) || is_as_likely(rung, best));
+        return serves(rung, best) && (!like_noise(job.track, best) || is_as_likely(rung, best));
     };
     while (ladder.chosen < ladder.best && !is_as_good(rungs[ladder.chosen])) ++ladder.chosen;
     return ladder;

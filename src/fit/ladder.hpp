@@ -26,7 +26,7 @@ struct FittedModel {
 
 /// All models, from the smallest. `chosen` is the smallest that predicts pieces left out as well as the best does.
 struct ModelLadder {
-    Division division;
+    Units units;
     std::vector<FittedModel> rungs;
     std::size_t chosen = 0, best = 0;
 };
@@ -36,7 +36,7 @@ struct ModelLadder {
 /// describes the track, 130.
 ///
 /// Source  Hastie, Tibshirani & Friedman, The Elements of Statistical Learning, §7.10 (the rule of one standard error)
-ModelLadder climb(const Track& track, Bodies bodies, int jobs, const std::atomic<bool>& stop,
+ModelLadder climb(const FitJob& job, Bodies bodies,
                   const std::function<void(std::size_t done, std::size_t of)>& report);
 
 }  // namespace doppel

@@ -17,7 +17,7 @@ const std::array<const char*, 2> arm_names{"θ1", "θ2"};
 /// The first segment: some samples as points, the model as lines.
 Plot track_plot(const FitResult& result) {
     const auto& fit = result.chosen().fit;
-    const auto& segment = result.ladder.division.segments.front();
+    const auto& segment = fit.segments.front();
     const auto& piece = result.track.pieces[segment.piece];
     Plot plot{.title = "A stretch of the track", .note = "points: measured, lines: model"};
     const double begin = piece.time_s[segment.first];
@@ -47,7 +47,7 @@ Plot track_plot(const FitResult& result) {
 /// All residuals, piece after piece, thinned to what a panel can show: the one of a stretch that is largest.
 Plot residual_plot(const FitResult& result) {
     const auto& fit = result.chosen().fit;
-    const auto& segments = result.ladder.division.segments;
+    const auto& segments = fit.segments;
     Plot plot{.title = "Residuals, measured − model", .note = fmt::format("rms {:.2g} mrad", 1e3 * fit.rms)};
     plot.x = {.label = "time measured, piece after piece, s"};
     plot.y = {.label = "residual, mrad"};

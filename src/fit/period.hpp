@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fit/beginning.hpp"
+#include "fit/shooting.hpp"
 
 #include <optional>
 
@@ -13,7 +13,6 @@ struct Period {
 
 /// The interval at which the fitted motion leads from each piece to the next; nothing where no interval up to four
 /// times a piece stands out.
-std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit,
-                                  const std::atomic<bool>& stop);
+std::optional<Period> find_period(const FitJob& job, const Fit& fit);
 
 }  // namespace doppel

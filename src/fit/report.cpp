@@ -206,8 +206,8 @@ Json fit_json(const FitResult& result) {
                           {"left_out_rms_rad", rung.left_out_rms},
                           {"passes", rung.fit.passes},
                           {"step_s", rung.fit.rules.step_s}});
-    for (std::size_t k = 0; k < result.ladder.division.segments.size(); ++k) {
-        const auto& segment = result.ladder.division.segments[k];
+    for (std::size_t k = 0; k < result.chosen().fit.segments.size(); ++k) {
+        const auto& segment = result.chosen().fit.segments[k];
         const auto& y = result.chosen().fit.starts[k];
         starts.push_back({{"piece", segment.piece},
                           {"time_s", track.pieces[segment.piece].time_s[segment.first]},
@@ -242,7 +242,7 @@ Json fit_json(const FitResult& result) {
 
 void write_residuals(const FitResult& result, const FilePlace& place) {
     Csv table(place, {"piece", "time_s", "theta1_rad", "theta2_rad", "residual1_rad", "residual2_rad"});
-    const auto& segments = result.ladder.division.segments;
+    const auto& segments = result.chosen().fit.segments;
     for (std::size_t k = 0; k < segments.size(); ++k) {
         const auto& piece = result.track.pieces[segments[k].piece];
         for (std::size_t i = segments[k].first; i < segments[k].last; ++i) {

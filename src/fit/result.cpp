@@ -33,7 +33,7 @@ double most_left(const Track& track) {
 }
 
 /// Throws where the swing gains energy. Only where friction that must not be negative is held at 0 need one look.
-void demand_loss(const Track& track, const ModelLadder& ladder, int jobs, const std::atomic<bool>& stop) {
+void demand_loss(const FitJob& job, const ModelLadder& ladder) {
     using enum FitParameter;
     constexpr double sure = 5;  // standard errors
     const auto viscous = std::find_if(ladder.rungs.rbegin(), ladder.rungs.rend(), [](const FittedModel& rung) {
@@ -43,17 +43,17 @@ void demand_loss(const Track& track, const ModelLadder& ladder, int jobs, const 
     if (!viscous->fit.is_at_bound(viscous_1) && !viscous->fit.is_at_bound(viscous_2)) return;
     EnergyLoss loss;
     try {
-        loss = energy_loss(track, ladder.division.segments, viscous->fit, jobs, stop);
+        loss = energy_loss(job, viscous->fit);
     } catch (const Error& error) {  // no such fit, so no such gain
         if (error.code() != ExitCode::method_failed) throw;
         return;
     }
     const bool is_sure = loss.share < -sure * loss.standard_error;  // not where the error is not a number
-    if (!is_sure || loss.rms > most_left(track)) return;
+    if (!is_sure || loss.rms > most_left(job.track)) return;
     throw method_failed(
         "{}: the swing gains energy, {:.2g} ± {:.1g} % of its energy of motion a second, and a pendulum that swings "
         "freely loses it: time_s must grow as time did, and nothing may drive the pendulum",
-        track.pieces.front().name, -100 * loss.share, 100 * loss.standard_error);
+        job.track.pieces.front().name, -100 * loss.share, 100 * loss.standard_error);
 }
 
 /// Throws where even the best model leaves too much for its numbers to mean anything.
@@ -85,7 +85,7 @@ void put_on_one_clock(FitResult& result, const FitQuestion& question, const std:
     if (!track.start_s.empty() && !question.every_s) return;
     auto every = question.every_s;
     if (!every) {
-        result.period = find_period(track, result.ladder.division, result.chosen().fit, stop);
+        result.period = find_period({track, stop}, result.chosen().fit);
         if (!result.period) return;
         every = result.period->seconds;
     }
@@ -104,21 +104,22 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
                  const std::function<void(std::size_t done, std::size_t of)>& report) {
     const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     FitResult result{.track = std::move(track)};
-    auto& ladder = result.ladder = climb(result.track, question.bodies, jobs, stop, report);
+    const FitJob job{result.track, stop, jobs};
+    auto& ladder = result.ladder = climb(job, question.bodies, report);
     result.models_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     demand_order(result.track, ladder);
-    demand_loss(result.track, ladder, jobs, stop);
+    demand_loss(job, ladder);
     demand_description(result.track, ladder);
     auto& fit = ladder.rungs[ladder.chosen].fit;
     constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer
     for (const double share : {of_errors, FitEffort{}.step_share}) {
-        fit = fit_model(result.track, ladder.division.segments, fit, {.step_share = share, .jobs = jobs}, stop);
-        result.uncertainty = uncertainty_of(result.track, ladder.division.segments, fit, jobs, stop);
+        fit = fit_model(job, fit, {.step_share = share});
+        result.uncertainty = uncertainty_of(job, fit);
         if (!result.uncertainty.is_white) break;
     }
     put_on_one_clock(result, question, stop);
     if (!result.track.start_s.empty()) {
-        auto horizon = measure_horizon(result.track, ladder.division, fit, result.uncertainty, jobs, stop);
+        auto horizon = measure_horizon(job, ladder.units, fit, result.uncertainty);
         if (!horizon.predictions.empty()) result.horizon = std::move(horizon);
     }
     result.pendulum = fitted_pendulum(fit.parameters, fit.model, question.convention);

@@ -98,9 +98,10 @@ SegmentSums evaluate(const Track& track, const TrackSegment& segment, const Mode
 SegmentSums evaluate_segment(const Track& track, const TrackSegment& segment, const ModelSpec& model,
                              const FitRules& rules, const Parameters& parameters, const ArmState<double>& start,
                              double block_s) {
-    constexpr int few = 8, all = 4 + static_cast<int>(dynamic_count);
     const auto moving = 4 + std::count_if(model.fitted.begin(), model.fitted.end(), is_dynamic);
-    return (moving <= few ? evaluate<few> : evaluate<all>)(track, segment, model, rules, parameters, start, block_s);
+    return (moving <= few_directions ? evaluate<few_directions> : evaluate<all_directions>)(track, segment, model,
+                                                                                            rules, parameters, start,
+                                                                                            block_s);
 }
 
 }  // namespace doppel

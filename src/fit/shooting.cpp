@@ -20,37 +20,22 @@ struct Change {
     double expected = 0;  // decrease of the cost
 };
 
-/// What scales a positive semidefinite matrix to ones on its diagonal; 0 where nothing depends on it, NaN where a sum is
-/// not finite.
-Eigen::VectorXd scales_of(const Eigen::MatrixXd& matrix) {
-    return matrix.diagonal().unaryExpr([](double d) { return d > 0 || !std::isfinite(d) ? 1 / std::sqrt(d) : 0.0; });
-}
-Eigen::MatrixXd scaled(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& scale) {
-    Eigen::MatrixXd even = scale.asDiagonal() * matrix * scale.asDiagonal();
-    for (Eigen::Index i = 0; i < even.rows(); ++i)
-        if (scale[i] == 0) even(i, i) = 1;
-    return even;
-}
-
 /// The minimum of the model that a matrix and a slope make of the cost, where friction that would be less than 0 is 0.
 Eigen::VectorXd bounded_change(const Fit& fit, const Eigen::MatrixXd& matrix, const Eigen::VectorXd& slope) {
-    const Eigen::VectorXd scale = scales_of(matrix);
-    Eigen::MatrixXd even = scaled(matrix, scale);
-    Eigen::VectorXd right = scale.asDiagonal() * slope, change;
+    Eigen::MatrixXd left = matrix;
+    Eigen::VectorXd right = slope, change;
     std::vector<bool> held(fit.model.fitted.size(), false);  // each once: what is not finite would ask for it for ever
     for (bool again = true; again;) {
         again = false;
-        change = scale.asDiagonal() * even.ldlt().solve(right);
+        change = left.ldlt().solve(right);
         for (std::size_t k = 0; k < held.size(); ++k) {
             const auto parameter = fit.model.fitted[k];
             const auto place = static_cast<Eigen::Index>(k);
             if (held[k] || !fit.model.is_bounded(parameter) || fit.of(parameter) + change[place] >= 0) continue;
-            const double to_zero = scale[place] > 0 ? -fit.of(parameter) / scale[place] : 0;
-            right -= even.col(place) * to_zero;
-            even.row(place).setZero();
-            even.col(place).setZero();
-            even(place, place) = 1;
-            right[place] = to_zero;
+            right += left.col(place) * fit.of(parameter);
+            left.row(place).setZero(), left.col(place).setZero();
+            left(place, place) = 1;
+            right[place] = -fit.of(parameter);
             held[k] = again = true;
         }
         for (std::size_t k = 0; k < held.size(); ++k)
@@ -84,8 +69,7 @@ Change step_of(const Fit& fit, double damping, const std::vector<std::size_t>& w
 }
 
 Fit changed(const Fit& fit, const Change& change) {
-    Fit next{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = fit.starts};
-    next.passes = fit.passes;
+    Fit next = fit.without_sums();
     for (std::size_t k = 0; k < fit.model.fitted.size(); ++k)
         next.parameters[index_of(fit.model.fitted[k])] += change.parameters[static_cast<Eigen::Index>(k)];
     next.parameters = completed(fit.model, next.parameters);
@@ -117,17 +101,16 @@ std::array<double, 2> scale_of(const Fit& fit) {
 
 /// Damped steps until the next would gain nothing that counts: less than a hundredth of what one standard error costs,
 /// or than the share `relative` of the cost; or until `most` passes are spent.
-void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, double relative, int most,
-             int jobs, const std::atomic<bool>& stop) {
+void descend(const FitJob& job, Fit& fit, double relative, int most) {
     constexpr double enough = 0.005, least_damping = 1e-9;
     double damping = 1e-8;
     for (int start = fit.passes; fit.passes - start < most;) {
-        throw_if_set(stop);
+        throw_if_set(job.stop);
         const auto change = step_of(fit, damping);
         if (change.expected < enough + relative * fit.cost) return;
         auto next = changed(fit, change);
         next.cost = std::numeric_limits<double>::infinity();
-        if (is_possible(next)) evaluate_fit(track, segments, next, jobs, stop);
+        if (is_possible(next)) evaluate_fit(job, next);
         fit.passes = next.passes;
         if (next.cost < fit.cost) {
             fit = std::move(next);
@@ -141,15 +124,14 @@ void descend(const Track& track, const std::vector<TrackSegment>& segments, Fit&
 }
 
 /// The largest change of a residual, rad, when the integrator's step is halved.
-double step_error(const Track& track, const std::vector<TrackSegment>& segments, const Fit& fit, int jobs,
-                  const std::atomic<bool>& stop) {
+double step_error(const FitJob& job, const Fit& fit) {
     auto fine = fit;
     fine.model.fitted.clear();
     fine.rules.step_s /= 2;
-    evaluate_fit(track, segments, fine, jobs, stop);
+    evaluate_fit(job, fine);
     double largest = 0;
-    for (std::size_t k = 0; k < segments.size(); ++k)
-        for (std::size_t i = 0; i < segments[k].size(); ++i)
+    for (std::size_t k = 0; k < fit.segments.size(); ++k)
+        for (std::size_t i = 0; i < fit.segments[k].size(); ++i)
             for (std::size_t arm = 0; arm < 2; ++arm) {
                 const double change = fine.sums[k].residuals[i][arm] - fit.sums[k].residuals[i][arm];
                 if (std::abs(change) > largest) largest = std::abs(change);  // not where it is no number
@@ -164,20 +146,26 @@ std::size_t Fit::free_count() const {
                                                   [&](FitParameter parameter) { return !is_at_bound(parameter); }));
 }
 
+Fit Fit::without_sums() const {
+    Fit other{
+        .model = model, .rules = rules, .parameters = parameters, .segments = segments, .starts = starts, .sums = {}};
+    other.passes = passes;
+    return other;
+}
+
 long Fit::residual_count() const {
     long count = 0;
     for (const auto& segment : sums) count += segment.count;
     return count;
 }
 
-void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, int jobs,
-                  const std::atomic<bool>& stop, double block_s) {
+void evaluate_fit(const FitJob& job, Fit& fit, double block_s) {
     ++fit.passes;
-    fit.sums.resize(segments.size());
-    parallel_for(segments.size(), jobs, [&](std::size_t k) {
-        throw_if_set(stop);
+    fit.sums.resize(fit.segments.size());
+    parallel_for(fit.segments.size(), job.threads, [&](std::size_t k) {
+        throw_if_set(job.stop);
         fit.sums[k] =
-            evaluate_segment(track, segments[k], fit.model, fit.rules, fit.parameters, fit.starts[k], block_s);
+            evaluate_segment(job.track, fit.segments[k], fit.model, fit.rules, fit.parameters, fit.starts[k], block_s);
     });
     double squares = 0;
     fit.cost = 0;
@@ -189,8 +177,7 @@ void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments,
 }
 
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
-    const Eigen::VectorXd scale = scales_of(matrix);
-    return scale.asDiagonal() * scaled(matrix, scale).ldlt().solve(Eigen::MatrixXd(scale.asDiagonal()));
+    return matrix.ldlt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
 }
 
 Reduced reduced(const SegmentSums& sums, double damping) {
@@ -214,28 +201,26 @@ ArmState<double> guessed_start(const Track& track, const TrackSegment& segment) 
     return {seen.angle[0], seen.angle[1], seen.rate[0], seen.rate[1]};
 }
 
-Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit start, const FitEffort& effort,
-              const std::atomic<bool>& stop) {
-    auto fit = std::move(start);
+Fit fit_model(const FitJob& job, Fit fit, const FitEffort& effort) {
     fit.passes = 0;
     fit.parameters = completed(fit.model, fit.parameters);
-    constexpr int rounds = 20;
+    constexpr int rounds = 20, some = 3;
     constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
     const auto evaluate = [&] {
-        evaluate_fit(track, segments, fit, effort.jobs, stop);
+        evaluate_fit(job, fit);
         // a start from which the motion ran away is guessed anew from the samples, and steps are finer
         while (!std::isfinite(fit.cost) && fit.rules.step_s > least_step) {
-            for (std::size_t k = 0; k < segments.size(); ++k)
-                if (!std::isfinite(fit.sums[k].cost)) fit.starts[k] = guessed_start(track, segments[k]);
+            for (std::size_t k = 0; k < fit.segments.size(); ++k)
+                if (!std::isfinite(fit.sums[k].cost)) fit.starts[k] = guessed_start(job.track, fit.segments[k]);
             fit.rules.step_s /= 2;
-            evaluate_fit(track, segments, fit, effort.jobs, stop);
+            evaluate_fit(job, fit);
         }
         if (!std::isfinite(fit.cost))
             throw method_failed(
                 "{}: no double pendulum moves like this: from its own angles and rates the motion does not stay finite",
-                track.pieces.front().name);
+                job.track.pieces.front().name);
     };
-    if (fit.sums.size() != segments.size()) evaluate();
+    if (fit.sums.empty()) evaluate();
     bool is_settled = !effort.finds_scale;
     if (effort.finds_scale) {  // too small a scale is slow
         const auto scale = scale_of(fit), before = fit.rules.scale;
@@ -245,11 +230,12 @@ Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit
         }
     }
     for (int round = 0; round < rounds; ++round) {
-        descend(track, segments, fit, is_settled ? effort.relative : std::max(effort.relative, roughly),
-                std::max(effort.most_passes - fit.passes, 2), effort.jobs, stop);
+        descend(job, fit, is_settled ? effort.relative : std::max(effort.relative, roughly),
+                std::max(effort.most_passes - fit.passes, 2));
         const double noise = std::min(fit.rules.scale[0], fit.rules.scale[1]);
-        const bool is_coarse = effort.step_share > 0 && fit.rules.step_s > least_step &&
-                               step_error(track, segments, fit, effort.jobs, stop) > effort.step_share * noise;
+        // a scale that does not settle may be that of the steps' errors
+        const bool is_coarse = (is_settled || round > some) && effort.step_share > 0 && fit.rules.step_s > least_step &&
+                               step_error(job, fit) > effort.step_share * noise;
         if (fit.passes >= effort.most_passes || (is_settled && !is_coarse)) break;
         if (is_coarse) fit.rules.step_s /= 2;
         if (effort.finds_scale) {

@@ -7,11 +7,19 @@
 
 namespace doppel {
 
+/// The track that is fitted, until `stop` is set, on so many threads.
+struct FitJob {
+    const Track& track;
+    const std::atomic<bool>& stop;
+    int threads = 1;
+};
+
 /// A model fitted to a track by multiple shooting: every segment has a start of its own, all share the parameters.
 struct Fit {
     ModelSpec model;
     FitRules rules;
     Parameters parameters{};
+    std::vector<TrackSegment> segments;
     std::vector<ArmState<double>> starts;  // by segment, at its first sample
     std::vector<SegmentSums> sums;         // there
     double cost = 0, rms = 0;              // rms of the residuals, rad
@@ -23,6 +31,8 @@ struct Fit {
     /// How many parameters are fitted, without those at a bound.
     std::size_t free_count() const;
     long residual_count() const;
+    /// As it is before it is evaluated.
+    Fit without_sums() const;
 };
 
 /// How far to go.
@@ -31,24 +41,21 @@ struct FitEffort {
     bool finds_scale = true;   // of the residuals, from what the model leaves; else that of the start is kept
     double step_share = 0.02;  // of the residuals' scale, by which the motion may err: steps are halved; 0: they stay
     double relative = 1e-6;    // ends where a step gains less than this share of the cost
-    int jobs = 1;
 };
 
 /// Minimises Huber's loss of all residuals over starts and parameters: Gauss–Newton steps damped as Levenberg and
-/// Marquardt do, the starts eliminated segment by segment, friction kept ≥ 0. `start` has model, parameters and starts; what
-/// sums it has are those there.
+/// Marquardt do, the starts eliminated segment by segment, friction kept ≥ 0. `start` has model, parameters, segments and
+/// starts; what sums it has are those there.
 /// Ends after at most most_passes + 60 passes (two in each of 20 rounds, and what finds a scale and steps). The result is
-/// the same bits for any number of jobs. Throws Error: exit 3 where no motion stays finite, 130.
+/// the same bits for any number of threads. Throws Error: exit 3 where no motion stays finite, 130.
 ///
 /// Source  Bock 1983 (multiple shooting); Nocedal & Wright, Numerical Optimization, §10.3.
-Fit fit_model(const Track& track, const std::vector<TrackSegment>& segments, Fit start, const FitEffort& effort,
-              const std::atomic<bool>& stop);
+Fit fit_model(const FitJob& job, Fit start, const FitEffort& effort);
 
 /// Sums, cost and rms where `fit` stands.
-void evaluate_fit(const Track& track, const std::vector<TrackSegment>& segments, Fit& fit, int jobs,
-                  const std::atomic<bool>& stop, double block_s = 0);
+void evaluate_fit(const FitJob& job, Fit& fit, double block_s = 0);
 
-/// The inverse of a positive definite matrix, scaled to ones on its diagonal first.
+/// The inverse of a positive semidefinite matrix; 0 for what nothing depends on.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
 /// The normal matrix of the fitted parameters and the slope, the start eliminated, of one segment.
@@ -59,7 +66,7 @@ struct Reduced {
 };
 Reduced reduced(const SegmentSums& sums, double damping = 0);
 
-/// The fit of the whole track without some of its segments, to first order: one Gauss–Newton step with the normal
+/// The fit of the whole track without some of its segments (their numbers), to first order: one Gauss–Newton step with the normal
 /// equations of the others. Starts move along.
 Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments);
 

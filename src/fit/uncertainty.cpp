@@ -67,8 +67,7 @@ double Uncertainty::standard_error(FitParameter parameter) const {
     return found == parameters.end() ? 0 : standard_error(static_cast<std::size_t>(found - parameters.begin()));
 }
 
-Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs,
-                           const std::atomic<bool>& stop) {
+Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
     // those at a bound, too: that they could be more makes the others less certain
     Uncertainty result{.parameters = fit.model.fitted, .covariance = {}};
     const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
@@ -76,9 +75,9 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
     // whether successive residuals know of each other
     constexpr std::size_t lags = 10, furthest = 400;
     constexpr double limit = 29.6;  // χ² of ten at 99.9 %
-    const double interval = mean_interval(track);
+    const double interval = mean_interval(job.track);
     for (std::size_t arm = 0; arm < 2; ++arm) {
-        const auto sums = correlations_of(fit, arm, furthest, stop);
+        const auto sums = correlations_of(fit, arm, furthest, job.stop);
         double portmanteau = 0;
         for (std::size_t lag = 1; lag <= lags; ++lag) portmanteau += std::pow(sums[lag] / sums[0], 2);
         result.is_white &= portmanteau * n / 2 < limit;
@@ -95,7 +94,7 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
         bounded += sums.bounded;
         beyond += static_cast<double>(sums.beyond);
     }
-    const double spent = static_cast<double>(count) + 4 * static_cast<double>(segments.size());
+    const double spent = static_cast<double>(count) + 4 * static_cast<double>(fit.segments.size());
     const double slope = 1 - beyond / n;  // mean of Huber's ψ′
     const Eigen::MatrixXd inverse = inverse_of(matrix);
     result.covariance = inverse * (bounded / (n - spent) / (slope * slope));
@@ -103,7 +102,7 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
     // of others
     constexpr double shortest_s = 0.3, memories = 4;
     const double block_s = std::max(shortest_s, memories * std::max(result.memory_s[0], result.memory_s[1]));
-    evaluate_fit(track, segments, fit, jobs, stop, block_s);
+    evaluate_fit(job, fit, block_s);
     const Eigen::MatrixXd sandwich = inverse * scatter_of(fit) * inverse / (slope * slope);
     const Eigen::VectorXd white = result.covariance.diagonal();
     const Eigen::VectorXd wider = (white.array() / sandwich.diagonal().array()).max(1).sqrt();

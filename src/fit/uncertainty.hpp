@@ -27,7 +27,6 @@ struct Uncertainty {
 ///
 /// Throws Error (exit 130).
 /// Source  Huber, Robust Statistics, §7.6; Newey & West 1987
-Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs,
-                           const std::atomic<bool>& stop);
+Uncertainty uncertainty_of(const FitJob& job, Fit fit);
 
 }  // namespace doppel

@@ -49,10 +49,8 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
 TEST(FitShooting, EliminatesStartsExactly) {
     const auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .noise = 1e-3});
     const auto model = model_of(false, 1);
-    const TrackSegment segment{0, 0, track.samples()};
-    const auto division = divide(track, 3);
-    auto fit = fit_at(model, lab_arms(), track, division);
-    evaluate_fit(track, {segment}, fit, 1, no_stop);
+    auto fit = fit_at(model, lab_arms(), track);
+    evaluate_fit({track, no_stop}, fit);
     const auto& sums = fit.sums[0];
     const auto count = static_cast<Eigen::Index>(model.fitted.size());
     const Eigen::VectorXd expected = sums.matrix.fullPivLu().solve(sums.slope).tail(count);
@@ -71,9 +69,7 @@ TEST(FitShooting, FindsANoiselessTruth) {
                     viscous_2, quadratic_1, quadratic_2, offset_1,  offset_2};
     auto wrong = truth;
     for (const auto parameter : model.fitted) at(wrong, parameter) *= 1.05;
-    const auto division = divide(track);
-    const auto fit = fit_model(track, division.segments, fit_at(model, wrong, track, division),
-                               {.most_passes = 60, .relative = 1e-12}, no_stop);
+    const auto fit = fit_model({track, no_stop}, fit_at(model, wrong, track), {.most_passes = 60, .relative = 1e-12});
     for (const auto parameter : model.fitted) {
         const double expected = at(truth, parameter);
         EXPECT_NEAR(fit.parameters[index_of(parameter)], expected, 1e-6 * std::max(std::abs(expected), 0.1))
@@ -86,9 +82,7 @@ TEST(FitShooting, KeepsFrictionFromBeingNegative) {
     auto truth = lab_arms(false);
     at(truth, viscous_1) = -0.05, at(truth, viscous_2) = 0.02;
     const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
-    const auto division = divide(track);
-    const auto fit =
-        fit_model(track, division.segments, fit_at(model_of(false, 1), lab_arms(false), track, division), {}, no_stop);
+    const auto fit = fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(false), track), {});
     EXPECT_EQ(fit.parameters[index_of(viscous_1)], 0);
     EXPECT_TRUE(fit.is_at_bound(viscous_1));
     EXPECT_FALSE(fit.is_at_bound(viscous_2));
@@ -99,19 +93,15 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
     auto track = simulated(lab_arms(false), Drag::own, {.noise = 1e-3});
     for (auto& piece : track.pieces)
         for (std::size_t i = 7; i < piece.size(); i += 100) piece.angle[i % 2][i] += 0.5;
-    const auto division = divide(track);
-    const auto fit =
-        fit_model(track, division.segments, fit_at(model_of(false, 0), lab_arms(false), track, division), {}, no_stop);
+    const auto fit = fit_model({track, no_stop}, fit_at(model_of(false, 0), lab_arms(false), track), {});
     EXPECT_NEAR(fit.parameters[index_of(inertia)], 1.8, 0.004);  // measured 0.0009; least squares: 0.08
     EXPECT_NEAR(fit.parameters[index_of(gravity_2)], 50, 0.05);  // measured 0.01
 }
 
 TEST(FitShooting, IsTheSameForAnyNumberOfThreads) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
-    const auto division = divide(track);
-    const auto fit = [&](int jobs) {
-        return fit_model(track, division.segments, fit_at(model_of(false, 2), lab_arms(), track, division),
-                         {.jobs = jobs}, no_stop);
+    const auto fit = [&](int threads) {
+        return fit_model({track, no_stop, threads}, fit_at(model_of(false, 2), lab_arms(), track), {});
     };
     const auto one = fit(1), four = fit(4);
     EXPECT_EQ(one.parameters, four.parameters);
@@ -121,19 +111,17 @@ TEST(FitShooting, IsTheSameForAnyNumberOfThreads) {
 /// A start from which the motion runs away is guessed anew; the fit goes on.
 TEST(FitShooting, OneBadStartEndsItselfNotTheFit) {
     const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
-    const auto division = divide(track);
-    auto start = fit_at(model_of(false, 0), lab_arms(false), track, division);
+    auto start = fit_at(model_of(false, 0), lab_arms(false), track);
     start.starts[1][2] = 2e4;  // rad/s
-    const auto fit = fit_model(track, division.segments, start, {}, no_stop);
+    const auto fit = fit_model({track, no_stop}, start, {});
     EXPECT_NEAR(fit.rms, 1e-3, 5e-5);  // measured 1.00e-3: the noise
 }
 
 TEST(FitShooting, EndsSoonAfterItIsStopped) {
     const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
-    const auto division = divide(track);
-    auto fit = fit_at(model_of(false, 0), lab_arms(false), track, division);
+    auto fit = fit_at(model_of(false, 0), lab_arms(false), track);
     const std::atomic<bool> stop = true;
-    EXPECT_THROW(evaluate_fit(track, division.segments, fit, 1, stop), Error);
+    EXPECT_THROW(evaluate_fit({track, stop}, fit), Error);
     EXPECT_EQ(fit.sums[0].count, 0);
     EXPECT_THROW(tracks_of_texts({"a.csv"}, {csv_of(track.pieces[0])}, stop), Error);
 }
@@ -141,9 +129,8 @@ TEST(FitShooting, EndsSoonAfterItIsStopped) {
 /// Sums that are not finite, as of a motion that nearly ran away, once kept a loop for ever.
 TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
-    const auto division = divide(track);
-    auto fit = fit_at(model_of(false, 2), lab_arms(), track, division);
-    evaluate_fit(track, division.segments, fit, 1, no_stop);
+    auto fit = fit_at(model_of(false, 2), lab_arms(), track);
+    evaluate_fit({track, no_stop}, fit);
     fit.sums[0].matrix(4, 4) = -std::numeric_limits<double>::infinity();
     const auto without = fit_without(fit, {2});
     EXPECT_FALSE(std::isfinite(without.parameters[index_of(inertia)]));
@@ -152,15 +139,12 @@ TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
 /// What is left out by one step is near what a fit without it finds.
 TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
-    const auto division = divide(track);
-    const auto all =
-        fit_model(track, division.segments, fit_at(model_of(false, 1), lab_arms(), track, division), {}, no_stop);
+    const auto all = fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(), track), {});
     const auto quick = fit_without(all, {2});
-    auto segments = division.segments;
-    auto rest = all;
-    segments.erase(segments.begin() + 2);
+    auto rest = all.without_sums();
+    rest.segments.erase(rest.segments.begin() + 2);
     rest.starts.erase(rest.starts.begin() + 2);
-    const auto exact = fit_model(track, segments, rest, {.finds_scale = false, .step_share = 0}, no_stop);
+    const auto exact = fit_model({track, no_stop}, rest, {.finds_scale = false, .step_share = 0});
     for (const auto parameter : all.model.fitted) {
         const auto k = index_of(parameter);
         const double moved = std::abs(exact.parameters[k] - all.parameters[k]);

@@ -142,11 +142,12 @@ inline std::string csv_of(const TrackPiece& piece) {
 }
 
 /// A fit that stands at the truth, its starts guessed from the samples.
-inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track, const Division& division) {
+inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track) {
     Fit fit{};
+    fit.segments = divide(track).segments;
     fit.model = model;
     fit.parameters = parameters;
-    for (const auto& segment : division.segments) {
+    for (const auto& segment : fit.segments) {
         const auto& piece = track.pieces[segment.piece];
         const auto slope = [&](std::size_t arm) {
             const auto& x = piece.angle[arm];
