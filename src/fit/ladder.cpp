@@ -13,15 +13,13 @@ namespace {
 
 using enum FitParameter;
 
-struct Plan {
-    std::string name;
-    ModelSpec model;
-};
-
-std::vector<Plan> plans_of(Bodies bodies) {
-    std::vector<Plan> plans;
+/// The models, from the smallest.
+std::vector<FittedModel> models_of(Bodies bodies) {
+    std::vector<FittedModel> models;
     const auto add = [&](bool point, const std::string& words, int friction, Drag drag = Drag::own, int reading = 0) {
-        plans.push_back({(point ? "point masses, " : "compound, ") + words, model_of(point, friction, drag, reading)});
+        auto& model = models.emplace_back();
+        model.name = (point ? "point masses, " : "compound, ") + words;
+        model.fit.model = model_of(point, friction, drag, reading);
     };
     const bool only_point = bodies == Bodies::point;
     for (const bool point : {true, false}) {
@@ -34,7 +32,7 @@ std::vector<Plan> plans_of(Bodies bodies) {
     add(only_point, "viscous, dry, drag by the air met", 3, Drag::carried);
     add(only_point, "drag by the air met, a lag", 3, Drag::carried, 1);
     add(only_point, "drag by the air met, a lag, scales", 3, Drag::carried, 2);
-    return plans;
+    return models;
 }
 
 /// Mean square residual of segments whose starts alone are fitted, rad²; infinite where no motion stays finite.
@@ -106,7 +104,7 @@ bool like_noise(const Track& track, const FittedModel& rung) {
 /// likelihoods, at some 99.9 %.
 bool is_as_likely(const FittedModel& rung, const FittedModel& best) {
     const auto samples = static_cast<double>(rung.fit.residual_count());
-    const double more = static_cast<double>(best.parameters) - static_cast<double>(rung.parameters);
+    const double more = static_cast<double>(best.fit.free_count()) - static_cast<double>(rung.fit.free_count());
     return 2 * samples * portable_log(rung.fit.rms / best.fit.rms) < 10 + 2 * std::max(more, 0.0);
 }
 
@@ -129,18 +127,18 @@ ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
 ModelLadder climb(const FitJob& job, Bodies bodies,
                   const std::function<void(std::size_t done, std::size_t of)>& report) {
     constexpr double roughly = 5e-4;  // enough to compare
-    const auto plans = plans_of(bodies);
+    const auto models = models_of(bodies);
     auto [units, first] = begin_fit(job);
     ModelLadder ladder{.units = std::move(units), .rungs = {}};
     auto& rungs = ladder.rungs;
-    for (const auto& plan : plans) {
+    for (auto rung : models) {
         throw_if_set(job.stop);
-        FittedModel rung{.name = plan.name, .fit = {}, .left_out = {}};
+        const auto model = rung.fit.model;
         try {
             // from the nearer of two places: where all began, and where the model before ended
-            auto start = as_model(plan.model, first);
-            if (!rungs.empty() && rungs.back().fit.model.point_masses == plan.model.point_masses) {
-                auto other = as_model(plan.model, rungs.back().fit);
+            auto start = as_model(model, first);
+            if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
+                auto other = as_model(model, rungs.back().fit);
                 start.rules = other.rules;
                 evaluate_fit(job, start);
                 evaluate_fit(job, other);
@@ -148,13 +146,12 @@ ModelLadder climb(const FitJob& job, Bodies bodies,
             }
             rung.fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = roughly});
         } catch (const Error& error) {  // of this model alone
-            if (error.code() != ExitCode::method_failed || (plan.name == plans.back().name && rungs.empty())) throw;
+            if (error.code() != ExitCode::method_failed || (rung.name == models.back().name && rungs.empty())) throw;
             continue;
         }
         leave_out(job, ladder.units, rung);
-        rung.parameters = rung.fit.free_count();
         rungs.push_back(std::move(rung));
-        report(rungs.size(), plans.size());
+        report(rungs.size(), models.size());
     }
     for (std::size_t k = 0; k < rungs.size(); ++k)
         if (rungs[k].left_out_rms < rungs[ladder.best].left_out_rms) ladder.best = k;

@@ -21,7 +21,6 @@ struct FittedModel {
     Fit fit;                       // to the whole track
     double left_out_rms = 0;       // rad, of pieces that the parameters were fitted without
     std::vector<double> left_out;  // mean squares, by unit, rad²
-    std::size_t parameters = 0;    // fitted, without those at a bound
 };
 
 /// All models, from the smallest. `chosen` is the smallest that predicts pieces left out as well as the best does.

@@ -91,13 +91,13 @@ Plot ladder_plot(const FitResult& result) {
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};
     constexpr double rad = 1e3;
     const auto& rungs = result.ladder.rungs;
-    std::size_t least = rungs[0].parameters, most = least;
+    std::size_t least = rungs[0].fit.free_count(), most = least;
     for (std::size_t k = 0; k < rungs.size(); ++k) {
         const bool chosen = k == result.ladder.chosen;
-        least = std::min(least, rungs[k].parameters);
-        most = std::max(most, rungs[k].parameters);
+        least = std::min(least, rungs[k].fit.free_count());
+        most = std::max(most, rungs[k].fit.free_count());
         plot.curves.push_back({.label = fmt::format("{}{}", k + 1, chosen ? ", chosen" : ""),
-                               .x = {static_cast<double>(rungs[k].parameters)},
+                               .x = {static_cast<double>(rungs[k].fit.free_count())},
                                .y = {rad * rungs[k].left_out_rms},
                                .mark = Mark::points,
                                .hue = chosen ? 1 : 0,
@@ -150,7 +150,7 @@ Figure fit_page(const FitResult& result, const std::string& name) {
     Figure figure{.title = fmt::format("{}: {}", name, rung.name),
                   .subtitle = fmt::format("{} samples in {:.1f} s of {} piece{}; {} parameters", result.track.samples(),
                                           result.track.duration(), result.track.pieces.size(),
-                                          result.track.pieces.size() == 1 ? "" : "s", rung.parameters)};
+                                          result.track.pieces.size() == 1 ? "" : "s", rung.fit.free_count())};
     figure.columns = 2;
     figure.panels = {track_plot(result), residual_plot(result), ladder_plot(result), horizon_plot(result)};
     std::string numbers;

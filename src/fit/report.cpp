@@ -39,11 +39,14 @@ Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
         ratios[std::string(words_of(parameter).key)] = value;
     }
     Json names = Json::array(), correlations = Json::array();
+    const auto& covariance = uncertainty.covariance;
     for (std::size_t j = 0; j < uncertainty.parameters.size(); ++j) {
         names.push_back(words_of(uncertainty.parameters[j]).key);
-        Json row = Json::array();
-        for (std::size_t k = 0; k < uncertainty.parameters.size(); ++k) row.push_back(uncertainty.correlation(j, k));
-        correlations.push_back(row);
+        auto& row = correlations.emplace_back(Json::array());
+        for (std::size_t k = 0; k < uncertainty.parameters.size(); ++k) {
+            const double product = uncertainty.standard_error(j) * uncertainty.standard_error(k);
+            row.push_back(product > 0 ? covariance(Eigen::Index(j), Eigen::Index(k)) / product : 0);
+        }
     }
     return {{"name", rung.name},
             {"ratios_to_B", ratios},
@@ -201,7 +204,7 @@ Json fit_json(const FitResult& result) {
     Json ladder = Json::array(), starts = Json::array();
     for (const auto& rung : result.ladder.rungs)
         ladder.push_back({{"model", rung.name},
-                          {"parameters", rung.parameters},
+                          {"parameters", rung.fit.free_count()},
                           {"rms_rad", rung.fit.rms},
                           {"left_out_rms_rad", rung.left_out_rms},
                           {"passes", rung.fit.passes},

@@ -9,37 +9,6 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Σ w r rᵀ and Σ w ρ r of rows r with residuals ρ, some rows at a time.
-class NormalSums {
-public:
-    explicit NormalSums(Eigen::Index columns)
-        : rows_(Eigen::MatrixXd::Zero(columns + 1, at_once)), sums_(Eigen::MatrixXd::Zero(columns + 1, columns + 1)) {}
-
-    void add(const Eigen::VectorXd& row, double weight, double residual) {
-        const double root = std::sqrt(weight);
-        rows_.col(held_) << root * row, root * residual;
-        if (++held_ == at_once) flush();
-    }
-    void finish(SegmentSums& sums) {
-        flush();
-        const auto columns = sums_.rows() - 1;
-        const Eigen::MatrixXd whole = sums_.selfadjointView<Eigen::Lower>();
-        sums.matrix = whole.topLeftCorner(columns, columns);
-        sums.slope = whole.col(columns).head(columns);
-    }
-
-private:
-    static constexpr Eigen::Index at_once = 32;
-
-    void flush() {
-        sums_.selfadjointView<Eigen::Lower>().rankUpdate(rows_.leftCols(held_));
-        held_ = 0;
-    }
-
-    Eigen::Index held_ = 0;
-    Eigen::MatrixXd rows_, sums_;
-};
-
 template <int N>
 SegmentSums evaluate(const Track& track, const TrackSegment& segment, const ModelSpec& model, const FitRules& rules,
                      const Parameters& p, const ArmState<double>& start, double block_s) {
@@ -51,7 +20,8 @@ SegmentSums evaluate(const Track& track, const TrackSegment& segment, const Mode
     auto flow = varied_flow<N>(model, p, start, rules.step_s);
     SegmentSums sums;
     sums.residuals.assign(segment.size(), {none, none});
-    NormalSums normal(columns);
+    // of each residual the derivatives of what is shown, then itself, by the root of its weight
+    Eigen::MatrixXd rows(columns + 1, 2 * static_cast<Eigen::Index>(segment.size()));
     Eigen::VectorXd row(columns);
     const auto read = [&](std::size_t sample, std::size_t arm, double t) {
         const auto angle = flow.angle(arm, t);
@@ -69,11 +39,11 @@ SegmentSums evaluate(const Track& track, const TrackSegment& segment, const Mode
         sums.cost += beyond ? bend * size - 0.5 * bend * bend : 0.5 * size * size;
         sums.bounded += beyond ? bend * bend : size * size;
         sums.squares += residual * residual;
-        ++sums.count, sums.beyond += beyond;
+        sums.beyond += beyond;
         sums.residuals[sample - segment.first][arm] = residual;
-        const double weight = (beyond ? bend / size : 1) / (unit * unit);
-        normal.add(row, weight, residual);
-        if (block_s > 0) sums.blocks.back() += (weight * residual) * row;
+        const double root = std::sqrt(beyond ? bend / size : 1) / unit;
+        rows.col(sums.count++) << root * row, root * residual;
+        if (block_s > 0) sums.blocks.back() += (root * root * residual) * row;
     };
     for (std::size_t sample = segment.first; sample < segment.last; ++sample) {
         const double t = piece.time_s[sample] - piece.time_s[segment.first];
@@ -89,7 +59,11 @@ SegmentSums evaluate(const Track& track, const TrackSegment& segment, const Mode
         }
     }
     if (!std::isfinite(sums.cost)) sums.cost = sums.squares = std::numeric_limits<double>::infinity();
-    normal.finish(sums);
+    Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(columns + 1, columns + 1);
+    lower.selfadjointView<Eigen::Lower>().rankUpdate(rows.leftCols(sums.count));
+    const Eigen::MatrixXd whole = lower.selfadjointView<Eigen::Lower>();
+    sums.matrix = whole.topLeftCorner(columns, columns);
+    sums.slope = whole.col(columns).head(columns);
     return sums;
 }
 

@@ -57,11 +57,6 @@ double Uncertainty::standard_error(std::size_t k) const {
     return std::sqrt(std::max(covariance(i, i), 0.0));
 }
 
-double Uncertainty::correlation(std::size_t j, std::size_t k) const {
-    const double product = standard_error(j) * standard_error(k);
-    return product > 0 ? covariance(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) / product : 0;
-}
-
 double Uncertainty::standard_error(FitParameter parameter) const {
     const auto found = std::find(parameters.begin(), parameters.end(), parameter);
     return found == parameters.end() ? 0 : standard_error(static_cast<std::size_t>(found - parameters.begin()));

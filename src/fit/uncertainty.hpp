@@ -17,7 +17,6 @@ struct Uncertainty {
     double inflation = 1;                  // of standard errors against white residuals; 1 where they are
 
     double standard_error(std::size_t k) const;
-    double correlation(std::size_t j, std::size_t k) const;
     /// Of a parameter; 0 where it is not fitted.
     double standard_error(FitParameter parameter) const;
 };
