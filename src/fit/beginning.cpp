@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "fit/flow.hpp"
-#include "fit/variation.hpp"
 #include "track/regression.hpp"
 
 #include <algorithm>
@@ -20,27 +19,41 @@ struct Part {
     ArmState<double> start{};
 };
 
-/// Each segment in `most` parts, or a half, a quarter … as many where these would be too short.
-std::vector<Part> parts_of(const Track& track, const std::vector<TrackSegment>& segments, std::size_t most) {
+double length_of(const Track& track, const TrackSegment& segment) {
+    const auto& times = track.pieces[segment.piece].time_s;
+    return times[segment.last - 1] - times[segment.first];
+}
+
+/// So many parts of a segment of even length; fewer where there are gaps.
+std::vector<TrackSegment> cut(const Track& track, const TrackSegment& segment, long count) {
     constexpr std::size_t least_samples = 8;
-    constexpr double least_s = 0.15;
+    const auto& times = track.pieces[segment.piece].time_s;
+    std::vector<TrackSegment> parts;
+    auto first = segment.first;
+    for (long part = 1; part <= count; ++part) {
+        const double share = static_cast<double>(part) / static_cast<double>(count);
+        const double end = times[segment.first] + length_of(track, segment) * share;
+        const auto last =
+            part == count ? segment.last
+                          : static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), end) - times.begin());
+        if (last < first + least_samples && part < count) continue;  // a gap
+        parts.push_back({segment.piece, first, last});
+        first = last;
+    }
+    return parts;
+}
+
+/// Each segment in `most` parts, or a half, a quarter … as many where these would be too short.
+std::vector<Part> parts_of(const Track& track, const std::vector<TrackSegment>& segments, long most) {
+    constexpr double least_samples = 8, least_s = 0.15;
     std::vector<Part> parts;
     for (std::size_t k = 0; k < segments.size(); ++k) {
-        const auto& times = track.pieces[segments[k].piece].time_s;
-        const double begin = times[segments[k].first], length = times[segments[k].last - 1] - begin;
+        const double longest =
+            std::min(length_of(track, segments[k]) / least_s, static_cast<double>(segments[k].size()) / least_samples);
         auto count = most;
-        while (count > 1 &&
-               (length < least_s * static_cast<double>(count) || segments[k].size() < least_samples * count))
-            count /= 2;
-        auto first = segments[k].first;
-        for (std::size_t part = 1; part <= count; ++part) {
-            const double end = begin + length * static_cast<double>(part) / static_cast<double>(count);
-            auto last = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), end) - times.begin());
-            if (part == count) last = segments[k].last;
-            if (last < first + least_samples && part < count) continue;  // a gap
-            parts.push_back({{segments[k].piece, first, last}, k});
-            first = last;
-        }
+        while (count > 1 && static_cast<double>(count) > longest) count /= 2;
+        for (const auto& segment : cut(track, segments[k], count))
+            parts.push_back({segment, k, guessed_start(track, segment)});
     }
     return parts;
 }
@@ -50,20 +63,16 @@ std::vector<Part> parts_of(const Track& track, const std::vector<TrackSegment>& 
 bool leads(const Track& track, const Fit& fit, const Part& one, const Part& next) {
     constexpr double near = 0.3, most_growth = 100;  // rad; of an angle, per angle or per rate over the pendulum's own
     const auto& piece = track.pieces[one.segment.piece];
-    using Number = Dual<double, 4>;
-    ArmState<Number> start;
-    for (std::size_t q = 0; q < 4; ++q) start[q] = Number::variable(one.start[q], static_cast<Eigen::Index>(q));
-    const VaryingArms<4> arms{.arms = arms_of(fit.model, fit.parameters), .direction = {}};
-    Flow<Number, VaryingArms<4>> flow(arms, start, fit.rules.step_s);
-    const double rate = std::sqrt(fit.parameters[index_of(gravity_2)]);
+    auto flow = varied_flow<few_directions>(fit.model, fit.parameters, one.start, fit.rules.step_s);
+    const double rate = std::sqrt(fit.of(gravity_2));
     for (auto i = next.segment.first; i < next.segment.last; ++i) {
         const double t = piece.time_s[i] - piece.time_s[one.segment.first];
         if (!flow.reach(t)) return false;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            if (!piece.is_outlier[arm][i] && std::abs(flow.angle_value(arm, t) - piece.angle[arm][i]) > near)
-                return false;
-            const auto& by = flow.state()[arm].tangent;
-            if (std::hypot(by.head<2>().norm(), rate * by.tail<2>().norm()) > most_growth) return false;
+            const auto angle = flow.angle(arm, t);
+            if (!piece.is_outlier[arm][i] && std::abs(angle.value - piece.angle[arm][i]) > near) return false;
+            const auto& by = angle.tangent;
+            if (std::hypot(by.head<2>().norm(), rate * by.segment<2>(2).norm()) > most_growth) return false;
         }
     }
     return true;
@@ -85,107 +94,107 @@ std::vector<Part> without_lost(const Track& track, const Fit& fit, const std::ve
     constexpr std::size_t least_samples = 16;
     std::vector<Part> result;
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        const auto& sums = fit.sums[k];
-        const auto& segment = parts[k].segment;
-        const bool is_lost = sums.squares > lost * lost * static_cast<double>(sums.count);
-        if (!is_lost || segment.size() < least_samples) {
+        const bool is_lost = fit.sums[k].squares > lost * lost * static_cast<double>(fit.sums[k].count);
+        if (!is_lost || parts[k].segment.size() < least_samples)
             result.push_back(parts[k]);
-            continue;
-        }
-        const auto middle = segment.first + segment.size() / 2;
-        for (const auto& half :
-             {TrackSegment{segment.piece, segment.first, middle}, TrackSegment{segment.piece, middle, segment.last}})
-            result.push_back({half, parts[k].whole, guessed_start(track, half)});
+        else
+            for (const auto& half : cut(track, parts[k].segment, 2))
+                result.push_back({half, parts[k].whole, guessed_start(track, half)});
     }
     return result;
 }
 
 /// Fits the parts; their starts move along.
-Fit fitted(const Track& track, std::vector<Part>& parts, Fit fit, int jobs, const std::atomic<bool>& stop) {
-    std::vector<TrackSegment> segments;
+Fit fitted(const FitJob& job, std::vector<Part>& parts, Fit fit) {
+    fit.segments.clear();
     fit.starts.clear();
     fit.sums.clear();  // of another division, or another model
     for (const auto& part : parts) {
-        segments.push_back(part.segment);
+        fit.segments.push_back(part.segment);
         fit.starts.push_back(part.start);
     }
-    fit = fit_model(track, segments, std::move(fit),
-                    {.most_passes = 10, .finds_step = false, .relative = 1e-3, .jobs = jobs}, stop);
+    fit = fit_model(job, std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
     for (std::size_t k = 0; k < parts.size(); ++k) parts[k].start = fit.starts[k];
     return fit;
 }
 
 Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
     // a swing of little acceleration wants longer windows than its noise alone
-    Regression regression;
+    Regression best;
     for (const double longer : {1.0, 1.5, 2.25}) {
         const auto other = regress(glimpses_of(track, stop, longer));
-        if (longer == 1 ||
-            (other.is_physical && (!regression.is_physical || other.unexplained < regression.unexplained)))
-            regression = other;
+        if (longer == 1 || (other.is_physical && (!best.is_physical || other.unexplained < best.unexplained)))
+            best = other;
     }
-    if (!regression.is_physical)
+    if (!best.is_physical)
         throw method_failed(
             "{}: no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
-            track.pieces.front().name, 100 * regression.unexplained);
-    auto p = regression.parameters;
-    const double most_coupling = 0.95 * std::sqrt(p[index_of(inertia)]);
-    p[index_of(coupling)] = std::min(p[index_of(coupling)], most_coupling);
+            track.pieces.front().name, 100 * best.unexplained);
+    Parameters p{best.inertia, std::min(best.coupling, 0.95 * std::sqrt(best.inertia)), best.gravity[0],
+                 best.gravity[1]};
+    p[index_of(scale_1)] = p[index_of(scale_2)] = 1;
     return p;
 }
 
 /// Fits parts, joined as far as one leads to the next.
-std::pair<Fit, std::vector<Part>> fitted_in_parts(const Track& track, const std::vector<TrackSegment>& segments,
-                                                  std::size_t most, const Parameters& guess, int jobs,
-                                                  const std::atomic<bool>& stop) {
+std::pair<std::vector<Part>, Fit> fitted_in_parts(const FitJob& job, const std::vector<TrackSegment>& segments,
+                                                  long most, const Parameters& guess) {
+    const auto& track = job.track;
     auto parts = parts_of(track, segments, most);
-    for (auto& part : parts) part.start = guessed_start(track, part.segment);
-    Fit fit{};
-    fit.parameters = guess;
+    Fit fit{.model = {}, .rules = {}, .parameters = guess, .segments = {}, .starts = {}, .sums = {}};
     fit.rules.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
     fit.model.fitted = {inertia, coupling, gravity_1, gravity_2, offset_1, offset_2};
-    fit = fitted(track, parts, std::move(fit), jobs, stop);
+    fit = fitted(job, parts, std::move(fit));
     parts = without_lost(track, fit, parts);
     fit.model.fitted = {inertia,   coupling,  gravity_1,   gravity_2,   viscous_1, viscous_2,
                         coulomb_1, coulomb_2, quadratic_1, quadratic_2, offset_1,  offset_2};
     for (auto joins = most; joins > 1; joins /= 2) {
-        fit = fitted(track, parts, std::move(fit), jobs, stop);
+        fit = fitted(job, parts, std::move(fit));
         parts = joined(track, fit, without_lost(track, fit, parts));
     }
-    fit = fitted(track, parts, std::move(fit), jobs, stop);
-    return {std::move(fit), std::move(parts)};
+    fit = fitted(job, parts, std::move(fit));
+    return {std::move(parts), std::move(fit)};
 }
 
 }  // namespace
 
-Beginning begin_fit(const Track& track, int jobs, const std::atomic<bool>& stop) {
-    Beginning beginning{.division = divide(track), .fit = {}};
-    const auto guess = regressed(track, stop);
-    constexpr std::size_t quarters = 4, shortest = 16;
+Division divide(const Track& track) {
+    constexpr double longest = 3, shortest = 0.5, wanted = 8;
+    constexpr std::size_t few_pieces = 4;
+    const double length = std::clamp(track.duration() / wanted, shortest, longest);
+    const bool by_piece = track.pieces.size() >= few_pieces;
+    Division division;
+    for (std::size_t piece = 0; piece < track.pieces.size(); ++piece) {
+        const auto parts = std::max(1L, std::lround(std::ceil(track.pieces[piece].duration() / length - 0.01)));
+        if (by_piece) division.units.emplace_back();
+        for (const auto& segment : cut(track, {piece, 0, track.pieces[piece].size()}, parts)) {
+            if (!by_piece) division.units.emplace_back();
+            division.units.back().push_back(division.segments.size());
+            division.segments.push_back(segment);
+        }
+    }
+    return division;
+}
+
+std::pair<Units, Fit> begin_fit(const FitJob& job) {
+    auto division = divide(job.track);
+    const auto guess = regressed(job.track, job.stop);
+    constexpr long quarters = 4, shortest = 16;
     const auto begun = [&] {
         for (auto most = quarters;; most *= 2) try {
-                return fitted_in_parts(track, beginning.division.segments, most, guess, jobs, stop);
+                return fitted_in_parts(job, division.segments, most, guess);
             } catch (const Error& error) {  // shorter ones may stay finite
                 if (error.code() != ExitCode::method_failed || most == shortest) throw;
             }
     };
-    auto [fit, parts] = begun();
+    const auto [parts, fit] = begun();
     // units as they were, of the segments as they are
-    auto& division = beginning.division;
-    const bool by_piece = division.units.size() == track.pieces.size() && track.pieces.size() > 1;
-    division.segments.clear();
-    division.units.clear();
-    fit.starts.clear();
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        const bool is_new = k == 0 || (by_piece ? parts[k].segment.piece != parts[k - 1].segment.piece
-                                                : parts[k].whole != parts[k - 1].whole);
-        if (is_new) division.units.emplace_back();
-        division.units.back().push_back(k);
-        division.segments.push_back(parts[k].segment);
-        fit.starts.push_back(parts[k].start);
+    for (auto& unit : division.units) {
+        const auto wholes = std::exchange(unit, {});
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            if (std::count(wholes.begin(), wholes.end(), parts[k].whole) > 0) unit.push_back(k);
     }
-    beginning.fit = std::move(fit);
-    return beginning;
+    return {division.units, fit};
 }
 
 }  // namespace doppel

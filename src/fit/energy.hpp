@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fit/ladder.hpp"
+#include "fit/shooting.hpp"
 
 namespace doppel {
 
@@ -14,7 +14,6 @@ struct EnergyLoss {
 /// From a fit of viscous friction that may be negative, of a lag and scales, which could look like it. `start` is a fit
 /// of the track with viscous friction. The standard error allows for residuals that are not noise. Throws Error: 130,
 /// exit 3 where no motion stays finite.
-EnergyLoss energy_loss(const Track& track, const std::vector<TrackSegment>& segments, const Fit& start, int jobs,
-                       const std::atomic<bool>& stop);
+EnergyLoss energy_loss(const FitJob& job, const Fit& start);
 
 }  // namespace doppel

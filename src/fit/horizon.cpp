@@ -3,120 +3,76 @@
 #include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
-#include "fit/variation.hpp"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 
 namespace doppel {
 namespace {
 
-constexpr double data_s = 2, looked_at_s = 40;
-
 /// On the track's clock.
-double start_of(const Track& track, const TrackSegment& segment) {
-    const auto& piece = track.pieces[segment.piece];
-    return track.start_s[segment.piece] + piece.time_s[segment.first] - piece.time_s.front();
+double time_of(const Track& track, const TrackSegment& segment, std::size_t sample) {
+    const auto& times = track.pieces[segment.piece].time_s;
+    return track.start_s[segment.piece] + times[sample] - times.front();
 }
 
-/// The start, fitted to the first seconds of a unit alone, and its normal matrix.
-Fit fitted_start(const Track& track, const TrackSegment& segment, const Fit& fit, const ArmState<double>& guess,
-                 const std::atomic<bool>& stop) {
-    Fit start{.model = fit.model, .rules = fit.rules, .parameters = fit.parameters, .starts = {guess}};
-    start.model.fitted.clear();
-    return fit_model(track, {segment}, start,
-                     {.most_passes = 10, .finds_scale = false, .finds_step = false, .relative = 1e-5}, stop);
-}
-
-/// A start and the motion from it.
-struct Run {
-    Fit fit;
-    Flow<double> flow;
-    explicit Run(Fit from)
-        : fit(std::move(from)), flow(arms_of(fit.model, fit.parameters), fit.starts[0], fit.rules.step_s) {}
-
-    /// How far the track is from it at t seconds from the start, rad; nothing where the motion ran away.
-    std::optional<double> error(const TrackPiece& piece, std::size_t sample, double t, bool is_first) {
-        double largest = 0;
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            if (piece.is_outlier[arm][sample]) continue;
-            const auto& p = fit.parameters;
-            const double at = t + (arm == 1 ? p[index_of(FitParameter::lag)] : 0);
-            if (!flow.reach(at)) return std::nullopt;
-            const double shown = p[index_of(FitParameter::offset_1) + arm] +
-                                 p[index_of(FitParameter::scale_1) + arm] * flow.angle(arm, at);
-            double off = piece.angle[arm][sample] - shown;
-            constexpr double turn = 2 * std::numbers::pi;
-            if (!is_first) off -= turn * std::round(off / turn);  // a piece may count turns anew
-            largest = std::max(largest, std::abs(off));
-        }
-        return largest;
+/// The start, fitted to the first seconds of a unit alone, and its normal matrix; nothing where no motion stays finite.
+std::optional<Fit> fitted_start(const FitJob& job, const TrackSegment& segment, const Fit& fit,
+                                const ArmState<double>& guess) {
+    auto start = fit.without_sums();
+    start.segments = {segment}, start.starts = {guess}, start.model.fitted.clear();
+    try {
+        return fit_model(job, std::move(start),
+                         {.most_passes = 10, .finds_scale = false, .step_share = 0, .relative = 1e-5});
+    } catch (const Error& error) {  // of this prediction alone
+        if (error.code() != ExitCode::method_failed) throw;
+        return std::nullopt;
     }
-};
+}
 
-/// Goes along one unit after the data. False where the error is well beyond the limit.
-bool follow(const Track& track, const TrackSegment& segment, std::size_t first_piece, double limit, Run& run,
-            Prediction& prediction) {
-    constexpr double kept_every_s = 0.02, gap_s = 0.1, afterwards_s = 10, far = 10;  // far: limits
+/// Goes along a segment after the data, by the motion from a fitted start. False where the error is well beyond the limit.
+bool follow(const Track& track, const TrackSegment& segment, bool is_first_piece, double limit, const Fit& start,
+            Flow<double>& flow, Prediction& prediction) {
+    constexpr double kept_every_s = 0.02, afterwards_s = 10, far = 10, turn = 2 * std::numbers::pi;  // far: limits
     const auto& piece = track.pieces[segment.piece];
     auto &times = prediction.time_s, &errors = prediction.error;
     for (std::size_t i = segment.first; i < segment.last; ++i) {
-        const double from_start =
-            start_of(track, segment) + piece.time_s[i] - piece.time_s[segment.first] - prediction.start_s;
-        const double t = from_start - prediction.data_s;
+        const double from_start = time_of(track, segment, i) - prediction.start_s, t = from_start - prediction.data_s;
         if (t <= 0) continue;
-        const auto error = run.error(piece, i, from_start, segment.piece == first_piece);
-        if (!error) return false;
-        if (*error > limit && !prediction.left_s) prediction.left_s = t;
-        if (!prediction.left_s) prediction.within_s = t;
-        const double last = times.empty() ? -1 : times.back();
-        if (t - last >= kept_every_s) {
-            if (!times.empty() && t - last > gap_s) {
-                times.push_back(t);
-                errors.push_back(std::numeric_limits<double>::quiet_NaN());
-            }
-            times.push_back(t);
-            errors.push_back(*error);
+        double error = 0;
+        for (std::size_t arm = 0; arm < 2; ++arm) {
+            if (piece.is_outlier[arm][i]) continue;
+            const auto shown = shown_angle(start.parameters, flow, arm, from_start);
+            if (!shown) return false;
+            double off = piece.angle[arm][i] - *shown;
+            if (!is_first_piece) off -= turn * std::round(off / turn);  // a piece may count turns anew
+            error = std::max(error, std::abs(off));
         }
-        if (*error > far * limit || (prediction.left_s && t > *prediction.left_s + afterwards_s)) return false;
+        if (error > limit && !prediction.left_s) prediction.left_s = t;
+        if (!prediction.left_s) prediction.within_s = t;
+        if (times.empty() || t - times.back() >= kept_every_s) times.push_back(t), errors.push_back(error);
+        if (error > far * limit || (prediction.left_s && t > *prediction.left_s + afterwards_s)) return false;
     }
     return true;
 }
 
 /// When one standard error of start, or of parameters, has grown to the limit.
 void attribute(const Fit& fit, const Fit& start, const Uncertainty& uncertainty, double limit, Prediction& prediction) {
-    constexpr int most = 4 + static_cast<int>(dynamic_count);
-    using Number = Dual<double, most>;
-    VaryingArms<most> arms{
-        .arms = arms_of(fit.model, fit.parameters), .direction = {}, .point_masses = fit.model.point_masses};
-    arms.direction.fill(-1);
-    std::vector<Eigen::Index> directions, places;
-    for (std::size_t k = 0; k < uncertainty.parameters.size(); ++k) {
-        const auto parameter = uncertainty.parameters[k];
-        if (!is_dynamic(parameter)) continue;
-        directions.push_back(4 + static_cast<Eigen::Index>(index_of(parameter)));
-        places.push_back(static_cast<Eigen::Index>(k));
-        arms.direction[index_of(parameter)] = directions.back();
-    }
-    const Eigen::MatrixXd of_parameters = uncertainty.covariance(places, places);
-    const Eigen::Matrix4d of_start = start.sums[0].starts.inverse() * std::pow(uncertainty.inflation, 2);
-    ArmState<Number> state;
-    for (std::size_t q = 0; q < 4; ++q) state[q] = Number::variable(start.starts[0][q], static_cast<Eigen::Index>(q));
-    constexpr double beyond = 1.7, steps = 2;  // as fine as a standard error is known
+    const auto& fitted = fit.model.fitted;
+    const auto moving = std::count_if(fitted.begin(), fitted.end(), is_dynamic);  // the first of them
+    const Eigen::MatrixXd of_parameters = uncertainty.covariance.topLeftCorner(moving, moving);
+    const Eigen::Matrix4d of_start = inverse_of(start.sums[0].matrix) * std::pow(uncertainty.inflation, 2);
+    constexpr double looked_at_s = 40, beyond = 1.7, steps = 2;  // as fine as a standard error is known
     const double step = steps * fit.rules.step_s;
     const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
-    Flow<Number, VaryingArms<most>> flow(arms, state, step);
-    for (double t = 0.5 * step; t < end; t += step) {
+    auto flow = varied_flow<all_directions>(fit.model, fit.parameters, start.starts[0], step);
+    for (double t = prediction.data_s; t < end; t += step) {
         if (!flow.reach(t)) return;
-        if (t < prediction.data_s) continue;
         double from_start = 0, from_parameters = 0;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            const Eigen::Vector4d by_start = flow.state()[arm].tangent.template head<4>();
-            const Eigen::VectorXd by_parameters = flow.state()[arm].tangent(directions);
-            from_start = std::max(from_start, by_start.dot(of_start * by_start));
+            const Eigen::VectorXd by = flow.angle(arm, t).tangent, by_parameters = by.segment(4, moving);
+            from_start = std::max(from_start, by.head<4>().dot(of_start * by.head<4>()));
             from_parameters = std::max(from_parameters, by_parameters.dot(of_parameters * by_parameters));
         }
         const auto note = [&](double square, std::optional<double>& when) {
@@ -128,15 +84,51 @@ void attribute(const Fit& fit, const Fit& start, const Uncertainty& uncertainty,
     }
 }
 
-}  // namespace
-
-Limit limit_of(const Prediction& prediction) {
+/// 0 the model, 1 the start, 2 the parameters (Horizon::left_by).
+std::size_t limit_of(const Prediction& prediction) {
     constexpr double never = 1e300, much = 0.6;
     const double start = prediction.start_alone_s.value_or(never);
     const double parameters = prediction.parameters_alone_s.value_or(never);
-    if (prediction.within_s < much * std::min(start, parameters)) return Limit::model;
-    return start < parameters ? Limit::start : Limit::parameters;
+    if (prediction.within_s < much * std::min(start, parameters)) return 0;
+    return start < parameters ? 1 : 2;
 }
+
+Prediction predict(const FitJob& job, const Units& units, std::size_t unit, const Fit& fit,
+                   const Uncertainty& uncertainty, double limit) {
+    const auto& track = job.track;
+    constexpr double data_s = 2, most_of_unit = 0.75;  // something must be left to predict
+    const auto& own = units[unit];
+    auto segment = fit.segments[own.front()];
+    const auto& times = track.pieces[segment.piece].time_s;
+    const double begin = times[segment.first], length = times[fit.segments[own.back()].last - 1] - begin;
+    const auto end = std::upper_bound(times.begin(), times.end(), begin + std::min(data_s, most_of_unit * length));
+    segment.last = static_cast<std::size_t>(end - times.begin());
+    Prediction prediction{.start_s = time_of(track, segment, segment.first),
+                          .data_s = times[segment.last - 1] - begin,
+                          .time_s = {},
+                          .error = {}};
+    // each unit after is judged by parameters that know neither it nor the first
+    std::optional<Fit> start;
+    for (std::size_t judged = unit; judged < units.size(); ++judged) {
+        auto out = own;
+        if (judged != unit) out.insert(out.end(), units[judged].begin(), units[judged].end());
+        const auto without = fit_without(fit, out);
+        const auto next = fitted_start(job, segment, without, start ? start->starts[0] : without.starts[own.front()]);
+        if (!next) break;
+        start = next;
+        Flow<double> flow(arms_of(start->model, start->parameters), start->starts[0], start->rules.step_s);
+        const auto& follows = units[judged];
+        if (!std::all_of(follows.begin(), follows.end(), [&](std::size_t k) {
+                const auto& other = fit.segments[k];
+                return follow(track, other, other.piece == segment.piece, limit, *start, flow, prediction);
+            }))
+            break;
+    }
+    if (start) attribute(fit, *start, uncertainty, limit, prediction);
+    return prediction;
+}
+
+}  // namespace
 
 std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
     std::sort(times.begin(), times.end(), [](const auto& a, const auto& b) {
@@ -151,54 +143,21 @@ std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
     return std::nullopt;
 }
 
-Horizon measure_horizon(const Track& track, const Division& division, const Fit& fit, const Uncertainty& uncertainty,
-                        int jobs, const std::atomic<bool>& stop) {
+Horizon measure_horizon(const FitJob& job, const Units& units, const Fit& fit, const Uncertainty& uncertainty) {
     Horizon horizon;
     constexpr double noises = 5;  // so that no single sample's noise ends a prediction
-    horizon.limit = std::max(horizon.limit, noises * std::max(track.noise[0], track.noise[1]));
-    const auto units = division.units.size();
-    std::vector<std::optional<Prediction>> all(units);
-    parallel_for(units, jobs, [&](std::size_t u) {
-        const auto first = division.units[u].front();
-        auto segment = division.segments[first];
-        const auto& times = track.pieces[segment.piece].time_s;
-        const double begin = times[segment.first];
-        // the first two seconds, of which something must be left to predict
-        const auto last = division.segments[division.units[u].back()].last;
-        const double length = times[last - 1] - begin, used = std::min(data_s, 0.75 * length);
-        segment.last =
-            static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), begin + used) - times.begin());
-        Prediction prediction{
-            .unit = u, .start_s = start_of(track, segment), .data_s = times[segment.last - 1] - begin};
-        // each unit after is judged by parameters that know neither it nor the first
-        std::optional<Run> run;
-        for (std::size_t judged = u; judged < units; ++judged) {
-            auto out = division.units[u];
-            if (judged != u) out.insert(out.end(), division.units[judged].begin(), division.units[judged].end());
-            const auto without = fit_without(fit, out);
-            try {
-                const auto guess = run ? run->fit.starts[0] : without.starts[first];
-                run.emplace(fitted_start(track, segment, without, guess, stop));
-            } catch (const Error& error) {  // of this prediction alone
-                if (error.code() != ExitCode::method_failed) throw;
-                break;
-            }
-            bool goes_on = true;
-            for (const auto k : division.units[judged])
-                goes_on =
-                    goes_on && follow(track, division.segments[k], segment.piece, horizon.limit, *run, prediction);
-            if (!goes_on) break;
-        }
-        if (run) attribute(fit, run->fit, uncertainty, horizon.limit, prediction);
-        all[u] = std::move(prediction);
+    horizon.limit = std::max(horizon.limit, noises * std::max(job.track.noise[0], job.track.noise[1]));
+    std::vector<Prediction> all(units.size());
+    parallel_for(all.size(), job.threads, [&](std::size_t u) {
+        all[u] = predict({job.track, job.stop}, units, u, fit, uncertainty, horizon.limit);
     });
     std::vector<std::pair<double, bool>> times;
     for (auto& prediction : all) {
-        if (prediction->time_s.empty()) continue;
-        times.emplace_back(prediction->within_s, prediction->left_s.has_value());
-        horizon.longest_s = std::max(horizon.longest_s, prediction->within_s);
-        if (prediction->left_s) ++horizon.left_by[static_cast<std::size_t>(limit_of(*prediction))];
-        horizon.predictions.push_back(std::move(*prediction));
+        if (prediction.time_s.empty()) continue;
+        times.emplace_back(prediction.within_s, prediction.left_s.has_value());
+        horizon.longest_s = std::max(horizon.longest_s, prediction.within_s);
+        if (prediction.left_s) ++horizon.left_by[limit_of(prediction)];
+        horizon.predictions.push_back(std::move(prediction));
     }
     horizon.median_s = median_of(times);
     return horizon;

@@ -1,54 +1,39 @@
 #pragma once
 
-#include "fit/ladder.hpp"
+#include "fit/beginning.hpp"
 #include "fit/uncertainty.hpp"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace doppel {
 
-/// Pieces that follow one another at even intervals on a clock that each begins anew.
-struct Period {
-    double seconds = 0, standard_error = 0;
-};
-
-/// The interval at which the fitted motion leads from each piece to the next; nothing where no interval up to four
-/// times a piece stands out.
-std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit,
-                                  const std::atomic<bool>& stop);
-
 /// A prediction from the beginning of a unit of the track. Every unit is judged by parameters that were fitted without
 /// it and without the first.
 struct Prediction {
-    std::size_t unit = 0;               // of the division
     double start_s = 0;                 // on the track's clock
     double data_s = 0;                  // of it, from which the start was fitted
     double within_s = 0;                // after these: how long it was seen within the limit
     std::optional<double> left_s;       // when it was first seen beyond; nothing where the track ended before
-    std::vector<double> time_s, error;  // after the data: rad, the larger of both arms'; NaN across missing track
+    std::vector<double> time_s, error;  // after the data: rad, the larger of both arms'
     std::optional<double> start_alone_s, parameters_alone_s;  // until one standard error of these reaches the limit
 };
-
-/// What ended a prediction: where neither the error of its start nor that of the parameters explains it, the model.
-enum class Limit { model, start, parameters };
-Limit limit_of(const Prediction& prediction);
 
 struct Horizon {
     double limit = 0.1;  // rad
     std::vector<Prediction> predictions;
     std::optional<double> median_s;  // Kaplan and Meier's; nothing where fewer than half left
     double longest_s = 0;            // seen within the limit
-    std::array<int, 3> left_by{};    // of the predictions that left: by model, start, parameters
+    /// Of the predictions that left what ended them: where neither the error of the start nor that of the parameters
+    /// explains it, the model; start; parameters.
+    std::array<int, 3> left_by{};
 };
 
 /// The median of times of which some are only known to be longer.
 /// Source  Kaplan & Meier 1958
 std::optional<double> median_of(std::vector<std::pair<double, bool>> times);
 
-/// Predicts from every unit of the division; `track.start_s` says where pieces are.
-Horizon measure_horizon(const Track& track, const Division& division, const Fit& fit, const Uncertainty& uncertainty,
-                        int jobs, const std::atomic<bool>& stop);
+/// Predicts from every unit of the division; the track's `start_s` says where pieces are.
+Horizon measure_horizon(const FitJob& job, const Units& units, const Fit& fit, const Uncertainty& uncertainty);
 
 }  // namespace doppel

@@ -1,6 +1,5 @@
 #include "fit/page.hpp"
 
-#include "fit/flow.hpp"
 #include "fit/report.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +17,7 @@ const std::array<const char*, 2> arm_names{"θ1", "θ2"};
 /// The first segment: some samples as points, the model as lines.
 Plot track_plot(const FitResult& result) {
     const auto& fit = result.chosen().fit;
-    const auto& segment = result.ladder.division.segments.front();
+    const auto& segment = fit.segments.front();
     const auto& piece = result.track.pieces[segment.piece];
     Plot plot{.title = "A stretch of the track", .note = "points: measured, lines: model"};
     const double begin = piece.time_s[segment.first];
@@ -28,14 +27,9 @@ Plot track_plot(const FitResult& result) {
     const std::size_t every = std::max<std::size_t>(segment.size() / points, 1);
     for (std::size_t arm = 0; arm < 2; ++arm) {
         Curve model{.label = arm_names[arm], .hue = static_cast<int>(arm)};
-        Flow<double> flow(arms_of(fit.model, fit.parameters), fit.starts[0], fit.rules.step_s);
-        const double lag = arm == 1 ? fit.parameters[index_of(FitParameter::lag)] : 0;
         for (std::size_t i = segment.first; i < segment.last; ++i) {
-            const double t = piece.time_s[i] - begin;
-            if (!flow.reach(t + lag)) break;
-            model.x.push_back(t);
-            model.y.push_back(fit.parameters[index_of(FitParameter::offset_1) + arm] +
-                              fit.parameters[index_of(FitParameter::scale_1) + arm] * flow.angle(arm, t + lag));
+            model.x.push_back(piece.time_s[i] - begin);
+            model.y.push_back(piece.angle[arm][i] - fit.sums[0].residuals[i - segment.first][arm]);
         }
         plot.curves.push_back(std::move(model));
     }
@@ -53,40 +47,33 @@ Plot track_plot(const FitResult& result) {
 /// All residuals, piece after piece, thinned to what a panel can show: the one of a stretch that is largest.
 Plot residual_plot(const FitResult& result) {
     const auto& fit = result.chosen().fit;
-    const auto& segments = result.ladder.division.segments;
+    const auto& segments = fit.segments;
     Plot plot{.title = "Residuals, measured − model", .note = fmt::format("rms {:.2g} mrad", 1e3 * fit.rms)};
     plot.x = {.label = "time measured, piece after piece, s"};
     plot.y = {.label = "residual, mrad"};
     constexpr double rad = 1e3, points = 900;
-    const auto bins = static_cast<std::size_t>(std::max(static_cast<double>(fit.residuals.size()) / 2 / points, 1.0));
+    const auto bin = static_cast<std::size_t>(std::max(static_cast<double>(result.track.samples()) / points, 1.0));
     double end = 0;
     std::array<Curve, 2> curves;
     for (std::size_t arm = 0; arm < 2; ++arm) curves[arm] = {.label = arm_names[arm], .hue = static_cast<int>(arm)};
-    std::size_t next = 0;
     for (std::size_t k = 0; k < segments.size(); ++k) {
-        const auto& times = result.track.pieces[segments[k].piece].time_s;
-        std::array<double, 2> largest{}, at{};
-        std::array<std::size_t, 2> held{};
-        const auto keep = [&](std::size_t arm) {
-            if (held[arm] == 0) return;
-            curves[arm].x.push_back(at[arm]);
-            curves[arm].y.push_back(rad * largest[arm]);
-            held[arm] = 0, largest[arm] = 0;
-        };
-        for (; next < fit.residuals.size() && fit.residuals[next].segment == k; ++next) {
-            const auto& r = fit.residuals[next];
-            if (std::abs(r.residual) >= std::abs(largest[r.arm])) {
-                largest[r.arm] = r.residual;
-                at[r.arm] = end + times[r.sample] - times[segments[k].first];
-            }
-            if (++held[r.arm] >= bins) keep(r.arm);
-        }
+        const auto* times = result.track.pieces[segments[k].piece].time_s.data() + segments[k].first;
+        const auto& residuals = fit.sums[k].residuals;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            keep(arm);
+            const auto size = [&](std::size_t i) {
+                return std::isnan(residuals[i][arm]) ? 0 : std::abs(residuals[i][arm]);
+            };
+            for (std::size_t from = 0; from < residuals.size(); from += bin) {
+                auto largest = from;
+                for (auto i = from; i < std::min(from + bin, residuals.size()); ++i)
+                    if (size(i) > size(largest)) largest = i;
+                curves[arm].x.push_back(end + times[largest] - times[0]);
+                curves[arm].y.push_back(rad * residuals[largest][arm]);
+            }
             curves[arm].x.push_back(end);
             curves[arm].y.push_back(none);
         }
-        end += times[segments[k].last - 1] - times[segments[k].first];
+        end += times[residuals.size() - 1] - times[0];
     }
     plot.x.low = 0;
     plot.x.high = end;
@@ -104,13 +91,13 @@ Plot ladder_plot(const FitResult& result) {
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};
     constexpr double rad = 1e3;
     const auto& rungs = result.ladder.rungs;
-    std::size_t least = rungs[0].parameters, most = least;
+    std::size_t least = rungs[0].fit.free_count(), most = least;
     for (std::size_t k = 0; k < rungs.size(); ++k) {
         const bool chosen = k == result.ladder.chosen;
-        least = std::min(least, rungs[k].parameters);
-        most = std::max(most, rungs[k].parameters);
+        least = std::min(least, rungs[k].fit.free_count());
+        most = std::max(most, rungs[k].fit.free_count());
         plot.curves.push_back({.label = fmt::format("{}{}", k + 1, chosen ? ", chosen" : ""),
-                               .x = {static_cast<double>(rungs[k].parameters)},
+                               .x = {static_cast<double>(rungs[k].fit.free_count())},
                                .y = {rad * rungs[k].left_out_rms},
                                .mark = Mark::points,
                                .hue = chosen ? 1 : 0,
@@ -138,7 +125,6 @@ Plot horizon_plot(const FitResult& result) {
             Curve curve{.hue = left ? 1 : 0, .quiet = !left};
             double largest = 0;
             for (std::size_t i = 0; i < p.time_s.size(); ++i) {
-                if (std::isnan(p.error[i])) continue;
                 largest = std::max(largest, p.error[i]);
                 curve.x.push_back(p.time_s[i]);
                 curve.y.push_back(largest);
@@ -164,11 +150,11 @@ Figure fit_page(const FitResult& result, const std::string& name) {
     Figure figure{.title = fmt::format("{}: {}", name, rung.name),
                   .subtitle = fmt::format("{} samples in {:.1f} s of {} piece{}; {} parameters", result.track.samples(),
                                           result.track.duration(), result.track.pieces.size(),
-                                          result.track.pieces.size() == 1 ? "" : "s", rung.parameters)};
+                                          result.track.pieces.size() == 1 ? "" : "s", rung.fit.free_count())};
     figure.columns = 2;
     figure.panels = {track_plot(result), residual_plot(result), ladder_plot(result), horizon_plot(result)};
     std::string numbers;
-    for (const auto parameter : rung.model.fitted)
+    for (const auto parameter : rung.fit.model.fitted)
         numbers += (numbers.empty() ? "" : ",  ") + parameter_words_of(rung.fit, result.uncertainty, parameter);
     std::string ladder;
     for (std::size_t k = 0; k < result.ladder.rungs.size(); ++k)

@@ -1,83 +1,59 @@
+#include "fit/period.hpp"
+
 #include "base/error.hpp"
 #include "fit/flow.hpp"
-#include "fit/horizon.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace doppel {
-namespace {
 
-/// Distance of two states in units of angle: rates by the pendulums' own.
-double square_distance(const ArmState<double>& a, const ArmState<double>& b, double rate) {
-    double sum = 0;
-    for (std::size_t q = 0; q < 2; ++q) sum += std::pow(a[q] - b[q], 2) + std::pow((a[q + 2] - b[q + 2]) / rate, 2);
-    return sum;
-}
-
-}  // namespace
-
-std::optional<Period> find_period(const Track& track, const Division& division, const Fit& fit,
-                                  const std::atomic<bool>& stop) {
+std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
+    constexpr double longest = 4, apart_s = 0.15, close = 0.05, times = 3, diverged = 0.25;
+    const auto& track = job.track;
     const auto pieces = track.pieces.size();
     if (pieces < 3) return std::nullopt;
     double shortest = track.pieces[0].duration();
     for (const auto& piece : track.pieces) shortest = std::min(shortest, piece.duration());
-    auto arms = arms_of(fit.model, fit.parameters);
-    const double step = fit.rules.step_s, rate = std::sqrt(fit.parameters[index_of(FitParameter::gravity_2)]);
-    // the state at the start of each piece, and the motion of each far beyond its end
-    std::vector<ArmState<double>> starts(pieces);
-    for (std::size_t k = division.segments.size(); k-- > 0;) starts[division.segments[k].piece] = fit.starts[k];
-    constexpr double longest = 4;
-    const auto looks = static_cast<std::size_t>(longest * shortest / step);
-    std::vector<std::vector<ArmState<double>>> motions;
-    for (std::size_t k = 0; k + 1 < pieces; ++k) {
-        throw_if_set(stop);
-        Flow<double> flow(arms, starts[k], step);
-        auto& motion = motions.emplace_back();
-        for (std::size_t i = 0; i < looks; ++i) {
-            const double t = static_cast<double>(i) * step;
-            flow.reach(t);
-            motion.push_back(flow.values_at(t));
-        }
-    }
-    // how far the ends are off, whole turns aside, for each interval
-    const auto off = [&](std::size_t look) {
-        double sum = 0;
-        for (std::size_t k = 0; k + 1 < pieces; ++k)
-            sum += std::min(square_distance(motions[k][look], starts[k + 1], rate), 1.0);
-        return sum / static_cast<double>(pieces - 1);
+    // the state at the start of each piece, and the motion of each far beyond its end: rates in units of the pendulums' own
+    const double step = fit.rules.step_s, rate = std::sqrt(fit.of(FitParameter::gravity_2));
+    const auto in_units = [&](const ArmState<double>& y) {
+        return Eigen::Vector4d(y[0], y[1], y[2] / rate, y[3] / rate);
     };
+    std::vector<ArmState<double>> starts(pieces);
+    for (std::size_t k = fit.segments.size(); k-- > 0;) starts[fit.segments[k].piece] = fit.starts[k];
+    const auto count = static_cast<std::size_t>(longest * shortest / step);
     const auto from = static_cast<std::size_t>(0.95 * shortest / step);
-    std::size_t best = from;
-    std::vector<double> all(looks, 1);
-    for (std::size_t look = from; look < looks; ++look) {
-        throw_if_set(stop);
-        all[look] = off(look);
-        if (all[look] < all[best]) best = look;
-    }
-    constexpr double apart_s = 0.15, close = 0.05, times = 3;
-    double rival = 1;
-    for (std::size_t look = from; look < looks; ++look)
-        if (std::abs(static_cast<double>(look) - static_cast<double>(best)) * step > apart_s)
-            rival = std::min(rival, all[look]);
-    if (all[best] > close || rival < times * all[best]) return std::nullopt;
-    // between the looks: the shift along each motion that brings the ends together, without those that have parted
-    double along = 0, speed = 0, rest = 0, count = 0;
+    std::vector<std::vector<Eigen::Vector4d>> motions(pieces - 1);
+    std::vector<double> distance(count, 0);  // of the ends, mean square, for each interval
     for (std::size_t k = 0; k + 1 < pieces; ++k) {
-        const auto& state = motions[k][best];
-        if (square_distance(state, starts[k + 1], rate) > 0.25) continue;
-        arms.take_modes(state[2], state[3]);
-        const auto slope = arms.rate(state);
-        for (std::size_t q = 0; q < 4; ++q) {
-            const double unit = q < 2 ? 1 : rate, d = (starts[k + 1][q] - state[q]) / unit, v = slope[q] / unit;
-            along += d * v, speed += v * v, rest += d * d, ++count;
+        throw_if_set(job.stop);
+        Flow<double> flow(arms_of(fit.model, fit.parameters), starts[k], step);
+        const auto next = in_units(starts[k + 1]);
+        for (std::size_t i = 0; i < count; ++i) {
+            flow.reach(static_cast<double>(i) * step);
+            motions[k].push_back(in_units(flow.values_at(static_cast<double>(i) * step)));
+            distance[i] += std::min((motions[k][i] - next).squaredNorm(), 1.0) / static_cast<double>(pieces - 1);
         }
+    }
+    const auto best = static_cast<std::size_t>(
+        std::min_element(distance.begin() + static_cast<std::ptrdiff_t>(from), distance.end() - 1) - distance.begin());
+    double rival = 1;
+    for (std::size_t i = from; i < count; ++i)
+        if (std::abs(static_cast<double>(i) - static_cast<double>(best)) * step > apart_s)
+            rival = std::min(rival, distance[i]);
+    if (distance[best] > close || rival < times * distance[best]) return std::nullopt;
+    // between the steps: the shift along each motion that brings the ends together, without those that have diverged
+    double along = 0, speed = 0, rest = 0, used = 0;
+    for (std::size_t k = 0; k + 1 < pieces; ++k) {
+        const Eigen::Vector4d off = in_units(starts[k + 1]) - motions[k][best];
+        if (off.squaredNorm() > diverged) continue;
+        const Eigen::Vector4d slope = (motions[k][best + 1] - motions[k][best - 1]) / (2 * step);
+        along += off.dot(slope), speed += slope.squaredNorm(), rest += off.squaredNorm(), used += 4;
     }
     const double shift = along / speed;
     rest -= shift * along;
-    return Period{static_cast<double>(best) * step + shift, std::sqrt(rest / std::max(count - 1, 1.0) / speed)};
+    return Period{static_cast<double>(best) * step + shift, std::sqrt(rest / std::max(used - 1, 1.0) / speed)};
 }
 
 }  // namespace doppel

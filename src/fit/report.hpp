@@ -18,9 +18,12 @@ Json fit_json(const FitResult& result);
 
 /// Columns and rows of the residuals: piece (from 0), time_s, both angles as they were taken, and measured − model of
 /// both, rad; empty where an angle was left out.
-std::vector<std::string> residual_columns();
-void write_residuals(const FitResult& result, Csv& table);
+void write_residuals(const FitResult& result, const FilePlace& place);
 
+/// One sentence on the residuals: like noise, or not and why.
+std::string residual_sentence(const FitResult& result);
+/// One on the horizon, and what limits it.
+std::string horizon_sentence(const FitResult& result);
 /// "A/B = 1.7988 ± 0.0007", with as many digits as the error bears.
 std::string parameter_words_of(const Fit& fit, const Uncertainty& uncertainty, FitParameter parameter);
 

@@ -1,11 +1,12 @@
 #pragma once
 
 #include "fit/horizon.hpp"
+#include "fit/ladder.hpp"
+#include "fit/period.hpp"
 #include "fit/physical.hpp"
 
+#include <functional>
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace doppel {
 
@@ -34,10 +35,5 @@ struct FitQuestion {
 /// model describes the track or the swing gains energy, 130.
 FitResult answer(Track track, const FitQuestion& question, int jobs, const std::atomic<bool>& stop,
                  const std::function<void(std::size_t done, std::size_t of)>& report);
-
-/// One sentence on the residuals: like noise, or not and why.
-std::string residual_sentence(const FitResult& result);
-/// One on the horizon, and what limits it.
-std::string horizon_sentence(const FitResult& result);
 
 }  // namespace doppel

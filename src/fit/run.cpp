@@ -25,7 +25,7 @@ std::vector<std::string> sentences_of(const FitResult& result) {
     const auto& rung = result.chosen();
     std::vector<std::string> all;
     all.push_back(fmt::format("{}, {} parameters: rms {:.2g} rad, {:.2g} on pieces left out.", rung.name,
-                              rung.parameters, rung.fit.rms, rung.left_out_rms));
+                              rung.fit.free_count(), rung.fit.rms, rung.left_out_rms));
     if (result.period)
         all.push_back(fmt::format("Pieces begin every {:.4f} ± {:.4f} s, by the fit.", result.period->seconds,
                                   result.period->standard_error));
@@ -59,9 +59,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     const auto finish = [&] {
         write_text(preset, fitted_preset(result, name));
         parts.finished(name + ".toml");
-        Csv rows(table, residual_columns());
-        write_residuals(result, rows);
-        rows.finish();
+        write_residuals(result, table);
         parts.finished(name + ".residuals.csv");
         throw_if_set(stop);
         const auto list = compose(fit_page(result, name), page_size, light);

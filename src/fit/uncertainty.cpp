@@ -3,40 +3,26 @@
 #include "base/error.hpp"
 #include "numeric/portable_math.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 namespace doppel {
 namespace {
 
-/// Σ over segments of r_i r_(i+lag) of one arm, and how many terms.
-struct Correlations {
-    std::vector<double> sums;
-    long count = 0;
-};
-
-Correlations correlations_of(const Fit& fit, std::size_t arm, std::size_t lags, const std::atomic<bool>& stop) {
-    Correlations result{.sums = std::vector<double>(lags + 1, 0)};
-    std::vector<double> series;
-    const auto take = [&] {
+/// Σ over segments of r_i r_(i+lag) of one arm, by lag.
+std::vector<double> correlations_of(const Fit& fit, std::size_t arm, std::size_t lags, const std::atomic<bool>& stop) {
+    std::vector<double> result(lags + 1, 0);
+    const double most = FitRules::bend * fit.rules.scale[arm];
+    for (const auto& sums : fit.sums) {
+        std::vector<double> series;
+        for (const auto& residual : sums.residuals)
+            if (!std::isnan(residual[arm])) series.push_back(std::clamp(residual[arm], -most, most));
         for (std::size_t lag = 0; lag <= lags && lag < series.size(); ++lag) {
             throw_if_set(stop);
-            for (std::size_t i = 0; i + lag < series.size(); ++i) result.sums[lag] += series[i] * series[i + lag];
+            for (std::size_t i = 0; i + lag < series.size(); ++i) result[lag] += series[i] * series[i + lag];
         }
-        result.count += static_cast<long>(series.size());
-        series.clear();
-    };
-    std::size_t segment = 0;
-    const double most = FitRules::bend * fit.rules.scale[arm];
-    for (const auto& r : fit.residuals) {
-        if (r.segment != segment) take(), segment = r.segment;
-        if (r.arm == arm) series.push_back(std::clamp(r.residual, -most, most));
     }
-    take();
     return result;
 }
 
@@ -46,24 +32,16 @@ double mean_interval(const Track& track) {
     return time / count;
 }
 
-/// The inverse of a positive definite matrix, scaled first.
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
-    const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd even = scale.asDiagonal() * matrix * scale.asDiagonal();
-    return scale.asDiagonal() * even.ldlt().solve(Eigen::MatrixXd(scale.asDiagonal()));
-}
-
-/// Σ g gᵀ over stretches of the slope g of the free parameters, starts eliminated.
-Eigen::MatrixXd scatter_of(const Fit& fit, const std::vector<Eigen::Index>& places) {
-    const auto count = static_cast<Eigen::Index>(places.size());
+/// Σ g gᵀ over stretches of the slope g of the fitted parameters, starts eliminated.
+Eigen::MatrixXd scatter_of(const Fit& fit) {
+    const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(count, count);
     double stretches = 0;
     for (const auto& sums : fit.sums) {
-        const Eigen::MatrixXd mixed = sums.mixed(Eigen::seqN(0, 4), places);
-        const Eigen::MatrixXd through = mixed.transpose() * inverse_of(sums.starts);
+        const Eigen::MatrixXd through =
+            sums.matrix.bottomLeftCorner(count, 4) * inverse_of(sums.matrix.topLeftCorner(4, 4));
         for (const auto& block : sums.blocks) {
-            const Eigen::VectorXd shared = block.tail(block.size() - 4);
-            const Eigen::VectorXd slope = shared(places) - through * block.head<4>();
+            const Eigen::VectorXd slope = block.tail(count) - through * block.head<4>();
             scatter += slope * slope.transpose();
             ++stretches;
         }
@@ -79,32 +57,25 @@ double Uncertainty::standard_error(std::size_t k) const {
     return std::sqrt(std::max(covariance(i, i), 0.0));
 }
 
-double Uncertainty::correlation(std::size_t j, std::size_t k) const {
-    const double product = standard_error(j) * standard_error(k);
-    return product > 0 ? covariance(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) / product : 0;
-}
-
 double Uncertainty::standard_error(FitParameter parameter) const {
     const auto found = std::find(parameters.begin(), parameters.end(), parameter);
     return found == parameters.end() ? 0 : standard_error(static_cast<std::size_t>(found - parameters.begin()));
 }
 
-Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs,
-                           const std::atomic<bool>& stop) {
+Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
     // those at a bound, too: that they could be more makes the others less certain
     Uncertainty result{.parameters = fit.model.fitted, .covariance = {}};
     const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
-    std::vector<Eigen::Index> places(static_cast<std::size_t>(count));
-    std::iota(places.begin(), places.end(), 0);
+    const double n = static_cast<double>(fit.residual_count());
     // whether successive residuals know of each other
     constexpr std::size_t lags = 10, furthest = 400;
     constexpr double limit = 29.6;  // χ² of ten at 99.9 %
-    const double interval = mean_interval(track);
+    const double interval = mean_interval(job.track);
     for (std::size_t arm = 0; arm < 2; ++arm) {
-        const auto [sums, n] = correlations_of(fit, arm, furthest, stop);
+        const auto sums = correlations_of(fit, arm, furthest, job.stop);
         double portmanteau = 0;
         for (std::size_t lag = 1; lag <= lags; ++lag) portmanteau += std::pow(sums[lag] / sums[0], 2);
-        result.is_white &= portmanteau * static_cast<double>(n) < limit;
+        result.is_white &= portmanteau * n / 2 < limit;
         result.neighbour[arm] = sums[1] / sums[0];
         std::size_t lag = 1;
         while (lag < furthest && sums[lag] > sums[0] / std::numbers::e) ++lag;
@@ -114,12 +85,11 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
     double bounded = 0, beyond = 0;
     for (const auto& sums : fit.sums) {
-        matrix += reduced(sums, places).matrix;
+        matrix += reduced(sums).matrix;
         bounded += sums.bounded;
+        beyond += static_cast<double>(sums.beyond);
     }
-    for (const auto& r : fit.residuals) beyond += std::abs(r.residual) > FitRules::bend * fit.rules.scale[r.arm];
-    const double n = static_cast<double>(fit.residuals.size());
-    const double spent = static_cast<double>(count) + 4 * static_cast<double>(segments.size());
+    const double spent = static_cast<double>(count) + 4 * static_cast<double>(fit.segments.size());
     const double slope = 1 - beyond / n;  // mean of Huber's ψ′
     const Eigen::MatrixXd inverse = inverse_of(matrix);
     result.covariance = inverse * (bounded / (n - spent) / (slope * slope));
@@ -127,8 +97,8 @@ Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& 
     // of others
     constexpr double shortest_s = 0.3, memories = 4;
     const double block_s = std::max(shortest_s, memories * std::max(result.memory_s[0], result.memory_s[1]));
-    evaluate_fit(track, segments, fit, jobs, stop, block_s);
-    const Eigen::MatrixXd sandwich = inverse * scatter_of(fit, places) * inverse / (slope * slope);
+    evaluate_fit(job, fit, block_s);
+    const Eigen::MatrixXd sandwich = inverse * scatter_of(fit) * inverse / (slope * slope);
     const Eigen::VectorXd white = result.covariance.diagonal();
     const Eigen::VectorXd wider = (white.array() / sandwich.diagonal().array()).max(1).sqrt();
     result.covariance = wider.asDiagonal() * sandwich * wider.asDiagonal();

@@ -17,7 +17,6 @@ struct Uncertainty {
     double inflation = 1;                  // of standard errors against white residuals; 1 where they are
 
     double standard_error(std::size_t k) const;
-    double correlation(std::size_t j, std::size_t k) const;
     /// Of a parameter; 0 where it is not fitted.
     double standard_error(FitParameter parameter) const;
 };
@@ -27,7 +26,6 @@ struct Uncertainty {
 ///
 /// Throws Error (exit 130).
 /// Source  Huber, Robust Statistics, §7.6; Newey & West 1987
-Uncertainty uncertainty_of(const Track& track, const std::vector<TrackSegment>& segments, Fit fit, int jobs,
-                           const std::atomic<bool>& stop);
+Uncertainty uncertainty_of(const FitJob& job, Fit fit);
 
 }  // namespace doppel

@@ -2,12 +2,12 @@
 
 #include "base/error.hpp"
 #include "numeric/portable_math.hpp"
+#include "numeric/sin_cos.hpp"
 
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace doppel {
 namespace {
@@ -17,19 +17,22 @@ struct LocalFit {
     double angle = 0, rate = 0, acceleration = 0, rms = 0;
 };
 
+constexpr Eigen::Index degree = 5;
+constexpr std::size_t least_points = degree + 3;
+
 /// Samples first … last − 1 of a piece.
 struct SampleRange {
     std::size_t first = 0, last = 0;
 };
 
-/// A polynomial in the time from `center` through a range of one arm's samples; nothing where they are too few.
-std::optional<LocalFit> local_fit(const TrackPiece& piece, std::size_t arm, SampleRange range, double center,
-                                  Eigen::Index degree) {
+/// A polynomial in the time from `center` through a range of one arm's samples.
+LocalFit local_fit(const TrackPiece& piece, std::size_t arm, SampleRange range, double center) {
     std::vector<std::size_t> used;
     for (std::size_t i = range.first; i < range.last; ++i)
         if (!piece.is_outlier[arm][i]) used.push_back(i);
     const auto count = static_cast<Eigen::Index>(used.size());
-    if (count < degree + 2) return std::nullopt;
+    const LocalFit nothing{piece.angle[arm][range.first]};
+    if (count < degree + 2) return nothing;
     const double span = std::max(piece.time_s[range.last - 1] - center, center - piece.time_s[range.first]);
     Eigen::MatrixXd powers(count, degree + 1);
     Eigen::VectorXd values(count);
@@ -40,13 +43,13 @@ std::optional<LocalFit> local_fit(const TrackPiece& piece, std::size_t arm, Samp
         values[i] = piece.angle[arm][used[static_cast<std::size_t>(i)]];
     }
     const Eigen::VectorXd c = (powers.transpose() * powers).ldlt().solve(powers.transpose() * values);
-    if (!c.allFinite()) return std::nullopt;
+    if (!c.allFinite()) return nothing;
     const double rest = (values - powers * c).norm() / std::sqrt(static_cast<double>(count));
-    return LocalFit{c[0], c[1] / span, 2 * c[2] / (span * span), rest};
+    return {c[0], c[1] / span, 2 * c[2] / (span * span), rest};
 }
 
-/// A window around a moment, shifted to be whole even at the ends of the piece, and widened to hold `least` samples.
-SampleRange range_around(const TrackPiece& piece, std::size_t arm, double time_s, double window, std::size_t least) {
+/// A window around a moment, shifted to be whole even at the ends of the piece, and widened to hold enough samples.
+SampleRange range_around(const TrackPiece& piece, std::size_t arm, double time_s, double window) {
     const auto& times = piece.time_s;
     const auto& is_outlier = piece.is_outlier[arm];
     const double from = std::max(times.front(), std::min(time_s - window / 2, times.back() - window));
@@ -56,7 +59,7 @@ SampleRange range_around(const TrackPiece& piece, std::size_t arm, double time_s
     auto& [first, last] = range;
     auto count = static_cast<std::size_t>(std::count(is_outlier.begin() + static_cast<std::ptrdiff_t>(first),
                                                      is_outlier.begin() + static_cast<std::ptrdiff_t>(last), 0));
-    while (count < least && (first > 0 || last < times.size())) {
+    while (count < least_points && (first > 0 || last < times.size())) {
         const bool back = first > 0 && (last == times.size() || time_s - times[first - 1] < times[last] - time_s);
         if (!is_outlier[back ? --first : last++]) ++count;
     }
@@ -76,18 +79,16 @@ double window_of(const Track& track) {
 
 }  // namespace
 
-Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s) {
-    constexpr Eigen::Index degree = 5;
-    constexpr std::size_t least = degree + 3;
+Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s, double longer) {
     // encoders err alike for some samples in a row, which the noise from sample to sample does not tell
     constexpr double noises = 3, shortest_s = 1e-6;
     Glimpse glimpse{};
     for (std::size_t arm = 0; arm < 2; ++arm) {
         LocalFit fit;
-        for (double window = window_of(track); window > shortest_s; window /= 2) {
-            const auto range = range_around(piece, arm, time_s, window, least);
-            fit = local_fit(piece, arm, range, time_s, degree).value_or(LocalFit{piece.angle[arm][range.first]});
-            if (fit.rms <= noises * track.noise[arm] || range.last - range.first <= least) break;
+        for (double window = longer * window_of(track); window > shortest_s; window /= 2) {
+            const auto range = range_around(piece, arm, time_s, window);
+            fit = local_fit(piece, arm, range, time_s);
+            if (fit.rms <= noises * track.noise[arm] || range.last - range.first <= least_points) break;
         }
         glimpse.angle[arm] = fit.angle, glimpse.rate[arm] = fit.rate, glimpse.acceleration[arm] = fit.acceleration;
     }
@@ -95,39 +96,14 @@ Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s) {
 }
 
 std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop, double longer) {
-    constexpr Eigen::Index degree = 4;
     std::vector<Glimpse> all;
-    const double window = longer * window_of(track);
+    const double half = longer * window_of(track) / 2;
     for (const auto& piece : track.pieces)
-        for (double time = piece.time_s.front() + window / 2; time < piece.time_s.back() - window / 2;
-             time += window / 2) {
+        for (double time = piece.time_s.front() + half; time < piece.time_s.back() - half; time += half) {
             throw_if_set(stop);
-            Glimpse glimpse{};
-            bool whole = true;
-            for (std::size_t arm = 0; arm < 2 && whole; ++arm) {
-                const auto fit = local_fit(piece, arm, range_around(piece, arm, time, window, 0), time, degree);
-                whole = fit.has_value();
-                if (whole)
-                    glimpse.angle[arm] = fit->angle, glimpse.rate[arm] = fit->rate,
-                    glimpse.acceleration[arm] = fit->acceleration;
-            }
-            if (whole) all.push_back(glimpse);
+            all.push_back(glimpse_at(track, piece, time, longer));
         }
     return all;
-}
-
-ArmState<double> guessed_start(const Track& track, const TrackSegment& segment) {
-    const auto& piece = track.pieces[segment.piece];
-    const double begin = piece.time_s[segment.first], window = window_of(track);
-    auto last = segment.first;
-    while (last < segment.last && (piece.time_s[last] <= begin + window || last < segment.first + 6)) ++last;
-    ArmState<double> start{};
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-        const auto fit =
-            local_fit(piece, arm, {segment.first, last}, begin, 3).value_or(LocalFit{piece.angle[arm][segment.first]});
-        start[arm] = fit.angle, start[arm + 2] = fit.rate;
-    }
-    return start;
 }
 
 Regression regress(const std::vector<Glimpse>& glimpses) {
@@ -153,12 +129,8 @@ Regression regress(const std::vector<Glimpse>& glimpses) {
     };
     result.unexplained = std::max(share(right - second * of_second, right),
                                   share(driven * coupling - first * of_first, driven * coupling));
-    auto& p = result.parameters;
-    p[index_of(FitParameter::inertia)] = of_first[0];
-    p[index_of(FitParameter::coupling)] = coupling;
-    p[index_of(FitParameter::gravity_1)] = of_first[1];
-    p[index_of(FitParameter::gravity_2)] = of_second[1];
-    p[index_of(FitParameter::scale_1)] = p[index_of(FitParameter::scale_2)] = 1;
+    result.inertia = of_first[0], result.coupling = coupling;
+    result.gravity = {of_first[1], of_second[1]};
     result.is_physical = std::isfinite(of_first.sum() + of_second.sum()) && coupling > 0 && of_first[0] > 0 &&
                          of_first[1] > 0 && of_second[1] > 0;
     return result;

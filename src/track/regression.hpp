@@ -1,6 +1,5 @@
 #pragma once
 
-#include "track/model.hpp"
 #include "track/track.hpp"
 
 #include <vector>
@@ -12,20 +11,19 @@ struct Glimpse {
     std::array<double, 2> angle, rate, acceleration;
 };
 
-/// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone.
-Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s);
+/// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone; the longest of all is as long
+/// as the noise asks for, or `longer` times that.
+Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s, double longer = 1);
 
-/// At moments half a window apart; the window is as long as the noise asks for, or `longer` times that.
+/// At moments half a window apart.
 std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop, double longer = 1);
-
-/// Angles and rates at the first sample of a segment, from a polynomial of its first tenth of a second or more.
-ArmState<double> guessed_start(const Track& track, const TrackSegment& segment);
 
 /// The equations of motion, which are linear in the parameters, fitted to glimpses: no start needed, but accelerations
 /// are noisy and so the result is biased. What is unexplained says how well angles taken this way obey any double
 /// pendulum at all.
 struct Regression {
-    Parameters parameters{};
+    double inertia = 0, coupling = 0;  // A/B, C/B
+    std::array<double, 2> gravity{};   // D1/B, D2/B, 1/s²
     double unexplained =
         1;  // share of the squared forces, of both equations: 0 for noiseless angles, near 1 for others
     bool is_physical = false;

@@ -205,12 +205,6 @@ Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<s
                       const std::atomic<bool>& stop) {
     Track track;
     for (std::size_t k = 0; k < texts.size(); ++k) read_text(names[k], texts[k], track, stop);
-    bool one_clock = true;
-    for (std::size_t k = 1; k < track.pieces.size(); ++k)
-        one_clock &= track.pieces[k].time_s.front() > track.pieces[k - 1].time_s.back();
-    if (one_clock)
-        for (const auto& piece : track.pieces)
-            track.start_s.push_back(piece.time_s.front() - track.pieces[0].time_s[0]);
     for (auto& piece : track.pieces)
         for (std::size_t arm = 0; arm < 2; ++arm) {
             unwrap(piece.angle[arm]);

@@ -60,4 +60,7 @@ Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<s
 /// the noise.
 void check_track(Track& track, const std::atomic<bool>& stop);
 
+/// The median of absolute values.
+double median_size(std::vector<double> values);
+
 }  // namespace doppel

@@ -13,33 +13,20 @@ namespace {
 constexpr std::size_t least_samples = 100, least_of_piece = 12;
 constexpr double least_s = 1.5, least_of_piece_s = 0.25;
 
-/// How far a sample is from the cubic through two neighbours on either side.
-std::vector<double> oddness_of(const TrackPiece& piece, std::size_t arm) {
+/// How far each sample is from the cubic through two neighbours on either side.
+std::vector<double> residuals_of_cubics(const TrackPiece& piece, std::size_t arm) {
     const auto &t = piece.time_s, &x = piece.angle[arm];
-    std::vector<double> odd(x.size(), 0);
-    constexpr std::array<std::ptrdiff_t, 4> around{-2, -1, 1, 2};
+    std::vector<double> residuals(x.size(), 0);
     for (std::size_t i = 2; i + 2 < x.size(); ++i) {
-        double cubic = 0;
-        for (const auto a : around) {
-            const auto k = i + static_cast<std::size_t>(a);
+        residuals[i] = x[i];
+        for (const auto k : {i - 2, i - 1, i + 1, i + 2}) {
             double weight = 1;
-            for (const auto b : around)
-                if (b != a) {
-                    const auto other = i + static_cast<std::size_t>(b);
-                    weight *= (t[i] - t[other]) / (t[k] - t[other]);
-                }
-            cubic += weight * x[k];
+            for (const auto other : {i - 2, i - 1, i + 1, i + 2})
+                if (other != k) weight *= (t[i] - t[other]) / (t[k] - t[other]);
+            residuals[i] -= weight * x[k];
         }
-        odd[i] = x[i] - cubic;
     }
-    return odd;
-}
-
-double median_size(std::vector<double> values) {
-    for (auto& value : values) value = std::abs(value);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return residuals;
 }
 
 /// The noise, and samples that stand out of it alone: their neighbours deviate the other way.
@@ -47,21 +34,21 @@ void find_noise(Track& track, const std::atomic<bool>& stop) {
     constexpr double far = 12, of_cubic = 1.39;  // the deviation of noise of 1 from a cubic of the same noise
     for (std::size_t arm = 0; arm < 2; ++arm) {
         std::vector<double> all;
+        std::vector<std::vector<double>> of_pieces;
         for (const auto& piece : track.pieces) {
             throw_if_set(stop);
-            const auto odd = oddness_of(piece, arm);
-            all.insert(all.end(), odd.begin() + 2, odd.end() - 2);
+            const auto& r = of_pieces.emplace_back(residuals_of_cubics(piece, arm));
+            all.insert(all.end(), r.begin() + 2, r.end() - 2);
         }
-        const double size = 1.4826 * median_size(all);
+        const double size = 1.4826 * median_size(std::move(all));
         track.noise[arm] = size / of_cubic;
-        for (auto& piece : track.pieces) {
-            const auto odd = oddness_of(piece, arm);
-            for (std::size_t i = 2; i + 2 < odd.size(); ++i) {
-                const bool peak = std::abs(odd[i]) > std::abs(odd[i - 1]) && std::abs(odd[i]) > std::abs(odd[i + 1]);
-                const bool alone = odd[i] * odd[i - 1] <= 0 && odd[i] * odd[i + 1] <= 0;
-                if (std::abs(odd[i]) > far * size && size > 0 && peak && alone) piece.is_outlier[arm][i] = 1;
+        for (std::size_t k = 0; k < track.pieces.size(); ++k)
+            for (std::size_t i = 2; i + 2 < of_pieces[k].size(); ++i) {
+                const double before = of_pieces[k][i - 1], r = of_pieces[k][i], after = of_pieces[k][i + 1];
+                const bool is_peak = std::abs(r) > std::abs(before) && std::abs(r) > std::abs(after);
+                if (std::abs(r) > far * size && size > 0 && is_peak && r * before <= 0 && r * after <= 0)
+                    track.pieces[k].is_outlier[arm][i] = 1;
             }
-        }
     }
 }
 
@@ -69,29 +56,26 @@ bool is_short(const TrackPiece& piece) {
     return piece.size() < least_of_piece || piece.duration() < least_of_piece_s;
 }
 
-/// Leaves out crumbs between gaps; a whole file that is too short is left, to be refused.
-void drop_crumbs(Track& track) {
-    std::map<std::string_view, std::size_t> of_file;
+/// Leaves out fragments between gaps; a whole file that is too short is left, to be refused.
+void drop_fragments(Track& track) {
+    std::map<std::string, std::size_t> of_file;
     for (const auto& piece : track.pieces) ++of_file[piece.name];
-    std::vector<bool> is_dropped(track.pieces.size(), false);
-    std::size_t dropped = 0;
-    for (std::size_t k = track.pieces.size(); k-- > 0;) {
-        auto& left = of_file[track.pieces[k].name];
-        if (!is_short(track.pieces[k]) || left == 1) continue;
-        is_dropped[k] = true;
-        --left, ++dropped;
-    }
-    std::vector<TrackPiece> pieces;
-    std::vector<double> starts;
-    for (std::size_t k = 0; k < track.pieces.size(); ++k) {
-        if (is_dropped[k]) continue;
-        pieces.push_back(std::move(track.pieces[k]));
-        if (!track.start_s.empty()) starts.push_back(track.start_s[k]);
-    }
-    track.pieces = std::move(pieces), track.start_s = std::move(starts);
+    const auto dropped = std::erase_if(track.pieces, [&](const TrackPiece& piece) {
+        auto& left = of_file[piece.name];
+        return is_short(piece) && left > 1 && left-- > 0;
+    });
     if (dropped > 0)
         track.notes.push_back(fmt::format("{} stretches between gaps, of less than {} samples or {} s, were left out",
                                           dropped, least_of_piece, least_of_piece_s));
+}
+
+/// Where the pieces are on one clock, if their times never go back.
+void find_clock(Track& track) {
+    for (std::size_t k = 0; k < track.pieces.size(); ++k) {
+        const auto& times = track.pieces[k].time_s;
+        if (k > 0 && times.front() <= track.pieces[k - 1].time_s.back()) return track.start_s.clear();
+        track.start_s.push_back(times.front() - track.pieces[0].time_s[0]);
+    }
 }
 
 void demand_length(const Track& track) {
@@ -107,13 +91,12 @@ void demand_length(const Track& track) {
             track.pieces.front().name, track.samples(), track.duration(), least_samples, least_s);
 }
 
+/// Of an arm, in all pieces.
 std::array<double, 2> range_of(const Track& track, std::size_t arm) {
-    double low = track.pieces[0].angle[arm][0], high = low;
-    for (const auto& piece : track.pieces) {
-        low = std::min(low, *std::min_element(piece.angle[arm].begin(), piece.angle[arm].end()));
-        high = std::max(high, *std::max_element(piece.angle[arm].begin(), piece.angle[arm].end()));
-    }
-    return {low, high};
+    std::array<double, 2> range{track.pieces[0].angle[arm][0], track.pieces[0].angle[arm][0]};
+    for (const auto& piece : track.pieces)
+        for (const double angle : piece.angle[arm]) range = {std::min(range[0], angle), std::max(range[1], angle)};
+    return range;
 }
 
 void demand_motion(const Track& track) {
@@ -142,27 +125,26 @@ struct Reading {
     double unit = 1;  // of the angles, rad
     bool relative = false, mirrored = false;
     std::array<int, 2> quarters{};  // of a turn to subtract
+
+    std::array<double, 2> rates(double first, double second) const {
+        first *= unit, second *= mirrored ? -unit : unit;
+        return {first, relative ? second + first : second};
+    }
+    std::array<double, 2> angles(double first, double second) const {
+        constexpr double quarter = std::numbers::pi / 2;
+        const auto [one, other] = rates(first, second);
+        const double shift = quarters[0] * quarter, shift_2 = quarters[1] * quarter;
+        return {one - shift, other - shift_2 - (relative ? shift : 0)};
+    }
 };
 
-std::vector<Glimpse> read_as(std::vector<Glimpse> glimpses, const Reading& reading) {
+double unexplained(std::vector<Glimpse> glimpses, const Reading& reading) {
     for (auto& g : glimpses) {
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            const double unit = arm == 1 && reading.mirrored ? -reading.unit : reading.unit;
-            g.angle[arm] = unit * g.angle[arm] - reading.quarters[arm] * std::numbers::pi / 2;
-            g.rate[arm] *= unit;
-            g.acceleration[arm] *= unit;
-        }
-        if (reading.relative) {
-            g.angle[1] += g.angle[0];
-            g.rate[1] += g.rate[0];
-            g.acceleration[1] += g.acceleration[0];
-        }
+        g.angle = reading.angles(g.angle[0], g.angle[1]);
+        g.rate = reading.rates(g.rate[0], g.rate[1]);
+        g.acceleration = reading.rates(g.acceleration[0], g.acceleration[1]);
     }
-    return glimpses;
-}
-
-double unexplained(const std::vector<Glimpse>& glimpses, const Reading& reading) {
-    const auto result = regress(read_as(glimpses, reading));
+    const auto result = regress(glimpses);
     return result.is_physical ? result.unexplained : 1;
 }
 
@@ -189,11 +171,8 @@ void convert(Track& track, const Reading& reading) {
     track.notes.push_back("only so do the angles obey a double pendulum's equations, and so they were taken:" + words);
     for (auto& piece : track.pieces)
         for (std::size_t i = 0; i < piece.size(); ++i) {
-            auto &first = piece.angle[0][i], &second = piece.angle[1][i];
-            if (reading.mirrored) second = -second;
-            first -= reading.quarters[0] * std::numbers::pi / 2;
-            second -= reading.quarters[1] * std::numbers::pi / 2;
-            if (reading.relative) second += first;
+            const auto taken = reading.angles(piece.angle[0][i], piece.angle[1][i]);
+            piece.angle[0][i] = taken[0], piece.angle[1][i] = taken[1];
         }
 }
 
@@ -233,8 +212,16 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
 
 }  // namespace
 
+double median_size(std::vector<double> values) {
+    for (auto& value : values) value = std::abs(value);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 void check_track(Track& track, const std::atomic<bool>& stop) {
-    drop_crumbs(track);
+    drop_fragments(track);
+    find_clock(track);
     demand_length(track);
     find_noise(track, stop);
     demand_motion(track);

@@ -25,10 +25,9 @@ Coverage coverage_of(int trials, const Parameters& truth, const ModelSpec& model
     for (int trial = 0; trial < trials; ++trial) {
         measuring.seed = static_cast<unsigned>(1000 + trial);
         const auto track = simulated(truth, model.drag, measuring);
-        const auto division = divide(track);
-        const auto fit =
-            fit_model(track, division.segments, fit_at(model, truth, track, division), {.jobs = 2}, no_stop);
-        const auto uncertainty = uncertainty_of(track, division.segments, fit, 2, no_stop);
+        const FitJob job{track, no_stop, 2};
+        const auto fit = fit_model(job, fit_at(model, truth, track), {});
+        const auto uncertainty = uncertainty_of(job, fit);
         coverage.white += uncertainty.is_white;
         for (const auto parameter : uncertainty.parameters) {
             const double off = fit.parameters[index_of(parameter)] - truth[index_of(parameter)];

@@ -23,10 +23,9 @@ std::pair<int, std::string> ending(const Track& track, Bodies bodies = Bodies::a
 
 /// How many standard errors the loss of energy is from 0.
 double errors_from_zero(const Track& track, const Parameters& guess, bool point = false) {
-    const auto division = divide(track);
-    const auto fit = fit_model(track, division.segments, fit_at(model_of(point, 1), guess, track, division),
-                               {.step_share = 0.2, .relative = 5e-4}, no_stop);
-    const auto loss = energy_loss(track, division.segments, fit, 2, no_stop);
+    const FitJob job{track, no_stop, 2};
+    const auto fit = fit_model(job, fit_at(model_of(point, 1), guess, track), {.step_share = 0.2, .relative = 5e-4});
+    const auto loss = energy_loss(job, fit);
     return loss.share / loss.standard_error;
 }
 

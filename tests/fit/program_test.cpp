@@ -212,9 +212,8 @@ double worst_of_preset(const fs::path& folder, const std::string& name, const Tr
 
 /// The preset is one that "check" and "simulate" take, and swings as the track did.
 TEST(FitProgram, ItsPresetSwingsAsTheTrackDid) {
-    FittedPendulum points{.gravity = 9.8};
-    points.mass = {1.3, 1}, points.length = {0.2, 0.25}, points.center = points.length;
-    const auto track = test::simulated(ratios_of(points), Drag::own, {.pieces = 3, .noise = 1e-4});
+    const auto track = test::simulated(test::ratios_of(test::point_masses(1.3, 1, 0.2, 0.25)), Drag::own,
+                                       {.pieces = 3, .noise = 1e-4});
     const auto folder = fresh_folder();
     std::vector<fs::path> files;
     for (std::size_t k = 0; k < track.pieces.size(); ++k) {

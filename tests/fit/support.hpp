@@ -4,6 +4,7 @@
 #include "fit/ladder.hpp"
 #include "fit/physical.hpp"
 #include "integrate/motion.hpp"
+#include "physics/physical_pendulum.hpp"
 
 #include <fmt/format.h>
 
@@ -46,8 +47,7 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
     std::mt19937_64 random(measuring.seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> even(-1, 1);
-    Arms<double> arms{.p = {}, .drag = drag};
-    std::copy_n(truth.begin(), dynamic_count, arms.p.begin());
+    const auto arms = arms_of({.drag = drag, .fitted = {}}, truth);
     Track track;
     ArmState<double> start{};
     for (std::size_t k = 0; k < measuring.pieces; ++k) {
@@ -69,23 +69,38 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
         track.pieces.push_back(std::move(piece));
         if (measuring.every_s > 0) {
             flow.reach(measuring.every_s);
-            start = flow.state();  // at the end of a step that holds this time: a multiple of the step
+            start = flow.values_at(measuring.every_s);
         }
     }
     track.noise = {measuring.noise, measuring.noise};
     return track;
 }
 
-/// Angles as "simulate" has them, sharp dry friction with its events: `samples` of them at `hz` a second.
-inline std::vector<std::array<double, 2>> simulated_angles(const FittedPendulum& made, const ArmState<double>& start,
-                                                           long hz, std::size_t samples) {
-    const auto list = [](const std::array<double, 2>& pair) { return std::vector<double>{pair[0], pair[1]}; };
-    PhysicalPendulum<double> pendulum;
-    pendulum.chain = {list(made.mass), list(made.length), {start[0], start[1]}, {start[2], start[3]}};
-    pendulum.chain.gravity = made.gravity;
-    pendulum.center = list(made.center), pendulum.inertia = list(made.inertia);
-    pendulum.friction.viscous = list(made.viscous), pendulum.friction.coulomb = list(made.coulomb);
-    pendulum.friction.arm_quadratic = list(made.quadratic);
+/// A, B, C, D1, D2 of a pendulum, and its friction, over B: the way back from fitted_pendulum().
+inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
+    const auto &m = pendulum.chain.mass, &a = pendulum.center, &i = pendulum.inertia;
+    const double l1 = pendulum.chain.length[0], g = pendulum.chain.gravity, b = i[1] + m[1] * a[1] * a[1];
+    Parameters p{(i[0] + m[0] * a[0] * a[0] + m[1] * l1 * l1) / b, m[1] * l1 * a[1] / b,
+                 (m[0] * a[0] + m[1] * l1) * g / b, m[1] * a[1] * g / b};
+    const auto take = [&](FitParameter first, const std::vector<double>& list) {
+        for (std::size_t k = 0; k < list.size(); ++k) p[index_of(first) + k] = list[k] / b;
+    };
+    const auto& friction = pendulum.friction;
+    take(viscous_1, friction.viscous);
+    take(coulomb_1, friction.coulomb);
+    take(quadratic_1, friction.arm_quadratic.empty() ? friction.air_quadratic : friction.arm_quadratic);
+    at(p, scale_1) = at(p, scale_2) = 1;
+    return p;
+}
+inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, double l2) {
+    return physical(Pendulum<double>{.mass = {m1, m2}, .length = {l1, l2}, .angle = {}, .rate = {}, .gravity = 9.8});
+}
+
+/// Angles as "simulate" has them, Coulomb friction with its events: `samples` of them at `hz` a second.
+inline std::vector<std::array<double, 2>> simulated_angles(PhysicalPendulum<double> pendulum,
+                                                           const ArmState<double>& start, long hz,
+                                                           std::size_t samples) {
+    pendulum.chain.angle = {start[0], start[1]}, pendulum.chain.rate = {start[2], start[3]};
     MotionSpec spec;
     spec.chain = pendulum.chain.cast<Quad>();
     spec.physical = pendulum.cast<Quad>();
@@ -127,11 +142,12 @@ inline std::string csv_of(const TrackPiece& piece) {
 }
 
 /// A fit that stands at the truth, its starts guessed from the samples.
-inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track, const Division& division) {
+inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track) {
     Fit fit{};
+    fit.segments = divide(track).segments;
     fit.model = model;
     fit.parameters = parameters;
-    for (const auto& segment : division.segments) {
+    for (const auto& segment : fit.segments) {
         const auto& piece = track.pieces[segment.piece];
         const auto slope = [&](std::size_t arm) {
             const auto& x = piece.angle[arm];
