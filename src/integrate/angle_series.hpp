@@ -2,6 +2,7 @@
 
 #include "integrate/lane_series.hpp"
 #include "integrate/taylor_series.hpp"
+#include "numeric/lanes.hpp"
 #include "numeric/subnormals.hpp"
 #include "physics/angle_chain.hpp"
 
@@ -119,32 +120,38 @@ private:
         }
     }
 
-    /// R_k over the length, and F_k across: of some links at a time, which stay in the registers.
+    /// R_k over the length, and F_k across.
     void multiply(int k) {
-        constexpr Eigen::Index some = 16;
-        for (Eigen::Index first = 0; first < links_; first += some) {
-            const auto size = std::min(some, links_ - first);
-            Scalar x[some], y[some], across[some];
-            std::fill_n(x, size, Scalar(0));
-            std::fill_n(y, size, Scalar(0));
-            std::fill_n(across, size, Scalar(0));
-            for (int j = 1; j <= k + 1; ++j) {
-                const Scalar *xj = term(j).x.data() + first, *yj = term(j).y.data() + first;
-                const Scalar* rate = term(k + 1 - j).rate.data() + first;
-                for (Eigen::Index i = 0; i < size; ++i) {
-                    x[i] += xj[i] * rate[i];
-                    y[i] += yj[i] * rate[i];
-                }
-                if (j > k) break;
-                const Scalar *force = term(k - j).across.data() + first, *pull = term(k - j).along.data() + first;
-                for (Eigen::Index i = 0; i < size; ++i) across[i] += xj[i] * force[i] + yj[i] * pull[i];
-            }
-            for (Eigen::Index i = 0; i < size; ++i) {
-                known_[first + i] = x[i];
-                along_[first + i] = y[i];
-                term(k).across[first + i] = -across[i];
-            }
+        Eigen::Index first = 0;
+        if constexpr (std::is_same_v<Scalar, double>)  // side by side in registers, each with sums of its own
+            for (constexpr int some = 8; first + some <= links_; first += some) multiply<Lanes<some>>(k, first);
+        for (; first < links_; ++first) multiply<Scalar>(k, first);
+    }
+    template <class Pack>
+    void multiply(int k, Eigen::Index first) {
+        const auto load = [&](const Half& from) -> Pack {
+            if constexpr (std::is_same_v<Pack, Scalar>)
+                return from[first];
+            else
+                return Pack::load(from.data() + first);
+        };
+        const auto store = [&](const Pack& what, Half& to) {
+            if constexpr (std::is_same_v<Pack, Scalar>)
+                to[first] = what;
+            else
+                what.store(to.data() + first);
+        };
+        Pack x(0), y(0), across(0);
+        for (int j = 1; j <= k + 1; ++j) {
+            const Pack xj = load(term(j).x), yj = load(term(j).y), rate = load(term(k + 1 - j).rate);
+            x += xj * rate;
+            y += yj * rate;
+            if (j > k) break;
+            across += xj * load(term(k - j).across) + yj * load(term(k - j).along);
         }
+        store(x, known_);
+        store(y, along_);
+        store(-across, term(k).across);
     }
 
     /// The greatest |ω_k|.
