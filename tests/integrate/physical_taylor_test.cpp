@@ -1,3 +1,4 @@
+#include "integrate/dormand_prince.hpp"
 #include "integrate/support.hpp"
 #include "integrate/taylor.hpp"
 #include "physics/physical_chain.hpp"
