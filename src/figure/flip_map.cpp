@@ -85,8 +85,10 @@ public:
                         frame_.x.count, frame_.y.count, is_at_rest() ? " from rest" : "",
                         has_outline() ? " Inside the line no rod has the energy to flip." : "",
                         scientific(spec_.tolerance), check_words(check_findings(numbers))));
-        if (const auto broken = broken_words(numbers); !broken.empty())
-            figure.captions.push_back(broken + ": their cells are empty.");
+        if (const auto broken = broken_words(numbers); !broken.empty()) {
+            plot.map->none_label += ", or broken down";
+            figure.captions.push_back(broken + ": their cells are empty, as those without a flip.");
+        }
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {

@@ -260,8 +260,7 @@ private:
     // of two or three rods
     RodPulls<Scalar> pulls_;
     Scalar by_rho2_{1};
-    Scalar least_motion_{
-        0};  // Σ |u_k|² above which pulls_ serves: nowhere with masses much lighter than the next, m²/s²
+    Scalar least_motion_{0};  // m²/s²: Σ |u_k|² above which pulls_ serves; infinite with a mass below 1/8 of the next
 };
 
 /// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) of bobs.
