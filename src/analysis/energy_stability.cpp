@@ -85,8 +85,7 @@ double released_energy(const Pendulum<double>& release) {
 
 std::vector<double> greatest_energy_errors(const StabilityRun& run, std::span<const Pendulum<Quad>> releases,
                                            const std::atomic<bool>& stop) {
-    if (!releases.empty() && Batch::serves(run.method, releases[0].links()))
-        return side_by_side(run, releases, stop);
+    if (!releases.empty() && Batch::serves(run.method, releases[0].links())) return side_by_side(run, releases, stop);
     std::vector<double> errors;
     for (const auto& release : releases) errors.push_back(alone(run, release, stop));
     return errors;

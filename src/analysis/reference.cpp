@@ -33,8 +33,8 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, double allowed
     const auto model = spec.model == Model::mechanism ? Model::mechanism : Model::angles;
     const bool has_rods = model == Model::angles && !spec.physical;
     Reference reference{end_of(spec, model, finer, seconds, stop), 0};
-    const auto other = has_rods ? end_of(spec, Model::constraints, finer, seconds, stop)
-                                : end_of(spec, model, fine, seconds, stop);
+    const auto other =
+        has_rods ? end_of(spec, Model::constraints, finer, seconds, stop) : end_of(spec, model, fine, seconds, stop);
     reference.disagreement = spec.chain ? angle_error(reference.end, other) : place_error(reference.end, other);
     if (!(reference.disagreement <= allowed))
         throw method_failed(
