@@ -14,36 +14,31 @@
 
 namespace doppel {
 
-/// The Taylor series of a model from its right-hand side alone, as a tape takes it down at the start of each step.
-/// `Model` is one over plain numbers, `TapedModel` the same over Taped<Scalar>.
+/// What step control goes by in a model's state: the first `coordinates`, whose rates begin at `rates`.
+struct SeriesScale {
+    Eigen::Index coordinates, rates;
+    double length;   // accelerations a amount to a rate of √(length |a|): 1 for angles, m for places
+    double longest;  // s, of a step
+};
+
+/// The Taylor series of a model from its right-hand side alone, which a tape takes down once, and again where what was compared
+/// in it has changed. `Model` is one over plain numbers, `TapedModel` the same over Taped<Scalar>.
 ///
 /// What the right-hand side compares (the sign of a rate in a drag like |ω| ω) may change on the way: a step ends just
-/// behind the first such change, by so little that what it errs there, its third power, is below rounding. Where a force
-/// jumps the model has an event (integrate/events.hpp), at which the step ends.
+/// behind the first such change, by so little that what it errs there, its third power, is below rounding. Joints that stick
+/// have events of the model (integrate/events.hpp), at which the step ends.
 template <class Model, class TapedModel>
 class TapedSeries {
 public:
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
 
-    TapedSeries(const Model& model, int order)
-        : order_(order),
-          source_(model),
-          layout_(model.layout),
-          model_(model.pendulum.template cast<Taped<Scalar>>()),
-          tape_(order + 1),
-          longest_(
-              longest_chain_step(plain_value(model.pendulum.chain.reach()), plain_value(model.pendulum.chain.gravity))),
-          y_(2 * layout_.half),
-          rate_(y_) {}
+    /// `source` is asked for the modes of its joints, where it has any.
+    TapedSeries(const Model& source, TapedModel taped, const SeriesScale& scale, int order)
+        : order_(order), source_(source), model_(std::move(taped)), tape_(order + 1), scale_(scale) {}
 
     void expand(const State& y) {
-        tape_.clear();
-        for (Eigen::Index i = 0; i < y.size(); ++i) y_[i] = Taped<Scalar>::argument(y[i], tape_);
-        if constexpr (requires { model_.keep_modes_of(source_); }) model_.keep_modes_of(source_);
-        model_.rate(y_, rate_);
-        tape_.finish();
-        for (Eigen::Index i = 0; i < y.size(); ++i) tape_.term(y_[i].node(), 0) = y[i];
+        if (!is_as_recorded(y)) record(y);
         for (int k = 0; k <= order_; ++k) {
             tape_.compute(k);
             const Scalar by_next = Scalar(1) / Scalar(k + 1);
@@ -53,10 +48,11 @@ public:
                 tape_.term(y_[i].node(), k + 1) = rate * by_next;
             }
         }
-        amount_ = greatest(0) + std::sqrt(greatest(1));
+        amount_ = greatest(0) + std::sqrt(scale_.length * greatest(1));
     }
 
-    void move(const Scalar& h, State& change) const {
+    template <class Vector>
+    void move(const Scalar& h, Vector& change) const {
         for (Eigen::Index i = 0; i < change.size(); ++i) {
             Scalar sum(0);
             for (int k = order_ + 1; k > 0; --k) sum = (sum + series(i)[k]) * h;
@@ -65,7 +61,7 @@ public:
     }
 
     double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
-    double longest_step() const { return longest_; }
+    double longest_step() const { return scale_.longest; }
 
     /// log2 of size(k), also where no double holds it: soon after rest, quadratic drag has coefficients like 10^(14 k).
     double log2_size(int k) const requires(!std::same_as<Scalar, double>) {
@@ -81,6 +77,9 @@ public:
     /// At most `h`, s: just behind the first change of what the right-hand side compares.
     double first_event(double h) const {
         const double beyond = 0.1 * std::cbrt(plain_value(std::numeric_limits<Scalar>::epsilon())) * h;
+        // where the force jumps, and its series is singular: as close to it as the range of its coefficients allows
+        constexpr int range = std::numeric_limits<Scalar>::max_exponent10;
+        const double just_beyond = std::max(1e-15, std::pow(10.0, 1.0 - range / (order_ + 2.0))) * h;
         double first = h;
         std::vector<double> powers;  // of t / first, made to start below 0
         const auto at = [&](double t) {
@@ -93,45 +92,81 @@ public:
             }
             return now;
         };
-        for (const int node : tape_.events()) {
-            const auto *x = tape_.series(node), *end = x + order_ + 1;
+        for (const auto& event : tape_.events()) {
+            const auto *x = tape_.series(event.node), *end = x + order_ + 1;
             x = std::find_if(x, end, [](const Scalar& c) { return c != Scalar(0); });
             if (x == end) continue;
             powers.clear();
             for (Scalar scale = *x < Scalar(0) ? Scalar(1) : Scalar(-1); x != end; ++x, scale *= Scalar(first))
                 powers.push_back(plain_value(Scalar(*x * scale)));
             const auto rises = Bernstein::of_powers(powers, 1).rises();
-            if (!rises.empty()) first = std::min(first, root(rises.front(), at) * first + beyond);
+            if (rises.empty()) continue;
+            const double t = root(rises.front(), at) * first;
+            first = std::min(first, t + (event.may_jump ? just_beyond : beyond));
         }
         return first;
     }
 
 private:
+    void record(const State& y) {
+        tape_.clear();
+        rate_ = y_ = typename TapedModel::State(y.size());
+        for (Eigen::Index i = 0; i < y.size(); ++i) y_[i] = Taped<Scalar>::argument(y[i], tape_);
+        if constexpr (has_modes) model_.keep_modes_of(source_);
+        model_.rate(y_, rate_);
+        tape_.finish();
+        start_at(y);
+    }
+    bool is_as_recorded(const State& y) {
+        if (tape_.empty()) return false;
+        if constexpr (has_modes)
+            if (model_.modes() != source_.modes()) return false;
+        start_at(y);
+        tape_.compute(0);
+        return tape_.is_as_recorded();
+    }
+    void start_at(const State& y) {
+        for (Eigen::Index i = 0; i < y.size(); ++i) tape_.term(y_[i].node(), 0) = y[i];
+    }
+
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
     /// The greatest coefficient k of the rates of angles or places.
     Scalar greatest_of(int k) const {
         using std::abs;
         Scalar most(0);
-        for (Eigen::Index i = 0; i < layout_.coordinates; ++i) {
-            const Scalar size = abs(series(layout_.half + i)[k]);
+        for (Eigen::Index i = 0; i < scale_.coordinates; ++i) {
+            const Scalar size = abs(series(scale_.rates + i)[k]);
             if (!(size <= most) && most == most) most = size;  // NaN stays
         }
         return most;
     }
     double greatest(int k) const { return plain_value(greatest_of(k)); }
 
+    static constexpr bool has_modes = requires(TapedModel taped, const Model& source) { taped.keep_modes_of(source); };
+
     int order_;
     const Model& source_;
-    PhysicalLayout layout_;
     TapedModel model_;
     Tape<Scalar> tape_;
-    double longest_, amount_ = 0;  // s; rad/s or m/s
+    SeriesScale scale_;
+    double amount_ = 0;  // of the rates, rad/s or m/s
     typename TapedModel::State y_, rate_;
 };
 
 template <class Scalar>
 struct SeriesOf<PhysicalChain<Scalar>> {
-    using type = TapedSeries<PhysicalChain<Scalar>, PhysicalChain<Taped<Scalar>>>;
+    using Model = PhysicalChain<Scalar>;
+    using TapedModel = PhysicalChain<Taped<Scalar>>;
+    struct type : TapedSeries<Model, TapedModel> {
+        type(const Model& model, int order)
+            : TapedSeries<Model, TapedModel>(model, TapedModel(model.pendulum.template cast<Taped<Scalar>>()),
+                                             {.coordinates = model.layout.coordinates,
+                                              .rates = model.layout.half,
+                                              .length = 1,
+                                              .longest = longest_chain_step(plain_value(model.pendulum.chain.reach()),
+                                                                            plain_value(model.pendulum.chain.gravity))},
+                                             order) {}
+    };
 };
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "numeric/envelope_matrix.hpp"
 #include "numeric/sin_cos.hpp"
 
 #include <Eigen/Core>
@@ -8,14 +9,17 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace doppel {
 
-/// The operations by which a function was computed at one point, in their order, so that the Taylor series of its results
-/// follow from those of its arguments, order by order. A comparison is noted as well: the function is as recorded until the
-/// difference of what was compared changes its sign.
+/// The operations by which a function was computed at one point, in their order and each once, so that the Taylor series of
+/// its results follow from those of its arguments, order by order. A comparison is noted as well: the function is as recorded
+/// until the difference of what was compared changes its sign.
 /// Source  Griewank & Walther, Evaluating Derivatives, §13.2; Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
 template <class S>
 class Tape {
@@ -30,30 +34,85 @@ public:
     void clear() {
         nodes_.clear();
         events_.clear();
+        systems_.clear();
     }
     /// The nodes are there; their series may be written.
-    void finish() { coefficients_.assign(nodes_.size() * terms_, Scalar(0)); }
+    void finish() {
+        coefficients_.assign(nodes_.size() * terms_, Scalar(0));
+        known_.clear();
+    }
+    bool empty() const { return nodes_.empty(); }
 
     Scalar& term(int node, int k) {
         return coefficients_[static_cast<std::size_t>(node) * terms_ + static_cast<std::size_t>(k)];
     }
     const Scalar* series(int node) const { return &coefficients_[static_cast<std::size_t>(node) * terms_]; }
-    const std::vector<int>& events() const { return events_; }
+    /// A node whose sign is part of what was recorded. Where it vanishes the function may jump if it was compared for
+    /// equality.
+    struct Event {
+        int node, sign;
+        bool may_jump;
+    };
+    const std::vector<Event>& events() const { return events_; }
+    /// Whether the function at the arguments of the last compute(0) is the one recorded.
+    bool is_as_recorded() const {
+        return std::all_of(events_.begin(), events_.end(),
+                           [&](const Event& event) { return sign_of(*series(event.node)) == event.sign; });
+    }
 
-    enum class Operation : unsigned char { argument, sum, difference, product, ratio, root, sine, cosine, size, norm };
-    /// A node's operands; −1 is the constant.
+    enum class Operation : unsigned char {
+        argument,
+        sum,
+        difference,
+        product,
+        ratio,
+        root,
+        sine,
+        cosine,
+        size,
+        norm,
+        unknown
+    };
+    /// A node's operands; −1 is the constant. Of an unknown its system and row.
     struct Node {
         Operation operation;
         int a = -1, b = -1;
         Scalar constant = Scalar(0);
     };
 
+    /// The node of that operation; an earlier one where it is the same.
     int add(Operation operation, int a = -1, int b = -1, const Scalar& constant = Scalar(0)) {
+        const auto next = static_cast<int>(nodes_.size());
+        if (operation == Operation::product && a > b && b >= 0) std::swap(a, b);
+        if (operation != Operation::argument) {
+            const auto [place, is_new] = known_.try_emplace({operation, a, b, constant}, next);
+            if (!is_new) return place->second;
+        }
         nodes_.push_back({operation, a, b, constant});
-        return static_cast<int>(nodes_.size()) - 1;
+        return next;
     }
-    void note_event(int node) {
-        if (events_.empty() || events_.back() != node) events_.push_back(node);
+    /// A x = b, with unknowns x_k of A_0 x_k = b_k − Σ_{j=1}^k A_j x_{k−j}: one matrix for all orders.
+    struct LinearSystem {
+        struct Entry {
+            Eigen::Index row, column;
+            int node;  // −1 of a constant
+            Scalar constant;
+        };
+        std::vector<Entry> entries;       // of A
+        std::vector<Entry> right;         // b, in column 0
+        EnvelopeMatrix<Scalar> matrix;    // A_0, factored
+        State<Scalar, Eigen::Dynamic> x;  // x_k
+        int first = 0;                    // node of the unknowns, one after the other
+    };
+    LinearSystem& add(LinearSystem system) {
+        const auto number = static_cast<int>(systems_.size());
+        system.first = static_cast<int>(nodes_.size());
+        for (int row = 0; row < system.matrix.rows(); ++row) add(Operation::unknown, number, row);
+        return systems_.emplace_back(std::move(system));
+    }
+    /// `now` is its value.
+    void note_event(int node, const Scalar& now, bool may_jump = false) {
+        if (events_.empty() || events_.back().node != node) events_.push_back({node, sign_of(now), may_jump});
     }
 
     /// Coefficient k of every node that is no argument, from those of the arguments to k and all before.
@@ -67,6 +126,8 @@ public:
     }
 
 private:
+    static int sign_of(const Scalar& x) { return x > Scalar(0) ? 1 : x < Scalar(0) ? -1 : 0; }
+
     Scalar operand(int node, const Scalar& constant, int k) {
         return node >= 0 ? term(node, k) : k == 0 ? constant : Scalar(0);
     }
@@ -76,6 +137,11 @@ private:
         Scalar sum(0);
         for (int j = first; j <= last; ++j) sum += x[j] * y[k - j];
         return sum;
+    }
+    /// Σ_{j=first}^{k−first} a_j a_{k−j}
+    Scalar square(int a, int k, int first) const {
+        const Scalar half = convolution(a, a, k, first, (k + 1) / 2 - 1), sum = half + half;
+        return k % 2 == 0 && k >= 2 * first ? Scalar(sum + series(a)[k / 2] * series(a)[k / 2]) : sum;
     }
     /// Σ_{j=1}^k j/k a_j b_{k−j}
     Scalar slope(int a, int b, int k) const {
@@ -97,7 +163,7 @@ private:
             case Operation::product:
                 if (a < 0) return constant * term(b, k);
                 if (b < 0) return term(a, k) * constant;
-                return convolution(a, b, k, 0, k);
+                return a == b ? square(a, k, 0) : convolution(a, b, k, 0, k);
             case Operation::ratio: {
                 if (b < 0) return term(a, k) / constant;
                 const Scalar sum = operand(a, constant, k) - convolution(b, self, k, 1, k);
@@ -106,7 +172,7 @@ private:
             case Operation::root: {
                 using std::sqrt;
                 if (k == 0) return sqrt(term(a, 0));
-                const Scalar rest = term(a, k) - convolution(self, self, k, 1, k - 1);
+                const Scalar rest = term(a, k) - square(self, k, 1);
                 return rest / (Scalar(2) * term(self, 0));
             }
             case Operation::sine:  // its cosine is the next node
@@ -119,8 +185,25 @@ private:
             }
             case Operation::norm:
                 return norm(a, b, self, k);
+            case Operation::unknown:
+                if (b == 0) solve(systems_[static_cast<std::size_t>(a)], k);
+                return systems_[static_cast<std::size_t>(a)].x[b];
         }
         return Scalar(0);
+    }
+    void solve(LinearSystem& system, int k) {
+        auto& [entries, right, matrix, x, first] = system;
+        if (k == 0) {
+            matrix.clear();
+            for (const auto& entry : entries) matrix(entry.row, entry.column) = operand(entry.node, entry.constant, 0);
+            matrix.factor();
+        }
+        for (const auto& entry : right) x[entry.row] = operand(entry.node, entry.constant, k);
+        if (k > 0)
+            for (const auto& entry : entries)
+                if (entry.node >= 0)
+                    x[entry.row] -= convolution(entry.node, first + static_cast<int>(entry.column), k, 1, k);
+        matrix.solve(x);
     }
     /// The first of the terms to k that is not 0; k where all are.
     int first_term(int node, int k) const {
@@ -132,20 +215,21 @@ private:
     Scalar norm(int a, int b, int self, int k) const {
         using std::sqrt;
         const auto squares = [&](int order) {
-            const int first = order > k ? 1 : 0, last = order - first;
-            return Scalar(convolution(a, a, order, first, last) + convolution(b, b, order, first, last));
+            const int first = order > k ? 1 : 0;
+            return Scalar(square(a, order, first) + square(b, order, first));
         };
         const Scalar* c = series(self);
         if (k == 0) return sqrt(squares(0));
-        if (c[0] != Scalar(0)) return (squares(k) - convolution(self, self, k, 1, k - 1)) / (Scalar(2) * c[0]);
+        if (c[0] != Scalar(0)) return (squares(k) - square(self, k, 1)) / (Scalar(2) * c[0]);
         if (k == 1) return sqrt(squares(2));
-        return c[1] == Scalar(0) ? c[1]
-                                 : (squares(k + 1) - convolution(self, self, k + 1, 2, k - 1)) / (Scalar(2) * c[1]);
+        return c[1] == Scalar(0) ? c[1] : (squares(k + 1) - square(self, k + 1, 2)) / (Scalar(2) * c[1]);
     }
 
     std::size_t terms_;
     std::vector<Node> nodes_;
-    std::vector<int> events_;
+    std::vector<Event> events_;
+    std::vector<LinearSystem> systems_;
+    std::map<std::tuple<Operation, int, int, Scalar>, int> known_;  // while it is recorded
     std::vector<Scalar> coefficients_, inverse_;
 };
 
@@ -171,11 +255,20 @@ public:
     /// −1 of a constant.
     int node() const { return next_ - 1; }
 
-    friend Taped operator+(const Taped& a, const Taped& b) { return of(Operation::sum, a.value + b.value, a, b); }
+    friend Taped operator+(const Taped& a, const Taped& b) {
+        if (a.is_constant(0)) return b;
+        if (b.is_constant(0)) return a;
+        return of(Operation::sum, a.value + b.value, a, b);
+    }
     friend Taped operator-(const Taped& a, const Taped& b) {
+        if (b.is_constant(0)) return a;
         return of(Operation::difference, a.value - b.value, a, b);
     }
-    friend Taped operator*(const Taped& a, const Taped& b) { return of(Operation::product, a.value * b.value, a, b); }
+    friend Taped operator*(const Taped& a, const Taped& b) {
+        if (a.is_constant(1)) return b;
+        if (b.is_constant(1)) return a;
+        return of(Operation::product, a.value * b.value, a, b);
+    }
     friend Taped operator/(const Taped& a, const Taped& b) { return of(Operation::ratio, a.value / b.value, a, b); }
     friend Taped operator+(const Taped& a) { return a; }
     friend Taped operator-(const Taped& a) { return Taped(Scalar(0)) - a; }
@@ -194,7 +287,7 @@ public:
         using std::abs;
         if (!a.tape_) return Taped(Scalar(abs(a.value)));
         const Taped size(abs(a.value), *a.tape_, a.tape_->add(Operation::size, a.node()));
-        a.tape_->note_event(size.node());
+        a.tape_->note_event(size.node(), size.value);
         return size;
     }
     /// √(a² + b²), until it vanishes: neither is a constant.
@@ -202,7 +295,7 @@ public:
         using std::sqrt;
         const Taped size(sqrt(Scalar(a.value * a.value + b.value * b.value)), *a.tape_,
                          a.tape_->add(Operation::norm, a.node(), b.node()));
-        a.tape_->note_event(size.node());
+        a.tape_->note_event(size.node(), size.value);
         return size;
     }
 
@@ -210,26 +303,60 @@ public:
     friend bool operator<=(const Taped& a, const Taped& b) { return noted(a, b), a.value <= b.value; }
     friend bool operator>(const Taped& a, const Taped& b) { return noted(a, b), a.value > b.value; }
     friend bool operator>=(const Taped& a, const Taped& b) { return noted(a, b), a.value >= b.value; }
-    friend bool operator==(const Taped& a, const Taped& b) { return noted(a, b), a.value == b.value; }
-    friend bool operator!=(const Taped& a, const Taped& b) { return noted(a, b), a.value != b.value; }
+    friend bool operator==(const Taped& a, const Taped& b) { return noted(a, b, true), a.value == b.value; }
+    friend bool operator!=(const Taped& a, const Taped& b) { return noted(a, b, true), a.value != b.value; }
 
     Tape<Scalar>* tape() const { return tape_; }
 
 private:
+    bool is_constant(int number) const { return !tape_ && value == Scalar(number); }
     static Taped of(Operation operation, const Scalar& now, const Taped& a, const Taped& b) {
         auto* tape = a.tape_ ? a.tape_ : b.tape_;
         if (!tape) return Taped(now);
         return {now, *tape, tape->add(operation, a.node(), b.node(), a.tape_ ? b.value : a.value)};
     }
-    static void noted(const Taped& a, const Taped& b) {
+    static void noted(const Taped& a, const Taped& b, bool may_jump = false) {
         if (!a.tape_ && !b.tape_) return;
         const auto difference = a - b;
-        difference.tape_->note_event(difference.node());
+        difference.tape_->note_event(difference.node(), difference.value, may_jump);
     }
 
     Tape<Scalar>* tape_ = nullptr;
     int next_ = 0;  // after its node; 0 of a constant
 };
+
+/// A x = b is noted as a whole, unless all of it is constant.
+template <class S>
+void solve_factored(EnvelopeMatrix<Taped<S>>& a, State<Taped<S>, Eigen::Dynamic>& x) {
+    if (a.rows() == 0) return;
+    std::vector<Eigen::Index> begin;
+    for (Eigen::Index i = 0; i < a.rows(); ++i) begin.push_back(a.begin(i));
+    typename Tape<S>::LinearSystem system{{}, {}, EnvelopeMatrix<S>(begin), State<S, Eigen::Dynamic>(a.rows())};
+    Tape<S>* tape = nullptr;
+    const auto note = [&](auto& list, Eigen::Index row, Eigen::Index column, const Taped<S>& what) {
+        list.push_back({row, column, what.node(), what.value});
+        if (what.tape()) tape = what.tape();
+    };
+    const auto note_entry = [&](Eigen::Index row, Eigen::Index column) {
+        note(system.entries, row, column, a(row, column));
+        system.matrix(row, column) = a(row, column).value;
+    };
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        for (Eigen::Index j = a.begin(i); j < i; ++j) {
+            note_entry(i, j);
+            note_entry(j, i);
+        }
+        note_entry(i, i);
+        note(system.right, i, 0, x[i]);
+        system.x[i] = x[i].value;
+    }
+    system.matrix.factor();
+    system.matrix.solve(system.x);
+    for (Eigen::Index i = 0; i < a.rows(); ++i) x[i] = Taped<S>(system.x[i]);
+    if (!tape) return;
+    const auto& noted = tape->add(std::move(system));
+    for (Eigen::Index i = 0; i < a.rows(); ++i) x[i] = Taped<S>(noted.x[i], *tape, noted.first + static_cast<int>(i));
+}
 
 template <class S>
 struct SinCos<Taped<S>> {

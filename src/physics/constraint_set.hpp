@@ -1,7 +1,7 @@
 #pragma once
 
+#include "numeric/envelope_matrix.hpp"
 #include "physics/constraint.hpp"
-#include "physics/constraint_matrix.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ public:
     const Constraint<Scalar>& operator[](std::size_t constraint) const { return constraints_[constraint]; }
 
     /// A J M⁻¹ Jᵀ of zeros, wide enough for what couple() puts into it.
-    ConstraintMatrix<Scalar> blank_matrix() const {
+    EnvelopeMatrix<Scalar> blank_matrix() const {
         std::vector<Eigen::Index> begin(static_cast<std::size_t>(rows()));
         std::iota(begin.begin(), begin.end(), 0);
         for (const auto& [first, second] : couples_) {
@@ -64,7 +64,7 @@ public:
             auto& of_high = begin[static_cast<std::size_t>(high)];
             of_high = std::min(of_high, low);
         }
-        return ConstraintMatrix<Scalar>(begin);
+        return EnvelopeMatrix<Scalar>(begin);
     }
     Gradients blank_gradients() const { return Gradients(blocks_.size(), Place<Scalar>(Scalar(0), Scalar(0))); }
 
@@ -152,7 +152,7 @@ public:
     }
 
     /// matrix ← J1 M⁻¹ J0ᵀ, with the inverse masses w
-    void couple(const Gradients& one, const Gradients& zero, const Column& w, ConstraintMatrix<Scalar>& matrix) const {
+    void couple(const Gradients& one, const Gradients& zero, const Column& w, EnvelopeMatrix<Scalar>& matrix) const {
         matrix.clear();
         for (const auto& [first, second] : couples_) {
             const auto &g1 = one[first], &g0 = zero[second];

@@ -66,13 +66,19 @@ struct Spring {
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector& v, Sum& sum) const {
         const Place<Scalar> r = part_of(q, a) - place_of(b, q), u = part_of(v, a) - velocity_of(b, v);
+        const auto pull_ends = [&](const Scalar& pull) {
+            add(masses, a, Scalar(-pull), r, sum);
+            if (const auto* particle = std::get_if<std::size_t>(&b)) add(masses, *particle, pull, r, sum);
+        };
+        if constexpr (requires { length.tape(); })  // there |r| has no series where it is 0
+            if (!has_direction()) return pull_ends(stiffness);
         const Scalar now = norm(r);
         if (now == Scalar(0)) return;
         const Scalar stretching = (r[0] * u[0] + r[1] * u[1]) / now;
-        const Scalar pull = (stiffness * (now - length) + damping * stretching) / now;
-        add(masses, a, Scalar(-pull), r, sum);
-        if (const auto* particle = std::get_if<std::size_t>(&b)) add(masses, *particle, pull, r, sum);
+        pull_ends((stiffness * (now - length) + damping * stretching) / now);
     }
+    /// Whether it needs one: without rest length and damping it is k r in any.
+    bool has_direction() const { return length != Scalar(0) || damping != Scalar(0); }
     template <class Vector>
     Scalar energy(const Masses<Scalar>&, const Vector& q) const {
         const Scalar stretch = norm(part_of(q, a) - place_of(b, q)) - length;

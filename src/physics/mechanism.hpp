@@ -44,9 +44,11 @@ struct Mechanism {
     using Half = State;         // positions, velocities or accelerations
     using Multipliers = State;  // one a row of J
 
+    Assembly<Scalar> parts;
+
     /// Of an assembly that check() has nothing against.
     explicit Mechanism(const Assembly<Scalar>& assembly)
-        : forces_(assembly.forces),
+        : parts(assembly),
           masses_(masses_of(assembly)),
           set_(assembly.constraints, start(assembly).head(2 * masses_.m.size())),
           matrix_(set_.blank_matrix()),
@@ -76,7 +78,10 @@ struct Mechanism {
         accelerate(q, v, a);
 
         turn_to(q);
-        factor_and_check_path(q, gradients_);
+        if constexpr (requires { y[0].tape(); })  // its series checks the path
+            set_.couple(gradients_, gradients_, masses_.w, matrix_);
+        else
+            factor_and_check_path(q, gradients_);
         find_multipliers(gradients_, v, a);
         set_.add_pull(gradients_, masses_.w, lambda_, a);
     }
@@ -134,7 +139,7 @@ struct Mechanism {
             total += Scalar(0.5) * masses_.m[i] * (vx * vx + vy * vy);
         }
         const auto q = y.head(2 * n);
-        for (const auto& force : forces_)
+        for (const auto& force : parts.forces)
             total += std::visit([&](const auto& part) { return Scalar(part.energy(masses_, q)); }, force);
         return total;
     }
@@ -151,7 +156,8 @@ struct Mechanism {
         accelerate(q, v, a);
         set_.update(q, other_gradients_);
         set_.couple(other_gradients_, other_gradients_, masses_.w, matrix_);
-        if (matrix_.factor() < matrix_.rows())
+        matrix_.factor();
+        if (matrix_.dependent_row() < matrix_.rows())
             lambda_.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
         else
             find_multipliers(other_gradients_, v, a);
@@ -172,7 +178,8 @@ struct Mechanism {
     std::optional<Dependence> dependence(const Half& q) {
         set_.update(q, other_gradients_);
         set_.couple(other_gradients_, other_gradients_, masses_.w, matrix_);
-        const auto row = matrix_.factor();
+        matrix_.factor();
+        const auto row = matrix_.dependent_row();
         if (row == matrix_.rows()) return std::nullopt;
         return dependence_of(row);
     }
@@ -195,7 +202,7 @@ private:
     template <class Vector, class Sum>
     void accelerate(const Vector& q, const Vector& v, Sum& a) const {
         a.setZero();
-        for (const auto& force : forces_)
+        for (const auto& force : parts.forces)
             std::visit([&](const auto& part) { part.accelerate(masses_, q, v, a); }, force);
     }
 
@@ -205,7 +212,7 @@ private:
         set_.jdot_v(v, lambda_);
         set_.add_constraint_velocity(gradients, a, lambda_);
         lambda_ = -lambda_;
-        matrix_.solve(lambda_);
+        solve_factored(matrix_, lambda_);
     }
 
     /// J(q), and that of the call before.
@@ -233,8 +240,9 @@ private:
     template <class Vector>
     void factor(const Vector& q, const Gradients& one, const Gradients& zero) {
         set_.couple(one, zero, masses_.w, matrix_);
-        if (const auto row = matrix_.factor(); row < matrix_.rows()) fail(q, row);
-        if (const auto row = matrix_.turned_over(); row < matrix_.rows() && alike(one, zero)) fail(q, row);
+        matrix_.factor();
+        if (const auto row = matrix_.dependent_row(); row < matrix_.rows()) fail(q, row);
+        if (const auto row = matrix_.negative_row(); row < matrix_.rows() && alike(one, zero)) fail(q, row);
     }
 
     /// Whether no gradient differs by more than half its length.
@@ -250,12 +258,9 @@ private:
     template <class Vector>
     [[noreturn]] void fail(const Vector& q, Eigen::Index row) const {
         std::vector<double> places;
-        double off = 0;
-        if constexpr (std::is_constructible_v<double, Scalar>) {
-            for (Eigen::Index i = 0; i < q.size(); ++i) places.push_back(static_cast<double>(q[i]));
-            if (set_.longest_rod() > Scalar(0))
-                off = static_cast<double>(Scalar(set_.worst_error(q) / set_.longest_rod()));
-        }
+        for (Eigen::Index i = 0; i < q.size(); ++i) places.push_back(static_cast<double>(q[i]));
+        const Scalar& rod = set_.longest_rod();
+        const double off = rod > Scalar(0) ? static_cast<double>(Scalar(set_.worst_error(q) / rod)) : 0;
         const auto found = dependence_of(row);
         throw singular_configuration(name_of(found.constraint, set_[found.constraint]), found, places, off);
     }
@@ -277,10 +282,9 @@ private:
         return found;
     }
 
-    std::vector<Force<Scalar>> forces_;
     Masses<Scalar> masses_;
     ConstraintSet<Scalar> set_;
-    ConstraintMatrix<Scalar> matrix_;
+    EnvelopeMatrix<Scalar> matrix_;
     Multipliers lambda_;
     Gradients gradients_, gradients_before_;  // where a system was solved last, and before that
     Gradients other_gradients_;

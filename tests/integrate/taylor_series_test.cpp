@@ -35,11 +35,12 @@ double residual(const Pendulum<double>& p, int order, double h) {
     return worst;
 }
 
+/// `more` orders of the rates than asked for.
 template <class Model>
-void expect_series_solves(const Pendulum<double>& p) {
+void expect_series_solves(const Pendulum<double>& p, int more = 0) {
     for (int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
         const double h = 4e-3, ratio = residual<Model>(p, order, 2 * h) / residual<Model>(p, order, h);
-        EXPECT_NEAR(std::log2(ratio), order, 0.25) << order;  // measured within 0.09
+        EXPECT_NEAR(std::log2(ratio), order + more, 0.25) << order;  // measured within 0.09
     }
 }
 
@@ -49,8 +50,8 @@ TEST(TaylorSeries, SolvesTheEquationsOfMotionOrderByOrder) {
     expect_series_solves<AngleChain<Quad, Eigen::Dynamic>>(uneven(1));
     expect_series_solves<AngleChain<Quad, Eigen::Dynamic>>(uneven(6));
     expect_series_solves<DoublePendulum<Quad>>(uneven(2));
-    expect_series_solves<RodChain<Quad, 2>>(uneven(2));
-    expect_series_solves<RodChain<Quad, Eigen::Dynamic>>(uneven(5));
+    expect_series_solves<RodChain<Quad, 2>>(uneven(2), 1);
+    expect_series_solves<RodChain<Quad, Eigen::Dynamic>>(uneven(5), 1);
 }
 
 /// Coefficient k of the rates: what a series of order k has more than one of order k − 1, at h = 1.

@@ -1,7 +1,6 @@
 #include "physics/mechanism.hpp"
 
 #include "allocations.hpp"
-#include "numeric/dual.hpp"
 #include "numeric/quad.hpp"
 #include "physics/mechanisms.hpp"
 #include "physics/pendulums.hpp"
@@ -248,22 +247,6 @@ TEST(Mechanism, LoopKeepsClosedAndKeepsItsEnergy) {
     EXPECT_GT((y - model.start(parts)).norm(), 0.1);  // it has moved
     EXPECT_NEAR(model.energy(y), start, 5e-9);        // measured 8e-10
     EXPECT_LT(model.length_error(y), 2e-10);          // measured 2e-11
-}
-
-TEST(Mechanism, CarriesDualNumbers) {
-    // ∂y(T)/∂x of a bead on a spring through rk4, against finite differences
-    using D = Dual<double, 1>;
-    auto parts = four_bars();
-    parts.forces.push_back(Spring<double>{two, P(0, 2), 5, 0.5});
-    const auto end_of = [&](auto stiffness) {
-        using S = decltype(stiffness);
-        auto changed = parts.cast<S>();
-        std::get<Spring<S>>(changed.forces[1]).stiffness = stiffness;
-        Mechanism<S> model(changed);
-        return S(after(model, changed, 100, S(1e-3))[2]);
-    };
-    const double h = 1e-4, slope = (end_of(5 + h) - end_of(5 - h)) / (2 * h);
-    EXPECT_NEAR(end_of(D::variable(5, 0)).tangent[0], slope, 3e-11);  // measured 5e-12
 }
 
 TEST(Mechanism, StepsWithoutAllocating) {

@@ -18,24 +18,25 @@ namespace doppel {
 /// Source  Golub & Van Loan, Matrix Computations, §4.3; George & Liu, Computer Solution of Large Sparse Positive Definite
 ///         Systems, §4.
 template <class Scalar>
-class ConstraintMatrix {
+class EnvelopeMatrix {
 public:
     using Column = State<Scalar, Eigen::Dynamic>;
     using Index = Eigen::Index;
 
     /// Zeros. Only (i, j) and (j, i) with begin[i] ≤ j ≤ i may differ from zero.
-    explicit ConstraintMatrix(const std::vector<Index>& begin) {
+    explicit EnvelopeMatrix(const std::vector<Index>& begin) {
         Index entries = 0;
         for (std::size_t i = 0; i < begin.size(); ++i) {
             const Index row = static_cast<Index>(i);
             envelope_.push_back({begin[i], entries - begin[i]});
             entries += row - begin[i];
         }
-        diagonal_ = inverse_ = Column::Zero(rows());
+        diagonal_ = whole_ = inverse_ = Column::Zero(rows());
         lower_ = upper_ = Column::Zero(entries);
     }
 
     Index rows() const { return static_cast<Index>(envelope_.size()); }
+    Index begin(Index i) const { return envelope_[static_cast<std::size_t>(i)].begin; }
     /// Numbers kept of the matrix itself.
     Index entries() const { return lower_.size() + diagonal_.size() + upper_.size(); }
 
@@ -46,14 +47,10 @@ public:
     }
     Scalar& operator()(Index i, Index j) { return i == j ? diagonal_[i] : i > j ? lower(i, j) : upper(i, j); }
 
-    /// Replaces the matrix by unit lower times upper. Returns the first row that depends on those before it so closely
-    /// that no more than a quarter of the digits would be right (or that is NaN); rows() where there is none.
-    Index factor() {
-        using std::abs;
-        nearly_singular_ = false;
-        turned_over_ = rows();
+    /// Replaces the matrix by unit lower times upper.
+    void factor() {
+        whole_ = diagonal_;
         for (Index i = 0; i < rows(); ++i) {
-            const Scalar whole = diagonal_[i];
             for (Index j = begin(i); j < i; ++j) {
                 for (Index k = std::max(begin(i), begin(j)); k < j; ++k) {
                     lower(i, j) -= lower(i, k) * upper(k, j);
@@ -62,20 +59,33 @@ public:
                 lower(i, j) *= inverse_[j];
             }
             for (Index k = begin(i); k < i; ++k) diagonal_[i] -= lower(i, k) * upper(k, i);
-            const Scalar& pivot = diagonal_[i];
-            if (!(abs(pivot) > smallest_ * abs(whole))) return i;
-            if (abs(pivot) * Scalar(20) < abs(whole)) nearly_singular_ = true;
-            if (pivot < Scalar(0) && turned_over_ == rows()) turned_over_ = i;
-            inverse_[i] = Scalar(1) / pivot;
+            inverse_[i] = Scalar(1) / diagonal_[i];
         }
-        return rows();
     }
 
-    /// Whether factor() has seen a pivot less than a twentieth of what stood in its place.
-    bool nearly_singular() const { return nearly_singular_; }
+    // Of the factors; rows() where no row is like that.
 
-    /// The first row whose pivot factor() has found negative; rows() where there is none.
-    Index turned_over() const { return turned_over_; }
+    /// The first row that depends on those before it so closely that no more than a quarter of the digits would be right (or
+    /// that is NaN).
+    Index dependent_row() const {
+        using std::abs;
+        Index i = 0;
+        while (i < rows() && abs(diagonal_[i]) > smallest_ * abs(whole_[i])) ++i;
+        return i;
+    }
+    /// The first row whose pivot is negative.
+    Index negative_row() const {
+        Index i = 0;
+        while (i < rows() && !(diagonal_[i] < Scalar(0))) ++i;
+        return i;
+    }
+    /// Whether a pivot is less than a twentieth of what stood in its place.
+    bool nearly_singular() const {
+        using std::abs;
+        for (Index i = 0; i < rows(); ++i)
+            if (abs(diagonal_[i]) * Scalar(20) < abs(whole_[i])) return true;
+        return false;
+    }
 
     /// x ← A⁻¹ x, after factor().
     void solve(Column& x) const {
@@ -102,7 +112,6 @@ private:
         Index begin, offset;
     };
 
-    Index begin(Index i) const { return envelope_[static_cast<std::size_t>(i)].begin; }
     Index place(Index i, Index k) const { return envelope_[static_cast<std::size_t>(i)].offset + k; }
     Scalar& lower(Index i, Index k) { return lower_[place(i, k)]; }
     Scalar& upper(Index k, Index i) { return upper_[place(i, k)]; }
@@ -118,10 +127,14 @@ private:
 
     std::vector<Envelope> envelope_;
     Column lower_, diagonal_, upper_;  // below the diagonal row by row, above it column by column
-    Column inverse_;                   // of the pivots
+    Column whole_, inverse_;           // the diagonal before factor(); 1/pivot
     Scalar smallest_ = smallest();
-    bool nearly_singular_ = false;
-    Index turned_over_ = 0;
 };
+
+/// x ← A⁻¹ x. On a tape (numeric/tape.hpp) A is not factored.
+template <class Scalar>
+void solve_factored(EnvelopeMatrix<Scalar>& a, State<Scalar, Eigen::Dynamic>& x) {
+    a.solve(x);
+}
 
 }  // namespace doppel
