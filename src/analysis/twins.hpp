@@ -49,27 +49,4 @@ void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatc
 void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
                         const std::atomic<bool>& stop, int width = 0);
 
-/// That mean of one pair, from its distances in the order of the samples.
-class AverageLogRatio {
-public:
-    void add(double distance) {
-        if (is_first_) {
-            start_ = distance;
-        } else if (const auto ratio = log_ratio(distance, start_)) {
-            sum_ += *ratio;
-            ++counted_;
-        }
-        is_first_ = false;
-    }
-    double value() const {
-        const double mean = sum_ / static_cast<double>(counted_);
-        return std::isfinite(mean) ? mean : NAN;
-    }
-
-private:
-    bool is_first_ = true;
-    double start_ = 0, sum_ = 0;
-    long counted_ = 0;
-};
-
 }  // namespace doppel

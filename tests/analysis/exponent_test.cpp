@@ -1,6 +1,5 @@
 #include "analysis/exponent.hpp"
 
-#include "analysis/stability.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
@@ -36,10 +35,12 @@ TEST(Exponent, OfEquilibriaInClosedForm) {
     EXPECT_NEAR(exponent({0, 180}), std::sqrt(9.8 * std::sqrt(2.0)), 3e-15);           // measured 4e-16
     auto adrift = from_rest({70, -20});
     adrift.gravity = 0;
-    EXPECT_EQ(equilibrium_exponent(adrift), 0.0);
-    EXPECT_FALSE(equilibrium_exponent(from_rest({180, 0.001})));
+    const ExponentSpec brief{.duration_s = 2, .transient_s = 1};
+    EXPECT_TRUE(largest_exponent(adrift, brief, never).is_of_equilibrium());
+    EXPECT_EQ(largest_exponent(adrift, brief, never).value, 0);
+    EXPECT_FALSE(largest_exponent(from_rest({180, 0.001}), brief, never).is_of_equilibrium());
     adrift.rate[1] = 1e-9;
-    EXPECT_FALSE(equilibrium_exponent(adrift));
+    EXPECT_FALSE(largest_exponent(adrift, brief, never).is_of_equilibrium());
 }
 
 TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
@@ -49,7 +50,7 @@ TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
         auto p = uneven(static_cast<std::size_t>(links));
         std::fill(p.angle.begin(), p.angle.end(), pi);
         std::fill(p.rate.begin(), p.rate.end(), 0.0);
-        const double exact = equilibrium_exponent(p).value();
+        const double exact = largest_exponent(p, {}, never).value;
         p.rate[0] = 1e-30;
         const ExponentSpec spec{.duration_s = 20 / exact, .transient_s = 15 / exact, .tolerance = 1e-10, .blocks = 2};
         EXPECT_NEAR(largest_exponent(p, spec, never).value / exact, 1, most) << links;
@@ -57,12 +58,13 @@ TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
 }
 
 TEST(Exponent, TangentIsTheDifferenceOfNeighbours) {
-    using Flow = TangentFlow<DoublePendulum<Dual<double, 1>>>;
+    using Model = DoublePendulum<Dual<double, 1>>;
     const auto p = uneven(2);
+    const auto release = p.cast<Dual<double, 1>>();
     const State<double, 4> direction(1, -0.5, 2, 0.3);
-    Flow::State start(8);
+    TangentState start(8);
     start << DoublePendulum<double>::start(p), direction;
-    TangentMotion<DoublePendulum<Dual<double, 1>>> motion(p, 1e-12);
+    TangentMotion motion(tangent_rate(Model(release), Model::start(release)), 2, 1e-12);
     motion.restart(start);
     motion.advance(3);
     const auto neighbour = [&](double apart) {

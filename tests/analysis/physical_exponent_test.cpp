@@ -1,6 +1,6 @@
 #include "analysis/exponent.hpp"
 #include "analysis/physical_releases.hpp"
-#include "analysis/stability.hpp"
+#include "analysis/spectrum.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
@@ -36,7 +36,7 @@ TEST(PhysicalExponent, OfEquilibriaInClosedForm) {
     upright.friction.arm_quadratic = {0.4};
     EXPECT_NEAR(exponent(upright), std::sqrt(9.8 * 1.5), 1e-14);
     upright.pivot = {0.1, 0, 3, 0};
-    EXPECT_FALSE(equilibrium_exponent(upright));
+    EXPECT_FALSE(largest_exponent(upright, {.duration_s = 2, .transient_s = 1}, never).is_of_equilibrium());
 }
 
 TEST(PhysicalExponent, OfATransientSaysThatItsStretchesDiffer) {

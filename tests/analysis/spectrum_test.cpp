@@ -1,3 +1,5 @@
+#include "analysis/spectrum.hpp"
+
 #include "analysis/exponent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
