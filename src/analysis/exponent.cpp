@@ -1,11 +1,10 @@
 #include "analysis/exponent.hpp"
 
+#include "analysis/stability.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/physical_chain.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -121,8 +120,10 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
     return {mean, std::sqrt(1.25 * (error * error + finite_time * finite_time)), is_settled};
 }
 
-Exponent measured(TangentGrowth growth, const ExponentSpec& spec, const NaturalUnits& units,
+Exponent measured(TangentRate rate, TangentState start, const PhysicalPendulum<double>& p, const ExponentSpec& spec,
                   const std::atomic<bool>& stop) {
+    const NaturalUnits units(p);
+    TangentGrowth growth(std::move(rate), std::move(start), p, spec.tolerance, units);
     const auto exponents_of_parts = [&](double seconds, long parts) {
         std::vector<double> local;
         for (long i = 0; i < parts; ++i) {
@@ -140,8 +141,7 @@ Exponent measured(TangentGrowth growth, const ExponentSpec& spec, const NaturalU
 
 /// Nothing where the release is no equilibrium, as of what is driven.
 std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
-    constexpr double level = 1e-14;     // of a sine
-    constexpr double rounding = 1e-12;  // what an oscillation without friction may seem to grow by
+    constexpr double level = 1e-14;  // of a sine
     for (std::size_t i = 0; i < p.chain.links(); ++i)
         if (p.chain.rate[i] != 0 || (p.chain.gravity != 0 && std::abs(SinCos<double>(p.chain.angle[i]).sin) > level))
             return std::nullopt;
@@ -158,30 +158,18 @@ std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
         y[j].tangent[0] = 0;
         for (Eigen::Index i = 0; i < y.size(); ++i) jacobian(i, j) = rate[i].tangent[0];
     }
-    if (p.friction.is_none()) {  // θ″ = A θ: the exponents are the roots of A's eigenvalues
-        const Eigen::MatrixXd stiffness = jacobian.bottomLeftCorner(y.size() / 2, y.size() / 2);
-        return std::sqrt(std::max(0.0, stiffness.eigenvalues().real().maxCoeff()));
-    }
-    const Eigen::VectorXcd values = jacobian.eigenvalues();
-    const double most = values.real().maxCoeff();
-    return std::abs(most) < rounding * values.cwiseAbs().maxCoeff() ? 0 : most;
+    if (!p.friction.is_none()) return greatest_real_part(jacobian);
+    // θ″ = A θ
+    return std::sqrt(std::max(0.0, greatest_real_part(jacobian.bottomLeftCorner(y.size() / 2, y.size() / 2))));
 }
 
-/// By a model that starts as start().
-template <class Model, class Start>
-Exponent exponent_of(const Model& model, const Start& start, const PhysicalPendulum<double>& p,
+/// Of a model that starts as start().
+template <class Model>
+Exponent exponent_of(const Model& model, const typename Model::State& start, const PhysicalPendulum<double>& p,
                      const ExponentSpec& spec, const std::atomic<bool>& stop) {
-    const NaturalUnits units(p);
     TangentState y;
     from_dual(start, y);
-    return measured({tangent_rate(model, start), y, p, spec.tolerance, units}, spec, units, stop);
-}
-
-/// By equations of point masses alone.
-template <class Model>
-Exponent exponent_of(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
-    const auto release = p.cast<Dual<double, 1>>();
-    return exponent_of(Model(release), Model::start(release), physical(p), spec, stop);
+    return measured(tangent_rate(model, start), y, p, spec, stop);
 }
 
 }  // namespace
@@ -200,8 +188,11 @@ bool is_regular(const Exponent& exponent) {
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     check(spec);
     if (const auto exact = equilibrium_exponent(physical(p))) return {*exact, 0};
-    if (p.links() == 2) return exponent_of<DoublePendulum<Dual<double, 1>>>(p, spec, stop);
-    return exponent_of<AngleChain<Dual<double, 1>, Eigen::Dynamic>>(p, spec, stop);
+    const auto release = p.cast<Dual<double, 1>>();
+    using Two = DoublePendulum<Dual<double, 1>>;
+    using Chain = AngleChain<Dual<double, 1>, Eigen::Dynamic>;
+    if (p.links() == 2) return exponent_of(Two(release), Two::start(release), physical(p), spec, stop);
+    return exponent_of(Chain(release), Chain::start(release), physical(p), spec, stop);
 }
 
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {

@@ -142,6 +142,13 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
     return fails;
 }
 
+double greatest_real_part(const Eigen::MatrixXd& matrix) {
+    constexpr double rounding = 1e-12;  // what an oscillation without friction may seem to grow by
+    const Eigen::VectorXcd values = matrix.eigenvalues();
+    const double most = values.real().maxCoeff();
+    return std::abs(most) < rounding * values.cwiseAbs().maxCoeff() ? 0 : most;
+}
+
 double released_energy(const Pendulum<double>& release) {
     // Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …), without the cancellation of the levels
     double vx = 0, vy = 0, height = 0, sum = 0;

@@ -212,15 +212,6 @@ TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
     EXPECT_NEAR(run(parts, parts).uncertainty / expected, 1, 2e-3);  // measured 3e-5
 }
 
-TEST(Exponent, IsOfFiveHundredSecondsWhereNothingElseIsSaid) {
-    const auto p = from_rest({140, 0});
-    const auto told =
-                   largest_exponent(p, {.duration_s = 500, .transient_s = 50, .tolerance = 1e-7, .blocks = 20}, never),
-               usual = largest_exponent(p, {}, never);
-    EXPECT_EQ(usual.value, told.value);
-    EXPECT_EQ(usual.uncertainty, told.uncertainty);
-}
-
 TEST(Exponent, ScalesWithTheUnits) {
     // four times the lengths: the same motion at half the speed; masses cancel
     auto p = from_rest({130, 20});
@@ -245,16 +236,6 @@ TEST(Exponent, RefusesWhatMakesNoSense) {
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::bad_input);
         }
-    }
-}
-
-TEST(Exponent, StopsWhenTold) {
-    const std::atomic<bool> stop = true;
-    try {
-        largest_exponent(from_rest({90, 90}), {}, stop);
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::interrupted);
     }
 }
 

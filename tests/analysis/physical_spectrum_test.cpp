@@ -1,3 +1,4 @@
+#include "analysis/exponent.hpp"
 #include "analysis/physical_releases.hpp"
 #include "analysis/spectrum.hpp"
 #include "integrate/pendulums.hpp"
