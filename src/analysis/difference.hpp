@@ -2,10 +2,8 @@
 
 #include "physics/bob.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
-#include <type_traits>
 
 namespace doppel {
 
@@ -34,53 +32,53 @@ inline std::optional<double> log_ratio(double distance, double start) {
     return portable_log(distance / start);
 }
 
-/// How far one angle is from another, rad, up to whole turns: 0 … π. NaN where one is NaN. Either may be in quad; the
-/// turns are then taken off in quad, or nothing below their rounding in double, 2e-16 a turn, could be seen.
-template <class One, class Other>
-double angle_between(const One& one, const Other& other) {
-    using Wide = std::conditional_t<std::is_same_v<One, double>, Other, One>;
-    using std::remainder;
-    const Wide turn = 2 * pi_of<Wide>();
-    return std::abs(static_cast<double>(Wide(remainder(Wide(Wide(one) - Wide(other)), turn))));
-}
-
-/// The largest angle_between() of the bobs of one and of the other; NaN where a number is NaN.
-template <class One, class Other>
-double angle_error(const Bobs<One>& one, const Bobs<Other>& other) {
-    double worst = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        const double error = angle_between(one[i].theta, other[i].theta);
-        if (!std::isfinite(error)) return error;
-        worst = std::max(worst, error);
+/// The mean of λ over all samples but the first of a pair, from its distances in their order (Kao 2022). Samples at which
+/// the two are one are left out; NaN where none is left, or the motion broke down.
+class AverageLogRatio {
+public:
+    void add(double distance) {
+        if (is_first_) {
+            start_ = distance;
+        } else if (const auto ratio = log_ratio(distance, start_)) {
+            sum_ += *ratio;
+            ++counted_;
+        }
+        is_first_ = false;
     }
-    return worst;
-}
-
-/// The largest difference between a place of one and of the other, m: the error of what hangs in no chain.
-template <class One, class Other>
-double place_error(const Bobs<One>& one, const Bobs<Other>& other) {
-    using Wide = std::conditional_t<std::is_same_v<One, double>, Other, One>;
-    double worst = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        const auto x = static_cast<double>(Wide(Wide(one[i].x) - Wide(other[i].x)));
-        const auto y = static_cast<double>(Wide(Wide(one[i].y) - Wide(other[i].y)));
-        const double error = std::sqrt(x * x + y * y);
-        if (!std::isfinite(error)) return error;
-        worst = std::max(worst, error);
+    double value() const {
+        const double mean = sum_ / static_cast<double>(counted_);
+        return std::isfinite(mean) ? mean : NAN;
     }
-    return worst;
-}
 
-/// What an energy error is a fraction of, J: |E0|, or the potential range where E0 is zero (below the rounding of a
-/// start that is given in degrees: cos 90° is 6e-17 in double).
-inline double energy_scale(double start_energy, double potential_range) {
-    return std::abs(start_energy) > 1e-13 * potential_range ? std::abs(start_energy) : potential_range;
-}
+private:
+    bool is_first_ = true;
+    double start_ = 0, sum_ = 0;
+    long counted_ = 0;
+};
 
-/// What the energy of a motion may gain, J: ten times all the energy there is; no true motion gains that, and a run that
-/// does has broken down.
-inline double greatest_gain(double start_energy, double kinetic_energy, double potential_range) {
-    return 10 * (potential_range + std::abs(start_energy) + kinetic_energy);
-}
+/// Finds when a pair that starts as one parts: from when on it is apart for a second of motion without a break.
+class Parting {
+public:
+    static constexpr double apart_at = 1;                  // state-space distance from which the two count as apart
+    static constexpr double together_at = 0.1 * apart_at;  // below it a pair starts as one, and can part
+    static constexpr double least_s = 1;
+
+    /// Every sample in order, from that at time 0 on; s.
+    void add(double time, double distance) {
+        if (time == 0) start_as_one_ = distance < together_at;
+        if (!start_as_one_ || since_) return;
+        if (!(distance >= apart_at)) return apart_from_.reset();
+        if (!apart_from_) apart_from_ = time;
+        if (time - *apart_from_ >= least_s) since_ = apart_from_;
+    }
+
+    bool start_as_one() const { return start_as_one_; }
+    /// s; known a second later. Nothing where the two stay together, come back within a second, or start apart.
+    std::optional<double> since() const { return since_; }
+
+private:
+    bool start_as_one_ = false;
+    std::optional<double> apart_from_{}, since_{};
+};
 
 }  // namespace doppel

@@ -1,8 +1,7 @@
 #include "analysis/drift.hpp"
 
-#include "analysis/difference.hpp"
+#include "analysis/breakdown.hpp"
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "integrate/methods.hpp"
 
 #include <algorithm>
@@ -44,35 +43,26 @@ MotionSpec motion_of(const DriftSpec& spec, const DriftMethod& method, long n) {
 /// A motion watched from sample to sample.
 class WatchedMotion {
 public:
-    explicit WatchedMotion(const MotionSpec& spec) : motion_(make_motion(spec)), interval_(spec.sample_interval) {
-        const auto chain = spec.chain->cast<double>();
-        const auto start = motion_->observe();
-        energy_scale_ = energy_scale(start.energy, chain.potential_range());
-        greatest_gain_ = greatest_gain(start.energy, start.kinetic_energy, chain.potential_range());
-        reach_ = chain.reach();
-    }
+    explicit WatchedMotion(const MotionSpec& spec)
+        : motion_(make_motion(spec)),
+          interval_(spec.sample_interval),
+          chain_(spec.chain->cast<double>()),
+          proportion_(motion_->observe(), chain_.potential_range(), chain_.reach()) {}
 
-    /// False where the method breaks down: a step cannot be made, or energy or rods are out of all proportion.
+    /// False where the method breaks down.
     bool advance(const std::atomic<bool>& stop) {
-        throw_if_set(stop);
         ++sample_;
-        try {
-            motion_->advance(stop);
-        } catch (const Error& fault) {
-            if (fault.code() != ExitCode::method_failed) throw;
-            return false;
-        }
+        if (!advanced(*motion_, stop)) return false;
         const auto seen = motion_->observe();
-        energy_error_ = std::abs(seen.energy_change / energy_scale_);
+        energy_error_ = proportion_.energy_error(seen);
         length_error_ = seen.length_error;
-        return std::isfinite(seen.energy) && std::isfinite(length_error_) && seen.energy_change <= greatest_gain_ &&
-               length_error_ <= reach_;
+        return proportion_.holds(seen);
     }
-    double time(long sample) const {
-        return static_cast<double>(sample) * static_cast<double>(interval_.numerator) /
+    /// Of the last sample, or of that so many later, s.
+    double time(long later = 0) const {
+        return static_cast<double>(sample_ + later) * static_cast<double>(interval_.numerator) /
                static_cast<double>(interval_.denominator);
     }
-    long sample() const { return sample_; }
     double energy_error() const { return energy_error_; }
     double length_error() const { return length_error_; }  // m
     double evaluations() const { return static_cast<double>(motion_->effort().evaluations); }
@@ -80,7 +70,9 @@ public:
 private:
     std::unique_ptr<Motion> motion_;
     Rational interval_;
-    double energy_scale_ = 1, greatest_gain_ = 0, reach_ = 0, energy_error_ = 0, length_error_ = 0;
+    Pendulum<double> chain_;
+    Proportion proportion_;
+    double energy_error_ = 0, length_error_ = 0;
     long sample_ = 0;
 };
 
@@ -88,13 +80,13 @@ private:
 /// two.
 double evaluation_rate(const MotionSpec& spec, double duration_s, const std::atomic<bool>& stop) {
     WatchedMotion motion(spec);
-    double first = 0, last = 0;
-    long samples = 0;
-    for (; motion.time(samples) < duration_s && motion.advance(stop); ++samples) {
-        last = motion.evaluations();
-        if (samples == 0) first = last;
-    }
-    return samples < 2 ? NAN : (last - first) / motion.time(samples - 1);
+    double first = NAN, rate = NAN;
+    while (motion.time() < duration_s && motion.advance(stop))
+        if (std::isnan(first))
+            first = motion.evaluations();
+        else
+            rate = (motion.evaluations() - first) / motion.time(-1);
+    return rate;
 }
 
 /// The finest setting within the cost. One that breaks down at once is too coarse.
@@ -142,16 +134,16 @@ DriftRun drift(const DriftSpec& spec, const DriftMethod& method, const std::atom
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     WatchedMotion motion(setting);
     for (std::size_t point = 0; point < none.size() && std::isnan(made.broken_at_s); ++point)
-        while (motion.time(motion.sample() + 1) <= spec.times_s[point]) {
+        while (motion.time(1) <= spec.times_s[point]) {
             if (!motion.advance(stop) || motion.energy_error() >= 1 || motion.length_error() >= shortest) {
-                made.broken_at_s = motion.time(motion.sample());
+                made.broken_at_s = motion.time();
                 break;
             }
             made.energy_error[point] = std::fmax(made.energy_error[point], motion.energy_error());
             made.length_error[point] = std::fmax(made.length_error[point], motion.length_error());
         }
     made.cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
-    made.evaluations_per_s = motion.evaluations() / motion.time(motion.sample());
+    made.evaluations_per_s = motion.evaluations() / motion.time();
     return made;
 }
 

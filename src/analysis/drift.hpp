@@ -28,7 +28,7 @@ struct DriftRun {
     double cpu_s = 0;
     double broken_at_s = 0;  // NaN without a breakdown
     // the worst since the point before; NaN where there was no sample
-    std::vector<double> energy_error, length_error;  // relative (analysis/difference.hpp); m
+    std::vector<double> energy_error, length_error;  // relative (analysis/breakdown.hpp); m
 };
 
 /// The method as fine as the cost allows, until it breaks down: until a step cannot be made, the energy is off by as

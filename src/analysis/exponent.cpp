@@ -4,42 +4,32 @@
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "physics/angle_chain.hpp"
+#include "physics/physical_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace doppel {
 namespace {
 
-bool has_friction(const Pendulum<double>&) {
-    return false;
-}
-bool has_friction(const PhysicalPendulum<double>& p) {
-    return !p.friction.is_none();
-}
-
 /// The growth of one tangent, told in logarithms.
-template <class Model>
 class TangentGrowth {
 public:
-    using State = typename TangentMotion<Model>::State;
-
-    template <class Release>
-    TangentGrowth(const Release& p, const ExponentSpec& spec, const NaturalUnits& units)
-        : motion_(p, spec.tolerance),
-          links_(static_cast<Eigen::Index>(links_of(p))),
+    /// `rate` of a state that starts as `y`.
+    TangentGrowth(TangentRate rate, TangentState y, const PhysicalPendulum<double>& p, double tolerance,
+                  const NaturalUnits& units)
+        : motion_(std::move(rate), p.chain.links(), tolerance),
+          links_(static_cast<Eigen::Index>(p.chain.links())),
+          size_(y.size() / 2),
           unit_(units.time),
-          least_(has_friction(p) ? tenth : -huge) {
-        typename Model::State start = Model::start(p.template cast<typename Model::Scalar>());
-        size_ = start.size();
+          least_(p.friction.is_none() ? -huge : tenth) {
         // a direction that no symmetry knows: 1, 1/2, 1/3 …
         for (Eigen::Index i = 0; i < links_; ++i) {
-            start[i].tangent[0] = 1 / static_cast<double>(i + 1);
-            start[size_ / 2 + i].tangent[0] = 1 / static_cast<double>(links_ + i + 1) / unit_;
+            y[size_ + i] = 1 / static_cast<double>(i + 1);
+            y[size_ + size_ / 2 + i] = 1 / static_cast<double>(links_ + i + 1) / unit_;
         }
-        State y(2 * size_);
-        TangentFlow<Model>::from_dual(start, y);
         last_ = log_norm(y);
         motion_.restart(y);
     }
@@ -48,7 +38,7 @@ public:
     double advance(double seconds) {
         constexpr double many_turns = 100;  // rad
         motion_.advance(seconds);
-        State y = motion_.state();
+        TangentState y = motion_.state();
         const double now = log_norm(y), growth = now - last_;
         last_ = now;
         if (now > huge || now < least_ || y.head(links_).cwiseAbs().maxCoeff() > many_turns) {
@@ -63,7 +53,7 @@ private:
     static constexpr double huge = 13.8, tenth = -2.3;  // ln of a million, of 1/10
 
     /// ln of the tangent's Euclidean norm, rates times the natural unit of time.
-    double log_norm(const State& y) const {
+    double log_norm(const TangentState& y) const {
         double angles = 0, rates = 0;  // squares
         for (Eigen::Index i = 0; i < links_; ++i) {
             const double angle = y[size_ + i], rate = y[size_ + size_ / 2 + i];
@@ -73,7 +63,7 @@ private:
         return 0.5 * portable_log(angles + unit_ * unit_ * rates);
     }
 
-    TangentMotion<Model> motion_;
+    TangentMotion motion_;
     Eigen::Index links_, size_;  // size of the state alone
     double unit_;                // s
     double least_;               // ln|δ| from which on it is made 1 again: error control sees little of small ones
@@ -130,10 +120,10 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
     return {mean, std::sqrt(1.25 * (error * error + finite_time * finite_time)), is_settled};
 }
 
-template <class Model, class Release>
-Exponent measured(const Release& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
+Exponent measured(TangentRate rate, TangentState start, const PhysicalPendulum<double>& p, const ExponentSpec& spec,
+                  const std::atomic<bool>& stop) {
     const NaturalUnits units(p);
-    TangentGrowth<Model> growth(p, spec, units);
+    TangentGrowth growth(std::move(rate), std::move(start), p, spec.tolerance, units);
     const auto exponents_of_parts = [&](double seconds, long parts) {
         std::vector<double> local;
         for (long i = 0; i < parts; ++i) {
@@ -147,6 +137,39 @@ Exponent measured(const Release& p, const ExponentSpec& spec, const std::atomic<
     const double block_s = (spec.duration_s - spec.transient_s) / spec.blocks;
     const long of_block = parts_of(block_s, units);
     return summary(exponents_of_parts(block_s / static_cast<double>(of_block), spec.blocks * of_block), spec);
+}
+
+/// Nothing where the release is no equilibrium, as of what is driven.
+std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
+    constexpr double level = 1e-14;  // of a sine
+    for (std::size_t i = 0; i < p.chain.links(); ++i)
+        if (p.chain.rate[i] != 0 || (p.chain.gravity != 0 && std::abs(SinCos<double>(p.chain.angle[i]).sin) > level))
+            return std::nullopt;
+    if (p.is_driven()) return std::nullopt;
+    if (p.chain.gravity == 0) return 0.0;
+    // ∂(θ′, ω′)/∂(θ, ω)
+    using Number = Dual<double, 1>;
+    PhysicalChain<Number> chain(p.cast<Number>(), false);
+    auto y = chain.start(p.cast<Number>(), false), rate = y;
+    Eigen::MatrixXd jacobian(y.size(), y.size());
+    for (Eigen::Index j = 0; j < y.size(); ++j) {
+        y[j].tangent[0] = 1;
+        chain.rate(y, rate);
+        y[j].tangent[0] = 0;
+        for (Eigen::Index i = 0; i < y.size(); ++i) jacobian(i, j) = rate[i].tangent[0];
+    }
+    if (!p.friction.is_none()) return greatest_real_part(jacobian);
+    // θ″ = A θ
+    return std::sqrt(std::max(0.0, greatest_real_part(jacobian.bottomLeftCorner(y.size() / 2, y.size() / 2))));
+}
+
+/// Of a model that starts as start().
+template <class Model>
+Exponent exponent_of(const Model& model, const typename Model::State& start, const PhysicalPendulum<double>& p,
+                     const ExponentSpec& spec, const std::atomic<bool>& stop) {
+    TangentState y;
+    from_dual(start, y);
+    return measured(tangent_rate(model, start), y, p, spec, stop);
 }
 
 }  // namespace
@@ -164,58 +187,21 @@ bool is_regular(const Exponent& exponent) {
 
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     check(spec);
-    if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
-    if (p.links() == 2) return measured<DoublePendulum<Dual<double, 1>>>(p, spec, stop);
-    return measured<AngleChain<Dual<double, 1>, Eigen::Dynamic>>(p, spec, stop);
+    if (const auto exact = equilibrium_exponent(physical(p))) return {*exact, 0};
+    const auto release = p.cast<Dual<double, 1>>();
+    using Two = DoublePendulum<Dual<double, 1>>;
+    using Chain = AngleChain<Dual<double, 1>, Eigen::Dynamic>;
+    if (p.links() == 2) return exponent_of(Two(release), Two::start(release), physical(p), spec, stop);
+    return exponent_of(Chain(release), Chain::start(release), physical(p), spec, stop);
 }
 
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     check(spec);
     demand_smooth(p);
     if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
-    return measured<ChainWithoutWork<Dual<double, 1>>>(p, spec, stop);
-}
-
-namespace {
-
-/// The largest angle of the tangent that starts as one radian in angle `which`.
-template <class Model>
-double largest_angle(const Pendulum<double>& p, double seconds, Eigen::Index which, const std::atomic<bool>& stop) {
-    constexpr double tolerance = 1e-11;
-    const auto links = static_cast<Eigen::Index>(p.links());
-    auto start = Model::start(p.cast<typename Model::Scalar>());
-    start[which].tangent[0] = 1;
-    typename TangentMotion<Model>::State y(4 * links);
-    TangentFlow<Model>::from_dual(start, y);
-    TangentMotion<Model> motion(p, tolerance);
-    const long parts = parts_of(seconds, NaturalUnits(p));
-    double grown = 1;
-    for (long i = 0; i < parts; ++i) {
-        throw_if_set(stop);
-        // the equations are linear in the tangent: its size is kept apart
-        const double size = y.tail(2 * links).norm();
-        grown *= size;
-        y.tail(2 * links) /= size;
-        motion.restart(y);
-        motion.advance(seconds / static_cast<double>(parts));
-        y = motion.state();
-    }
-    return grown * y.segment(2 * links, links).cwiseAbs().maxCoeff();
-}
-
-template <class Model>
-double largest(const Pendulum<double>& p, double seconds, const std::atomic<bool>& stop) {
-    double most = 0;
-    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(p.links()); ++i)
-        most = std::max(most, largest_angle<Model>(p, seconds, i, stop));
-    return most;
-}
-
-}  // namespace
-
-double angle_sensitivity(const Pendulum<double>& p, double seconds, const std::atomic<bool>& stop) {
-    if (p.links() == 2) return largest<DoublePendulum<Dual<double, 1>>>(p, seconds, stop);
-    return largest<AngleChain<Dual<double, 1>, Eigen::Dynamic>>(p, seconds, stop);
+    const auto release = p.cast<Dual<double, 1>>();
+    using Chain = PhysicalChain<Dual<double, 1>>;
+    return exponent_of(Chain(release, false), Chain::start(release, false), p, spec, stop);
 }
 
 }  // namespace doppel

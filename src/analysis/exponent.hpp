@@ -3,7 +3,6 @@
 #include "physics/physical_pendulum.hpp"
 
 #include <atomic>
-#include <vector>
 
 namespace doppel {
 
@@ -26,6 +25,9 @@ struct Exponent {
     /// Whether long stretches of the run differ by no more than short ones foretell. Where they do (a chaotic transient,
     /// orbits that stick), one run does not show all of the motion, and the uncertainty is too small.
     bool is_settled = true;
+
+    /// Whether the release stays where it is, and its exponent is known exactly.
+    bool is_of_equilibrium() const { return uncertainty == 0; }
 };
 
 /// Whether the exponent cannot be told from 0, as for regular motion: up to 1.5 times its uncertainty (regular
@@ -34,7 +36,8 @@ bool is_regular(const Exponent& exponent);
 
 /// The largest exponent of the motion that `p` is released into, any number of links, by the tangent equations in
 /// (θ, ω). The time, by which a driven pendulum moves, is given: no exponent is its own.
-/// One released at an equilibrium, to rounding, stays there: its exponent is exact.
+/// One released at an equilibrium, at rest and all links upright or hanging to rounding (or g = 0), stays there: its
+/// exponent is the greatest real part of the eigenvalues of the linearised equations.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:21.
 /// Errors  exit 2 where the spec makes no sense or joints have Coulomb's friction (demand_smooth()), exit 3 where dop853
 ///         breaks down, exit 130 soon after `stop` is set.
@@ -44,33 +47,5 @@ Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec&
 /// Throws Error (exit 2) where joints have Coulomb's friction: they come to rest and let go again, where the motion has no
 /// tangents.
 void demand_smooth(const PhysicalPendulum<double>& p);
-
-/// How much a motion makes of an error at its start: the largest |∂θ_i(T)/∂θ_j(0)|, from the tangent equations in dual
-/// numbers. Times the rounding of a double, 2⁻⁵³, it is the error that no method in double can be expected to beat.
-/// Throws Error: exit 3 where a step cannot be made, exit 130 soon after `stop` is set.
-double angle_sensitivity(const Pendulum<double>& p, double seconds, const std::atomic<bool>& stop);
-
-struct SpectrumSpec {
-    double duration_s = 500;   // of the motion
-    int samples = 500;         // equally spaced, the last at the end
-    double tolerance = 1e-10;  // of dop853, for the state and its tangents alike
-};
-
-/// The exponents as estimated up to a time.
-struct SpectrumSample {
-    double time_s;
-    std::vector<double> exponents;  // 1/s, 2N of them; the greatest first as time grows
-};
-
-/// Estimates of all 2N Lyapunov exponents of a chain of 1 to 4 links, in the canonical (θ, p). At any time their sum is
-/// 0 without friction, and with it the mean of what that does to the volume: of viscous friction −tr(C M⁻¹).
-/// Errors  exit 2 where the spec or the number of links makes no sense or joints have Coulomb's friction, exit 3 where the
-///         method breaks down, exit 130 soon after `stop` is set.
-std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
-                                              const std::atomic<bool>& stop);
-
-/// The greatest |λ_i + λ_{2N+1−i}|, 1/s: what the pairs of a Hamiltonian system, one without friction, lack at a finite
-/// time.
-double pair_mismatch(const SpectrumSample& sample);
 
 }  // namespace doppel

@@ -2,44 +2,67 @@
 
 #include "integrate/motion.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
 namespace doppel {
 
+/// How far one motion is from another: rad, the largest of all angles, up to whole turns; of what hangs in no chain, of
+/// places in units of `reach`. NaN where a number is NaN. In quad, where either is: turns are then taken off in quad, or
+/// nothing below their rounding in double, 2e-16 a turn, could be seen.
+struct ErrorMeasure {
+    bool in_angles = true;
+    double reach = 1;  // m
+
+    /// The angles, rad, or x and y of all particles, m.
+    std::vector<Quad> coordinates(const Observation& seen) const;
+    double distance(std::span<const Quad> one, std::span<const Quad> other) const;
+    double distance(const Observation& one, const Observation& other) const {
+        return distance(coordinates(one), coordinates(other));
+    }
+};
+
 /// How a motion ends, to more digits than double has.
 struct Reference {
-    Bobs<Quad> end;       // angles up to whole turns
+    Observation end;      // angles up to whole turns
     double disagreement;  // of the two computations: of angles, rad, or of places, m, where there are none
+    /// How much the motion makes of an error at its start: the largest |∂θ_i(T)/∂θ_j(0)|; NaN where it is no chain of point
+    /// masses.
+    double sensitivity;
+
+    /// The error that rounding alone makes in double, which no method can be expected to beat; NaN where it is not known.
+    double floor() const { return 0x1p-53 * sensitivity; }
 };
 
 /// The end after `seconds`, by Taylor series in quad, twice: a chain in angles and as particles on rods, which have no
-/// equation in common; links with mass, friction or a drive and mechanisms at two tolerances, and so orders. Of `spec` only
-/// what moves, and whether it is a mechanism, matters.
+/// equation in common; links with mass, friction or a drive and mechanisms at two tolerances, and so orders. The
+/// sensitivity by runs in quad from next to the start. Of `spec` only what moves, and whether it is a mechanism, matters.
 ///
-/// Throws Error: exit 3 where the two differ by more than `allowed`, or a step cannot be made; exit 130 soon after
-/// `stop` is set.
-Reference reference_end(MotionSpec spec, const Rational& seconds, double allowed, const std::atomic<bool>& stop);
+/// Throws Error: exit 3 where the two differ by more than quad makes of the sensitivity, or a step cannot be made; exit 130
+/// soon after `stop` is set.
+Reference reference_end(MotionSpec spec, const Rational& seconds, const std::atomic<bool>& stop);
 
 /// The motion as well as it can be known, sample by sample: what the errors of a run are measured by.
 ///
 /// Of a motion in double, by Taylor series in quad: wrong by a ten-thousandth of what any run in double is. Where that
 /// would cost too much, and of a motion in quad, by Taylor series as fine as its own precision allows; how far those
 /// may be off is told by others of another tolerance, from a start some roundings away.
-struct ReferenceTrajectory {
-    bool in_angles = true;                // of a chain; else by places, in units of `reach`
-    double reach = 1;                     // m
-    std::vector<std::vector<Quad>> seen;  // at samples 0, 1 …: the angles, rad, or x and y of all particles, m
+struct ReferenceTrajectory : ErrorMeasure {
+    std::vector<std::vector<Quad>> seen;  // coordinates() at samples 0, 1 …
     /// How far that may be off: rad, or units of `reach`, the largest so far. Where `is_wider`, what one rounding of the
     /// motion's numbers to its precision does: they are not known better.
     std::vector<double> uncertainty;
     bool is_wider = false;  // in more digits than the motion's own
     std::string failure;    // why it could not go on
 
-    /// How far a motion is from it at a sample that was seen: rad, the largest of all angles, up to whole turns; or of
-    /// places, in units of `reach`. NaN where a number is NaN.
-    double distance(std::size_t sample, const Observation& observed) const;
-    std::string description() const;  // "Taylor series in quad"
+    /// How far a motion is from it at a sample that was seen.
+    double off_at(std::size_t sample, const Observation& observed) const {
+        return distance(coordinates(observed), seen[sample]);
+    }
+    std::string description() const {
+        return is_wider ? "Taylor series in quad" : "Taylor series as fine as the precision allows";
+    }
 };
 
 /// What quad may cost, in evaluations of the right-hand side times links or particles: some two seconds.
@@ -53,9 +76,6 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
 
 /// The motion of `spec` by the method of the reference in the motion's own precision.
 MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance);
-
-/// The same system with its numbers some roundings away, those of its precision.
-MotionSpec some_roundings_away(MotionSpec spec);
 
 /// How far a run is off, in rad, the largest of all angles and of all samples so far; of what hangs in no chain, of
 /// places in units of its size. What the reference itself may be off by counts as well.

@@ -1,11 +1,15 @@
+#include "analysis/spectrum.hpp"
+
 #include "analysis/exponent.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
+#include "physics/physical_canonical.hpp"
 
 #include <Eigen/Householder>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace doppel {
 namespace {
@@ -42,14 +46,15 @@ public:
     using Column = Eigen::VectorXd;
 
     Frame(const PhysicalPendulum<double>& p, double tolerance, const NaturalUnits& units)
-        : model_(p.template cast<Number>()),
+        : model_(p.template cast<Number>(), false),
           canonical_(model_),
-          motion_(p, tolerance),
-          links_(static_cast<Eigen::Index>(p.chain.links())),
-          y_(Model::start(p.template cast<Number>())),
-          z_(y_) {
+          y_(Model::start(p.template cast<Number>(), false)),
+          z_(y_),
+          motion_(tangent_rate(model_, y_), p.chain.links(), tolerance),
+          links_(static_cast<Eigen::Index>(p.chain.links())) {
+        const double mass = std::accumulate(p.chain.mass.begin(), p.chain.mass.end(), 0.0);
         unit_.setOnes(2 * links_);
-        unit_.tail(links_).setConstant(mass_of(p.chain) * units.length * units.length / units.time);
+        unit_.tail(links_).setConstant(mass * units.length * units.length / units.time);
         canonical_.momenta(y_, z_);
         restart(Matrix::Identity(2 * links_, 2 * links_));
     }
@@ -57,9 +62,9 @@ public:
     /// What ln|δ_i| grow by in so many seconds.
     Column advance(double seconds) {
         constexpr double flat = 1e-7;  // a frame of which the least side has lost half of its digits
-        const auto before = motion_.state();
+        const TangentState before = motion_.state();
         motion_.advance(seconds);
-        TangentFlow<Model>::to_dual(motion_.state(), y_);
+        to_dual(motion_.state(), y_);
         canonical_.momenta(y_, z_);
         Matrix frame(2 * links_, 2 * links_);
         for (Eigen::Index i = 0; i < 2 * links_; ++i)
@@ -76,8 +81,7 @@ public:
 
 private:
     using Number = Dual<double, directions>;
-    using Model = ChainWithoutWork<Number>;
-    using Motion = TangentMotion<Model>;
+    using Model = PhysicalChain<Number>;
 
     /// Of the state: angles and momenta, without the time.
     Eigen::Index row(Eigen::Index i) const { return i < links_ ? i : z_.size() / 2 + i - links_; }
@@ -87,17 +91,17 @@ private:
         for (Eigen::Index i = 0; i < 2 * links_; ++i)
             z_[row(i)].tangent.head(2 * links_) = unit_[i] * frame.row(i).transpose();
         canonical_.velocities(z_, y_);
-        typename Motion::State all(y_.size() * (1 + TangentFlow<Model>::directions));
-        TangentFlow<Model>::from_dual(y_, all);
+        TangentState all;
+        from_dual(y_, all);
         motion_.restart(all);
     }
 
     Model model_;
     Canonical<Model> canonical_;
-    Motion motion_;
+    typename Model::State y_, z_;
+    TangentMotion motion_;
     Eigen::Index links_;
     Column unit_;  // of angles and momenta: 1 and N m s
-    typename Model::State y_, z_;
 };
 
 template <int directions>

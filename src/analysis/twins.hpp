@@ -35,41 +35,16 @@ std::size_t twins_block();
 
 /// Steps all twins side by side; `watch` sees every trial at every sample 0 … N, the samples in their order.
 ///
-/// Every trial is the same to the bit at every width and in any company: each lane does what a lone double would.
+/// Every trial is the same to the bit in any company: each lane does what a lone double would.
 /// Pendulums that several twins share are stepped once. Numbers that broke down are NaN or infinite.
 ///
 /// Errors: those of Batch; exit 130 soon after `stop` is set.
 using TwinWatch = std::function<void(std::size_t trial, long sample, const Bobs<double>& a, const Bobs<double>& b)>;
-void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch, const std::atomic<bool>& stop,
-                int width = 0);
+void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch,
+                const std::atomic<bool>& stop);
 
-/// The study's measure of chaos, for each of the twins: the mean of ln(d_n / d_0) over the samples n = 1 … N, d the
-/// distance in state space (Kao 2022). Samples at which the two are one are left out; NaN where none is left, or the
-/// motion broke down. Each mean is summed in the order of its samples. Errors: those of step_twins().
+/// The study's measure of chaos for each of the twins, AverageLogRatio. Errors: those of step_twins().
 void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
-                        const std::atomic<bool>& stop, int width = 0);
-
-/// That mean of one pair, from its distances in the order of the samples.
-class AverageLogRatio {
-public:
-    void add(double distance) {
-        if (is_first_) {
-            start_ = distance;
-        } else if (const auto ratio = log_ratio(distance, start_)) {
-            sum_ += *ratio;
-            ++counted_;
-        }
-        is_first_ = false;
-    }
-    double value() const {
-        const double mean = sum_ / static_cast<double>(counted_);
-        return std::isfinite(mean) ? mean : NAN;
-    }
-
-private:
-    bool is_first_ = true;
-    double start_ = 0, sum_ = 0;
-    long counted_ = 0;
-};
+                        const std::atomic<bool>& stop);
 
 }  // namespace doppel

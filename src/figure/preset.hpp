@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/work_ladder.hpp"
+#include "analysis/work_precision.hpp"
 #include "figure/chart.hpp"
 #include "figure/experiment.hpp"
 #include "scene/field_table.hpp"

@@ -1,6 +1,6 @@
 #include "figure/quantity.hpp"
 
-#include "analysis/parting.hpp"
+#include "analysis/difference.hpp"
 #include "figure/kinds.hpp"
 #include "numeric/roots.hpp"
 #include "scene/captions.hpp"

@@ -1,4 +1,5 @@
-#include "analysis/exponent.hpp"
+#include "analysis/spectrum.hpp"
+
 #include "figure/kinds.hpp"
 #include "figure/system_words.hpp"
 #include "scene/captions.hpp"

@@ -210,29 +210,41 @@ private:
     const CellRange& columns_of(const MethodEntry& method) const { return method.adaptive ? tolerances_ : steps_; }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        return greatest_energy_errors(run_of(trial), releases_, stop);
+        const auto run = run_of(trial);
+        return greatest_energy_errors(run.motion, releases_, run.samples, stop);
     }
 
     const MethodEntry& method_of(std::size_t trial) const { return *methods_[trial / columns_]; }
-    /// How a method steps all releases in a column of its map.
-    StabilityRun run_of(std::size_t trial) const {
+    /// How a method steps a release, and how often its energy is sampled.
+    struct Run {
+        MotionSpec motion;
+        long samples = 100;
+    };
+    Run run_of(std::size_t trial) const {
         const auto& method = method_of(trial);
-        StabilityRun run{.method = std::string(method.name), .model = model_of(method), .duration = duration_};
+        Run run;
+        run.motion.method = method.name;
+        run.motion.model = model_of(method);
+        run.motion.follows_turns = false;
         const double pace = columns_of(method).middle(static_cast<int>(trial % columns_));
         if (method.adaptive) {
-            run.tolerance = Quad(pace);
-            return run;
+            run.motion.tolerance = Quad(pace);
+        } else {
+            // whole steps to a sample, whole samples to the duration
+            const double whole = duration_.value() / pace;
+            auto& steps = run.motion.steps_per_sample;
+            steps = std::max(1L, static_cast<long>(std::ceil(whole / static_cast<double>(run.samples))));
+            run.samples = std::max(1L, std::lround(whole / static_cast<double>(steps)));
         }
-        // whole steps to a sample, whole samples to the duration
-        const double whole = duration_.value() / pace;
-        run.steps_per_sample = std::max(1L, static_cast<long>(std::ceil(whole / static_cast<double>(run.samples))));
-        run.samples = std::max(1L, std::lround(whole / static_cast<double>(run.steps_per_sample)));
+        run.motion.sample_interval = *quotient(duration_, {run.samples, 1});
         return run;
     }
     /// The step, s, or the tolerance.
     double pace_of(std::size_t trial) const {
         const auto run = run_of(trial);
-        return method_of(trial).adaptive ? static_cast<double>(run.tolerance) : run.step();
+        return method_of(trial).adaptive
+                   ? static_cast<double>(run.motion.tolerance)
+                   : duration_.value() / static_cast<double>(run.samples * run.motion.steps_per_sample);
     }
 
     HeatMap map_of(std::span<const TrialNumbers> numbers, std::size_t method) const {

@@ -127,7 +127,7 @@ public:
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         bool any = false;
         for (const auto& ladder : merged_ladders(numbers)) {
-            if (!useful_rungs(ladder, cost_, {0, most_error_shown}).empty()) return std::nullopt;
+            if (!front_of(ladder, cost_, {0, most_error_shown}).empty()) return std::nullopt;
             for (const auto& rung : ladder.rungs) {
                 any |= std::isfinite(rung.error);
                 if (ladder.solver.is_study() && rung.is_study() && !rung.failed()) return std::nullopt;
@@ -196,13 +196,8 @@ private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const std::size_t problems = problems_.all.size();
         if (trial < problems) {
-            const auto& solution = reference(trial, stop);
-            if (std::isinf(solution.sensitivity))
-                throw method_failed(
-                    "{}: an error at the start grows beyond all numbers in {:g} s; take a shorter "
-                    "work_precision.duration_s",
-                    problems_.all[trial].name, problems_.all[trial].duration());
-            return numbers_of(ProblemRow{solution.sensitivity, solution.reference.disagreement});
+            const auto& known = reference(trial, stop);
+            return numbers_of(ProblemRow{known.sensitivity, known.disagreement});
         }
         const auto& [p, solver] = ladders_[(trial - problems) % ladders_.size()];
         const bool is_first = trial - problems < ladders_.size();
@@ -214,10 +209,10 @@ private:
     }
 
     /// Computed when it is first asked for, by any thread.
-    const ReferenceSolution& reference(std::size_t problem, const std::atomic<bool>& stop) const {
+    const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const {
         auto& shared = references_[problem];
-        std::call_once(shared.once, [&] { shared.solution = reference_solution(problems_.all[problem], stop); });
-        return shared.solution;
+        std::call_once(shared.once, [&] { shared.reference = problems_.all[problem].reference(stop); });
+        return shared.reference;
     }
 
     std::vector<Ladder> merged_ladders(std::span<const TrialNumbers> numbers) const {
@@ -236,16 +231,15 @@ private:
         const auto key = fmt::format("{}_1e{}_", problems_.all[p].name, std::lround(std::log10(accuracy)));
         const auto best = cheapest(p, ladders, cost_, accuracy, false);
         const auto external = cheapest(p, ladders, cost_, accuracy, true);
-        if (best) {
-            const auto& solver = best->ladder->solver;
+        if (best.ladder) {
+            const auto& solver = best.ladder->solver;
             all.push_back({key + "best", fmt::format("{}, {}", solver.method, name_of(solver.model))});
-            all.push_back({key + "cost", best->cost});
+            all.push_back({key + "cost", best.cost});
         }
-        if (external) {
-            all.push_back({key + "best_peer", external->ladder->solver.external->name});
-            all.push_back({key + "peer_cost", external->cost});
-        }
-        if (best && external) all.push_back({key + "peer_ratio", external->cost / best->cost});
+        if (!external.ladder) return;
+        all.push_back({key + "best_peer", external.ladder->solver.external->name});
+        all.push_back({key + "peer_cost", external.cost});
+        if (best.ladder) all.push_back({key + "peer_ratio", external.cost / best.cost});
     }
 
     /// The five best; of other libraries with Doppel's best before them.
@@ -299,7 +293,7 @@ private:
     WorkProblems problems_;
     struct SharedReference {
         std::once_flag once;
-        ReferenceSolution solution;
+        Reference reference;
     };
     std::unique_ptr<SharedReference[]> references_;  // of each problem
     int repeats_ = 5, most_evaluations_ = 300'000;

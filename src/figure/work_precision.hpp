@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/work_ladder.hpp"
+#include "analysis/work_precision.hpp"
 #include "figure/kinds.hpp"
 
 namespace doppel {

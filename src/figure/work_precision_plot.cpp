@@ -63,9 +63,8 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
         curve.hue = look.hue;
         curve.dashed = look.dashed;
     }
-    const auto useful = useful_rungs(ladder, diagram.cost, range_of(diagram));
-    for (const std::size_t i : useful)
-        add_point(curve, cost_of(ladder.rungs[i], diagram.cost), shown(ladder.rungs[i].error));
+    for (const auto& point : front_of(ladder, diagram.cost, range_of(diagram)))
+        add_point(curve, point.cost, shown(point.error));
     return curve;
 }
 
@@ -73,12 +72,11 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
 Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
     Curve bars{.hue = hue, .background = Background::line};
     constexpr double shows = 0.05, most = 0.9;
-    for (const std::size_t i : useful_rungs(ladder, diagram.cost, range_of(diagram))) {
-        const auto& rung = ladder.rungs[i];
-        const double spread = std::min(ladder.spread[i], most);
+    for (const auto& point : front_of(ladder, diagram.cost, range_of(diagram))) {
+        const double spread = std::min(point.spread, most);
         if (spread < shows) continue;
-        add_point(bars, rung.cpu_s * (1 - spread), shown(rung.error));
-        add_point(bars, rung.cpu_s * (1 + spread), shown(rung.error));
+        add_point(bars, point.cost * (1 - spread), shown(point.error));
+        add_point(bars, point.cost * (1 + spread), shown(point.error));
         add_point(bars, NAN, NAN);
     }
     return bars;
@@ -98,7 +96,7 @@ void add_study(const WorkDiagram& diagram, Plot& plot) {
         for (const auto& rung : ladder.rungs)
             if (rung.is_study())
                 plot.curves.push_back({.label = "the study: Euler, 30 kHz",
-                                       .x = {cost_of(rung, diagram.cost)},
+                                       .x = {diagram.cost == Cost::time ? rung.cpu_s : rung.evaluations},
                                        .y = {rung.error},
                                        .mark = Mark::points,
                                        .quiet = true});

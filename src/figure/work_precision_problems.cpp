@@ -55,7 +55,7 @@ WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational&
     problem.size = side.reach;
     const double gravity = std::abs(side.gravity);
     if (side.motion.chain)
-        problem.natural_time = NaturalUnits(side.motion.chain->cast<double>()).time;
+        problem.natural_time = NaturalUnits(physical(side.motion.chain->cast<double>())).time;
     else
         problem.natural_time = gravity > 0 ? std::sqrt(side.reach / gravity) : 1;
     return problem;

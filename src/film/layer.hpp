@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/parting.hpp"
+#include "analysis/difference.hpp"
 #include "film/layout.hpp"
 #include "scene/scene.hpp"
 

@@ -1,5 +1,4 @@
 #include "analysis/reference.hpp"
-#include "analysis/stability.hpp"
 #include "scene/method_choice.hpp"
 
 #include <algorithm>
@@ -44,7 +43,7 @@ bool is_plain_chain(const MotionSpec& motion) {
 }
 
 Forecast::Kind kind_of(const Pendulum<double>& pendulum, const Exponent& exponent) {
-    if (equilibrium_exponent(pendulum)) return exponent.value > 0 ? Forecast::Kind::unstable : Forecast::Kind::regular;
+    if (exponent.is_of_equilibrium()) return exponent.value > 0 ? Forecast::Kind::unstable : Forecast::Kind::regular;
     // one link keeps its energy, which leaves it no choice, however slowly its exponent vanishes near the upright
     return pendulum.links() == 1 || is_regular(exponent) ? Forecast::Kind::regular : Forecast::Kind::chaotic;
 }

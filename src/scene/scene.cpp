@@ -1,6 +1,5 @@
 #include "scene/scene.hpp"
 
-#include "analysis/difference.hpp"
 #include "base/error.hpp"
 #include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
@@ -159,16 +158,15 @@ std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char nam
 }  // namespace
 
 SideRun::SideRun(const Scene& scene, const Side& side, char name)
-    : scene_(scene), side_(side), name_(name), motion_(motion_of(scene, side, name)) {
-    const auto start = motion_->observe();
-    energy_scale_ = doppel::energy_scale(start.energy, side.energy_unit);
-    greatest_gain_ = greatest_gain(start.energy, start.kinetic_energy, side.energy_unit);
-    longest_rod_ = side.reach;
-}
+    : scene_(scene),
+      side_(side),
+      name_(name),
+      motion_(motion_of(scene, side, name)),
+      proportion_(motion_->observe(), side.energy_unit, side.reach) {}
 
 std::optional<double> SideRun::energy_error(const Observation& seen) const {
     if (!side_.has_energy_error) return std::nullopt;
-    return seen.energy_change / energy_scale_;
+    return seen.energy_change / proportion_.energy;
 }
 
 BreakDown SideRun::broken(const std::string& what) const {
@@ -181,10 +179,10 @@ BreakDown SideRun::broken(const std::string& what) const {
 
 void SideRun::watch(const Observation& seen) {
     if (const auto fault = not_finite(seen, side_.has_angles)) throw broken(*fault);
-    if (seen.energy_change > greatest_gain_)
+    if (seen.energy_change > proportion_.gain)
         throw broken(
             fmt::format("the energy has grown by {:.3g} J, more than ten times what there is", seen.energy_change));
-    if (seen.length_error > longest_rod_)
+    if (seen.length_error > proportion_.reach)
         throw broken(fmt::format("a rod is off by {:.3g} m, more than all of them are long", seen.length_error));
 }
 

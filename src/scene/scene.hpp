@@ -1,5 +1,6 @@
 #pragma once
 
+#include "analysis/breakdown.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
@@ -163,7 +164,7 @@ public:
     /// A tick that is later, or 0 at first. Throws as next().
     Observation advance_to(long tick, const std::atomic<bool>& stop);
 
-    /// Relative (analysis/difference.hpp); nothing where damping takes energy, so that no change of it is an error.
+    /// Relative (analysis/breakdown.hpp); nothing where damping takes energy, so that no change of it is an error.
     std::optional<double> energy_error(const Observation& seen) const;
     Effort effort() const { return motion_->effort(); }
 
@@ -175,7 +176,7 @@ private:
     const Side& side_;
     char name_;
     std::unique_ptr<Motion> motion_;
-    double energy_scale_ = 1, greatest_gain_ = 0, longest_rod_ = 0;  // J, J, m
+    Proportion proportion_;
     long tick_ = -1;
 };
 

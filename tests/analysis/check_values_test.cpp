@@ -1,3 +1,4 @@
+#include "analysis/breakdown.hpp"
 #include "analysis/difference.hpp"
 #include "integrate/support.hpp"
 #include "numeric/state.hpp"
@@ -98,9 +99,9 @@ TEST(Distance, LogRatioIsEmptyWhereThereIsNone) {
     EXPECT_DOUBLE_EQ(log_ratio(std::exp(2.0), 1).value(), 2);
 }
 
-TEST(EnergyScale, IsTheRangeWhereTheStartHasNoEnergy) {
+TEST(Proportion, IsOfTheRangeWhereTheStartHasNoEnergy) {
     const auto scale = [](const Pendulum<double>& p) {
-        return energy_scale(Course(studied(Model::angles, p)).observe().energy, p.potential_range());
+        return Proportion(Course(studied(Model::angles, p)).observe(), p.potential_range(), p.reach()).energy;
     };
     EXPECT_DOUBLE_EQ(scale(released(90, 90)), 2 * 9.8 * (1 * 1 + 1 * 2));                 // cos 90° is 6e-17, not 0
     EXPECT_NEAR(scale(released(90.003, 90)), 2 * 9.8 * std::sin(radians(0.003)), 7e-16);  // measured 1.2e-16

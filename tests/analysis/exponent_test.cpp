@@ -1,6 +1,5 @@
 #include "analysis/exponent.hpp"
 
-#include "analysis/stability.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
@@ -36,10 +35,12 @@ TEST(Exponent, OfEquilibriaInClosedForm) {
     EXPECT_NEAR(exponent({0, 180}), std::sqrt(9.8 * std::sqrt(2.0)), 3e-15);           // measured 4e-16
     auto adrift = from_rest({70, -20});
     adrift.gravity = 0;
-    EXPECT_EQ(equilibrium_exponent(adrift), 0.0);
-    EXPECT_FALSE(equilibrium_exponent(from_rest({180, 0.001})));
+    const ExponentSpec brief{.duration_s = 2, .transient_s = 1};
+    EXPECT_TRUE(largest_exponent(adrift, brief, never).is_of_equilibrium());
+    EXPECT_EQ(largest_exponent(adrift, brief, never).value, 0);
+    EXPECT_FALSE(largest_exponent(from_rest({180, 0.001}), brief, never).is_of_equilibrium());
     adrift.rate[1] = 1e-9;
-    EXPECT_FALSE(equilibrium_exponent(adrift));
+    EXPECT_FALSE(largest_exponent(adrift, brief, never).is_of_equilibrium());
 }
 
 TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
@@ -49,7 +50,7 @@ TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
         auto p = uneven(static_cast<std::size_t>(links));
         std::fill(p.angle.begin(), p.angle.end(), pi);
         std::fill(p.rate.begin(), p.rate.end(), 0.0);
-        const double exact = equilibrium_exponent(p).value();
+        const double exact = largest_exponent(p, {}, never).value;
         p.rate[0] = 1e-30;
         const ExponentSpec spec{.duration_s = 20 / exact, .transient_s = 15 / exact, .tolerance = 1e-10, .blocks = 2};
         EXPECT_NEAR(largest_exponent(p, spec, never).value / exact, 1, most) << links;
@@ -57,12 +58,13 @@ TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
 }
 
 TEST(Exponent, TangentIsTheDifferenceOfNeighbours) {
-    using Flow = TangentFlow<DoublePendulum<Dual<double, 1>>>;
+    using Model = DoublePendulum<Dual<double, 1>>;
     const auto p = uneven(2);
+    const auto release = p.cast<Dual<double, 1>>();
     const State<double, 4> direction(1, -0.5, 2, 0.3);
-    Flow::State start(8);
+    TangentState start(8);
     start << DoublePendulum<double>::start(p), direction;
-    TangentMotion<DoublePendulum<Dual<double, 1>>> motion(p, 1e-12);
+    TangentMotion motion(tangent_rate(Model(release), Model::start(release)), 2, 1e-12);
     motion.restart(start);
     motion.advance(3);
     const auto neighbour = [&](double apart) {
@@ -210,15 +212,6 @@ TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
     EXPECT_NEAR(run(parts, parts).uncertainty / expected, 1, 2e-3);  // measured 3e-5
 }
 
-TEST(Exponent, IsOfFiveHundredSecondsWhereNothingElseIsSaid) {
-    const auto p = from_rest({140, 0});
-    const auto told =
-                   largest_exponent(p, {.duration_s = 500, .transient_s = 50, .tolerance = 1e-7, .blocks = 20}, never),
-               usual = largest_exponent(p, {}, never);
-    EXPECT_EQ(usual.value, told.value);
-    EXPECT_EQ(usual.uncertainty, told.uncertainty);
-}
-
 TEST(Exponent, ScalesWithTheUnits) {
     // four times the lengths: the same motion at half the speed; masses cancel
     auto p = from_rest({130, 20});
@@ -243,16 +236,6 @@ TEST(Exponent, RefusesWhatMakesNoSense) {
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::bad_input);
         }
-    }
-}
-
-TEST(Exponent, StopsWhenTold) {
-    const std::atomic<bool> stop = true;
-    try {
-        largest_exponent(from_rest({90, 90}), {}, stop);
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::interrupted);
     }
 }
 

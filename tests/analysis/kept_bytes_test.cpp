@@ -1,4 +1,5 @@
 #include "analysis/exponent.hpp"
+#include "analysis/spectrum.hpp"
 #include "analysis/twins.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"

@@ -1,11 +1,9 @@
 #include "analysis/exponent.hpp"
 #include "analysis/physical_releases.hpp"
-#include "analysis/stability.hpp"
+#include "analysis/spectrum.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
-#include "integrate/taylor.hpp"
-#include "physics/physical_chain.hpp"
 #include "physics/physical_pendulums.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +34,7 @@ TEST(PhysicalExponent, OfEquilibriaInClosedForm) {
     upright.friction.arm_quadratic = {0.4};
     EXPECT_NEAR(exponent(upright), std::sqrt(9.8 * 1.5), 1e-14);
     upright.pivot = {0.1, 0, 3, 0};
-    EXPECT_FALSE(equilibrium_exponent(upright));
+    EXPECT_FALSE(largest_exponent(upright, {.duration_s = 2, .transient_s = 1}, never).is_of_equilibrium());
 }
 
 TEST(PhysicalExponent, OfATransientSaysThatItsStretchesDiffer) {
@@ -70,45 +68,7 @@ TEST(PhysicalExponent, TellsChaosFromWhatSettles) {
     EXPECT_NEAR(largest_exponent(driven(0.5), spec, never).value, -gamma, 0.01);
 }
 
-/// By the distance of two motions, set 1e-8 apart every second.
-double by_twins(const PhysicalPendulum<double>& p, double transient_s, double duration_s) {
-    constexpr double apart = 1e-8;
-    PhysicalChain<double> chain(p), other(p);
-    auto start = PhysicalChain<double>::start(p), beside = start;
-    beside[0] += apart;
-    Taylor::Stepper<PhysicalChain<double>> one(chain, start, 1e-14), two(other, beside, 1e-14);
-    const auto links = chain.layout.coordinates, half = chain.layout.half;
-    double sum = 0;
-    for (int second = 1; second <= duration_s; ++second) {
-        one.advance(1);
-        two.advance(1);
-        start = one.state();
-        beside = two.state();
-        Eigen::VectorXd between(2 * links);
-        between << beside.head(links) - start.head(links), beside.segment(half, links) - start.segment(half, links);
-        const double distance = between.norm();
-        if (second > transient_s) sum += std::log(distance / apart);
-        beside = start;
-        beside.head(links) += between.head(links) * (apart / distance);
-        beside.segment(half, links) += between.tail(links) * (apart / distance);
-        two.reset(beside);
-    }
-    return sum / (duration_s - transient_s);
-}
-
-TEST(PhysicalExponent, IsTheRateAtWhichTwinsPart) {
-    for (const double gamma : {1.15, 1.5}) {
-        const auto exponent = largest_exponent(driven(gamma), {.duration_s = 1000, .transient_s = 100}, never);
-        const double twins = by_twins(driven(gamma), 100, 1000);
-        EXPECT_NEAR(exponent.value, twins, 3 * exponent.uncertainty) << gamma;  // measured 0.73 and 0.04 of it
-        EXPECT_GT(exponent.value, 5 * exponent.uncertainty) << gamma;
-        const auto all = lyapunov_spectrum(driven(gamma), {.duration_s = 1000, .samples = 1}, never)[0];
-        EXPECT_NEAR(all.exponents[0], exponent.value, 3 * exponent.uncertainty)
-            << gamma;  // measured 0.08 and 0.85 units %g\n", all.exponents[0], all.exponents[1], std::sqrt(9.8 / 0.8));
-    }
-}
-
-/// The same equation and its tangent's by hand, by Runge and Kutta's method in steps of 0.01; in units of √(g/l).
+/// The equation of driven() and its tangent's by hand, by Runge and Kutta's method in steps of 0.01; in units of √(g/l).
 double by_hand(double gamma, double quality, double transient, double duration) {
     using Numbers = Eigen::Array4d;  // θ, θ′, δθ, δθ′
     constexpr double h = 0.01;
@@ -138,6 +98,8 @@ TEST(PhysicalExponent, IsThatOfTheEquationByHand) {
         const double hand = by_hand(1.5, quality, 500, 10000);
         // 0.113 and 0.159; measured 0.6 and 1.3 of the uncertainty
         EXPECT_NEAR(exponent.value / unit, hand, 3 * exponent.uncertainty / unit);
+        const auto all = lyapunov_spectrum(driven(1.5, quality), {.duration_s = 1000, .samples = 1}, never)[0];
+        EXPECT_NEAR(all.exponents[0], exponent.value, 3 * exponent.uncertainty);  // measured 0.8 and 1.4 of it
     }
 }
 
@@ -182,8 +144,12 @@ TEST(PhysicalExponent, RefusesWhatMakesNoSense) {
     EXPECT_EQ(code([&] { largest_exponent(bodies<double>(5), brief, never); }), ExitCode::done);
     EXPECT_EQ(code([&] { lyapunov_spectrum(bodies<double>(5), {.duration_s = 1}, never); }), ExitCode::bad_input);
     EXPECT_EQ(code([&] { lyapunov_spectrum(bodies<double>(2), {.samples = 0}, never); }), ExitCode::bad_input);
+    EXPECT_EQ(code([&] { lyapunov_spectrum(bodies<double>(2), {.duration_s = 0}, never); }), ExitCode::bad_input);
+    EXPECT_EQ(code([&] { lyapunov_spectrum(bodies<double>(2), {.duration_s = 0.5, .samples = 1}, never); }),
+              ExitCode::done);
     const std::atomic<bool> stop = true;
     EXPECT_EQ(code([&] { largest_exponent(bodies<double>(2), {}, stop); }), ExitCode::interrupted);
+    EXPECT_EQ(code([&] { largest_exponent(from_rest({90, 90}), {}, stop); }), ExitCode::interrupted);
     EXPECT_EQ(code([&] { lyapunov_spectrum(bodies<double>(2), {}, stop); }), ExitCode::interrupted);
 }
 

@@ -1,5 +1,6 @@
 #include "analysis/exponent.hpp"
 #include "analysis/physical_releases.hpp"
+#include "analysis/spectrum.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
 #include "physics/physical_chain.hpp"

@@ -35,7 +35,7 @@ TEST(ReferenceTrajectory, OfAMotionInDoubleIsInQuadWhereThatCostsLittle) {
     const auto motion = make_motion(finer);
     for (std::size_t sample = 1; sample <= 50; ++sample) {
         motion->advance(never);
-        EXPECT_LT(wide.distance(sample, motion->observe()), 1e-20);  // measured 3.4e-21
+        EXPECT_LT(wide.off_at(sample, motion->observe()), 1e-20);  // measured 3.4e-21
     }
     EXPECT_FALSE(reference_trajectory(spec, 50, 2, enough, never, 0).is_wider);
 }

@@ -1,3 +1,5 @@
+#include "analysis/spectrum.hpp"
+
 #include "analysis/exponent.hpp"
 #include "base/error.hpp"
 #include "integrate/pendulums.hpp"
@@ -73,29 +75,6 @@ TEST(Spectrum, DoesNotDependOnHowOftenTheFrameIsSetUpright) {
     EXPECT_EQ(rarely.time_s, often.time_s);
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_NEAR(rarely.exponents[i], often.exponents[i], 1e-11) << i;  // measured 1.4e-12
-}
-
-TEST(Spectrum, HasFiveHundredSamplesWhereNothingElseIsSaid) {
-    const auto all = lyapunov_spectrum(physical(from_rest({100, 20})), {.duration_s = 5}, never);
-    ASSERT_EQ(all.size(), 500u);
-    for (std::size_t i = 0; i < 500; ++i) EXPECT_NEAR(all[i].time_s, static_cast<double>(i + 1) / 100, 1e-14) << i;
-}
-
-TEST(Spectrum, RefusesWhatMakesNoSenseAndStopsWhenTold) {
-    const auto code = [](const Pendulum<double>& p, const SpectrumSpec& spec, bool stopped) {
-        const std::atomic<bool> stop = stopped;
-        try {
-            lyapunov_spectrum(physical(p), spec, stop);
-        } catch (const Error& error) {
-            return error.code();
-        }
-        return ExitCode::done;
-    };
-    EXPECT_EQ(code(uneven(5), {}, false), ExitCode::bad_input);
-    EXPECT_EQ(code(uneven(2), {.duration_s = 0}, false), ExitCode::bad_input);
-    EXPECT_EQ(code(uneven(2), {.duration_s = 0.5, .samples = 1}, false), ExitCode::done);
-    EXPECT_EQ(code(uneven(2), {.samples = 0}, false), ExitCode::bad_input);
-    EXPECT_EQ(code(uneven(2), {}, true), ExitCode::interrupted);
 }
 
 }  // namespace spectrum_test

@@ -3,7 +3,6 @@
 #include "analysis/difference.hpp"
 #include "base/error.hpp"
 #include "integrate/support.hpp"
-#include "integrate/widths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,10 +22,10 @@ TwinRun both(Model model, const std::string& method = "euler") {
     return {.a = side, .b = side, .samples = samples};
 }
 
-std::vector<double> averages_of(const std::vector<Twins>& twins, const TwinRun& run, int width = 0) {
+std::vector<double> averages_of(const std::vector<Twins>& twins, const TwinRun& run) {
     std::vector<double> averages(twins.size(), -1);
     const std::atomic<bool> never = false;
-    average_log_ratios(twins, run, averages, never, width);
+    average_log_ratios(twins, run, averages, never);
     return averages;
 }
 
@@ -101,13 +100,11 @@ TEST(Twins, MayDifferInTheirEquationsMethodsAndSteps) {
         EXPECT_EQ(average, average_of_films(one, run));
 }
 
-TEST(Twins, HaveTheSameBitsAtEveryWidthInAnyCompanyAndOrder) {
+TEST(Twins, HaveTheSameBitsInAnyCompanyAndOrder) {
     for (const auto model : {Model::angles, Model::constraints}) {
         const auto run = both(model);
         auto twins = some_twins();
         const auto expected = averages_of(twins, run);
-        for (const int width : register_widths()) EXPECT_EQ(averages_of(twins, run, width), expected) << width;
-
         std::reverse(twins.begin(), twins.end());
         auto backwards = averages_of(twins, run);
         std::reverse(backwards.begin(), backwards.end());

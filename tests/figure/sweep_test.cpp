@@ -1,4 +1,4 @@
-#include "analysis/parting.hpp"
+#include "analysis/difference.hpp"
 #include "figure/map_figure.hpp"
 #include "figure/support.hpp"
 

@@ -62,16 +62,18 @@ TEST(WorkPrecisionChart, NamesAllWhereTheyAreFew) {
 }
 
 /// Has the answer, at a cost of its own.
-class Oracle final : public ExternalSolver {
+class Oracle final : public Motion {
 public:
-    Oracle(std::vector<double> state, long evaluations) : state_(std::move(state)), evaluations_(evaluations) {}
-    void run() override {}
-    std::span<const double> state() const override { return state_; }
-    long evaluations() const override { return evaluations_; }
-    long steps() const override { return 1; }
+    explicit Oracle(long evaluations) : evaluations_(evaluations) {}
+    void advance(const std::atomic<bool>& /*stop*/) override {}
+    Observation observe() const override {
+        Observation seen;
+        seen.bobs.resize(2);
+        return seen;
+    }
+    Effort effort() const override { return {.steps = 1, .evaluations = evaluations_}; }
 
 private:
-    std::vector<double> state_;
     long evaluations_;
 };
 
@@ -80,9 +82,8 @@ TEST(WorkPrecisionChart, OfLibrariesHasTheirFiveBestAndDoppelsBest) {
     std::vector<ExternalMethod> libraries;
     for (const int cost : {70, 10, 60, 20, 50, 30, 40})
         libraries.push_back(
-            {fmt::format("at {}", cost), true, 1e-4, 1e-2, [cost](const Pendulum<double>&, double, double) {
-                 return std::make_unique<Oracle>(std::vector<double>(4), cost);
-             }});
+            {fmt::format("at {}", cost), true, 1e-4, 1e-2,
+             [cost](const Pendulum<double>&, double, double) { return std::make_unique<Oracle>(cost); }});
     const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("still-{}.toml", getpid());
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path) << "[scene]\nduration_s = 1\n[system]\nangle_deg = [1e-7, 0]\n";

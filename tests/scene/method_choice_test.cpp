@@ -1,6 +1,6 @@
 #include "scene/method_choice.hpp"
 
-#include "analysis/difference.hpp"
+#include "analysis/reference.hpp"
 #include "base/clock.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
@@ -152,8 +152,7 @@ double true_error(const SideSpec& spec, const Side& side, bool rounded = false) 
             run->advance(never);
         }
         const auto one = run->observe(), other = truth->observe();
-        worst = std::max(worst, side.has_angles ? angle_error(one.bobs, other.exact)
-                                                : place_error(one.bobs, other.exact) / side.reach);
+        worst = std::max(worst, ErrorMeasure{side.has_angles, side.reach}.distance(one, other));
     }
     return worst;
 }
@@ -270,7 +269,7 @@ TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
     for (long sample = 1; sample <= past; ++sample) {
         truth->advance(never);
         run->advance(never);
-        error = std::max(error, angle_error(run->observe().bobs, truth->observe().exact));
+        error = std::max(error, ErrorMeasure{}.distance(run->observe(), truth->observe()));
         if (sample == choice.horizon) {
             EXPECT_LE(error, choice.accuracy);
         }

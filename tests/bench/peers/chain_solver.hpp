@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/work_ladder.hpp"
+#include "analysis/work_precision.hpp"
 #include "base/error.hpp"
 #include "chain_rate.hpp"
 
@@ -11,9 +11,10 @@
 
 namespace doppel {
 
-/// What the solvers of all libraries have in common: a chain in angles, from its release over `seconds`.
+/// What the solvers of all libraries have in common: a chain in angles, from its release over `seconds` in one advance();
+/// each further one begins at the release again.
 template <int N>
-class ChainSolver : public ExternalSolver {
+class ChainSolver : public Motion {
 public:
     static constexpr long most_steps = 2'000'000;  // then a method has given up
     static constexpr double first_step = 0.01;     // s, for libraries that want to be told
@@ -21,23 +22,31 @@ public:
     using State = std::conditional_t<N == Eigen::Dynamic, std::vector<double>,
                                      std::array<double, static_cast<std::size_t>(N == Eigen::Dynamic ? 0 : 2 * N)>>;
 
-    ChainSolver(const Pendulum<double>& chain, double seconds) : seconds_(seconds), rate_(chain) {
+    ChainSolver(const Pendulum<double>& chain, double seconds) : seconds_(seconds), rate_(chain), chain_(chain) {
         if constexpr (N == Eigen::Dynamic) start_.resize(2 * chain.links());
         std::copy(chain.angle.begin(), chain.angle.end(), start_.begin());
         std::copy(chain.rate.begin(), chain.rate.end(), start_.begin() + static_cast<std::ptrdiff_t>(chain.links()));
         y_ = start_;
+        start_energy_ = observe().energy;
     }
 
-    void run() final {
+    void advance(const std::atomic<bool>& /*stop*/) final {
         y_ = start_;
         rate_.evaluations = steps_ = 0;
         integrate();
         for (const double x : y_)
             if (!std::isfinite(x)) throw method_failed("the motion has blown up");
     }
-    std::span<const double> state() const final { return y_; }
-    long evaluations() const final { return rate_.evaluations; }
-    long steps() const final { return steps_; }
+    Observation observe() const final {
+        Observation seen;
+        seen.bobs = bobs_of_angles(chain_, Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                                               y_.data(), static_cast<Eigen::Index>(y_.size()))));
+        seen.energy = energy(seen.bobs, chain_.gravity);
+        seen.kinetic_energy = kinetic_energy(seen.bobs);
+        seen.energy_change = seen.energy - start_energy_;
+        return seen;
+    }
+    Effort effort() const final { return {.steps = steps_, .evaluations = rate_.evaluations}; }
 
 protected:
     /// y ← the state at the end; counts steps.
@@ -53,18 +62,21 @@ protected:
     ChainRate<N> rate_;
     State start_{}, y_{};
     long steps_ = 0;
+
+private:
+    Pendulum<double> chain_;
+    double start_energy_ = 0;  // J
 };
 
 /// A peer whose solver is a class template over the number of links, made from (chain, seconds, setting, more …).
 template <template <int> class Solver, class... More>
 ExternalMethod peer_of(std::string name, bool adaptive, double least, double most, More... more) {
-    return {
-        std::move(name), adaptive, least, most,
-        [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<ExternalSolver> {
-            if (chain.links() == 2) return std::make_unique<Solver<2>>(chain, seconds, setting, more...);
-            if (chain.links() == 3) return std::make_unique<Solver<3>>(chain, seconds, setting, more...);
-            return std::make_unique<Solver<Eigen::Dynamic>>(chain, seconds, setting, more...);
-        }};
+    return {std::move(name), adaptive, least, most,
+            [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<Motion> {
+                if (chain.links() == 2) return std::make_unique<Solver<2>>(chain, seconds, setting, more...);
+                if (chain.links() == 3) return std::make_unique<Solver<3>>(chain, seconds, setting, more...);
+                return std::make_unique<Solver<Eigen::Dynamic>>(chain, seconds, setting, more...);
+            }};
 }
 
 }  // namespace doppel

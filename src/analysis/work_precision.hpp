@@ -1,36 +1,23 @@
 #pragma once
 
 #include "analysis/reference.hpp"
-#include "physics/pendulum.hpp"
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace doppel {
-
-/// A method of another library, set up on one problem; all its memory is there.
-class ExternalSolver {
-public:
-    virtual ~ExternalSolver() = default;
-    /// From the release to the end; may be called repeatedly. Throws Error (exit 3) where the method gives up.
-    virtual void run() = 0;
-    virtual std::span<const double> state() const = 0;  // at the end: θ1 … θN, ω1 … ωN
-    virtual long evaluations() const = 0;               // of the right-hand side, in the last run
-    virtual long steps() const = 0;                     // accepted, in the last run
-};
 
 /// A method of another library, to compare with. Doppel links none: a program that does passes them in.
 struct ExternalMethod {
     std::string name;    // "GSL rk8pd"
     bool adaptive;       // its setting is a tolerance, not a step in s
     double least, most;  // of its settings
-    std::function<std::unique_ptr<ExternalSolver>(const Pendulum<double>& chain, double seconds, double setting)> make;
+    /// A motion from the release, whose first sample is the end after `seconds`.
+    std::function<std::unique_ptr<Motion>(const Pendulum<double>& chain, double seconds, double setting)> make;
 };
 
 /// A motion to compute, and what its errors are measured by.
@@ -51,20 +38,9 @@ struct WorkProblem {
     double duration() const { return motion.sample_interval.value(); }  // s
     bool has_angles() const { return motion.chain.has_value(); }
     MotionSpec motion_in(Model model) const;
-    /// The error at the end: of the worst angle, rad, or the worst place as a part of the size.
-    double error(const Observation& end, const Reference& reference) const;
+    /// Throws as reference_end() does.
+    Reference reference(const std::atomic<bool>& stop) const;
 };
-
-/// A problem's end to more digits than double has, and how sensitive it is.
-struct ReferenceSolution {
-    Reference reference;
-    double sensitivity;  // of its angles; NaN where it is no plain chain
-
-    /// The error that rounding alone makes in double; NaN where it is not known.
-    double floor() const { return 0x1p-53 * sensitivity; }
-};
-/// Throws as reference_end() does.
-ReferenceSolution reference_solution(const WorkProblem& problem, const std::atomic<bool>& stop);
 
 /// A method on a model, or one of another library, which outlives this.
 struct Solver {
@@ -73,7 +49,6 @@ struct Solver {
     const ExternalMethod* external = nullptr;
 
     std::string name() const { return external ? "peer:" + external->name : method; }
-    bool adaptive() const;
     /// The method of the published study.
     bool is_study() const { return method == "euler" && model == Model::angles; }
     /// Whether it can compute the problem.
@@ -83,10 +58,10 @@ struct Solver {
 inline constexpr double study_step = 1.0 / 30000;  // s
 
 /// What one setting of a method came to; NaN where a number could not be had. A run has failed that gives up, is no
-/// longer finite, or whose energy or rods are out of all proportion (analysis/difference.hpp).
+/// longer finite, or whose energy or rods are out of all proportion (analysis/breakdown.hpp).
 struct Rung {
     double setting;                     // step, s, or tolerance
-    double error;                       // WorkProblem::error()
+    double error;                       // at the end: of the worst angle, rad, or the worst place, of the size
     double energy_error, length_error;  // the worst on the way: relative; m
     double cpu_s;                       // of one run
     double evaluations, steps;
@@ -100,7 +75,7 @@ struct LadderSpec {
     long most_evaluations;  // of a rung
     double least_error;     // at which the ladder ends
     bool timed = false;
-    bool watched = true;  // energies and lengths, in a run of their own
+    bool watched = true;  // energies and lengths, in a run of their own; not of external methods
 };
 
 /// A solver's settings from coarse to fine: steps by factors of √2, 1/30000 s among them, or tolerances by half
@@ -108,7 +83,7 @@ struct LadderSpec {
 /// many evaluations; never because of the time. The study's step is always among it. A rung that fails has no
 /// numbers. CPU times are those of the thread for the whole motion, without setting it up, after a run that warms the
 /// caches; short runs are repeated. Throws Error (exit 130) soon after `stop` is set.
-std::vector<Rung> run_ladder(const WorkProblem& problem, const ReferenceSolution& solution, const Solver& solver,
+std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& reference, const Solver& solver,
                              const LadderSpec& spec, const std::atomic<bool>& stop);
 
 /// A ladder as measured: CPU times are medians over the repeats.
@@ -119,52 +94,47 @@ struct Ladder {
     std::vector<double> spread;  // of each rung's CPU time: half the range of its middle half, relative
 };
 
-/// What a run costs.
-enum class Cost { time, evaluations };
-inline double cost_of(const Rung& rung, Cost cost) {
-    return cost == Cost::time ? rung.cpu_s : rung.evaluations;
-}
-
 /// The ladder of several repeats, the first of which has everything.
 Ladder merged(std::size_t problem, const Solver& solver, const std::vector<std::vector<Rung>>& repeats);
+
+/// What a run costs.
+enum class Cost { time, evaluations };
 
 /// The range of errors shown; what is below `least` is at the floor.
 struct ErrorRange {
     double least, most;
 };
 
-/// Its rungs that no cheaper one of its own beats, cheapest first, until one is at the floor. A rung whose next finer
-/// one errs more than twice as much was lucky and does not count.
-std::vector<std::size_t> useful_rungs(const Ladder& ladder, Cost cost, const ErrorRange& range);
+/// A rung as it is drawn.
+struct WorkPoint {
+    double cost, error, spread;
+};
 
-/// What it takes to err by no more than `error`: the cheapest rung that does so, and whose next finer one does, too,
-/// for now and then a coarse one is lucky. Nothing where none does.
-std::optional<double> cost_at(const Ladder& ladder, Cost cost, double error);
+/// The rungs that no cheaper one beats, cheapest first, until one is at the floor. A rung whose next finer one errs more
+/// than twice as much was lucky and does not count.
+std::vector<WorkPoint> front_of(const Ladder& ladder, Cost cost, const ErrorRange& range);
+/// The same of all of Doppel's methods on a problem.
+std::vector<WorkPoint> front_of(std::size_t problem, const std::vector<Ladder>& all, Cost cost,
+                                const ErrorRange& range);
+
+/// The ladder that takes the least to err by no more than `error`: by the cheapest rung that does so, and whose next finer
+/// one does, too, for now and then a coarse one is lucky.
+struct Cheapest {
+    const Ladder* ladder = nullptr;  // none does; of equals the first
+    double cost = std::numeric_limits<double>::infinity();
+};
+/// Of Doppel's methods or of the external ones on a problem.
+Cheapest cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error, bool external);
 
 /// Of each method on a problem the model that is the cheapest at most powers of ten of the error; of equals the first.
 std::vector<const Ladder*> best_models(std::size_t problem, const std::vector<Ladder>& all, Cost cost);
-
-/// A point of the front: no ladder of Doppel's methods errs less at less cost.
-struct FrontPoint {
-    double cost, error;
-};
-std::vector<FrontPoint> front_of(std::size_t problem, const std::vector<Ladder>& all, Cost cost,
-                                 const ErrorRange& range);
-
-/// Median and greatest spread of the CPU times of all useful rungs; NaN where there are none.
-std::pair<double, double> time_spread(const std::vector<Ladder>& all);
 
 /// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems at all
 /// `errors`. One that does not come so far ranks behind all that do; of equals the first.
 std::vector<std::string> ranked(const std::vector<Ladder>& all, Cost cost, std::span<const double> errors,
                                 bool external);
 
-/// The ladder that gets to `error` at the least cost, of Doppel's methods or of the external ones.
-struct Cheapest {
-    const Ladder* ladder;
-    double cost;
-};
-std::optional<Cheapest> cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error,
-                                 bool external);
+/// Median and greatest spread of the CPU times of all useful rungs; NaN where there are none.
+std::pair<double, double> time_spread(const std::vector<Ladder>& all);
 
 }  // namespace doppel

@@ -1,11 +1,11 @@
-#include "analysis/work_ladder.hpp"
+#include "analysis/work_precision.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
 namespace doppel {
-namespace work_results_test {
+namespace work_precision_test {
 
 /// A ladder of rungs of these costs, each with a tenth of the error before, from 0.1 on.
 Ladder ladder(std::size_t problem, const std::string& method, Model model, const std::vector<double>& costs,
@@ -56,5 +56,5 @@ TEST(Ranked, IsByTheSumOfTheRanks) {
     EXPECT_TRUE(ranked({}, Cost::time, std::array{0.1}, false).empty());
 }
 
-}  // namespace work_results_test
+}  // namespace work_precision_test
 }  // namespace doppel

@@ -1,0 +1,19 @@
+#include "analysis/breakdown.hpp"
+
+#include "base/error.hpp"
+
+namespace doppel {
+
+bool advanced(Motion& motion, const std::atomic<bool>& stop, std::string* why) {
+    throw_if_set(stop);
+    try {
+        motion.advance(stop);
+        return true;
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::method_failed) throw;
+        if (why) *why = fault.what();
+        return false;
+    }
+}
+
+}  // namespace doppel

@@ -1,0 +1,213 @@
+#include "analysis/stability.hpp"
+
+#include "analysis/breakdown.hpp"
+#include "base/error.hpp"
+#include "integrate/adams.hpp"
+#include "integrate/batch.hpp"
+#include "integrate/methods.hpp"
+#include "integrate/rattle.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace doppel {
+namespace {
+
+/// The larger eigenvalue in size of leapfrogs of γz, one after another, each
+///     ( 1 − z²/2           z     )
+///     ( −z (1 − z²/4)   1 − z²/2 )
+/// with γ those of the first half, the middle one that makes the sum 1, and those of the other half.
+double leapfrog_growth(std::span<const std::string_view> first_half, double z) {
+    std::vector<double> part;
+    double middle = 1;
+    for (const auto fraction : first_half) {
+        part.push_back(static_cast<double>(parse_quad(fraction)));
+        middle -= 2 * part.back();
+    }
+    part.push_back(middle);
+    for (std::size_t i = first_half.size(); i-- > 0;) part.push_back(part[i]);
+    Eigen::Matrix2d all = Eigen::Matrix2d::Identity();
+    for (const double fraction : part) {
+        const double x = fraction * z, turn = 1 - x * x / 2;
+        all = (Eigen::Matrix2d() << turn, x, -x * (1 - x * x / 4), turn).finished() * all;
+    }
+    const double half_trace = std::abs(all.trace() / 2);  // of determinant 1
+    return half_trace <= 1 ? 1 : half_trace + std::sqrt((half_trace - 1) * (half_trace + 1));
+}
+
+constexpr std::size_t adams_order = AdamsWeights::bashforth.size();
+
+/// What is left of the amplitude of y′ = iω y after `steps` from the true motion: the roots that grow are not those that
+/// carry it, and begin at the error of one step. Predict, evaluate, correct, evaluate over the last eight y:
+///     p = y_n + iz Σ_j b_j y_{n−j} ,   y_{n+1} = y_n + iz (c_0 p + Σ_{j>0} c_j y_{n+1−j})
+double adams_amplitude(double z, long steps) {
+    using Power = Eigen::Matrix<std::complex<double>, adams_order, adams_order>;
+    const std::complex<double> iz(0, z);
+    const auto b = [](std::size_t j) { return value<double>(AdamsWeights::bashforth[j]); };
+    const auto c = [](std::size_t j) { return value<double>(AdamsWeights::moulton[j]); };
+    Power power = Power::Zero();
+    Eigen::Matrix<std::complex<double>, adams_order, 1> past;
+    power(0, 0) = 1.0 + iz * c(0);
+    for (std::size_t j = 0; j < adams_order; ++j) {
+        const auto column = static_cast<Eigen::Index>(j);
+        power(0, column) += iz * (iz * c(0) * b(j) + (j + 1 < adams_order ? c(j + 1) : 0.0));
+        if (j > 0) power(column, column - 1) = 1;
+        past[column] = std::polar(1.0, -z * static_cast<double>(j));
+    }
+    for (steps -= static_cast<long>(adams_order) - 1; steps > 0; steps /= 2) {
+        if (steps % 2) past = power.lazyProduct(past).eval();
+        power = power.lazyProduct(power).eval();
+    }
+    return std::abs(past[0]);
+}
+
+}  // namespace
+
+double energy_growth(std::string_view method, double z, long steps) {
+    const auto* known = find_method(method);
+    if (!known || known->adaptive) throw bad_input("\"{}\" is not the name of a method with a fixed step", method);
+    if (method.starts_with("gauss")) return 1;
+    if (method == "adams") return std::norm(adams_amplitude(z, steps));
+    double growth = 1;
+    if (method == "rattle6")
+        growth = leapfrog_growth(Rattle6::fractions, z);
+    else if (method == "rattle" || method == "semi-implicit-euler")
+        growth = leapfrog_growth({}, z);
+    else {
+        std::complex<double> term = 1, sum = 1;
+        for (int k = 1; k <= known->order; ++k) sum += term *= std::complex<double>(0, z / k);
+        growth = std::abs(sum);
+    }
+    return std::pow(growth, 2 * steps);
+}
+
+std::vector<Mode> small_oscillations(const Pendulum<double>& p) {
+    const auto n = static_cast<Eigen::Index>(p.links());
+    Eigen::VectorXd diagonal(n), below(n - 1);
+    double hanging = 0, kappa_below = 0;  // kg, N/m
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+        const auto k = static_cast<std::size_t>(i);
+        hanging += p.mass[k];
+        const double kappa = p.gravity * hanging / p.length[k];
+        diagonal[i] = (kappa + kappa_below) / p.mass[k];
+        if (i > 0) below[i - 1] = -kappa / std::sqrt(p.mass[k - 1] * p.mass[k]);
+        kappa_below = kappa;
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(n);
+    solved.computeFromTridiagonal(diagonal, below, Eigen::ComputeEigenvectors);
+    // each mode is an oscillator by itself
+    const auto amounts = [&](const std::vector<double>& values) -> Eigen::VectorXd {
+        Eigen::VectorXd moved(n);
+        double across = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            across += p.length[i] * values[i];
+            moved[static_cast<Eigen::Index>(i)] = std::sqrt(p.mass[i]) * across;
+        }
+        return solved.eigenvectors().transpose().lazyProduct(moved);
+    };
+    const Eigen::VectorXd angle = amounts(p.angle), rate = amounts(p.rate);
+    const Eigen::VectorXd energy = solved.eigenvalues().cwiseProduct(angle.cwiseAbs2()) + rate.cwiseAbs2();
+    const double total = energy.sum();
+    std::vector<Mode> modes;
+    for (Eigen::Index i = 0; i < n; ++i)
+        modes.push_back({std::sqrt(solved.eigenvalues()[i]), total > 0 ? energy[i] / total : i + 1 == n ? 1.0 : 0.0});
+    return modes;
+}
+
+std::optional<double> step_limit(std::string_view method, std::span<const Mode> modes, double seconds, double times) {
+    const auto grows = [&](double step) {
+        double energy = 0;
+        for (const auto& [frequency, share] : modes)
+            energy += share * energy_growth(method, frequency * step, std::lround(seconds / step));
+        return !(energy < times);
+    };
+    double fastest = 0;
+    for (const auto& mode : modes) fastest = std::max(fastest, mode.frequency);
+    // from a step at which nothing has grown to one at which it has; then between them
+    constexpr double first_z = 1e-3, ratio = 1.04, close = 1e-6;
+    double stays = std::min(first_z / fastest, seconds / 2);
+    while (grows(stays)) stays /= 2;
+    while (!grows(stays * ratio)) {
+        stays *= ratio;
+        if (!(stays * ratio <= seconds)) return std::nullopt;
+    }
+    double fails = stays * ratio;
+    while (fails > stays * (1 + close)) {
+        const double middle = std::sqrt(stays * fails);
+        (grows(middle) ? fails : stays) = middle;
+    }
+    return fails;
+}
+
+double greatest_real_part(const Eigen::MatrixXd& matrix) {
+    constexpr double rounding = 1e-12;  // what an oscillation without friction may seem to grow by
+    const Eigen::VectorXcd values = matrix.eigenvalues();
+    const double most = values.real().maxCoeff();
+    return std::abs(most) < rounding * values.cwiseAbs().maxCoeff() ? 0 : most;
+}
+
+double released_energy(const Pendulum<double>& release) {
+    // Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …), without the cancellation of the levels
+    double vx = 0, vy = 0, height = 0, sum = 0;
+    for (std::size_t i = 0; i < release.links(); ++i) {
+        const double l = release.length[i], theta = release.angle[i], half = SinCos<double>(theta / 2).sin;
+        const SinCos<double> turn(theta);
+        vx += l * release.rate[i] * turn.cos;
+        vy += l * release.rate[i] * turn.sin;
+        height += 2 * l * half * half;
+        sum += release.mass[i] * ((vx * vx + vy * vy) / 2 + release.gravity * height);
+    }
+    return sum;
+}
+
+namespace {
+
+/// Takes the error of one sample in; NaN stays.
+void take(double error, double& greatest) {
+    greatest = error <= blow_up ? std::max(greatest, error) : NAN;
+}
+
+/// By a method that steps them in lanes.
+std::vector<double> side_by_side(const MotionSpec& spec, std::span<const Pendulum<Quad>> releases, long samples,
+                                 const std::atomic<bool>& stop) {
+    std::vector<Pendulum<double>> chains;
+    for (const auto& release : releases) chains.push_back(release.cast<double>());
+    Batch batch(chains, spec.model, spec.method, quotient(spec.sample_interval, {spec.steps_per_sample, 1})->value());
+    const auto energy_of = [&](std::size_t i) {
+        const auto y = batch.state(i);
+        return energy(spec.model == Model::angles ? bobs_of_angles(chains[i], y) : bobs_of_particles(chains[i], y),
+                      chains[i].gravity);
+    };
+    std::vector<double> start, greatest(chains.size(), 0);
+    for (std::size_t i = 0; i < chains.size(); ++i) start.push_back(energy_of(i));
+    for (long n = 0; n < samples; ++n) {
+        throw_if_set(stop);
+        batch.advance(spec.steps_per_sample);
+        for (std::size_t i = 0; i < chains.size(); ++i)
+            take(std::abs(energy_of(i) - start[i]) / released_energy(chains[i]), greatest[i]);
+    }
+    return greatest;
+}
+
+}  // namespace
+
+std::vector<double> greatest_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,
+                                           const std::atomic<bool>& stop) {
+    if (!releases.empty() && Batch::serves(spec.method, releases[0].links()))
+        return side_by_side(spec, releases, samples, stop);
+    std::vector<double> errors;
+    for (const auto& release : releases) {
+        spec.chain = release;
+        const double scale = released_energy(release.cast<double>());
+        const auto motion = make_motion(spec);
+        auto& greatest = errors.emplace_back(0);
+        for (long n = 0; n < samples && !std::isnan(greatest); ++n)
+            take(advanced(*motion, stop) ? std::abs(motion->observe().energy_change) / scale : NAN, greatest);
+    }
+    return errors;
+}
+
+}  // namespace doppel
