@@ -55,7 +55,7 @@ public:
     void rate(const State& y, State& dydt) {
         const auto n = layout.coordinates;
         const auto omega = y.segment(layout.half, n);
-        if (!has_modes_) choose_modes(y);
+        if (switches() && !has_modes_) choose_modes(y);
         const auto pivot = accelerate(y, omega);
         for (Eigen::Index i = 0; i < n; ++i) {
             dydt[i] = omega[i];
