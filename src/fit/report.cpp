@@ -54,22 +54,22 @@ Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
             {"left_out_rms_rad", rung.left_out_rms}};
 }
 
-/// The lists of friction as presets name them.
-std::vector<std::pair<std::string, std::vector<double>>> friction_of(const FittedPendulum& pendulum) {
-    const auto& friction = pendulum.body.friction;
-    const bool own = friction.air_quadratic.empty();
-    return {{"joint_viscous_N_m_s", friction.viscous},
-            {"joint_coulomb_N_m", friction.coulomb},
+/// What a pendulum has of each arm, as presets name it.
+std::vector<std::pair<std::string, std::vector<double>>> lists_of(const PhysicalPendulum<double>& body) {
+    const bool own = body.friction.air_quadratic.empty();
+    return {{"mass_kg", body.chain.mass},
+            {"length_m", body.chain.length},
+            {"center_m", body.center},
+            {"inertia_kg_m2", body.inertia},
+            {"joint_viscous_N_m_s", body.friction.viscous},
+            {"joint_coulomb_N_m", body.friction.coulomb},
             {own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2",
-             own ? friction.arm_quadratic : friction.air_quadratic}};
+             own ? body.friction.arm_quadratic : body.friction.air_quadratic}};
 }
 
 Json pendulum_json(const FittedPendulum& p) {
-    const auto& chain = p.body.chain;
-    Json json = {{"convention", p.rule},           {"gravity_m_per_s2", chain.gravity}, {"B_kg_m2", p.second_inertia},
-                 {"mass_kg", chain.mass},          {"length_m", chain.length},          {"center_m", p.body.center},
-                 {"inertia_kg_m2", p.body.inertia}};
-    for (const auto& [key, values] : friction_of(p)) json[key] = values;
+    Json json = {{"convention", p.rule}, {"gravity_m_per_s2", p.body.chain.gravity}, {"B_kg_m2", p.second_inertia}};
+    for (const auto& [key, values] : lists_of(p.body)) json[key] = values;
     return json;
 }
 
@@ -167,9 +167,9 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const Eigen::MatrixXd covariance = inverse_of(shot.sums.matrix.topLeftCorner(4, 4));
     const ArmState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
     auto text = fmt::format(
-        "# Fitted by doppel fit to {}{}: {}.\n# It errs by {:.2g} rad on pieces left out. Errors, ladder and horizon "
-        "are "
-        "in {}.fit.json.\n# Angles tell ratios alone: gravity and the second mass are given, {}.\n"
+        "# Fitted by doppel fit to {}{}: {}.\n"
+        "# It errs by {:.2g} rad on pieces left out. Errors, ladder and horizon are in {}.fit.json.\n"
+        "# Angles tell ratios alone: gravity and the second mass are given, {}.\n"
         "title = {}\n\n[scene]\nduration_s = 30\n\n[system]\n",
         on_one_line(std::filesystem::path(files[0]).filename().string()),
         files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1), rung.name, rung.left_out_rms, name,
@@ -177,15 +177,9 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto add = [&](const std::string& key, double first, double second) {
         text += fmt::format("{} = [{:.10g}, {:.10g}]\n", key, first, second);
     };
-    const auto add_list = [&](const std::string& key, const auto& list) { add(key, list[0], list[1]); };
-    add_list("mass_kg", p.body.chain.mass);
-    add_list("length_m", p.body.chain.length);
-    if (!rung.fit.model.point_masses) {
-        add_list("center_m", p.body.center);
-        add_list("inertia_kg_m2", p.body.inertia);
-    }
-    for (const auto& [key, values] : friction_of(p))
-        if (values[0] != 0 || values[1] != 0) add_list(key, values);
+    for (const auto& [key, values] : lists_of(p.body))
+        if ((values[0] != 0 || values[1] != 0) && !(rung.fit.model.point_masses && key == "center_m"))
+            add(key, values[0], values[1]);
     text += fmt::format("gravity_m_per_s2 = {}\n", p.body.chain.gravity);
     const ArmState start = degrees * shot.start, further = degrees * (shot.start + errors);
     add("angle_deg", start[0], start[1]);

@@ -172,9 +172,10 @@ Reduced reduced(const ShotSums& sums, double damping) {
     Eigen::MatrixXd matrix = sums.matrix;
     matrix.diagonal() *= 1 + damping;
     Reduced result{.of_start = inverse_of(matrix.topLeftCorner(4, 4)), .matrix = {}, .slope = {}};
-    const Eigen::MatrixXd mixed = matrix.topRightCorner(4, count), through = mixed.transpose() * result.of_start;
-    result.matrix = matrix.bottomRightCorner(count, count) - through * mixed;
-    result.slope = sums.slope.tail(count) - through * sums.slope.head<4>();
+    const Eigen::MatrixXd mixed = matrix.topRightCorner(4, count);
+    const Eigen::MatrixXd through = mixed.transpose().lazyProduct(result.of_start);
+    result.matrix = matrix.bottomRightCorner(count, count) - through.lazyProduct(mixed);
+    result.slope = sums.slope.tail(count) - through.lazyProduct(sums.slope.head<4>());
     return result;
 }
 

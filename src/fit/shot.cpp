@@ -1,14 +1,10 @@
 #include "fit/flow.hpp"
 #include "fit/shooting.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace doppel {
-
-template class Flow<0>;
-template class Flow<few_directions>;
-template class Flow<all_directions>;
-
 namespace {
 
 template <int N>

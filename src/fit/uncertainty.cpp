@@ -52,7 +52,8 @@ Eigen::MatrixXd scatter_of(const Fit& fit) {
     double stretches = 0;
     for (const auto& shot : fit.shots) {
         const auto& matrix = shot.sums.matrix;
-        const Eigen::MatrixXd through = matrix.bottomLeftCorner(count, 4) * inverse_of(matrix.topLeftCorner(4, 4));
+        const Eigen::MatrixXd through =
+            matrix.bottomLeftCorner(count, 4).lazyProduct(inverse_of(matrix.topLeftCorner(4, 4)));
         for (const auto& block : shot.sums.blocks) {
             const Eigen::VectorXd slope = block.tail(count) - through * block.head<4>();
             scatter += slope * slope.transpose();
@@ -96,7 +97,7 @@ Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
     // of others
     constexpr double shortest_s = 0.3, memories = 4;
     evaluate_fit(job, fit, std::max(shortest_s, memories * std::max(result.memory_s[0], result.memory_s[1])));
-    const Eigen::MatrixXd sandwich = inverse * scatter_of(fit) * inverse / (slope * slope);
+    const Eigen::MatrixXd sandwich = inverse.lazyProduct(scatter_of(fit)).eval().lazyProduct(inverse) / (slope * slope);
     const Eigen::ArrayXd white = result.covariance.diagonal();
     const Eigen::VectorXd wider = (white / sandwich.diagonal().array()).max(1).sqrt();
     result.covariance = wider.asDiagonal() * sandwich * wider.asDiagonal();

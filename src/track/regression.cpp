@@ -1,10 +1,9 @@
 #include "track/regression.hpp"
 
 #include "base/error.hpp"
+#include "numeric/elimination.hpp"
 #include "numeric/portable_math.hpp"
 #include "numeric/sin_cos.hpp"
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +11,7 @@
 namespace doppel {
 namespace {
 
-constexpr Eigen::Index degree = 5;
+constexpr int degree = 5;
 constexpr std::size_t least_points = degree + 3;
 
 /// Of an arm, those in a window around a moment, which is shifted to be whole even at the ends of the piece, and widened
@@ -30,8 +29,29 @@ std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t arm
         const bool back = first > 0 && (last == times.size() || time_s - times[first - 1] < times[last] - time_s);
         take(back ? --first : last++);
     }
+    std::ranges::sort(samples);
     return samples;
 }
+
+/// Least squares in N unknowns, equation by equation: row · x = value.
+template <int N>
+struct Equations {
+    Eigen::Matrix<double, N, N> matrix = Eigen::Matrix<double, N, N>::Zero();
+    Eigen::Matrix<double, N, 1> right = Eigen::Matrix<double, N, 1>::Zero();
+    double squares = 0;
+
+    void add(const Eigen::Matrix<double, N, 1>& row, double value) {
+        matrix += row * row.transpose();
+        right += row * value;
+        squares += value * value;
+    }
+    Eigen::Matrix<double, N, 1> solution() const {
+        auto a = matrix;
+        auto x = right;
+        solve_positive_definite(a, x);
+        return x;
+    }
+};
 
 /// What a polynomial through samples says of one arm at a moment, and how far the samples are from it, rms.
 struct LocalFit {
@@ -39,21 +59,22 @@ struct LocalFit {
 };
 
 LocalFit local_fit(const TrackPiece& piece, std::size_t arm, const std::vector<std::size_t>& samples, double center) {
-    const auto count = static_cast<Eigen::Index>(samples.size());
+    const auto count = samples.size();
     if (count < degree + 2) return {piece.angle[arm].front()};
-    Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(count, degree + 1);
-    Eigen::VectorXd t(count), values(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const auto sample = samples[static_cast<std::size_t>(i)];
-        t[i] = piece.time_s[sample] - center;
-        values[i] = piece.angle[arm][sample];
-    }
-    const double span = t.cwiseAbs().maxCoeff();
-    for (Eigen::Index k = 1; k <= degree; ++k) powers.col(k) = powers.col(k - 1).cwiseProduct(t / span);
-    const Eigen::VectorXd c = (powers.transpose() * powers).ldlt().solve(powers.transpose() * values);
-    if (!c.allFinite()) return {values[0]};
-    const double rest = (values - powers * c).norm() / std::sqrt(static_cast<double>(count));
-    return {c[0], c[1] / span, 2 * c[2] / (span * span), rest};
+    const double span = std::max(center - piece.time_s[samples.front()], piece.time_s[samples.back()] - center);
+    const auto powers_at = [&](std::size_t sample) {
+        Eigen::Matrix<double, degree + 1, 1> powers;
+        powers[0] = 1;
+        for (int k = 1; k <= degree; ++k) powers[k] = powers[k - 1] * ((piece.time_s[sample] - center) / span);
+        return powers;
+    };
+    Equations<degree + 1> equations;
+    for (const auto sample : samples) equations.add(powers_at(sample), piece.angle[arm][sample]);
+    const auto c = equations.solution();
+    if (!c.allFinite()) return {piece.angle[arm][samples.front()]};
+    double rest = 0;
+    for (const auto sample : samples) rest += std::pow(piece.angle[arm][sample] - powers_at(sample).dot(c), 2);
+    return {c[0], c[1] / span, 2 * c[2] / (span * span), std::sqrt(rest / static_cast<double>(count))};
 }
 
 /// Long enough that its polynomial averages the noise away, short against a swing.
@@ -98,26 +119,23 @@ std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& st
 
 Regression regress(const std::vector<Glimpse>& glimpses) {
     Regression result;
-    const auto count = static_cast<Eigen::Index>(glimpses.size());
-    if (count < 8) return result;
+    if (glimpses.size() < 8) return result;
     // the second arm, whose own term has no unknown: −θ2″ = C (cosδ θ1″ − sinδ ω1²) + D2 sinθ2 + friction
-    Eigen::MatrixXd second(count, 3), first(count, 3);
-    Eigen::VectorXd right(count), driven(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const auto& [angle, rate, acceleration] = glimpses[static_cast<std::size_t>(i)];
+    Equations<3> second, first;
+    for (const auto& [angle, rate, acceleration] : glimpses) {
         const SinCos<double> between(angle[0] - angle[1]), turn1(angle[0]), turn2(angle[1]);
-        second.row(i) << between.cos * acceleration[0] - between.sin * rate[0] * rate[0], turn2.sin, rate[1] - rate[0];
-        right[i] = -acceleration[1];
-        first.row(i) << acceleration[0], turn1.sin, rate[0];
-        driven[i] = -(between.cos * acceleration[1] + between.sin * rate[1] * rate[1]);
+        second.add({between.cos * acceleration[0] - between.sin * rate[0] * rate[0], turn2.sin, rate[1] - rate[0]},
+                   -acceleration[1]);
+        first.add({acceleration[0], turn1.sin, rate[0]},
+                  -(between.cos * acceleration[1] + between.sin * rate[1] * rate[1]));
     }
-    const Eigen::Vector3d of_second = second.colPivHouseholderQr().solve(right);
-    driven *= of_second[0];
-    const Eigen::Vector3d of_first = first.colPivHouseholderQr().solve(driven);
-    const auto share = [](const Eigen::VectorXd& rest, const Eigen::VectorXd& all) {
-        return all.squaredNorm() > 0 ? rest.squaredNorm() / all.squaredNorm() : 1.0;
+    const auto of_second = second.solution();
+    const Eigen::Vector3d of_first = of_second[0] * first.solution();  // over C, so far
+    const auto share = [](const Equations<3>& equations) {
+        const double explained = equations.right.dot(equations.solution());
+        return explained > 0 ? std::max(1 - explained / equations.squares, 0.0) : 1;  // also where it is no number
     };
-    result.unexplained = std::max(share(right - second * of_second, right), share(driven - first * of_first, driven));
+    result.unexplained = std::max(share(second), share(first));
     result.inertia = of_first[0], result.coupling = of_second[0];
     result.gravity = {of_first[1], of_second[1]};
     result.is_physical = std::isfinite(of_first.sum() + of_second.sum()) && of_second[0] > 0 && of_first[0] > 0 &&
