@@ -10,112 +10,84 @@
 namespace doppel {
 namespace {
 
-using enum FitParameter;
-
-/// A segment, and the one of the division of which it is a part.
-struct Part {
-    TrackSegment segment;
-    std::size_t whole = 0;
-    ArmState<double> start{};
-};
-
-double length_of(const Track& track, const TrackSegment& segment) {
-    const auto& times = track.pieces[segment.piece].time_s;
-    return times[segment.last - 1] - times[segment.first];
+double length_of(const Track& track, const Shot& shot) {
+    const auto& times = track.pieces[shot.piece].time_s;
+    return times[shot.last - 1] - times[shot.first];
 }
 
-/// So many parts of a segment of even length; fewer where there are gaps.
-std::vector<TrackSegment> cut(const Track& track, const TrackSegment& segment, long count) {
+/// Adds so many parts of a stretch, of even length and with guessed starts; fewer where there are gaps.
+void add_parts(std::vector<Shot>& parts, const Track& track, const Shot& all, long count) {
     constexpr std::size_t least_samples = 8;
-    const auto& times = track.pieces[segment.piece].time_s;
-    std::vector<TrackSegment> parts;
-    auto first = segment.first;
-    for (long part = 1; part <= count; ++part) {
-        const double share = static_cast<double>(part) / static_cast<double>(count);
-        const double end = times[segment.first] + length_of(track, segment) * share;
-        const auto last =
-            part == count ? segment.last
-                          : static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), end) - times.begin());
-        if (last < first + least_samples && part < count) continue;  // a gap
-        parts.push_back({segment.piece, first, last});
-        first = last;
+    const auto& times = track.pieces[all.piece].time_s;
+    auto part = all;
+    for (long number = 1; number <= count; ++number) {
+        const double share = static_cast<double>(number) / static_cast<double>(count);
+        const auto end = std::lower_bound(times.begin(), times.end(), times[all.first] + length_of(track, all) * share);
+        part.last = number == count ? all.last : static_cast<std::size_t>(end - times.begin());
+        if (part.last < part.first + least_samples && number < count) continue;  // a gap
+        part.start = guessed_start(track, part.piece, part.first);
+        parts.push_back(part);
+        part.first = part.last;
     }
-    return parts;
 }
 
-/// Each segment in `most` parts, or a half, a quarter … as many where these would be too short.
-std::vector<Part> parts_of(const Track& track, const std::vector<TrackSegment>& segments, long most) {
+/// Each stretch in `most` parts, or a half, a quarter … as many where these would be too short.
+std::vector<Shot> parts_of(const Track& track, const std::vector<Shot>& wholes, long most) {
     constexpr double least_samples = 8, least_s = 0.15;
-    std::vector<Part> parts;
-    for (std::size_t k = 0; k < segments.size(); ++k) {
+    std::vector<Shot> parts;
+    for (const auto& whole : wholes) {
         const double longest =
-            std::min(length_of(track, segments[k]) / least_s, static_cast<double>(segments[k].size()) / least_samples);
+            std::min(length_of(track, whole) / least_s, static_cast<double>(whole.size()) / least_samples);
         auto count = most;
         while (count > 1 && static_cast<double>(count) > longest) count /= 2;
-        for (const auto& segment : cut(track, segments[k], count))
-            parts.push_back({segment, k, guessed_start(track, segment)});
+        add_parts(parts, track, whole, count);
     }
     return parts;
 }
 
-/// Whether the motion of one part follows the samples of the next to its end, and an error of its start grows no more
+/// Whether the motion of one shot follows the samples of the next to its end, and an error of its start grows no more
 /// than a hundredfold until then: beyond, the cost has many minima, and normal equations lose their digits.
-bool leads(const Track& track, const Fit& fit, const Part& one, const Part& next) {
+bool leads(const Track& track, const Fit& fit, const Shot& one, const Shot& next) {
     constexpr double near = 0.3, most_growth = 100;  // rad; of an angle, per angle or per rate over the pendulum's own
-    const auto& piece = track.pieces[one.segment.piece];
-    auto flow = varied_flow<few_directions>(fit.model, fit.parameters, one.start, fit.rules.step_s);
+    const auto& piece = track.pieces[one.piece];
+    Flow<few_directions> flow(fit.model, fit.parameters, one.start, fit.step_s);
     const double rate = std::sqrt(fit.of(gravity_2));
-    for (auto i = next.segment.first; i < next.segment.last; ++i) {
-        const double t = piece.time_s[i] - piece.time_s[one.segment.first];
+    for (auto i = next.first; i < next.last; ++i) {
+        const double t = piece.time_s[i] - piece.time_s[one.first];
         if (!flow.reach(t)) return false;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            const auto angle = flow.angle(arm, t);
-            if (!piece.is_outlier[arm][i] && std::abs(angle.value - piece.angle[arm][i]) > near) return false;
-            const auto& by = angle.tangent;
-            if (std::hypot(by.head<2>().norm(), rate * by.segment<2>(2).norm()) > most_growth) return false;
+            const auto angle = flow.angle(static_cast<Eigen::Index>(arm), t);
+            if (!piece.is_outlier[arm][i] && std::abs(angle[0] - piece.angle[arm][i]) > near) return false;
+            if (std::hypot(angle.segment<2>(1).norm(), rate * angle.segment<2>(3).norm()) > most_growth) return false;
         }
     }
     return true;
 }
 
-std::vector<Part> joined(const Track& track, const Fit& fit, const std::vector<Part>& parts) {
-    std::vector<Part> result;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        result.push_back(parts[k]);
-        const bool pair = k + 1 < parts.size() && parts[k + 1].whole == parts[k].whole;
-        if (pair && leads(track, fit, parts[k], parts[k + 1])) result.back().segment.last = parts[++k].segment.last;
+/// Pairs of which one leads through the other, as one.
+void join(const Track& track, Fit& fit) {
+    std::vector<Shot> joined;
+    for (auto next = fit.shots.begin(); next != fit.shots.end();) {
+        auto& one = joined.emplace_back(std::move(*next++));
+        if (next != fit.shots.end() && next->whole == one.whole && leads(track, fit, one, *next))
+            one.last = next++->last;
     }
-    return result;
+    fit.shots = std::move(joined);
 }
 
-/// Parts that do not follow their samples, halved; what begins anew is guessed.
-std::vector<Part> without_lost(const Track& track, const Fit& fit, const std::vector<Part>& parts) {
+/// Shots that do not follow their samples, halved; what begins anew is guessed.
+void halve_lost(const Track& track, Fit& fit) {
     constexpr double lost = 0.1;  // rad, rms
     constexpr std::size_t least_samples = 16;
-    std::vector<Part> result;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        const bool is_lost = fit.sums[k].squares > lost * lost * static_cast<double>(fit.sums[k].count);
-        if (!is_lost || parts[k].segment.size() < least_samples)
-            result.push_back(parts[k]);
+    std::vector<Shot> halved;
+    for (const auto& shot : fit.shots) {
+        const bool is_lost = shot.sums.squares > lost * lost * static_cast<double>(shot.sums.count);
+        if (is_lost && shot.size() >= least_samples)
+            add_parts(halved, track, shot, 2);
         else
-            for (const auto& half : cut(track, parts[k].segment, 2))
-                result.push_back({half, parts[k].whole, guessed_start(track, half)});
+            halved.push_back(shot);
     }
-    return result;
-}
-
-/// Fits the parts; their starts move along.
-Fit fitted(const FitJob& job, std::vector<Part>& parts, Fit fit) {
-    fit.segments.clear();
-    fit.starts.clear();
-    fit.sums.clear();  // of another division, or another model
-    for (const auto& part : parts) {
-        fit.segments.push_back(part.segment);
-        fit.starts.push_back(part.start);
-    }
-    fit = fit_model(job, std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
-    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].start = fit.starts[k];
-    return fit;
+    fit.shots = std::move(halved);
 }
 
 Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
@@ -132,69 +104,58 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
             track.pieces.front().name, 100 * best.unexplained);
     Parameters p{best.inertia, std::min(best.coupling, 0.95 * std::sqrt(best.inertia)), best.gravity[0],
                  best.gravity[1]};
-    p[index_of(scale_1)] = p[index_of(scale_2)] = 1;
+    p[scale_1] = p[scale_2] = 1;
     return p;
 }
 
-/// Fits parts, joined as far as one leads to the next.
-std::pair<std::vector<Part>, Fit> fitted_in_parts(const FitJob& job, const std::vector<TrackSegment>& segments,
-                                                  long most, const Parameters& guess) {
+/// Fits stretches in parts, joined as far as one leads to the next.
+Fit fitted_in_parts(const FitJob& job, const std::vector<Shot>& wholes, long most, const Parameters& guess) {
     const auto& track = job.track;
-    auto parts = parts_of(track, segments, most);
-    Fit fit{.model = {}, .rules = {}, .parameters = guess, .segments = {}, .starts = {}, .sums = {}};
-    fit.rules.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
-    fit.model.fitted = {inertia, coupling, gravity_1, gravity_2, offset_1, offset_2};
-    fit = fitted(job, parts, std::move(fit));
-    parts = without_lost(track, fit, parts);
-    fit.model.fitted = {inertia,   coupling,  gravity_1,   gravity_2,   viscous_1, viscous_2,
-                        coulomb_1, coulomb_2, quadratic_1, quadratic_2, offset_1,  offset_2};
+    Fit fit{.model = model_of(false, 0), .parameters = guess, .shots = parts_of(track, wholes, most)};
+    fit.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
+    const auto refit = [&] {
+        fit.is_evaluated = false;  // of other shots, or another model
+        fit = fit_model(job, std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
+    };
+    refit();
+    halve_lost(track, fit);
+    fit.model = model_of(false, 3);
     for (auto joins = most; joins > 1; joins /= 2) {
-        fit = fitted(job, parts, std::move(fit));
-        parts = joined(track, fit, without_lost(track, fit, parts));
+        refit();
+        halve_lost(track, fit);
+        join(track, fit);
     }
-    fit = fitted(job, parts, std::move(fit));
-    return {std::move(parts), std::move(fit)};
+    refit();
+    return fit;
 }
 
 }  // namespace
 
-Division divide(const Track& track) {
+std::vector<Shot> divide(const Track& track) {
     constexpr double longest = 3, shortest = 0.5, wanted = 8;
     constexpr std::size_t few_pieces = 4;
     const double length = std::clamp(track.duration() / wanted, shortest, longest);
     const bool by_piece = track.pieces.size() >= few_pieces;
-    Division division;
-    for (std::size_t piece = 0; piece < track.pieces.size(); ++piece) {
-        const auto parts = std::max(1L, std::lround(std::ceil(track.pieces[piece].duration() / length - 0.01)));
-        if (by_piece) division.units.emplace_back();
-        for (const auto& segment : cut(track, {piece, 0, track.pieces[piece].size()}, parts)) {
-            if (!by_piece) division.units.emplace_back();
-            division.units.back().push_back(division.segments.size());
-            division.segments.push_back(segment);
-        }
+    std::vector<Shot> wholes;
+    for (std::size_t piece = 0; piece < track.pieces.size(); ++piece)
+        add_parts(wholes, track, {.piece = piece, .last = track.pieces[piece].size()},
+                  std::max(1L, std::lround(std::ceil(track.pieces[piece].duration() / length - 0.01))));
+    for (std::size_t k = 0; k < wholes.size(); ++k) {
+        wholes[k].whole = k;
+        wholes[k].unit = by_piece ? wholes[k].piece : k;
     }
-    return division;
+    return wholes;
 }
 
-std::pair<Units, Fit> begin_fit(const FitJob& job) {
-    auto division = divide(job.track);
+Fit begin_fit(const FitJob& job) {
+    const auto wholes = divide(job.track);
     const auto guess = regressed(job.track, job.stop);
     constexpr long quarters = 4, shortest = 16;
-    const auto begun = [&] {
-        for (auto most = quarters;; most *= 2) try {
-                return fitted_in_parts(job, division.segments, most, guess);
-            } catch (const Error& error) {  // shorter ones may stay finite
-                if (error.code() != ExitCode::method_failed || most == shortest) throw;
-            }
-    };
-    const auto [parts, fit] = begun();
-    // units as they were, of the segments as they are
-    for (auto& unit : division.units) {
-        const auto wholes = std::exchange(unit, {});
-        for (std::size_t k = 0; k < parts.size(); ++k)
-            if (std::count(wholes.begin(), wholes.end(), parts[k].whole) > 0) unit.push_back(k);
-    }
-    return {division.units, fit};
+    for (auto most = quarters;; most *= 2) try {
+            return fitted_in_parts(job, wholes, most, guess);
+        } catch (const Error& error) {  // shorter ones may stay finite
+            if (error.code() != ExitCode::method_failed || most == shortest) throw;
+        }
 }
 
 }  // namespace doppel

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "fit/beginning.hpp"
 #include "fit/uncertainty.hpp"
 
 #include <optional>
@@ -33,7 +32,7 @@ struct Horizon {
 /// Source  Kaplan & Meier 1958
 std::optional<double> median_of(std::vector<std::pair<double, bool>> times);
 
-/// Predicts from every unit of the division; the track's `start_s` says where pieces are.
-Horizon measure_horizon(const FitJob& job, const Units& units, const Fit& fit, const Uncertainty& uncertainty);
+/// Predicts from every unit of the track; its `start_s` says where pieces are.
+Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& uncertainty);
 
 }  // namespace doppel

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
+#include "fit/beginning.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <algorithm>
@@ -11,61 +12,45 @@
 namespace doppel {
 namespace {
 
-using enum FitParameter;
-
-/// The models, from the smallest.
+/// The models, from the smallest: of point masses and of bodies as long as there is no dry friction.
 std::vector<FittedModel> models_of(Bodies bodies) {
-    std::vector<FittedModel> models;
-    const auto add = [&](bool point, const std::string& words, int friction, Drag drag = Drag::own, int reading = 0) {
-        auto& model = models.emplace_back();
-        model.name = (point ? "point masses, " : "compound, ") + words;
-        model.fit.model = model_of(point, friction, drag, reading);
+    struct Row {
+        const char* words;
+        int friction;
+        Drag drag;
+        int reading;
     };
-    const bool only_point = bodies == Bodies::point;
-    for (const bool point : {true, false}) {
-        if (bodies == (point ? Bodies::compound : Bodies::point)) continue;
-        add(point, "no friction", 0);
-        add(point, "viscous friction", 1);
-    }
-    add(only_point, "viscous and dry friction", 2);
-    add(only_point, "viscous, dry, drag by own rates", 3);
-    add(only_point, "viscous, dry, drag by the air met", 3, Drag::carried);
-    add(only_point, "drag by the air met, a lag", 3, Drag::carried, 1);
-    add(only_point, "drag by the air met, a lag, scales", 3, Drag::carried, 2);
+    constexpr Row rows[]{{"no friction", 0, Drag::own, 0},
+                         {"viscous friction", 1, Drag::own, 0},
+                         {"viscous and dry friction", 2, Drag::own, 0},
+                         {"viscous, dry, drag by own rates", 3, Drag::own, 0},
+                         {"viscous, dry, drag by the air met", 3, Drag::carried, 0},
+                         {"drag by the air met, a lag", 3, Drag::carried, 1},
+                         {"drag by the air met, a lag, scales", 3, Drag::carried, 2}};
+    std::vector<FittedModel> models;
+    for (const bool point : {true, false})
+        for (const auto& [words, friction, drag, reading] : rows) {
+            if (bodies == (point ? Bodies::compound : Bodies::point)) continue;
+            if (point && friction > 1 && bodies != Bodies::point) continue;
+            models.push_back({.name = std::string(point ? "point masses, " : "compound, ") + words, .fit = {}});
+            models.back().fit.model = model_of(point, friction, drag, reading);
+        }
     return models;
 }
 
-/// Mean square residual of segments whose starts alone are fitted, rad²; infinite where no motion stays finite.
-double mean_square_of(const FitJob& job, const std::vector<std::size_t>& unit, const Fit& fit) {
-    auto alone = fit.without_sums();
-    alone.segments.clear(), alone.starts.clear(), alone.model.fitted.clear();
-    for (const auto k : unit) {
-        alone.segments.push_back(fit.segments[k]);
-        alone.starts.push_back(fit.starts[k]);
-    }
-    try {
-        alone = fit_model(job, std::move(alone),
-                          {.most_passes = 8, .finds_scale = false, .step_share = 0, .relative = 1e-3});
-    } catch (const Error& error) {
-        if (error.code() != ExitCode::method_failed) throw;
-        return std::numeric_limits<double>::infinity();
-    }
-    return alone.rms * alone.rms;
-}
-
-void leave_out(const FitJob& job, const Units& units, FittedModel& rung) {
-    rung.left_out.assign(units.size(), 0);
-    parallel_for(units.size(), job.threads, [&](std::size_t u) {
-        const auto& unit = units[u];
-        rung.left_out[u] = mean_square_of({job.track, job.stop}, unit, fit_without(rung.fit, unit));
+/// Judges by every unit, of which the starts alone are fitted: its mean square residual, infinite where no motion stays finite.
+void leave_out(const FitJob& job, FittedModel& rung) {
+    rung.left_out.resize(rung.fit.units());
+    parallel_for(rung.left_out.size(), job.threads, [&](std::size_t unit) {
+        const auto without = fit_without(rung.fit, unit, unit);
+        const auto alone = fit_starts({job.track, job.stop}, without, without.unit(unit), 8, 1e-3);
+        rung.left_out[unit] = alone ? alone->rms * alone->rms : std::numeric_limits<double>::infinity();
     });
     double squares = 0, samples = 0;
-    for (std::size_t u = 0; u < units.size(); ++u)
-        for (const auto k : units[u]) {
-            const auto size = static_cast<double>(rung.fit.segments[k].size());
-            squares += size * rung.left_out[u];
-            samples += size;
-        }
+    for (const auto& shot : rung.fit.shots) {
+        squares += static_cast<double>(shot.size()) * rung.left_out[shot.unit];
+        samples += static_cast<double>(shot.size());
+    }
     rung.left_out_rms = std::sqrt(squares / samples);
 }
 
@@ -86,10 +71,9 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
 /// Another model at the same parameters, without the friction that it leaves out.
 Fit as_model(const ModelSpec& model, Fit fit) {
     fit.model = model;
-    fit.sums.clear();
-    for (auto k = index_of(viscous_1); k <= index_of(quadratic_2); ++k)
-        if (!model.fits(static_cast<FitParameter>(k))) fit.parameters[k] = 0;
-    fit.parameters = completed(model, fit.parameters);
+    fit.is_evaluated = false;
+    for (auto k = viscous_1; k <= quadratic_2; k = static_cast<FitParameter>(k + 1))
+        if (!model.fits(k)) fit.parameters[k] = 0;
     return fit;
 }
 
@@ -110,26 +94,12 @@ bool is_as_likely(const FittedModel& rung, const FittedModel& best) {
 
 }  // namespace
 
-ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
-    ModelSpec model{.point_masses = point, .drag = drag, .fitted = {inertia, coupling}};
-    auto& fitted = model.fitted;
-    if (!point) fitted.push_back(gravity_1);
-    fitted.push_back(gravity_2);
-    if (friction > 0) fitted.insert(fitted.end(), {viscous_1, viscous_2});
-    if (friction > 1) fitted.insert(fitted.end(), {coulomb_1, coulomb_2});
-    if (friction > 2) fitted.insert(fitted.end(), {quadratic_1, quadratic_2});
-    fitted.insert(fitted.end(), {offset_1, offset_2});
-    if (reading > 0) fitted.push_back(lag);
-    if (reading > 1) fitted.insert(fitted.end(), {scale_1, scale_2});
-    return model;
-}
-
 ModelLadder climb(const FitJob& job, Bodies bodies,
                   const std::function<void(std::size_t done, std::size_t of)>& report) {
     constexpr double roughly = 5e-4;  // enough to compare
     const auto models = models_of(bodies);
-    auto [units, first] = begin_fit(job);
-    ModelLadder ladder{.units = std::move(units), .rungs = {}};
+    const auto first = begin_fit(job);
+    ModelLadder ladder;
     auto& rungs = ladder.rungs;
     for (auto rung : models) {
         throw_if_set(job.stop);
@@ -139,7 +109,7 @@ ModelLadder climb(const FitJob& job, Bodies bodies,
             auto start = as_model(model, first);
             if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
                 auto other = as_model(model, rungs.back().fit);
-                start.rules = other.rules;
+                start.step_s = other.step_s, start.scale = other.scale;
                 evaluate_fit(job, start);
                 evaluate_fit(job, other);
                 if (other.cost <= start.cost) start = std::move(other);
@@ -149,7 +119,7 @@ ModelLadder climb(const FitJob& job, Bodies bodies,
             if (error.code() != ExitCode::method_failed || (rung.name == models.back().name && rungs.empty())) throw;
             continue;
         }
-        leave_out(job, ladder.units, rung);
+        leave_out(job, rung);
         rungs.push_back(std::move(rung));
         report(rungs.size(), models.size());
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fit/beginning.hpp"
+#include "fit/shooting.hpp"
 
 #include <functional>
 #include <string>
@@ -10,10 +10,6 @@ namespace doppel {
 
 /// Which bodies the arms may be.
 enum class Bodies { automatic, point, compound };
-
-/// The model with friction: 0 none, 1 viscous, 2 and Coulomb, 3 and drag; and with a reading: 0 offsets, 1 and a lag, 2 and
-/// scales.
-ModelSpec model_of(bool point, int friction, Drag drag = Drag::own, int reading = 0);
 
 /// A model and how it did.
 struct FittedModel {
@@ -25,7 +21,6 @@ struct FittedModel {
 
 /// All models, from the smallest. `chosen` is the smallest that predicts pieces left out as well as the best does.
 struct ModelLadder {
-    Units units;
     std::vector<FittedModel> rungs;
     std::size_t chosen = 0, best = 0;
 };

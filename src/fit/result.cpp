@@ -2,7 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "fit/energy.hpp"
+#include "fit/flow.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,6 @@ double most_left(const Track& track) {
 
 /// Throws where the swing gains energy. Only where friction that must not be negative is held at 0 need one look.
 void demand_loss(const FitJob& job, const ModelLadder& ladder) {
-    using enum FitParameter;
     constexpr double sure = 5;  // standard errors
     const auto viscous = std::find_if(ladder.rungs.rbegin(), ladder.rungs.rend(), [](const FittedModel& rung) {
         return rung.fit.model.fits(viscous_1) && !rung.fit.model.fits(coulomb_1);
@@ -71,13 +70,58 @@ void demand_description(const Track& track, const ModelLadder& ladder) {
 void demand_order(const Track& track, const ModelLadder& ladder) {
     constexpr double least = 1.01;
     const auto& fit = ladder.rungs[ladder.best].fit;
-    const double moment =
-        fit.of(FitParameter::gravity_1) / (fit.of(FitParameter::coupling) * fit.of(FitParameter::gravity_2));
+    const double moment = fit.of(gravity_1) / (fit.of(coupling) * fit.of(gravity_2));
     if (moment >= least) return;
     throw bad_input(
         "{}: theta1_rad and theta2_rad seem to be swapped: as they are, the first arm has no weight of its own "
         "(D1 B/(C D2) is {:.3f}, and more than 1 of any two bodies in order); theta1 is the arm at the pivot",
         track.pieces.front().name, moment);
+}
+
+/// The interval at which the fitted motion leads from each piece to the next; nothing where no interval up to four
+/// times a piece stands out.
+std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
+    constexpr double longest = 4, apart_s = 0.15, close = 0.05, times = 3, diverged = 0.25;
+    const auto pieces = job.track.pieces.size();
+    if (pieces < 3) return std::nullopt;
+    double shortest = job.track.pieces[0].duration();
+    for (const auto& piece : job.track.pieces) shortest = std::min(shortest, piece.duration());
+    // the state at the start of each piece, and the motion of each far beyond its end: rates in units of the pendulums' own
+    const double step = fit.step_s, rate = std::sqrt(fit.of(gravity_2)), leads = static_cast<double>(pieces - 1);
+    const ArmState unit(1, 1, rate, rate);
+    std::vector<ArmState> starts(pieces);
+    for (std::size_t k = fit.shots.size(); k-- > 0;) starts[fit.shots[k].piece] = fit.shots[k].start;
+    const auto count = static_cast<std::size_t>(longest * shortest / step);
+    const auto from = static_cast<std::size_t>(0.95 * shortest / step);
+    std::vector<std::vector<ArmState>> motions(pieces - 1);
+    std::vector<double> distance(count, 0);  // of the ends, mean square, for each interval
+    for (std::size_t k = 0; k + 1 < pieces; ++k) {
+        throw_if_set(job.stop);
+        Flow<0> flow(fit.model, fit.parameters, starts[k], step);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double t = static_cast<double>(i) * step;
+            flow.reach(t);
+            const auto& off = motions[k].emplace_back((starts[k + 1] - flow.values_at(t)).cwiseQuotient(unit));
+            distance[i] += std::min(off.squaredNorm(), 1.0) / leads;
+        }
+    }
+    const auto least = std::min_element(distance.begin() + static_cast<std::ptrdiff_t>(from), distance.end() - 1);
+    const auto best = static_cast<std::size_t>(least - distance.begin());
+    double rival = 1;
+    for (std::size_t i = from; i < count; ++i)
+        if (std::abs(static_cast<double>(i) - static_cast<double>(best)) * step > apart_s)
+            rival = std::min(rival, distance[i]);
+    if (distance[best] > close || rival < times * distance[best]) return std::nullopt;
+    // between the steps: the shift along each motion that brings the ends together, without those that have diverged
+    double along = 0, speed = 0, rest = 0, used = 0;
+    for (const auto& off : motions) {
+        if (off[best].squaredNorm() > diverged) continue;
+        const ArmState slope = (off[best - 1] - off[best + 1]) / (2 * step);
+        along += off[best].dot(slope), speed += slope.squaredNorm(), rest += off[best].squaredNorm(), used += 4;
+    }
+    const double shift = along / speed;
+    rest -= shift * along;
+    return Period{static_cast<double>(best) * step + shift, std::sqrt(rest / std::max(used - 1, 1.0) / speed)};
 }
 
 void put_on_one_clock(FitResult& result, const FitQuestion& question, const std::atomic<bool>& stop) {
@@ -119,7 +163,7 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
     }
     put_on_one_clock(result, question, stop);
     if (!result.track.start_s.empty()) {
-        auto horizon = measure_horizon(job, ladder.units, fit, result.uncertainty);
+        auto horizon = measure_horizon(job, fit, result.uncertainty);
         if (!horizon.predictions.empty()) result.horizon = std::move(horizon);
     }
     result.pendulum = fitted_pendulum(fit.parameters, fit.model, question.convention);

@@ -2,13 +2,16 @@
 
 #include "fit/horizon.hpp"
 #include "fit/ladder.hpp"
-#include "fit/period.hpp"
-#include "fit/physical.hpp"
 
 #include <functional>
 #include <optional>
 
 namespace doppel {
+
+/// Pieces that follow one another at even intervals on a clock that each begins anew.
+struct Period {
+    double seconds = 0, standard_error = 0;
+};
 
 /// All that "doppel fit" finds out of a track.
 struct FitResult {

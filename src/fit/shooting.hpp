@@ -1,8 +1,11 @@
 #pragma once
 
-#include "fit/segment.hpp"
+#include "fit/pendulum.hpp"
+#include "track/track.hpp"
 
 #include <atomic>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace doppel {
@@ -14,25 +17,53 @@ struct FitJob {
     int threads = 1;
 };
 
-/// A model fitted to a track by multiple shooting: every segment has a start of its own, all share the parameters.
+/// What a shot adds to the normal equations of its start (four numbers, first) and the fitted parameters.
+struct ShotSums {
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd slope;
+    double cost = 0;                               // Huber's, in squared scales; infinite where the motion ran away
+    double bounded = 0;                            // Σ (residual/scale)², each at most bend²
+    double squares = 0;                            // Σ residual², rad²
+    long count = 0, beyond = 0;                    // of residuals, and of those beyond the bend
+    std::vector<std::array<double, 2>> residuals;  // measured − model of each sample's angles, rad; NaN of outliers
+    std::vector<Eigen::VectorXd> blocks;           // where asked for: slopes of successive stretches
+};
+
+/// Samples first … last − 1 of a piece, which one motion follows from a start of its own.
+struct Shot {
+    std::size_t piece = 0, first = 0, last = 0;
+    std::size_t unit = 0;   // what is left out together: a piece, or a stretch where there are few pieces
+    std::size_t whole = 0;  // the stretch of which it is a part
+    ArmState start{};       // at the first sample
+    ShotSums sums;          // there
+
+    std::size_t size() const { return last - first; }
+};
+
+/// A model fitted to a track by multiple shooting: every shot has a start of its own, all share the parameters.
 struct Fit {
     ModelSpec model;
-    FitRules rules;
     Parameters parameters{};
-    std::vector<TrackSegment> segments;
-    std::vector<ArmState<double>> starts;  // by segment, at its first sample
-    std::vector<SegmentSums> sums;         // there
-    double cost = 0, rms = 0;              // rms of the residuals, rad
-    int passes = 0;                        // over all segments, of this fit
+    std::vector<Shot> shots;                  // in the order of the track
+    double step_s = 0.016;                    // of the integrator, to begin with
+    std::array<double, 2> scale{1e-3, 1e-3};  // of each arm's residuals, rad
+    bool is_evaluated = false;                // the shots' sums, cost and rms are those of what stands above
+    double cost = 0, rms = 0;                 // rms of the residuals, rad
+    int passes = 0;                           // over all shots, of this fit
 
-    double of(FitParameter parameter) const { return parameters[index_of(parameter)]; }
+    /// Huber's loss: residuals beyond this many scales count in proportion, not squared. Of pure noise that loses 0.2 %
+    /// of what it tells.
+    static constexpr double bend = 3;
+
+    double of(FitParameter parameter) const { return parameters[parameter]; }
     /// Friction that would be negative, and is 0.
-    bool is_at_bound(FitParameter parameter) const { return model.is_bounded(parameter) && of(parameter) <= 0; }
+    bool is_at_bound(FitParameter parameter) const { return is_bounded(parameter) && of(parameter) <= 0; }
+    bool is_bounded(FitParameter parameter) const { return is_friction(parameter) && !model.may_gain; }
     /// How many parameters are fitted, without those at a bound.
     std::size_t free_count() const;
     long residual_count() const;
-    /// As it is before it is evaluated.
-    Fit without_sums() const;
+    std::size_t units() const { return shots.back().unit + 1; }
+    std::span<const Shot> unit(std::size_t number) const;
 };
 
 /// How far to go.
@@ -44,33 +75,40 @@ struct FitEffort {
 };
 
 /// Minimises Huber's loss of all residuals over starts and parameters: Gauss–Newton steps damped as Levenberg and
-/// Marquardt do, the starts eliminated segment by segment, friction kept ≥ 0. `start` has model, parameters, segments and
-/// starts; what sums it has are those there.
+/// Marquardt do, the starts eliminated shot by shot, friction kept ≥ 0.
 /// Ends after at most most_passes + 60 passes (two in each of 20 rounds, and what finds a scale and steps). The result is
 /// the same bits for any number of threads. Throws Error: exit 3 where no motion stays finite, 130.
 ///
 /// Source  Bock 1983 (multiple shooting); Nocedal & Wright, Numerical Optimization, §10.3.
 Fit fit_model(const FitJob& job, Fit start, const FitEffort& effort);
 
+/// The same of some shots of a fit with its parameters, of which the starts alone are fitted. Nothing where no motion stays
+/// finite.
+std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int most_passes,
+                              double relative);
+
 /// Sums, cost and rms where `fit` stands.
 void evaluate_fit(const FitJob& job, Fit& fit, double block_s = 0);
+
+/// The sums of a shot: exact derivatives of the computed motion, carried along. `block_s`: of the stretches; 0 = none.
+ShotSums evaluate_shot(const Track& track, const Fit& fit, const Shot& shot, double block_s = 0);
 
 /// The inverse of a positive semidefinite matrix; 0 for what nothing depends on.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
-/// The normal matrix of the fitted parameters and the slope, the start eliminated, of one segment.
+/// The normal matrix of the fitted parameters and the slope, the start eliminated, of one shot.
 struct Reduced {
     Eigen::MatrixXd of_start;  // the inverse of the start's own matrix, damped
     Eigen::MatrixXd matrix;
     Eigen::VectorXd slope;
 };
-Reduced reduced(const SegmentSums& sums, double damping = 0);
+Reduced reduced(const ShotSums& sums, double damping = 0);
 
-/// The fit of the whole track without some of its segments (their numbers), to first order: one Gauss–Newton step with the normal
-/// equations of the others. Starts move along.
-Fit fit_without(const Fit& fit, const std::vector<std::size_t>& segments);
+/// The fit of the whole track without two of its units, which may be the same, to first order: one Gauss–Newton step with the
+/// normal equations of the others. Starts move along.
+Fit fit_without(const Fit& fit, std::size_t unit, std::size_t other);
 
-/// Angles and rates at the first sample of a segment, from the samples around it.
-ArmState<double> guessed_start(const Track& track, const TrackSegment& segment);
+/// Angles and rates at a sample of a piece, from the samples around it.
+ArmState guessed_start(const Track& track, std::size_t piece, std::size_t sample);
 
 }  // namespace doppel

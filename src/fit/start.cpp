@@ -1,9 +1,8 @@
 #include "fit/start.hpp"
 
 #include "base/error.hpp"
+#include "numeric/elimination.hpp"
 #include "track/regression.hpp"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -51,9 +50,10 @@ double improve(const MotionSpec& spec, const Eigen::VectorXd& measured, Unknowns
     }
     Unknowns prior = Unknowns::Zero();
     prior.tail<2>().setConstant(before * before / (likely_offset * likely_offset));
-    Eigen::Matrix<double, 6, 6> normal = slopes.transpose() * slopes;
+    Eigen::Matrix<double, 6, 6> normal = slopes.transpose().lazyProduct(slopes);
     normal.diagonal() += prior;
-    Unknowns step = normal.ldlt().solve(slopes.transpose() * rest - prior.cwiseProduct(x));
+    Unknowns step = slopes.transpose().lazyProduct(rest) - prior.cwiseProduct(x);
+    solve_positive_definite(normal, step);
     for (int halving = 0; halving < 8 && step.allFinite(); ++halving, step /= 2) {
         const double after = rms_of(rest_of(measured, spec, x + step, stop));
         if (!(after < before)) continue;

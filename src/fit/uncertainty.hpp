@@ -3,7 +3,6 @@
 #include "fit/shooting.hpp"
 
 #include <array>
-#include <string>
 
 namespace doppel {
 
@@ -18,7 +17,7 @@ struct Uncertainty {
 
     double standard_error(std::size_t k) const;
     /// Of a parameter; 0 where it is not fitted.
-    double standard_error(FitParameter parameter) const;
+    double standard_error_of(FitParameter parameter) const;
 };
 
 /// From the curvature of the loss where the residuals are white (Ljung & Box over ten lags, at 99.9 %); else from how
@@ -27,5 +26,17 @@ struct Uncertainty {
 /// Throws Error (exit 130).
 /// Source  Huber, Robust Statistics, §7.6; Newey & West 1987
 Uncertainty uncertainty_of(const FitJob& job, Fit fit);
+
+/// What viscous friction takes from the swing in the mean, as a share of its energy of motion, 1/s. Less than 0: the
+/// energy grows.
+struct EnergyLoss {
+    double share = 0, standard_error = 0;
+    double rms = 0;  // rad, of the fit that says so
+};
+
+/// From a fit of viscous friction that may be negative, of a lag and scales, which could look like it. `start` is a fit
+/// of the track with viscous friction. The standard error allows for residuals that are not noise. Throws Error: 130,
+/// exit 3 where no motion stays finite.
+EnergyLoss energy_loss(const FitJob& job, const Fit& start);
 
 }  // namespace doppel

@@ -4,19 +4,16 @@
 #include "base/read_file.hpp"
 #include "numeric/portable_math.hpp"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 namespace doppel {
 namespace {
 
-constexpr std::array angle_columns{"theta1_rad", "theta2_rad"};
-constexpr std::array pixel_columns{"x0_px", "y0_px", "x1_px", "y1_px", "x2_px", "y2_px"};
 constexpr double long_gap_s = 0.2;
 constexpr std::size_t most_rows = 2'000'000;
 
@@ -40,81 +37,73 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 
 /// Where the columns stand in a file.
 struct Heading {
+    std::vector<std::string_view> names;
     std::size_t time = 0;
     std::vector<std::size_t> values;  // two angles, or six pixel places
     std::optional<std::size_t> piece;
 };
 
-Heading heading_of(const std::string& name, std::string_view line) {
-    const auto names = cells_of(line);
-    const auto place = [&](std::string_view wanted) -> std::optional<std::size_t> {
-        const auto found = std::find(names.begin(), names.end(), wanted);
-        if (found == names.end()) return std::nullopt;
-        return static_cast<std::size_t>(found - names.begin());
+Heading heading_of(const std::string& file, std::string_view line) {
+    Heading heading{.names = cells_of(line)};
+    const auto places = [&](std::initializer_list<std::string_view> wanted) {
+        std::vector<std::size_t> found;
+        for (const auto name : wanted)
+            if (const auto at = std::ranges::find(heading.names, name); at != heading.names.end())
+                found.push_back(static_cast<std::size_t>(at - heading.names.begin()));
+        return found;
     };
-    for (const auto* degrees : {"theta1_deg", "theta2_deg"})
-        if (place(degrees))
-            throw bad_input(
-                "{}:1: \"{}\" is in degrees; angles are wanted in radians, theta1_rad and theta2_rad "
-                "(degrees × π/180)",
-                name, degrees);
-    Heading heading;
-    const auto time = place("time_s");
-    if (!time) throw bad_input("{}:1: there is no column time_s", name);
-    heading.time = *time;
-    heading.piece = place("piece");
-    const auto take = [&](const auto& columns) {
-        heading.values.clear();
-        for (const auto* column : columns)
-            if (const auto at = place(column)) heading.values.push_back(*at);
-        return heading.values.size();
-    };
-    if (const auto found = take(angle_columns); found == 2)
-        return heading;
-    else if (found == 1)
-        throw bad_input("{}:1: there is one arm only, {}; fit takes double pendulums, with theta1_rad and theta2_rad",
-                        name, place("theta1_rad") ? "theta1_rad" : "theta2_rad");
-    if (const auto found = take(pixel_columns); found == pixel_columns.size())
-        return heading;
-    else if (found > 0)
+    if (!places({"theta1_deg", "theta2_deg"}).empty())
         throw bad_input(
-            "{}:1: of x0_px, y0_px (pivot), x1_px, y1_px (joint), x2_px, y2_px (end) there are {} columns; "
-            "all six are needed",
-            name, found);
-    throw bad_input(
-        "{}:1: there are no angles; theta1_rad and theta2_rad are wanted, or x0_px, y0_px, x1_px, y1_px, "
-        "x2_px, y2_px",
-        name);
+            "{}:1: \"{}\" is in degrees; angles are wanted in radians, theta1_rad and theta2_rad (degrees × π/180)",
+            file, heading.names[places({"theta1_deg", "theta2_deg"})[0]]);
+    const auto time = places({"time_s"}), piece = places({"piece"}), angles = places({"theta1_rad", "theta2_rad"});
+    const auto pixels = places({"x0_px", "y0_px", "x1_px", "y1_px", "x2_px", "y2_px"});
+    if (time.empty()) throw bad_input("{}:1: there is no column time_s", file);
+    if (angles.size() == 1)
+        throw bad_input("{}:1: there is one arm only, {}; fit takes double pendulums, with theta1_rad and theta2_rad",
+                        file, heading.names[angles[0]]);
+    if (angles.empty() && pixels.empty())
+        throw bad_input(
+            "{}:1: there are no angles; theta1_rad and theta2_rad are wanted, or x0_px, y0_px, x1_px, y1_px, x2_px, "
+            "y2_px",
+            file);
+    if (angles.empty() && pixels.size() < 6)
+        throw bad_input(
+            "{}:1: of x0_px, y0_px (pivot), x1_px, y1_px (joint), x2_px, y2_px (end) there are {} columns; all six are "
+            "needed",
+            file, pixels.size());
+    heading.time = time[0];
+    heading.values = angles.empty() ? pixels : angles;
+    if (!piece.empty()) heading.piece = piece[0];
+    return heading;
 }
 
-double number_of(const std::string& name, std::size_t line, std::string_view column, std::string_view cell) {
+double number_of(const std::string& place, std::string_view column, std::string_view cell) {
     double value = 0;
     const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (fault != std::errc() || end != cell.data() + cell.size())
-        throw bad_input("{}:{}: {} is no number", name, line, column);
+    if (fault != std::errc() || end != cell.data() + cell.size()) throw bad_input("{}: {} is no number", place, column);
     if (!std::isfinite(value))
-        throw bad_input("{}:{}: {} is {}; leave out rows without a measurement", name, line, column,
+        throw bad_input("{}: {} is {}; leave out rows without a measurement", place, column,
                         std::isnan(value) ? "nan" : "infinite");
     return value;
 }
 
-/// From the downward vertical, counter-clockwise, of the line between two places, y down.
-double pixel_angle(const std::string& name, std::size_t line, double dx, double dy) {
-    if (dx == 0 && dy == 0)
-        throw bad_input("{}:{}: two of pivot, joint and end are at the same place; an arm needs a length", name, line);
-    return portable_atan2(dx, dy);
-}
-
-std::array<double, 2> angles_of(const std::string& name, std::size_t line, const std::vector<double>& values) {
+/// Of both arms, given themselves or by the places of pivot, joint and end, y down.
+std::array<double, 2> angles_of(const std::string& place, const std::vector<double>& values) {
     constexpr double most = 1e6;  // rad: 160 000 turns
-    if (values.size() == 2) {
-        for (std::size_t arm = 0; arm < 2; ++arm)
-            if (std::abs(values[arm]) > most)
-                throw bad_input("{}:{}: {} is beyond {} rad, which is no swing", name, line, angle_columns[arm], most);
-        return {values[0], values[1]};
-    }
-    return {pixel_angle(name, line, values[2] - values[0], values[3] - values[1]),
-            pixel_angle(name, line, values[4] - values[2], values[5] - values[3])};
+    std::array<double, 2> angles{};
+    for (std::size_t arm = 0; arm < 2; ++arm)
+        if (values.size() == 2) {
+            angles[arm] = values[arm];
+            if (std::abs(angles[arm]) > most)
+                throw bad_input("{}: theta{}_rad is beyond {} rad, which is no swing", place, arm + 1, most);
+        } else {
+            const double dx = values[2 * arm + 2] - values[2 * arm], dy = values[2 * arm + 3] - values[2 * arm + 1];
+            if (dx == 0 && dy == 0)
+                throw bad_input("{}: two of pivot, joint and end are at the same place; an arm needs a length", place);
+            angles[arm] = portable_atan2(dx, dy);
+        }
+    return angles;
 }
 
 /// Takes out jumps by whole turns, of angles that keep within one; others count turns already.
@@ -129,8 +118,7 @@ void unwrap(std::vector<double>& angles) {
 void read_text(const std::string& name, std::string_view text, Track& track, const std::atomic<bool>& stop) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     std::optional<Heading> heading;
-    std::vector<std::string_view> names;
-    std::string piece_number;
+    std::string_view piece_number;
     const auto first_piece = track.pieces.size();
     std::size_t line_number = 0, rows = track.samples();
     bool starts = true;
@@ -143,35 +131,31 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
         if (line.empty() || line.front() == '#') continue;
         if (!heading) {
             heading = heading_of(name, line);
-            names = cells_of(line);
             continue;
         }
+        const auto place = fmt::format("{}:{}", name, line_number);
         const auto cells = cells_of(line);
-        if (cells.size() != names.size())
-            throw bad_input("{}:{}: there are {} cells, and {} columns", name, line_number, cells.size(), names.size());
-        const auto value = [&](std::size_t column) {
-            return number_of(name, line_number, names[column], cells[column]);
-        };
+        if (cells.size() != heading->names.size())
+            throw bad_input("{}: there are {} cells, and {} columns", place, cells.size(), heading->names.size());
+        const auto value = [&](std::size_t column) { return number_of(place, heading->names[column], cells[column]); };
         const double time = value(heading->time);
         if (heading->piece && piece_number != cells[*heading->piece])
             starts = true, piece_number = cells[*heading->piece];
         if (!starts) {
-            const double before = track.pieces.back().time_s.back();
-            if (time <= before)
+            const auto& before = track.pieces.back().time_s;
+            if (time <= before.back())
                 throw bad_input(
-                    "{}:{}: time_s goes from {} to {}; rows are wanted in the order of time, pieces that begin "
-                    "anew in files of their own or numbered in a column \"piece\"",
-                    name, line_number, before, time);
-            starts = time - before > long_gap_s && track.pieces.back().size() > 1;
+                    "{}: time_s goes from {} to {}; rows are wanted in the order of time, pieces that begin anew in "
+                    "files of their own or numbered in a column \"piece\"",
+                    place, before.back(), time);
+            starts = time - before.back() > long_gap_s && before.size() > 1;
         }
-        if (starts) track.pieces.push_back({.name = name, .time_s = {}, .angle = {}, .is_outlier = {}});
-        starts = false;
-        auto& piece = track.pieces.back();
+        if (std::exchange(starts, false)) track.pieces.push_back({.name = name});
         std::vector<double> values;
         for (const auto column : heading->values) values.push_back(value(column));
-        const auto angles = angles_of(name, line_number, values);
-        piece.time_s.push_back(time);
-        for (std::size_t arm = 0; arm < 2; ++arm) piece.angle[arm].push_back(angles[arm]);
+        const auto angles = angles_of(place, values);
+        track.pieces.back().time_s.push_back(time);
+        for (std::size_t arm = 0; arm < 2; ++arm) track.pieces.back().angle[arm].push_back(angles[arm]);
         if (++rows > most_rows)
             throw bad_input("{}: there are more than {} rows; a minute of a track at 1000 Hz is plenty", name,
                             most_rows);

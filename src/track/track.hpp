@@ -21,12 +21,6 @@ struct TrackPiece {
     double duration() const { return time_s.back() - time_s.front(); }
 };
 
-/// Samples first … last − 1 of a piece.
-struct TrackSegment {
-    std::size_t piece = 0, first = 0, last = 0;
-    std::size_t size() const { return last - first; }
-};
-
 /// A measured swing.
 struct Track {
     std::vector<TrackPiece> pieces;  // in the order of time

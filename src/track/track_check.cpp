@@ -91,33 +91,24 @@ void demand_length(const Track& track) {
             track.pieces.front().name, track.samples(), track.duration(), least_samples, least_s);
 }
 
-/// Of an arm, in all pieces.
-std::array<double, 2> range_of(const Track& track, std::size_t arm) {
-    std::array<double, 2> range{track.pieces[0].angle[arm][0], track.pieces[0].angle[arm][0]};
-    for (const auto& piece : track.pieces)
-        for (const double angle : piece.angle[arm]) range = {std::min(range[0], angle), std::max(range[1], angle)};
-    return range;
-}
-
 void demand_motion(const Track& track) {
     constexpr double least = 0.05;  // rad
+    const auto& name = track.pieces.front().name;
+    bool same = true;
     for (std::size_t arm = 0; arm < 2; ++arm) {
         double most = 0;
         for (const auto& piece : track.pieces) {
-            const auto [low, high] = std::minmax_element(piece.angle[arm].begin(), piece.angle[arm].end());
-            most = std::max(most, *high - *low);
+            const auto [low, high] = std::ranges::minmax(piece.angle[arm]);
+            most = std::max(most, high - low);
+            same &= piece.angle[0] == piece.angle[1];
         }
         if (most < std::max(least, 20 * track.noise[arm]))
             throw bad_input(
                 "{}: theta{} {}: it moves by {:.2g} rad with a noise of {:.2g} rad, which tells no model; "
                 "at least {} rad and 20 times the noise are wanted",
-                track.pieces.front().name, arm + 1, most < least ? "is flat" : "is mostly noise", most,
-                track.noise[arm], least);
+                name, arm + 1, most < least ? "is flat" : "is mostly noise", most, track.noise[arm], least);
     }
-    bool same = true;
-    for (const auto& piece : track.pieces) same &= piece.angle[0] == piece.angle[1];
-    if (same)
-        throw bad_input("{}: theta1_rad and theta2_rad are the same numbers: one arm only", track.pieces.front().name);
+    if (same) throw bad_input("{}: theta1_rad and theta2_rad are the same numbers: one arm only", name);
 }
 
 /// Another way to take the columns.
@@ -148,17 +139,6 @@ double unexplained(std::vector<Glimpse> glimpses, const Reading& reading) {
     return result.is_physical ? result.unexplained : 1;
 }
 
-std::vector<Reading> other_readings() {
-    constexpr double degree = std::numbers::pi / 180;
-    std::vector<Reading> all{{.unit = degree}};
-    for (const bool relative : {false, true})
-        for (const bool mirrored : {false, true})
-            for (int first = -1; first <= 2; ++first)
-                for (int second = -1; second <= 2; ++second)
-                    all.push_back({.relative = relative, .mirrored = mirrored, .quarters = {first, second}});
-    return all;
-}
-
 void convert(Track& track, const Reading& reading) {
     std::string words;
     if (reading.mirrored) words += " theta2 counted the other way round;";
@@ -179,35 +159,45 @@ void convert(Track& track, const Reading& reading) {
 /// Where the angles taken as they are obey no double pendulum's equations, but do when taken in another way: refuses
 /// what is a mistake, and takes so what is a convention.
 void check_convention(Track& track, const std::atomic<bool>& stop) {
-    constexpr double well = 0.003, obeys = 0.1, much_better = 0.3;
+    constexpr double well = 0.003, obeys = 0.1, much_better = 0.3, degree = std::numbers::pi / 180;
     const auto glimpses = glimpses_of(track, stop);
     const double as_it_is = unexplained(glimpses, {});
     if (as_it_is < well) return;
+    std::array<double, 2> low, high, spread;
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+        low[arm] = high[arm] = track.pieces[0].angle[arm][0];
+        for (const auto& piece : track.pieces)
+            for (const double angle : piece.angle[arm])
+                low[arm] = std::min(low[arm], angle), high[arm] = std::max(high[arm], angle);
+        spread[arm] = high[arm] - low[arm];
+    }
+    const double widest = std::max(spread[0], spread[1]);
     Reading best;
     double least = as_it_is;
-    constexpr double small = 4;  // rad: of degrees, a motion so small is linear, and any such fits
-    const auto first = range_of(track, 0), second = range_of(track, 1);
-    const bool may_be_degrees = std::max(first[1] - first[0], second[1] - second[0]) > small;
-    for (const auto& reading : other_readings()) {
+    const auto consider = [&](const Reading& reading) {
         throw_if_set(stop);
-        if (reading.unit != 1 && !may_be_degrees) continue;
         if (const double value = unexplained(glimpses, reading); value < least) least = value, best = reading;
-    }
-    if (least > std::min(obeys, much_better * as_it_is)) {
-        constexpr double most_turns = 60;  // rad: ten turns and a half
-        if (as_it_is > obeys && std::max(first[1] - first[0], second[1] - second[0]) > most_turns)
-            throw bad_input(
-                "{}: the angles go from {:.3g} to {:.3g}, and obey no double pendulum's equations: are they "
-                "in degrees? Radians are wanted (degrees × π/180)",
-                track.pieces.front().name, first[0], first[1]);
-        return;  // the fit will tell
-    }
+    };
+    constexpr double small = 4;  // rad: of degrees, a motion so small is linear, and any such fits
+    if (widest > small) consider({.unit = degree});
+    for (const bool relative : {false, true})
+        for (const bool mirrored : {false, true})
+            for (int first = -1; first <= 2; ++first)
+                for (int second = -1; second <= 2; ++second)
+                    consider({.relative = relative, .mirrored = mirrored, .quarters = {first, second}});
     const auto& name = track.pieces.front().name;
+    const bool is_better = least <= std::min(obeys, much_better * as_it_is);
+    if (is_better && best.unit == 1) return convert(track, best);
     const auto evidence =
         fmt::format("taken so, {:.0f} % of the forces are unexplained, else {:.0f} %", 100 * least, 100 * as_it_is);
-    if (best.unit != 1)
+    if (is_better)
         throw bad_input("{}: the angles are in degrees; radians are wanted (degrees × π/180): {}", name, evidence);
-    convert(track, best);
+    constexpr double most_turns = 60;             // rad: ten turns and a half
+    if (as_it_is > obeys && widest > most_turns)  // else the fit will tell
+        throw bad_input(
+            "{}: the angles go from {:.3g} to {:.3g}, and obey no double pendulum's equations: are they in degrees? "
+            "Radians are wanted (degrees × π/180)",
+            name, low[0], high[0]);
 }
 
 }  // namespace

@@ -30,9 +30,9 @@ Coverage coverage_of(int trials, const Parameters& truth, const ModelSpec& model
         const auto uncertainty = uncertainty_of(job, fit);
         coverage.white += uncertainty.is_white;
         for (const auto parameter : uncertainty.parameters) {
-            const double off = fit.parameters[index_of(parameter)] - truth[index_of(parameter)];
-            const bool is_within = std::abs(off) < 1.96 * uncertainty.standard_error(parameter);
-            within[words_of(parameter).key] += is_within;
+            const double off = fit.parameters[parameter] - truth[parameter];
+            const bool is_within = std::abs(off) < 1.96 * uncertainty.standard_error_of(parameter);
+            within[parameter_words[parameter].key] += is_within;
             sum += is_within, ++count;
         }
     }
@@ -46,8 +46,8 @@ Coverage coverage_of(int trials, const Parameters& truth, const ModelSpec& model
 TEST(FitCoverage, NineteenOfTwentyIntervalsHoldTheTruth) {
     const int trials = std::getenv("DOPPEL_LONG_FIT") ? 1000 : 200;
     auto truth = lab_arms();
-    at(truth, coulomb_1) = at(truth, coulomb_2) = at(truth, quadratic_1) = at(truth, quadratic_2) = 0;
-    at(truth, offset_1) = 0.002, at(truth, offset_2) = -0.001;
+    truth[coulomb_1] = truth[coulomb_2] = truth[quadratic_1] = truth[quadratic_2] = 0;
+    truth[offset_1] = 0.002, truth[offset_2] = -0.001;
     const auto seen = coverage_of(trials, truth, model_of(false, 1), {.noise = 1e-3});
     RecordProperty("share", std::to_string(seen.all));
     EXPECT_GT(seen.all, 0.93);  // measured 0.945

@@ -1,8 +1,7 @@
-#include "fit/energy.hpp"
-
 #include "base/error.hpp"
 #include "fit/result.hpp"
 #include "fit/support.hpp"
+#include "fit/uncertainty.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +47,7 @@ Track with_lag(const Track& track, std::ptrdiff_t shift) {
 
 TEST(FitEnergy, IsLostAsTheFrictionSays) {
     auto truth = lab_arms(false);
-    at(truth, viscous_1) = 0.08, at(truth, viscous_2) = 0.03;
+    truth[viscous_1] = 0.08, truth[viscous_2] = 0.03;
     const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
     EXPECT_GT(errors_from_zero(track, truth), 50);             // measured 372
     EXPECT_LT(errors_from_zero(reversed(track), truth), -50);  // measured −370
@@ -56,7 +55,7 @@ TEST(FitEnergy, IsLostAsTheFrictionSays) {
 
 TEST(FitEnergy, TracksPlayedBackwardsAreRefused) {
     auto viscous = lab_arms(false);
-    at(viscous, viscous_1) = 0.02, at(viscous, viscous_2) = 0.01;
+    viscous[viscous_1] = 0.02, viscous[viscous_2] = 0.01;
     for (const auto& truth : {lab_arms(), viscous}) {
         const auto track = simulated(truth, Drag::carried, {.noise = 1e-3});
         EXPECT_EQ(ending(track).first, 0);

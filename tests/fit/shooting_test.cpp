@@ -15,33 +15,33 @@ using namespace test;
 
 TEST(FitShooting, DerivativesAreThoseOfDifferences) {
     auto truth = lab_arms();
-    at(truth, lag) = 0.001, at(truth, scale_1) = 1.01, at(truth, offset_1) = 0.01;
-    at(truth, coulomb_1) = at(truth, coulomb_2) = 2;
+    truth[lag] = 0.001, truth[scale_1] = 1.01, truth[offset_1] = 0.01;
+    truth[coulomb_1] = truth[coulomb_2] = 2;
     for (const bool point : {true, false}) {
         const auto drag = point ? Drag::own : Drag::carried;
         const auto track = simulated(truth, drag, {.pieces = 1, .piece_s = 1});
-        const TrackSegment segment{0, 0, track.samples()};
-        auto model = model_of(point, 3, drag, 2);
-        FitRules rules{.step_s = 0.004, .scale = {1e6, 1e6}};  // no residual is beyond the bend
-        auto parameters = completed(model, truth);
-        ArmState<double> start{track.pieces[0].angle[0][0] + 0.01, track.pieces[0].angle[1][0], 1, -1};
-        const auto cost = [&] { return evaluate_segment(track, segment, model, rules, parameters, start).cost; };
-        const auto sums = evaluate_segment(track, segment, model, rules, parameters, start);
+        auto fit = fit_at(model_of(point, 3, drag, 2), truth, track);
+        fit.step_s = 0.004, fit.scale = {1e6, 1e6};  // no residual is beyond the bend
+        fit.shots = {{.last = track.samples(), .start = fit.shots[0].start + ArmState(0.01, 0, 1, -1)}};
+        auto& p = fit.parameters;
+        const auto sums_here = [&] {
+            if (point) p[gravity_1] = p[inertia] * p[gravity_2] / p[coupling];
+            return evaluate_shot(track, fit, fit.shots[0]);
+        };
+        const auto sums = sums_here();
         const auto check = [&](double& value, double slope, std::string_view what) {
             const double h = 1e-5 * std::max(std::abs(value), 0.1), was = value;
-            const auto at_shift = [&](double shift) {
+            const auto cost_at = [&](double shift) {
                 value = was + shift;
-                parameters = completed(model, parameters);
-                return cost();
+                return sums_here().cost;
             };
-            const double difference = (at_shift(h) - at_shift(-h)) / (2 * h);
-            at_shift(0);
+            const double difference = (cost_at(h) - cost_at(-h)) / (2 * h);
+            cost_at(0);
             EXPECT_NEAR(-difference, slope, 1e-6 * std::abs(slope) + 1e-15) << what;  // measured 1e-7
         };
-        for (std::size_t q = 0; q < 4; ++q) check(start[q], sums.slope[static_cast<Eigen::Index>(q)], "start");
-        for (std::size_t k = 0; k < model.fitted.size(); ++k)
-            check(at(parameters, model.fitted[k]), sums.slope[4 + static_cast<Eigen::Index>(k)],
-                  words_of(model.fitted[k]).key);
+        for (Eigen::Index q = 0; q < 4; ++q) check(fit.shots[0].start[q], sums.slope[q], "start");
+        for (Eigen::Index k = 0; const auto parameter : fit.model.fitted)
+            check(p[parameter], sums.slope[4 + k++], parameter_words[parameter].key);
     }
 }
 
@@ -51,7 +51,7 @@ TEST(FitShooting, EliminatesStartsExactly) {
     const auto model = model_of(false, 1);
     auto fit = fit_at(model, lab_arms(), track);
     evaluate_fit({track, no_stop}, fit);
-    const auto& sums = fit.sums[0];
+    const auto& sums = fit.shots[0].sums;
     const auto count = static_cast<Eigen::Index>(model.fitted.size());
     const Eigen::VectorXd expected = sums.matrix.fullPivLu().solve(sums.slope).tail(count);
     const auto part = reduced(sums);
@@ -61,29 +61,29 @@ TEST(FitShooting, EliminatesStartsExactly) {
 
 TEST(FitShooting, FindsANoiselessTruth) {
     auto truth = lab_arms();
-    at(truth, coulomb_1) = at(truth, coulomb_2) = 0;
-    at(truth, offset_1) = 0.003, at(truth, offset_2) = -0.002;
+    truth[coulomb_1] = truth[coulomb_2] = 0;
+    truth[offset_1] = 0.003, truth[offset_2] = -0.002;
     const auto track = simulated(truth, Drag::carried, {.hz = 200});
     auto model = model_of(false, 1, Drag::carried);
     model.fitted = {inertia,   coupling,    gravity_1,   gravity_2, viscous_1,
                     viscous_2, quadratic_1, quadratic_2, offset_1,  offset_2};
     auto wrong = truth;
-    for (const auto parameter : model.fitted) at(wrong, parameter) *= 1.05;
+    for (const auto parameter : model.fitted) wrong[parameter] *= 1.05;
     const auto fit = fit_model({track, no_stop}, fit_at(model, wrong, track), {.most_passes = 60, .relative = 1e-12});
     for (const auto parameter : model.fitted) {
-        const double expected = at(truth, parameter);
-        EXPECT_NEAR(fit.parameters[index_of(parameter)], expected, 1e-6 * std::max(std::abs(expected), 0.1))
-            << words_of(parameter).key;  // measured 3e-8
+        const double expected = truth[parameter];
+        EXPECT_NEAR(fit.parameters[parameter], expected, 1e-6 * std::max(std::abs(expected), 0.1))
+            << parameter_words[parameter].key;  // measured 3e-8
     }
     EXPECT_LT(fit.rms, 1e-8);
 }
 
 TEST(FitShooting, KeepsFrictionFromBeingNegative) {
     auto truth = lab_arms(false);
-    at(truth, viscous_1) = -0.05, at(truth, viscous_2) = 0.02;
+    truth[viscous_1] = -0.05, truth[viscous_2] = 0.02;
     const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
     const auto fit = fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(false), track), {});
-    EXPECT_EQ(fit.parameters[index_of(viscous_1)], 0);
+    EXPECT_EQ(fit.parameters[viscous_1], 0);
     EXPECT_TRUE(fit.is_at_bound(viscous_1));
     EXPECT_FALSE(fit.is_at_bound(viscous_2));
 }
@@ -94,25 +94,15 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
     for (auto& piece : track.pieces)
         for (std::size_t i = 7; i < piece.size(); i += 100) piece.angle[i % 2][i] += 0.5;
     const auto fit = fit_model({track, no_stop}, fit_at(model_of(false, 0), lab_arms(false), track), {});
-    EXPECT_NEAR(fit.parameters[index_of(inertia)], 1.8, 0.004);  // measured 0.0009; least squares: 0.08
-    EXPECT_NEAR(fit.parameters[index_of(gravity_2)], 50, 0.05);  // measured 0.01
-}
-
-TEST(FitShooting, IsTheSameForAnyNumberOfThreads) {
-    const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
-    const auto fit = [&](int threads) {
-        return fit_model({track, no_stop, threads}, fit_at(model_of(false, 2), lab_arms(), track), {});
-    };
-    const auto one = fit(1), four = fit(4);
-    EXPECT_EQ(one.parameters, four.parameters);
-    EXPECT_EQ(one.starts, four.starts);
+    EXPECT_NEAR(fit.parameters[inertia], 1.8, 0.004);  // measured 0.0009; least squares: 0.08
+    EXPECT_NEAR(fit.parameters[gravity_2], 50, 0.05);  // measured 0.01
 }
 
 /// A start from which the motion runs away is guessed anew; the fit goes on.
 TEST(FitShooting, OneBadStartEndsItselfNotTheFit) {
     const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
     auto start = fit_at(model_of(false, 0), lab_arms(false), track);
-    start.starts[1][2] = 2e4;  // rad/s
+    start.shots[1].start[2] = 2e4;  // rad/s
     const auto fit = fit_model({track, no_stop}, start, {});
     EXPECT_NEAR(fit.rms, 1e-3, 5e-5);  // measured 1.00e-3: the noise
 }
@@ -122,7 +112,7 @@ TEST(FitShooting, EndsSoonAfterItIsStopped) {
     auto fit = fit_at(model_of(false, 0), lab_arms(false), track);
     const std::atomic<bool> stop = true;
     EXPECT_THROW(evaluate_fit({track, stop}, fit), Error);
-    EXPECT_EQ(fit.sums[0].count, 0);
+    EXPECT_EQ(fit.shots[0].sums.count, 0);
     EXPECT_THROW(tracks_of_texts({"a.csv"}, {csv_of(track.pieces[0])}, stop), Error);
 }
 
@@ -131,24 +121,24 @@ TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     auto fit = fit_at(model_of(false, 2), lab_arms(), track);
     evaluate_fit({track, no_stop}, fit);
-    fit.sums[0].matrix(4, 4) = -std::numeric_limits<double>::infinity();
-    const auto without = fit_without(fit, {2});
-    EXPECT_FALSE(std::isfinite(without.parameters[index_of(inertia)]));
+    fit.shots[0].sums.matrix(4, 4) = -std::numeric_limits<double>::infinity();
+    const auto without = fit_without(fit, 2, 2);
+    EXPECT_FALSE(std::isfinite(without.parameters[inertia]));
 }
 
 /// What is left out by one step is near what a fit without it finds.
 TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     const auto all = fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(), track), {});
-    const auto quick = fit_without(all, {2});
-    auto rest = all.without_sums();
-    rest.segments.erase(rest.segments.begin() + 2);
-    rest.starts.erase(rest.starts.begin() + 2);
+    const auto quick = fit_without(all, 2, 2);
+    auto rest = all;
+    rest.is_evaluated = false;
+    std::erase_if(rest.shots, [](const Shot& shot) { return shot.unit == 2; });
     const auto exact = fit_model({track, no_stop}, rest, {.finds_scale = false, .step_share = 0});
     for (const auto parameter : all.model.fitted) {
-        const auto k = index_of(parameter);
+        const auto k = parameter;
         const double moved = std::abs(exact.parameters[k] - all.parameters[k]);
-        EXPECT_NEAR(quick.parameters[k], exact.parameters[k], 0.1 * moved + 1e-6) << words_of(parameter).key;
+        EXPECT_NEAR(quick.parameters[k], exact.parameters[k], 0.1 * moved + 1e-6) << parameter_words[parameter].key;
     }
 }
 
@@ -158,7 +148,7 @@ FitResult answered(const Track& track, Bodies bodies = Bodies::automatic) {
 
 TEST(FitLadder, ChoosesWhatMadeTheTrack) {
     auto compound = lab_arms(false);
-    at(compound, viscous_1) = 0.1, at(compound, viscous_2) = 0.05;
+    compound[viscous_1] = 0.1, compound[viscous_2] = 0.05;
     auto track = simulated(compound, Drag::own, {.noise = 1e-3});
     auto result = answered(track);
     EXPECT_EQ(result.chosen().name, "compound, viscous friction");
@@ -182,15 +172,15 @@ TEST(FitLadder, FollowsAnEnergeticSwing) {
     EXPECT_TRUE(result.uncertainty.is_white);
     EXPECT_NEAR(result.chosen().fit.rms, 2e-3, 1e-4);  // its noise
     for (const auto parameter : {inertia, coupling, gravity_1, gravity_2})
-        EXPECT_NEAR(result.chosen().fit.parameters[index_of(parameter)], at(truth, parameter),
-                    4 * result.uncertainty.standard_error(parameter))
-            << words_of(parameter).key;
+        EXPECT_NEAR(result.chosen().fit.parameters[parameter], truth[parameter],
+                    4 * result.uncertainty.standard_error_of(parameter))
+            << parameter_words[parameter].key;
 }
 
 /// Where the model is the right one, the start's error alone ends predictions; and the pieces' interval is found.
 TEST(FitHorizon, FindsTheIntervalOfPiecesAndHowFarItSees) {
     auto truth = lab_arms(false);
-    at(truth, viscous_1) = 0.05;
+    truth[viscous_1] = 0.05;
     const auto track = simulated(truth, Drag::own, {.pieces = 8, .piece_s = 2.5, .noise = 1e-3, .every_s = 5});
     const auto result = answered(track, Bodies::compound);
     ASSERT_TRUE(result.period);

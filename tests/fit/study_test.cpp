@@ -31,10 +31,10 @@ Track energetic_track(unsigned seed) {
     std::mt19937_64 random(seed);
     auto p = ratios_of(any_pendulum(random));
     std::uniform_real_distribution<double> even;
-    for (const auto parameter : {viscous_1, viscous_2}) at(p, parameter) = 0.002 * std::pow(50.0, even(random));
+    for (const auto parameter : {viscous_1, viscous_2}) p[parameter] = 0.002 * std::pow(50.0, even(random));
     const bool has_drag = even(random) < 0.35;
     for (const auto parameter : {quadratic_1, quadratic_2})
-        at(p, parameter) = has_drag ? 0.001 * std::pow(10.0, even(random)) : 0;
+        p[parameter] = has_drag ? 0.001 * std::pow(10.0, even(random)) : 0;
     constexpr std::array rates{100.0, 200.0, 250.0, 500.0};
     return simulated(p, even(random) < 0.5 ? Drag::own : Drag::carried,
                      {.pieces = 1,
@@ -84,7 +84,7 @@ Track rubbing_track(unsigned seed, Parameters& truth) {
     const long hz = std::array{200, 250, 500}[static_cast<std::size_t>(3 * even(random))];
     const auto samples = static_cast<std::size_t>(seconds * static_cast<double>(hz));
     const auto within = [&](double size) { return size * (2 * even(random) - 1); };
-    const ArmState<double> start{within(1.5), within(1.5), within(4), within(4)};
+    const ArmState start{within(1.5), within(1.5), within(4), within(4)};
     const auto angles = simulated_angles(made, start, hz, samples);
     Track track{.noise = {5e-4, 5e-4}};
     auto& piece = track.pieces.emplace_back(TrackPiece{.name = "simulated.csv"});
@@ -114,8 +114,8 @@ TEST(FitStudy, IntervalsHoldCoulombFriction) {
         const auto result = answer(track, {}, 2, no_stop, [](std::size_t, std::size_t) {});
         for (const auto parameter : result.uncertainty.parameters) {
             if (!is_friction(parameter)) continue;
-            const double off = std::abs(result.chosen().fit.of(parameter) - at(truth, parameter)) /
-                               result.uncertainty.standard_error(parameter);
+            const double off = std::abs(result.chosen().fit.of(parameter) - truth[parameter]) /
+                               result.uncertainty.standard_error_of(parameter);
             within += off < 1.96, ++count;
             worst = std::max(worst, off);
         }

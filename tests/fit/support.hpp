@@ -1,8 +1,7 @@
 #pragma once
 
+#include "fit/beginning.hpp"
 #include "fit/flow.hpp"
-#include "fit/ladder.hpp"
-#include "fit/physical.hpp"
 #include "integrate/motion.hpp"
 #include "physics/physical_pendulum.hpp"
 
@@ -16,20 +15,14 @@
 
 namespace doppel::test {
 
-using enum FitParameter;
-
-inline double& at(Parameters& parameters, FitParameter parameter) {
-    return parameters[index_of(parameter)];
-}
-
 /// A laboratory's arms, some 17 cm and 29 cm long; with friction of all kinds.
 inline Parameters lab_arms(bool with_friction = true) {
     Parameters p{};
-    at(p, inertia) = 1.8, at(p, coupling) = 0.88, at(p, gravity_1) = 106, at(p, gravity_2) = 50;
-    at(p, scale_1) = at(p, scale_2) = 1;
+    p[inertia] = 1.8, p[coupling] = 0.88, p[gravity_1] = 106, p[gravity_2] = 50;
+    p[scale_1] = p[scale_2] = 1;
     if (!with_friction) return p;
-    at(p, viscous_1) = 0.08, at(p, viscous_2) = 0.03, at(p, coulomb_1) = 0.1, at(p, coulomb_2) = 0.06;
-    at(p, quadratic_1) = 0.006, at(p, quadratic_2) = 0.005;
+    p[viscous_1] = 0.08, p[viscous_2] = 0.03, p[coulomb_1] = 0.1, p[coulomb_2] = 0.06;
+    p[quadratic_1] = 0.006, p[quadratic_2] = 0.005;
     return p;
 }
 
@@ -47,22 +40,21 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
     std::mt19937_64 random(measuring.seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> even(-1, 1);
-    const auto arms = arms_of({.drag = drag, .fitted = {}}, truth);
     Track track;
-    ArmState<double> start{};
+    ArmState start;
     for (std::size_t k = 0; k < measuring.pieces; ++k) {
         if (k == 0 || measuring.every_s == 0)
             start = {measuring.amplitude * even(random), measuring.amplitude * even(random), 4 * even(random),
                      4 * even(random)};
         TrackPiece piece{.name = "simulated.csv", .time_s = {}, .angle = {}, .is_outlier = {}};
-        Flow<double> flow(arms, start, step);
+        Flow<0> flow({.drag = drag}, truth, start, step);
         const auto samples = static_cast<std::size_t>(std::lround(measuring.piece_s * measuring.hz)) + 1;
         for (std::size_t i = 0; i < samples; ++i) {
             const double t = static_cast<double>(i) / measuring.hz;
             flow.reach(t);
             piece.time_s.push_back(t);
             for (std::size_t arm = 0; arm < 2; ++arm)
-                piece.angle[arm].push_back(truth[index_of(offset_1) + arm] + flow.angle(arm, t) +
+                piece.angle[arm].push_back(truth[offset_1 + arm] + flow.angle(static_cast<Eigen::Index>(arm), t)[0] +
                                            measuring.noise * normal(random));
         }
         for (auto& outliers : piece.is_outlier) outliers.assign(samples, 0);
@@ -83,13 +75,13 @@ inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
     Parameters p{(i[0] + m[0] * a[0] * a[0] + m[1] * l1 * l1) / b, m[1] * l1 * a[1] / b,
                  (m[0] * a[0] + m[1] * l1) * g / b, m[1] * a[1] * g / b};
     const auto take = [&](FitParameter first, const std::vector<double>& list) {
-        for (std::size_t k = 0; k < list.size(); ++k) p[index_of(first) + k] = list[k] / b;
+        for (std::size_t k = 0; k < list.size(); ++k) p[first + k] = list[k] / b;
     };
     const auto& friction = pendulum.friction;
     take(viscous_1, friction.viscous);
     take(coulomb_1, friction.coulomb);
     take(quadratic_1, friction.arm_quadratic.empty() ? friction.air_quadratic : friction.arm_quadratic);
-    at(p, scale_1) = at(p, scale_2) = 1;
+    p[scale_1] = p[scale_2] = 1;
     return p;
 }
 inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, double l2) {
@@ -97,9 +89,8 @@ inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, do
 }
 
 /// Angles as "simulate" has them, Coulomb friction with its events: `samples` of them at `hz` a second.
-inline std::vector<std::array<double, 2>> simulated_angles(PhysicalPendulum<double> pendulum,
-                                                           const ArmState<double>& start, long hz,
-                                                           std::size_t samples) {
+inline std::vector<std::array<double, 2>> simulated_angles(PhysicalPendulum<double> pendulum, const ArmState& start,
+                                                           long hz, std::size_t samples) {
     pendulum.chain.angle = {start[0], start[1]}, pendulum.chain.rate = {start[2], start[3]};
     MotionSpec spec;
     spec.chain = pendulum.chain.cast<Quad>();
@@ -143,20 +134,7 @@ inline std::string csv_of(const TrackPiece& piece) {
 
 /// A fit that stands at the truth, its starts guessed from the samples.
 inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track) {
-    Fit fit{};
-    fit.segments = divide(track).segments;
-    fit.model = model;
-    fit.parameters = parameters;
-    for (const auto& segment : fit.segments) {
-        const auto& piece = track.pieces[segment.piece];
-        const auto slope = [&](std::size_t arm) {
-            const auto& x = piece.angle[arm];
-            return (x[segment.first + 1] - x[segment.first]) /
-                   (piece.time_s[segment.first + 1] - piece.time_s[segment.first]);
-        };
-        fit.starts.push_back({piece.angle[0][segment.first], piece.angle[1][segment.first], slope(0), slope(1)});
-    }
-    return fit;
+    return {.model = model, .parameters = parameters, .shots = divide(track)};
 }
 
 inline const std::atomic<bool> no_stop = false;

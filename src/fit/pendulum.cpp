@@ -1,0 +1,82 @@
+#include "fit/pendulum.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+/// The torque over B that holds a held joint, > 0 against one that would turn forwards.
+double holding(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
+    const auto sides = arms.sides(y[0], y[1], y[2], y[3]);
+    const auto alpha = arms.accelerations(sides);
+    const double middle = sides.r2 - sides.cosine * alpha[0] - alpha[1];
+    return joint == 1 ? middle : sides.r1 - arms.p[inertia] * alpha[0] - sides.cosine * alpha[1] + middle;
+}
+
+double most_held(const Arms<double>& arms, std::size_t joint) {
+    constexpr double rounding = 1e-12;
+    return arms.p[coulomb_1 + joint] * (1 + rounding);
+}
+
+}  // namespace
+
+ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
+    ModelSpec model{.point_masses = point, .drag = drag, .fitted = {inertia, coupling}};
+    const auto add = [&](bool is_fitted, std::initializer_list<FitParameter> parameters) {
+        if (is_fitted) model.fitted.insert(model.fitted.end(), parameters);
+    };
+    add(!point, {gravity_1});
+    add(true, {gravity_2});
+    add(friction > 0, {viscous_1, viscous_2});
+    add(friction > 1, {coulomb_1, coulomb_2});
+    add(friction > 2, {quadratic_1, quadratic_2});
+    add(true, {offset_1, offset_2});
+    add(reading > 0, {lag});
+    add(reading > 1, {scale_1, scale_2});
+    return model;
+}
+
+double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
+    if (arms.modes[joint] == 0) return most_held(arms, joint) - std::abs(holding(arms, joint, y));
+    return arms.modes[joint] * (joint == 0 ? y[2] : y[3] - y[2]);
+}
+
+std::array<int, 2> settled(Arms<double> arms, std::size_t joint, ArmState y) {
+    const bool was_held = std::exchange(arms.modes[joint], 0) == 0;
+    y[2 + static_cast<Eigen::Index>(joint)] = joint == 0 ? 0 : y[2];
+    if (arms.is_held(1)) y[3] = y[2];
+    const double torque = holding(arms, joint, y);
+    if (was_held || std::abs(torque) > most_held(arms, joint)) arms.modes[joint] = torque < 0 ? -1 : 1;
+    return arms.modes;
+}
+
+FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, const Convention& convention) {
+    const double a = p[inertia], c = p[coupling], d1 = p[gravity_1], d2 = p[gravity_2], g = convention.gravity;
+    const double m2 = convention.second_mass;
+    // the second arm: B = (1 + share) m2 a2², and g/d2 = B/(m2 a2); the rest of A and D1 must stay positive
+    constexpr double of_rod = 1.0 / 3;
+    const double room = std::min(a / (c * c) - 1, d1 / (c * d2) - 1);
+    const double share = model.point_masses ? 0 : std::clamp(0.5 * room, 0.0, of_rod);
+    const double a2 = g / d2 / (1 + share), i2 = share * m2 * a2 * a2, b = i2 + m2 * a2 * a2, l1 = c * g / d2;
+    // the first: J = I1 + m1 a1² and m1 a1 are left
+    const double second = a * b - m2 * l1 * l1, moment = d1 * b / g - m2 * l1;
+    const double a1 = model.point_masses ? l1 : second / ((1 + of_rod) * moment), m1 = moment / a1;
+    PhysicalPendulum<double> body;
+    body.chain = {.mass = {m1, m2}, .length = {l1, (model.point_masses ? 1 : 2) * a2}, .gravity = g};
+    body.center = {a1, a2};
+    body.inertia = {model.point_masses ? 0 : of_rod * m1 * a1 * a1, i2};
+    const auto friction = [&](FitParameter first, FitParameter other) {
+        return std::vector{b * p[first], b * p[other]};
+    };
+    body.friction.viscous = friction(viscous_1, viscous_2);
+    body.friction.coulomb = friction(coulomb_1, coulomb_2);
+    (model.drag == Drag::own ? body.friction.arm_quadratic : body.friction.air_quadratic) =
+        friction(quadratic_1, quadratic_2);
+    return {body, b,
+            model.point_masses ? "points at the ends of massless rods"
+            : share == of_rod  ? "each arm a uniform rod about its own centre of mass"
+                               : "the second arm more compact than a rod, as the first leaves it no more inertia"};
+}
+
+}  // namespace doppel

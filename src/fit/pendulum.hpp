@@ -1,0 +1,205 @@
+#pragma once
+
+#include "numeric/dual.hpp"
+#include "numeric/sin_cos.hpp"
+#include "physics/physical_pendulum.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace doppel {
+
+/// What the angles of a double pendulum can tell of it. With
+///     A = I1 + m1 a1² + m2 L1²,   B = I2 + m2 a2²,   C = m2 L1 a2,   D1 = (m1 a1 + m2 L1) g,   D2 = m2 a2 g
+/// (a: joint to centre of mass, I: about the centre of mass) they tell these over B, never B itself; and what the
+/// encoders add. Numbers into Parameters.
+enum FitParameter : std::size_t {
+    inertia,      // A/B
+    coupling,     // C/B
+    gravity_1,    // D1/B, 1/s²
+    gravity_2,    // D2/B, 1/s²
+    viscous_1,    // torque at the pivot per rate, over B, 1/s; ≥ 0, as all friction
+    viscous_2,    // at the middle joint
+    coulomb_1,    // Coulomb friction at the pivot, over B, 1/s²
+    coulomb_2,    // at the middle joint
+    quadratic_1,  // drag of the first arm per squared rate, over B
+    quadratic_2,  // of the second
+    offset_1,     // of the encoders, rad: what they show at rest
+    offset_2,
+    lag,      // s, by which the second encoder is ahead of the first
+    scale_1,  // radians shown for a radian turned
+    scale_2,
+    parameter_count,
+    dynamic_count = offset_1  // so many move the arms, the others read them
+};
+using Parameters = std::array<double, parameter_count>;
+
+constexpr bool is_dynamic(FitParameter parameter) {
+    return parameter < dynamic_count;
+}
+constexpr bool is_friction(FitParameter parameter) {
+    return parameter >= viscous_1 && parameter <= quadratic_2;
+}
+
+struct ParameterWords {
+    std::string_view key, symbol, unit;
+};
+inline constexpr std::array<ParameterWords, parameter_count> parameter_words{{
+    {"inertia_ratio", "A/B", ""},
+    {"coupling_ratio", "C/B", ""},
+    {"gravity_1_per_s2", "D1/B", " 1/s²"},
+    {"gravity_2_per_s2", "D2/B", " 1/s²"},
+    {"viscous_1_per_s", "b1/B", " 1/s"},
+    {"viscous_2_per_s", "b2/B", " 1/s"},
+    {"coulomb_1_per_s2", "c1/B", " 1/s²"},
+    {"coulomb_2_per_s2", "c2/B", " 1/s²"},
+    {"quadratic_1", "k1/B", ""},
+    {"quadratic_2", "k2/B", ""},
+    {"offset_1_rad", "offset 1", " rad"},
+    {"offset_2_rad", "offset 2", " rad"},
+    {"lag_s", "lag", " s"},
+    {"scale_1", "scale 1", ""},
+    {"scale_2", "scale 2", ""},
+}};
+
+/// On which speed the quadratic drag of the second arm acts.
+enum class Drag {
+    own,      // its own rate ω2, as if the middle joint stood still
+    carried,  // relative to the air: u = ω2 + (C/B) cos(θ1 − θ2) ω1, the joint's motion added
+};
+
+/// Which numbers of a model are fitted, and what it is like otherwise.
+struct ModelSpec {
+    bool point_masses = false;  // then D1 = A D2/C, and gravity_1 is not among `fitted`
+    Drag drag = Drag::own;
+    std::vector<FitParameter> fitted;  // those that move the arms first
+    bool may_gain = false;             // friction may be negative
+
+    bool fits(FitParameter parameter) const {
+        return std::find(fitted.begin(), fitted.end(), parameter) != fitted.end();
+    }
+    /// How many of them move the arms.
+    Eigen::Index moving() const { return std::count_if(fitted.begin(), fitted.end(), is_dynamic); }
+};
+
+/// The model with friction: 0 none, 1 viscous, 2 and Coulomb, 3 and drag; and with a reading: 0 offsets, 1 and a lag, 2 and
+/// scales.
+ModelSpec model_of(bool point, int friction, Drag drag = Drag::own, int reading = 0);
+
+using ArmState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; ω1, ω2, rad/s
+
+/// The value alone of a number that may carry derivatives.
+template <class Scalar>
+double value_of(const Scalar& x) {
+    if constexpr (requires { x.tangent; })
+        return x.value;
+    else
+        return x;
+}
+
+/// Two rigid bodies on joints with friction, in a vertical plane, divided by B.
+///
+///     A θ1″ + C cosδ θ2″ + C sinδ ω2² + D1 sinθ1 = −Q1,   δ = θ1 − θ2
+///     θ2″ + C cosδ θ1″ − C sinδ ω1² + D2 sinθ2 = −Q2
+///     Q1 = j1 − j2 + k1 |ω1| ω1 [+ C cosδ k2 |u| u],   Q2 = j2 + k2 |u| u,   u = ω2, or of drag that is carried (Drag)
+///     j = b ω + c s,   with the joint's own rate ω, ω1 or ω2 − ω1
+///
+/// s is the joint's mode, the sign of its rate, until the next event (fit/flow.hpp): at 0 the joint is held.
+///
+/// Source  Landau & Lifshitz, Mechanics, §5 problem 1 and §25; the carried drag: a point of the second arm at the
+///         distance B/(m2 a2) of its centre of oscillation moves through the air with that distance times u.
+template <class Scalar>
+struct Arms {
+    std::array<Scalar, dynamic_count> p;
+    Drag drag = Drag::own;
+    bool has_friction = false, has_coulomb = false;
+    std::array<int, 2> modes{1, 1};
+
+    /// Both right sides, and the factor of the other arm's acceleration on both left.
+    struct Sides {
+        Scalar r1, r2, cosine;
+    };
+
+    Sides sides(const Scalar& angle_1, const Scalar& angle_2, const Scalar& w1, const Scalar& w2) const {
+        const SinCos<Scalar> between(Scalar(angle_1 - angle_2)), first(angle_1), second(angle_2);
+        const Scalar cosine = p[coupling] * between.cos, sine = p[coupling] * between.sin;
+        Sides to{-sine * (w2 * w2) - p[gravity_1] * first.sin, sine * (w1 * w1) - p[gravity_2] * second.sin, cosine};
+        if (!has_friction) return to;
+        using std::abs;
+        const Scalar relative = w2 - w1;
+        Scalar pivot = p[viscous_1] * w1, middle = p[viscous_2] * relative;
+        if (has_coulomb) pivot += modes[0] * p[coulomb_1], middle += modes[1] * p[coulomb_2];
+        const Scalar u = drag == Drag::own ? w2 : Scalar(w2 + cosine * w1), torque = p[quadratic_2] * (abs(u) * u);
+        to.r1 += middle - pivot - p[quadratic_1] * (abs(w1) * w1);
+        to.r2 -= middle + torque;
+        if (drag == Drag::carried) to.r1 -= cosine * torque;
+        return to;
+    }
+
+    /// Of A α1 + cosine α2 = r1 + torques that hold joints, cosine α1 + α2 = r2 + such.
+    std::array<Scalar, 2> accelerations(const Sides& of_arms) const {
+        const auto& [r1, r2, cosine] = of_arms;
+        if (is_held(0)) return {Scalar(0), is_held(1) ? Scalar(0) : r2};
+        if (is_held(1)) {
+            const Scalar together = (r1 + r2) / (p[inertia] + cosine + cosine + Scalar(1));
+            return {together, together};
+        }
+        const Scalar inverse = Scalar(1) / (p[inertia] - cosine * cosine);
+        return {Scalar((r1 - cosine * r2) * inverse), Scalar((p[inertia] * r2 - cosine * r1) * inverse)};
+    }
+
+    bool is_held(std::size_t joint) const { return has_coulomb && modes[joint] == 0; }
+};
+
+/// The arms of a model, with the derivatives by its fitted parameters from direction 4 on, as far as there are directions.
+template <class Scalar>
+Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
+    Arms<Scalar> arms{.p = {}, .drag = model.drag};
+    for (std::size_t k = 0; k < dynamic_count; ++k) {
+        const auto parameter = static_cast<FitParameter>(k);
+        arms.p[k] = Scalar(parameters[k]);
+        const bool acts = is_friction(parameter) && (parameters[k] != 0 || model.fits(parameter));
+        arms.has_friction |= acts;
+        arms.has_coulomb |= acts && (parameter == coulomb_1 || parameter == coulomb_2);
+    }
+    if constexpr (requires { arms.p[0].tangent; })
+        for (Eigen::Index k = 0; k < std::min(model.moving(), arms.p[0].tangent.size() - 4); ++k)
+            arms.p[model.fitted[static_cast<std::size_t>(k)]].tangent[4 + k] = 1;
+    if (model.point_masses) arms.p[gravity_1] = arms.p[inertia] * arms.p[gravity_2] / arms.p[coupling];
+    return arms;
+}
+
+// Joints with Coulomb friction: how they move at a state, and until when.
+
+/// The modes of joints that turn as in this state.
+inline std::array<int, 2> turning(const ArmState& y) {
+    return {y[2] < 0 ? -1 : 1, y[3] < y[2] ? -1 : 1};
+}
+/// 0 or more while the joint keeps to its mode.
+double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y);
+/// The modes in which the joints go on after an event of this joint: whether it was held before matters.
+std::array<int, 2> settled(Arms<double> arms, std::size_t joint, ArmState y);
+
+/// What angles do not tell, and so has to be given.
+struct Convention {
+    double gravity = 9.8;      // m/s², > 0
+    double second_mass = 1.0;  // kg, > 0
+};
+
+/// A pendulum that moves as the fitted arms do. Lengths of the first arm follow from gravity (L1 = g C/D2); how the rest is
+/// shared out among mass, centre and inertia no angle tells: both arms are uniform rods (I = m a²/3, a to the centre of
+/// mass), or, where point masses were fitted, points at their ends (I = 0). A second arm too light in its first for that
+/// is given less inertia.
+struct FittedPendulum {
+    PhysicalPendulum<double> body;
+    double second_inertia = 0;  // B, kg m², by which ratios become these
+    std::string rule;           // the sentence above, as it applied
+};
+FittedPendulum fitted_pendulum(const Parameters& parameters, const ModelSpec& model, const Convention& convention);
+
+}  // namespace doppel
