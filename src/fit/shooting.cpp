@@ -141,8 +141,9 @@ long Fit::residual_count() const {
 }
 
 std::span<const Shot> Fit::unit(std::size_t number) const {
-    const auto range = std::ranges::equal_range(shots, number, {}, &Shot::unit);
-    return {range.begin(), range.end()};
+    const auto first = std::ranges::lower_bound(shots, number, {}, &Shot::unit);
+    const auto last = std::ranges::upper_bound(shots, number, {}, &Shot::unit);
+    return {first, last};
 }
 
 void evaluate_fit(const FitJob& job, Fit& fit, double block_s) {
