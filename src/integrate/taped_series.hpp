@@ -40,7 +40,7 @@ public:
     void expand(const State& y) {
         if (!is_as_recorded(y)) record(y);
         for (int k = 0; k <= order_; ++k) {
-            tape_.compute(k);
+            if (k > 0) tape_.compute(k);
             const Scalar by_next = Scalar(1) / Scalar(k + 1);
             for (Eigen::Index i = 0; i < y.size(); ++i) {
                 const int node = rate_[i].node();
@@ -122,11 +122,11 @@ private:
         if constexpr (has_modes)
             if (model_.modes() != source_.modes()) return false;
         start_at(y);
-        tape_.compute(0);
         return tape_.is_as_recorded();
     }
     void start_at(const State& y) {
         for (Eigen::Index i = 0; i < y.size(); ++i) tape_.term(y_[i].node(), 0) = y[i];
+        tape_.compute(0);
     }
 
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
