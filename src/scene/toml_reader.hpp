@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -210,10 +211,11 @@ private:
     bool counts(const Field& field);
     void demand(const Field& field, bool given) const;
     TomlFault faulty_number(const Field& field, double value, const TomlFault& fault) const;
-    double number(std::string_view key, std::string_view element, const toml::node& node, double) const;
-    Quad number(std::string_view key, std::string_view element, const toml::node& node, const Quad&) const;
+    using Element = std::initializer_list<std::size_t>;  // {1} of key[1]; its text is made for errors alone
+    double number(std::string_view key, Element element, const toml::node& node, double) const;
+    Quad number(std::string_view key, Element element, const toml::node& node, const Quad&) const;
     template <class Number>
-    void check(const Field& field, std::string_view element, const Number& value) const;
+    void check(const Field& field, Element element, const Number& value) const;
     template <class Number>
     void read_array(const Field& field, const toml::node& node, std::span<Number> into);
     void read_whole_pair(const Field& field, const toml::node& node, std::string_view what, std::array<int, 2>& into);

@@ -16,6 +16,12 @@ std::string listed(std::span<const std::string_view> choices) {
     return text;
 }
 
+std::string index_text(std::initializer_list<std::size_t> element) {
+    std::string text;
+    for (const auto index : element) text += fmt::format("[{}]", index);
+    return text;
+}
+
 std::string written(double value) {
     return fmt::format("{}", value);
 }
@@ -55,16 +61,16 @@ TomlFault TomlReader::faulty_number(const Field& field, double value, const Toml
     return is_possible ? fault.with(beside(field.only.beside)) : fault;
 }
 
-/// `element` = "[1]" of an array.
 template <class Number>
-void TomlReader::check(const Field& field, std::string_view element, const Number& value) const {
+void TomlReader::check(const Field& field, Element element, const Number& value) const {
     const auto& [low, high, is_open, zero, reason, is_positive] = field.bounds;
     const std::string_view why = reason;  // clang 14 captures no structured binding
     if (is_open ? value > low : value >= low)
         if (value <= high) return;
     const auto refuse = [&](const std::string& what) {
-        const auto message = fmt::format("{}: {}{} must be {}; {} is {}", place(field.key), subject(field.key),
-                                         why.empty() ? element : "", what, why.empty() ? "it" : "one", written(value));
+        const auto message =
+            fmt::format("{}: {}{} must be {}; {} is {}", place(field.key), subject(field.key),
+                        why.empty() ? index_text(element) : "", what, why.empty() ? "it" : "one", written(value));
         return faulty_number(field, static_cast<double>(value), {message, fault_place(field.key)});
     };
     // keys mostly name the unit
@@ -102,16 +108,15 @@ void TomlReader::read(const Field& field, const toml::node& node, bool& into) {
     into = node.as_boolean()->get();
 }
 
-double TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, double) const {
+double TomlReader::number(std::string_view key, Element element, const toml::node& node, double) const {
     const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    const auto name = fmt::format("{}{}", key, element);
-    if (!value) throw bad_input("{}: {} must be a number; {}", place(key), subject(name), found(node));
-    if (!std::isfinite(*value)) throw bad_input("{}: {} must be finite; it is {}", place(key), subject(name), *value);
-    return *value + 0.0;  // −0 is 0
+    if (value && std::isfinite(*value)) return *value + 0.0;  // −0 is 0
+    const auto name = subject(fmt::format("{}{}", key, index_text(element)));
+    if (!value) throw bad_input("{}: {} must be a number; {}", place(key), name, found(node));
+    throw bad_input("{}: {} must be finite; it is {}", place(key), name, *value);
 }
 
-Quad TomlReader::number(std::string_view key, std::string_view element, const toml::node& node, const Quad&) const {
-    const auto name = fmt::format("{}{}", key, element);
+Quad TomlReader::number(std::string_view key, Element element, const toml::node& node, const Quad&) const {
     const double rounded = number(key, element, node, 0.0);
     if (const auto* whole = node.as_integer()) return Quad(whole->get());
     const auto& origin = node.source().path;
@@ -126,21 +131,22 @@ Quad TomlReader::number(std::string_view key, std::string_view element, const to
         throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", place(key), subject(key),
                         rounded);
     constexpr std::size_t always_held = 33;
+    if (literal.size() <= always_held) return value;
     const auto digits = significant_digits(literal);
     if (digits.size() > always_held && digits != significant_digits(text_of(value)))
-        throw bad_input("{}: {} must have at most 34 digits, which quad holds; it has {}", place(key), subject(name),
-                        digits.size());
+        throw bad_input("{}: {} must have at most 34 digits, which quad holds; it has {}", place(key),
+                        subject(fmt::format("{}{}", key, index_text(element))), digits.size());
     return value;
 }
 
 void TomlReader::read(const Field& field, const toml::node& node, double& into) {
-    into = number(field.key, "", node, into);
-    check(field, "", into);
+    into = number(field.key, {}, node, into);
+    check(field, {}, into);
 }
 
 void TomlReader::read(const Field& field, const toml::node& node, Quad& into) {
-    into = number(field.key, "", node, into);
-    check(field, "", into);
+    into = number(field.key, {}, node, into);
+    check(field, {}, into);
 }
 
 template <class Number>
@@ -149,9 +155,8 @@ void TomlReader::read_array(const Field& field, const toml::node& node, std::spa
     if (array.size() != into.size())
         throw fault(field.key, "must have {} numbers, {}; it has {}: {}", into.size(), field.each, array.size(),
                     shown(node));
-    const auto element = [](std::size_t i) { return fmt::format("[{}]", i); };
-    for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(field.key, element(i), *array.get(i), into[i]);
-    for (std::size_t i = 0; i < into.size(); ++i) check(field, element(i), into[i]);
+    for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(field.key, {i}, *array.get(i), into[i]);
+    for (std::size_t i = 0; i < into.size(); ++i) check(field, {i}, into[i]);
 }
 
 void TomlReader::read(const Field& field, const toml::node& node, std::span<double> into) {
@@ -182,7 +187,7 @@ void TomlReader::read(const Field& field, const toml::node& node, Members& into)
                         Members::most_releases, shown(release), kind_of(release));
         auto& read_angles = into.angles_deg.emplace_back();
         for (const auto& angle : *angles) {
-            const auto element = fmt::format("[{}][{}]", into.angles_deg.size() - 1, read_angles.size());
+            const Element element{into.angles_deg.size() - 1, read_angles.size()};
             read_angles.push_back(number(field.key, element, angle, Quad()));
             check({.key = field.key, .bounds = {.low = -1e6, .high = 1e6}}, element, read_angles.back());
         }
@@ -226,8 +231,8 @@ void TomlReader::read(const Field& field, const toml::node& node, std::span<Quad
     if (!node.is_number())
         throw fault(field.key, "must be a number, or an array of {} numbers, {}; {}", into.size(), field.each,
                     found(node));
-    std::fill(into.begin(), into.end(), number(field.key, "", node, Quad()));
-    check(field, "[0]", into[0]);
+    std::fill(into.begin(), into.end(), number(field.key, {}, node, Quad()));
+    check(field, {0}, into[0]);
 }
 
 /// As many numbers as there are already: other keys say how many.
@@ -294,7 +299,7 @@ void TomlReader::read(const Field& field, const toml::node& node, Rational& into
         value = reduced(whole->get(), 1);
     } else {
         // of all digits that are written, or of none
-        const Quad decimal = number(field.key, "", node, Quad());
+        const Quad decimal = number(field.key, {}, node, Quad());
         value = rational_from_decimal(static_cast<double>(decimal));
         const Quad rounding = parse_quad("1e-32") * abs(decimal);
         if (value && abs(Quad(value->as<Quad>() - decimal)) > rounding) value.reset();
@@ -302,7 +307,7 @@ void TomlReader::read(const Field& field, const toml::node& node, Rational& into
     if (!value) throw fault(field.key, "has more digits than Doppel counts with; it is {}", shown(node));
     if (value->numerator < (field.bounds.is_open ? 1 : 0))
         throw fault(field.key, "must be {} 0; it is {}", field.bounds.is_open ? ">" : "≥", shown(node));
-    check(field, "", value->value());
+    check(field, {}, value->value());
     into = *value;
 }
 
