@@ -30,7 +30,7 @@ public:
     /// Another step; the crossings on it, in order.
     std::vector<SectionPoint> step() {
         stepper_.take_step();
-        const auto angle = stepper_.angle(0);
+        const auto angle = stepper_.on_step(0);
         const auto [least, greatest] = std::minmax_element(angle.b.begin(), angle.b.end());
         std::vector<SectionPoint> points;
         for (double turns = std::floor(*least / (2 * pi)); turns <= std::ceil(*greatest / (2 * pi)); ++turns)

@@ -1,14 +1,11 @@
 #pragma once
 
-#include "integrate/lane_series.hpp"
-#include "integrate/taylor_series.hpp"
-#include "numeric/lanes.hpp"
+#include "integrate/series.hpp"
 #include "numeric/subnormals.hpp"
 #include "physics/angle_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -27,11 +24,11 @@ namespace doppel {
 /// and r over its length. Four products a link for each pair of orders; the rest is O(N).
 /// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
 ///         The motion and its matrix: those of AngleChain.
-template <class S, int N>
-class AngleSeries {
+template <class S>
+class AngleSeries final : public Series<S> {
 public:
     using Scalar = S;
-    using Chain = AngleChain<Scalar, N>;
+    using Chain = AngleChain<Scalar, Eigen::Dynamic>;
     using State = typename Chain::State;
 
     AngleSeries(const Pendulum<Scalar>& p, int order)
@@ -45,7 +42,7 @@ public:
         for (std::size_t k = 1; k < inverse_.size(); ++k) inverse_[k] = Scalar(1) / Scalar(static_cast<long>(k));
     }
 
-    void expand(const State& y) {
+    void expand(const State& y) override {
         const NoSubnormals here;
         chain_.update(y);
         term(0).x.setConstant(Scalar(1));
@@ -55,7 +52,7 @@ public:
         amount_ = greatest(0) + std::sqrt(greatest(1));
     }
 
-    void move(const Scalar& h, State& change) const {
+    void move(const Scalar& h, State& change) override {
         const NoSubnormals here;
         constexpr Eigen::Index some = 64;  // links at a time: they stay in the cache
         for (Eigen::Index first = 0; first < links_; first += some) {
@@ -72,13 +69,13 @@ public:
         }
     }
 
-    double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
+    double size(int k) const override { return amount_ == 0 ? 0 : greatest(k) / amount_; }
 
-    /// Coefficient k of the rate of a link, rad/s^(k+1).
-    double rate(int k, int link) const { return plain_value(term(k).rate[link]); }
+    double rate(int k, Eigen::Index link) const override { return static_cast<double>(term(k).rate[link]); }
 
-    double longest_step() const {
-        return longest_chain_step(plain_value(chain_.pendulum.reach()), plain_value(chain_.pendulum.gravity));
+    double longest_step() const override {
+        return longest_chain_step(static_cast<double>(chain_.pendulum.reach()),
+                                  static_cast<double>(chain_.pendulum.gravity));
     }
 
 private:
@@ -157,7 +154,7 @@ private:
     /// The greatest |ω_k|.
     double greatest(int k) const {
         double most = 0;
-        for (Eigen::Index i = 0; i < links_; ++i) most = greater(most, std::abs(plain_value(term(k).rate[i])));
+        for (Eigen::Index i = 0; i < links_; ++i) most = greater(most, std::abs(static_cast<double>(term(k).rate[i])));
         return most;
     }
 
@@ -173,59 +170,5 @@ private:
     Half known_, along_;           // R_k across and along, over the length
     double amount_ = 0;            // of the rates, rad/s
 };
-
-/// The chain that a model in angles describes.
-template <class Scalar, int N>
-const Pendulum<Scalar>& chain_of(const AngleChain<Scalar, N>& model) {
-    return model.pendulum;
-}
-template <class Scalar>
-Pendulum<Scalar> chain_of(const DoublePendulum<Scalar>& d) {
-    return {{d.m1, d.m2}, {d.l1, d.l2}, {Scalar(0), Scalar(0)}, {Scalar(0), Scalar(0)}, d.g};
-}
-
-/// Of two or three links of double: in lanes, but where a mass is much lighter than the next, which costs the mass matrix of
-/// the lanes its digits.
-template <int N>
-class FewLinksSeries {
-public:
-    using State = doppel::State<double, 2 * N>;
-
-    FewLinksSeries(const Pendulum<double>& p, int order) : lanes_(p, order) {
-        constexpr double light = 1.0 / 64;
-        for (std::size_t k = 0; k + 1 < N; ++k)
-            if (p.mass[k] < light * p.mass[k + 1] && !careful_) careful_.emplace(p, order);
-    }
-
-    void expand(const State& y) { careful_ ? careful_->expand(y) : lanes_.expand(y); }
-    void move(double h, State& change) const { careful_ ? careful_->move(h, change) : lanes_.move(h, change); }
-    double size(int k) const { return careful_ ? careful_->size(k) : lanes_.size(k); }
-    double longest_step() const { return lanes_.longest_step(); }
-    double rate(int k, int link) const { return careful_ ? careful_->rate(k, link) : lanes_.rate(k, link); }
-
-private:
-    LaneSeries<N> lanes_;
-    std::optional<AngleSeries<double, N>> careful_;
-};
-
-/// The series of a model in angles.
-template <class Model, int N>
-struct ChainSeries {
-    using Scalar = typename Model::Scalar;
-    static constexpr auto series = [] {
-        if constexpr (std::is_same_v<Scalar, double> && (N == 2 || N == 3))
-            return std::type_identity<FewLinksSeries<N>>();
-        else
-            return std::type_identity<AngleSeries<Scalar, N>>();
-    }();
-    using Series = typename decltype(series)::type;
-    struct type : Series {
-        type(const Model& model, int order) : Series(chain_of(model), order) {}
-    };
-};
-template <class Scalar, int N>
-struct SeriesOf<AngleChain<Scalar, N>> : ChainSeries<AngleChain<Scalar, N>, N> {};
-template <class Scalar>
-struct SeriesOf<DoublePendulum<Scalar>> : ChainSeries<DoublePendulum<Scalar>, 2> {};
 
 }  // namespace doppel

@@ -102,7 +102,7 @@ double reference_flip(const Pendulum<double>& pendulum, double duration, double 
         stepper.take_step();
         double flip = never;
         for (const int rod : {0, 1})
-            flip = std::min(flip, first_flip(stepper.angle(rod), [&](double t, double sense) {
+            flip = std::min(flip, first_flip(stepper.on_step(rod), [&](double t, double sense) {
                                 const auto& y = stepper.at(t);
                                 return Outward{sense * y[rod] - pi, sense * y[2 + rod]};
                             }));

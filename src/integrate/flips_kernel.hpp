@@ -1,7 +1,7 @@
 #pragma once
 
 #include "integrate/flips.hpp"
-#include "integrate/taylor_series.hpp"
+#include "integrate/series.hpp"
 #include "numeric/lanes.hpp"
 
 #include <cstddef>

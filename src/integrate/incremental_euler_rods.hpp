@@ -39,7 +39,7 @@ public:
 
     State state() const {
         if (taken_ == 0) return start_;
-        State y;
+        State y(4 * N);
         Pair q{Scalar(0), Scalar(0)}, v = q;
         for (Eigen::Index k = 0; k < N; ++k) {
             q = q + (k == 2 ? now_.r[k] * scale3_ : now_.r[k]);

@@ -1,7 +1,8 @@
 #include "integrate/lane_series.hpp"
 
-#include "integrate/taylor_series.hpp"
+#include "integrate/angle_series.hpp"
 #include "integrate/widths.hpp"
+#include "numeric/sin_cos.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,16 @@ void LaneSeries<N>::expand(const State& y) {
 }
 
 template <int N>
+void LaneSeries<N>::move(const double& h, State& change) {
+    kernel_.move(chain_, terms_.data(), order_, h, change.data());
+}
+
+template <int N>
+double LaneSeries<N>::size(int k) const {
+    return amount_ == 0 ? 0 : greatest(k) / amount_;
+}
+
+template <int N>
 double LaneSeries<N>::greatest(int k) const {
     double most = 0;
     for (int i = 0; i < N; ++i) most = greater(most, std::abs(terms_[static_cast<std::size_t>(k)].rate[i]));
@@ -58,5 +69,16 @@ double LaneSeries<N>::greatest(int k) const {
 
 template class LaneSeries<2>;
 template class LaneSeries<3>;
+
+/// A mass much lighter than the next costs the mass matrix of the lanes its digits.
+template <>
+std::unique_ptr<Series<double>> series_of_chain(const Pendulum<double>& p, int order) {
+    constexpr double light = 1.0 / 64;
+    bool is_even = true;
+    for (std::size_t k = 0; k + 1 < p.links(); ++k) is_even = is_even && p.mass[k] >= light * p.mass[k + 1];
+    if (p.links() == 2 && is_even) return std::make_unique<LaneSeries<2>>(p, order);
+    if (p.links() == 3 && is_even) return std::make_unique<LaneSeries<3>>(p, order);
+    return std::make_unique<AngleSeries<double>>(p, order);
+}
 
 }  // namespace doppel

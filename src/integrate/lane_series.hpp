@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/state.hpp"
+#include "integrate/series.hpp"
 #include "physics/pendulum.hpp"
 
 #include <vector>
@@ -10,9 +10,8 @@ namespace doppel {
 /// AngleSeries for two or three links of double, all of them side by side in four lanes: several times as fast, and bit
 /// for bit the same whether a register holds 4 doubles or 2.
 template <int N>
-class LaneSeries {
+class LaneSeries final : public Series<double> {
 public:
-    using State = doppel::State<double, 2 * N>;
     static constexpr int most_orders = 64;
 
     /// The chain as the recurrence needs it, four lanes a number (integrate/lane_series_width.cpp). μ_i = Σ_{k≥i} m_k.
@@ -37,12 +36,11 @@ public:
     /// `width` doubles to a register, 2 or 4; 0: the widest of the two that this processor has.
     LaneSeries(const Pendulum<double>& p, int order, int width = 0);
 
-    void expand(const State& y);
-    void move(double h, State& change) const { kernel_.move(chain_, terms_.data(), order_, h, change.data()); }
-    double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
-    double longest_step() const { return longest_step_; }
-    /// Coefficient k of the rate of a link, rad/s^(k+1).
-    double rate(int k, int link) const { return terms_[static_cast<std::size_t>(k)].rate[link]; }
+    void expand(const State& y) override;
+    void move(const double& h, State& change) override;
+    double size(int k) const override;
+    double longest_step() const override { return longest_step_; }
+    double rate(int k, Eigen::Index link) const override { return terms_[static_cast<std::size_t>(k)].rate[link]; }
 
 private:
     double greatest(int k) const;  // |ω_k|

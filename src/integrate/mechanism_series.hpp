@@ -1,13 +1,11 @@
 #pragma once
 
-#include "integrate/stabilise.hpp"
+#include "base/error.hpp"
 #include "integrate/taped_series.hpp"
 #include "physics/mechanism.hpp"
-#include "physics/rod_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <limits>
 
 namespace doppel {
@@ -16,43 +14,36 @@ namespace doppel {
 /// configuration where the motion could go on smoothly. Lengths are what they are in the state: nothing pulls the rods back.
 /// Errors  those of the mechanism, wherever a singular configuration lies on the way that move() goes.
 template <class S>
-class MechanismSeries {
+class MechanismSeries final : public TapedSeries<Mechanism<Taped<S>>> {
 public:
     using Scalar = S;
     using Model = Mechanism<Scalar>;
     using State = typename Model::State;
-    using Half = typename Model::Half;
 
-    MechanismSeries(const Model& model, int order)
-        : model_(model),
-          series_(model_, Mechanism<Taped<Scalar>>(model.parts.template cast<Taped<Scalar>>()), scale_of(model.parts),
-                  order),
+    MechanismSeries(const Assembly<Scalar>& parts, int order)
+        : Base(Mechanism<Taped<Scalar>>(parts.template cast<Taped<Scalar>>()), scale_of(parts), order),
+          model_(parts),
           gradients_(model_.set_.blank_gradients()),
           ahead_(gradients_) {}
 
-    template <class Y>
-    void expand(const Y& y) {
+    void expand(const State& y) override {
         start_ = y;
         for (std::size_t i = 0; i < model_.parts.forces.size(); ++i)
             if (ends_have_met(model_.parts.forces[i]))
                 throw method_failed("{}: its ends have met, where it has no direction; start so that they do not",
                                     name_of(model_.parts.forces, i));
-        series_.expand(start_);
+        Base::expand(start_);
         start_checking();
     }
 
-    template <class Y>
-    void move(const Scalar& h, Y& change) {
+    void move(const Scalar& h, State& change) override {
         check_path(h);
-        series_.move(h, change);
+        Base::move(h, change);
     }
 
-    double size(int k) const { return series_.size(k); }
-    double log2_size(int k) const requires(!std::same_as<Scalar, double>) { return series_.log2_size(k); }
-    double longest_step() const { return series_.longest_step(); }
-    double first_event(double h) const { return series_.first_event(h); }
-
 private:
+    using Base = TapedSeries<Mechanism<Taped<S>>>;
+    using Half = typename Model::Half;
     using Gradients = typename Model::Gradients;
 
     /// The longest step is that of a chain of all rods, or half a period of the stiffest spring.
@@ -117,7 +108,7 @@ private:
     /// this is the last attempt.
     bool is_clear(const Scalar& h, bool last) {
         here_.resize(start_.size() / 2);
-        series_.move(h, here_);
+        Base::move(h, here_);
         here_ += start_.head(here_.size());
         model_.set_.update(here_, ahead_);
         if (!Model::alike(ahead_, gradients_)) return last;
@@ -137,28 +128,11 @@ private:
     static constexpr int most_halvings = 40;
 
     Model model_;
-    TapedSeries<Model, Mechanism<Taped<Scalar>>> series_;
     State start_;
     Scalar checked_ = Scalar(0);  // how far the way has been checked, s
     Half here_;                   // q there
     Gradients gradients_;         // J there
     Gradients ahead_;             // further on
 };
-
-template <class Scalar>
-struct SeriesOf<Mechanism<Scalar>> {
-    using type = MechanismSeries<Scalar>;
-};
-/// A chain of particles on rods is the mechanism of its parts.
-template <class Scalar, int N>
-struct SeriesOf<RodChain<Scalar, N>> {
-    struct type : MechanismSeries<Scalar> {
-        type(const RodChain<Scalar, N>& model, int order)
-            : MechanismSeries<Scalar>(Mechanism<Scalar>(parts_of(model.pendulum)), order) {}
-    };
-};
-/// Projected after every step, the motion is the same.
-template <HasSeries Model>
-struct SeriesOf<Projected<Model>> : SeriesOf<Model> {};
 
 }  // namespace doppel

@@ -43,7 +43,8 @@ std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on_stabilised(const Sys
     return stepper_on(Model(system), start, spec);
 }
 
-/// Two links go by the closed form; chains by O(N), three of double unrolled by the compiler.
+/// Two links go by the closed form; chains by O(N), three of double unrolled by the compiler for methods that ask for no more
+/// than rates.
 template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
     const auto p = spec.chain->cast<Scalar>();
@@ -56,20 +57,21 @@ std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
     }
     if (p.links() == 2) return made(std::type_identity<DoublePendulum<Scalar>>());
     if constexpr (std::is_same_v<Scalar, double>)
-        if (p.links() == 3) return made(std::type_identity<AngleChain<Scalar, 3>>());
+        if (p.links() == 3 && find_method(spec.method)->stabilised)
+            return made(std::type_identity<AngleChain<Scalar, 3>>());
     return made(std::type_identity<AngleChain<Scalar, Eigen::Dynamic>>());
 }
 
-/// A chain of particles on rods: two and three links of double unrolled by the compiler (three stabilised ones not: their
-/// compilation takes longer than they save).
+/// A chain of particles on rods: two and three links of double unrolled by the compiler for methods that ask for no more than
+/// rates.
 template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_constraints_stepper(const MotionSpec& spec) {
     const auto p = spec.chain->cast<Scalar>();
-    if constexpr (std::is_same_v<Scalar, double>) {
-        if (p.links() == 2) return stepper_on_stabilised<RodChain<Scalar, 2>>(p, spec);
-        if (p.links() == 3 && spec.stabilise == Stabilise::none)
-            return stepper_on(RodChain<Scalar, 3>(p), RodChain<Scalar, 3>::start(p), spec);
-    }
+    if constexpr (std::is_same_v<Scalar, double>)
+        if (spec.stabilise == Stabilise::none && find_method(spec.method)->stabilised) {
+            if (p.links() == 2) return stepper_on(RodChain<Scalar, 2>(p), RodChain<Scalar, 2>::start(p), spec);
+            if (p.links() == 3) return stepper_on(RodChain<Scalar, 3>(p), RodChain<Scalar, 3>::start(p), spec);
+        }
     return stepper_on_stabilised<RodChain<Scalar, Eigen::Dynamic>>(p, spec);
 }
 

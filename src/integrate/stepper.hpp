@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 namespace doppel {
 
@@ -34,18 +36,20 @@ concept AdaptiveStepper = Steps<S> && requires(S stepper, const typename S::Scal
 };
 
 /// After every step a model may project the state onto its constraints.
+template <class Model>
+concept Projects = requires(Model model, typename Model::State& y) {
+    model.project(y);
+};
 template <class Model, class State>
 void project(Model& model, State& y) {
-    if constexpr (requires { model.project(y); }) model.project(y);
+    if constexpr (Projects<Model>) model.project(y);
 }
 template <class Model>
 bool projects(const Model& model) {
     if constexpr (requires { model.projects(); })
         return model.projects();
     else
-        return requires(Model & m, typename Model::State & y) {
-            m.project(y);
-        };
+        return Projects<Model>;
 }
 
 /// Any system with states of one type, behind a virtual call: what steps it is compiled once for all of them.
@@ -58,9 +62,12 @@ public:
     template <System Model>
     requires(!std::same_as<Model, AnySystem> &&
              std::same_as<typename Model::State, State>) explicit AnySystem(const Model& model)
-        : system_(std::make_unique<Held<Model>>(model)),
-          projects_(doppel::projects(model)),
-          switches_(doppel::switches(model)) {}
+        : AnySystem(std::make_unique<Held<Model>>(model), model) {}
+    /// Of one that lives elsewhere, and as long.
+    template <class Model>
+    static AnySystem of(Model& model) {
+        return AnySystem(std::make_unique<Held<Model&>>(model), model);
+    }
 
     void rate(const State& y, State& dydt) { system_->rate(y, dydt); }
     void project(State& y) {
@@ -83,10 +90,12 @@ private:
         virtual Scalar margin(const State& y) = 0;
         virtual Scalar longest_step() const = 0;
     };
-    template <class Model>
+    template <class As>
     struct Held final : Interface {
-        Model model;
-        explicit Held(const Model& held) : model(held) {}
+        using Model = std::remove_cvref_t<As>;
+        As model;
+        explicit Held(const Model& held) requires(!std::is_reference_v<As>) : model(held) {}
+        explicit Held(Model& held) requires std::is_reference_v<As> : model(held) {}
         void rate(const State& y, State& dydt) override { model.rate(y, dydt); }
         void project(State& y) override { doppel::project(model, y); }
         void take_modes(State& y) override { doppel::take_modes(model, y); }
@@ -106,6 +115,10 @@ private:
                 return Scalar(std::numeric_limits<double>::max());
         }
     };
+
+    template <class Model>
+    AnySystem(std::unique_ptr<Interface> system, const Model& model)
+        : system_(std::move(system)), projects_(doppel::projects(model)), switches_(doppel::switches(model)) {}
 
     std::unique_ptr<Interface> system_;
     bool projects_, switches_;

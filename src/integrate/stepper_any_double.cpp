@@ -4,8 +4,6 @@ namespace doppel {
 
 template MakeAnyStepper<State<double, 4>> make_any_stepper;
 template MakeAnyStepper<State<double, 6>> make_any_stepper;
-template MakeAnyStepper<State<double, 8>> make_any_stepper;
-template MakeAnyStepper<State<double, 12>> make_any_stepper;
 template MakeAnyStepper<State<double, Eigen::Dynamic>> make_any_stepper;
 
 }  // namespace doppel

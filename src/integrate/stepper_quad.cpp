@@ -1,9 +1,23 @@
+#include "integrate/angle_series.hpp"
 #include "integrate/any_stepper.hpp"
+#include "integrate/mechanism_series.hpp"
 #include "integrate/motion_steppers.hpp"
 
 namespace doppel {
 
-template MakeAnyStepper<State<Quad, 4>> make_any_stepper;
+template <>
+std::unique_ptr<Series<Quad>> series_of_chain(const Pendulum<Quad>& p, int order) {
+    return std::make_unique<AngleSeries<Quad>>(p, order);
+}
+template <>
+std::unique_ptr<Series<Quad>> series_of_bodies(const PhysicalChain<Quad>& model, int order) {
+    return std::make_unique<BodiesSeries<Quad>>(model, order);
+}
+template <>
+std::unique_ptr<Series<Quad>> series_of_mechanism(const Assembly<Quad>& parts, int order) {
+    return std::make_unique<MechanismSeries<Quad>>(parts, order);
+}
+
 template MakeAnyStepper<State<Quad, Eigen::Dynamic>> make_any_stepper;
 template MakeStepper<Quad> make_angles_stepper;
 template MakeStepper<Quad> make_constraints_stepper;

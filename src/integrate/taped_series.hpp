@@ -1,14 +1,14 @@
 #pragma once
 
-#include "integrate/taylor_series.hpp"
+#include "integrate/series.hpp"
 #include "numeric/roots.hpp"
 #include "numeric/tape.hpp"
 #include "physics/physical_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,22 +22,21 @@ struct SeriesScale {
 };
 
 /// The Taylor series of a model from its right-hand side alone, which a tape takes down once, and again where what was compared
-/// in it has changed. `Model` is one over plain numbers, `TapedModel` the same over Taped<Scalar>.
+/// in it has changed. `Model` is one over Taped<Scalar>.
 ///
 /// What the right-hand side compares (the sign of a rate in a drag like |ω| ω) may change on the way: a step ends just
 /// behind the first such change, by so little that what it errs there, its third power, is below rounding. Joints that stick
 /// have events of the model (integrate/events.hpp), at which the step ends.
-template <class Model, class TapedModel>
-class TapedSeries {
+template <class Model>
+class TapedSeries : public Series<typename Model::Scalar::Scalar> {
 public:
-    using Scalar = typename Model::Scalar;
-    using State = typename Model::State;
+    using Scalar = typename Model::Scalar::Scalar;
+    using State = typename Series<Scalar>::State;
 
-    /// `source` is asked for the modes of its joints, where it has any.
-    TapedSeries(const Model& source, TapedModel taped, const SeriesScale& scale, int order)
-        : order_(order), source_(source), model_(std::move(taped)), tape_(order + 1), scale_(scale) {}
+    TapedSeries(Model taped, const SeriesScale& scale, int order)
+        : taped_(std::move(taped)), order_(order), tape_(order + 1), scale_(scale) {}
 
-    void expand(const State& y) {
+    void expand(const State& y) override {
         if (!is_as_recorded(y)) record(y);
         for (int k = 0; k <= order_; ++k) {
             if (k > 0) tape_.compute(k);
@@ -51,8 +50,7 @@ public:
         amount_ = greatest(0) + std::sqrt(scale_.length * greatest(1));
     }
 
-    template <class Vector>
-    void move(const Scalar& h, Vector& change) const {
+    void move(const Scalar& h, State& change) override {
         for (Eigen::Index i = 0; i < change.size(); ++i) {
             Scalar sum(0);
             for (int k = order_ + 1; k > 0; --k) sum = (sum + series(i)[k]) * h;
@@ -60,23 +58,25 @@ public:
         }
     }
 
-    double size(int k) const { return amount_ == 0 ? 0 : greatest(k) / amount_; }
-    double longest_step() const { return scale_.longest; }
+    double size(int k) const override { return amount_ == 0 ? 0 : greatest(k) / amount_; }
+    double longest_step() const override { return scale_.longest; }
+    double rate(int k, Eigen::Index i) const override { return static_cast<double>(series(scale_.rates + i)[k]); }
 
-    /// log2 of size(k), also where no double holds it: soon after rest, quadratic drag has coefficients like 10^(14 k).
-    double log2_size(int k) const requires(!std::same_as<Scalar, double>) {
+    /// Of quads also where no double holds the size: soon after rest, quadratic drag has coefficients like 10^(14 k).
+    double log2_room(double tolerance, int k) const override {
+        if constexpr (std::is_same_v<Scalar, double>) return Series<Scalar>::log2_room(tolerance, k);
         Scalar most = greatest_of(k);
-        if (!(most - most == Scalar(0))) return std::numeric_limits<double>::infinity();  // infinite, or NaN
+        if (!(most - most == Scalar(0))) return std::numeric_limits<double>::quiet_NaN();  // infinite, or NaN
+        if (amount_ == 0) return std::numeric_limits<double>::infinity();
         constexpr int shift = 512;
         int shifts = 0;
         for (; most > Scalar(0x1p512); ++shifts) most *= Scalar(0x1p-512);
-        return amount_ == 0 ? -std::numeric_limits<double>::infinity()
-                            : rough_log2(plain_value(most) / amount_) + shift * shifts;
+        return rough_log2(tolerance) - (rough_log2(static_cast<double>(most) / amount_) + shift * shifts);
     }
 
     /// At most `h`, s: just behind the first change of what the right-hand side compares.
-    double first_event(double h) const {
-        const double beyond = 0.1 * std::cbrt(plain_value(std::numeric_limits<Scalar>::epsilon())) * h;
+    double first_event(double h) const override {
+        const double beyond = 0.1 * std::cbrt(static_cast<double>(std::numeric_limits<Scalar>::epsilon())) * h;
         // where the force jumps, and its series is singular: as close to it as the range of its coefficients allows
         constexpr int range = std::numeric_limits<Scalar>::max_exponent10;
         const double just_beyond = std::max(1e-15, std::pow(10.0, 1.0 - range / (order_ + 2.0))) * h;
@@ -98,7 +98,7 @@ public:
             if (x == end) continue;
             powers.clear();
             for (Scalar scale = *x < Scalar(0) ? Scalar(1) : Scalar(-1); x != end; ++x, scale *= Scalar(first))
-                powers.push_back(plain_value(Scalar(*x * scale)));
+                powers.push_back(static_cast<double>(Scalar(*x * scale)));
             const auto rises = Bernstein::of_powers(powers, 1).rises();
             if (rises.empty()) continue;
             const double t = root(rises.front(), at) * first;
@@ -107,20 +107,25 @@ public:
         return first;
     }
 
+protected:
+    Model taped_;
+
 private:
+    /// Of the joints: whether others hold than those recorded, and taped_ ← those that hold.
+    virtual bool has_other_modes() const { return false; }
+    virtual void take_modes() {}
+
     void record(const State& y) {
         tape_.clear();
-        rate_ = y_ = typename TapedModel::State(y.size());
+        rate_ = y_ = typename Model::State(y.size());
         for (Eigen::Index i = 0; i < y.size(); ++i) y_[i] = Taped<Scalar>::argument(y[i], tape_);
-        if constexpr (has_modes) model_.keep_modes_of(source_);
-        model_.rate(y_, rate_);
+        take_modes();
+        taped_.rate(y_, rate_);
         tape_.finish();
         start_at(y);
     }
     bool is_as_recorded(const State& y) {
-        if (tape_.empty()) return false;
-        if constexpr (has_modes)
-            if (model_.modes() != source_.modes()) return false;
+        if (tape_.empty() || has_other_modes()) return false;
         start_at(y);
         return tape_.is_as_recorded();
     }
@@ -140,33 +145,34 @@ private:
         }
         return most;
     }
-    double greatest(int k) const { return plain_value(greatest_of(k)); }
-
-    static constexpr bool has_modes = requires(TapedModel taped, const Model& source) { taped.keep_modes_of(source); };
+    double greatest(int k) const { return static_cast<double>(greatest_of(k)); }
 
     int order_;
-    const Model& source_;
-    TapedModel model_;
     Tape<Scalar> tape_;
     SeriesScale scale_;
     double amount_ = 0;  // of the rates, rad/s or m/s
-    typename TapedModel::State y_, rate_;
+    typename Model::State y_, rate_;
 };
 
 template <class Scalar>
-struct SeriesOf<PhysicalChain<Scalar>> {
-    using Model = PhysicalChain<Scalar>;
-    using TapedModel = PhysicalChain<Taped<Scalar>>;
-    struct type : TapedSeries<Model, TapedModel> {
-        type(const Model& model, int order)
-            : TapedSeries<Model, TapedModel>(model, TapedModel(model.pendulum.template cast<Taped<Scalar>>()),
-                                             {.coordinates = model.layout.coordinates,
-                                              .rates = model.layout.half,
-                                              .length = 1,
-                                              .longest = longest_chain_step(plain_value(model.pendulum.chain.reach()),
-                                                                            plain_value(model.pendulum.chain.gravity))},
-                                             order) {}
-    };
+class BodiesSeries final : public TapedSeries<PhysicalChain<Taped<Scalar>>> {
+public:
+    BodiesSeries(const PhysicalChain<Scalar>& model, int order)
+        : TapedSeries<PhysicalChain<Taped<Scalar>>>(
+              PhysicalChain<Taped<Scalar>>(model.pendulum.template cast<Taped<Scalar>>()),
+              {.coordinates = model.layout.coordinates,
+               .rates = model.layout.half,
+               .length = 1,
+               .longest = longest_chain_step(static_cast<double>(model.pendulum.chain.reach()),
+                                             static_cast<double>(model.pendulum.chain.gravity))},
+              order),
+          model_(model) {}
+
+private:
+    bool has_other_modes() const override { return this->taped_.modes() != model_.modes(); }
+    void take_modes() override { this->taped_.keep_modes_of(model_); }
+
+    const PhysicalChain<Scalar>& model_;
 };
 
 }  // namespace doppel

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include <limits>
+
 namespace doppel {
 
 /// A point of a phase space of N dimensions (Eigen::Dynamic = known only at run time); what integrators add and scale.
@@ -12,6 +14,10 @@ using State = Eigen::Matrix<Scalar, N, 1>;
 /// N · factor, where N may be Eigen::Dynamic.
 template <int factor, int N>
 inline constexpr int times = N == Eigen::Dynamic ? Eigen::Dynamic : factor* N;
+
+/// N for what the processor computes with; quads are library calls, for which no size is worth compiling.
+template <class Scalar, int N>
+inline constexpr int compiled_size = std::numeric_limits<Scalar>::digits > 53 ? Eigen::Dynamic : N;
 
 /// π to the digits of the scalar: acos(−1), which every scalar knows.
 template <class Scalar>

@@ -154,7 +154,7 @@ private:
 template <class S>
 struct DoublePendulum {
     using Scalar = S;
-    using State = doppel::State<Scalar, 4>;
+    using State = doppel::State<Scalar, compiled_size<Scalar, 4>>;
     using Angles = StageAngles<Scalar, 2>;
 
     Scalar m1, m2;  // kg

@@ -177,7 +177,7 @@ struct Canonical<DoublePendulum<S>> {
 
     void velocities(const State& z, State& y) const {
         Angles angles;
-        State dzdt;
+        State dzdt(4);
         rate(z, angles, dzdt);
         y << z[0], z[1], dzdt[0], dzdt[1];
     }

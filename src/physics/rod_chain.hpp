@@ -23,7 +23,7 @@ namespace doppel {
 template <class S, int N>
 struct RodChain {
     using Scalar = S;
-    using State = doppel::State<Scalar, times<4, N>>;
+    using State = doppel::State<Scalar, is_lanes<Scalar> ? times<4, N> : Eigen::Dynamic>;
     using Half = doppel::State<Scalar, times<2, N>>;  // positions, velocities or accelerations
     using Multipliers = doppel::State<Scalar, N>;     // one a rod
 

@@ -194,7 +194,7 @@ TYPED_TEST(Adaptively, IsContinuousFromStepToStep) {
     double jump = 0;
     for (int i = 0; i < 100000; ++i) {
         stepper.advance(1e-5);
-        typename Model::State slope;
+        typename Model::State slope = before;
         model.rate(before, slope);
         jump = std::fmax(jump, (stepper.state() - before - 1e-5 * slope).norm());
         before = stepper.state();

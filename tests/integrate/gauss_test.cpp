@@ -26,15 +26,15 @@ double symplecticity_error(const Quad& step) {
     Canonical<Model> form(model);
     using State = typename Model::State;
     const auto one = [&](const State& z) {
-        State y;
+        State y = z;
         form.velocities(z, y);
         const State end = after<Which, Model>(p, y, step, 1);
-        State z1;
+        State z1 = end;
         form.momenta(end, z1);
         return z1;
     };
-    State z;
-    form.momenta(Model::start(p), z);
+    State z = Model::start(p);
+    form.momenta(State(z), z);
     return doppel::symplecticity_error(one, z);
 }
 

@@ -1,6 +1,7 @@
 #include "integrate/mechanism_series.hpp"
 
 #include "allocations.hpp"
+#include "integrate/taylor.hpp"
 #include "numeric/quad.hpp"
 #include "physics/mechanism.hpp"
 #include "physics/mechanisms.hpp"
@@ -56,7 +57,7 @@ double residual(const Assembly<double>& parts, int order, double h) {
     const auto assembly = parts.cast<Quad>();
     Mechanism<Quad> model(assembly);
     const auto start = moving(model, assembly, Quad(0.05));
-    MechanismSeries<Quad> series(model, order);
+    MechanismSeries<Quad> series(assembly, order);
     series.expand(start);
     const auto moved = [&](const Quad& by) {
         auto change = start;
@@ -86,9 +87,8 @@ TEST(MechanismSeries, AllocatesNothingOnceItIsRecorded) {
     for (const auto& parts : {sprung(), attracted(), looped()}) {
         const auto allocated = [](const auto& assembly) {
             using S = std::decay_t<decltype(assembly.particles[0].mass)>;
-            Mechanism<S> model(assembly);
-            MechanismSeries<S> series(model, 20);
-            auto y = model.start(assembly), change = y;
+            MechanismSeries<S> series(assembly, 20);
+            auto y = Mechanism<S>::start(assembly), change = y;
             series.expand(y);
             series.move(S(0.02), change);
             y += change;
@@ -104,9 +104,8 @@ TEST(MechanismSeries, AllocatesNothingOnceItIsRecorded) {
 
 /// What a series says of the way from the start of a mechanism.
 std::string said_of(const Assembly<double>& parts, double h) {
-    Mechanism<double> model(parts);
-    MechanismSeries<double> series(model, 30);
-    auto y = model.start(parts), change = y;
+    MechanismSeries<double> series(parts, 30);
+    auto y = Mechanism<double>::start(parts), change = y;
     try {
         series.expand(y);
         series.move(h, change);

@@ -85,7 +85,7 @@ double symplecticity_error(const Quad& step) {
     Canonical<DoublePendulum<Quad>> form(angles);
     using State = DoublePendulum<Quad>::State;
     const auto one = [&](const State& z) {
-        State y;
+        State y = z;
         form.velocities(z, y);
         for (Eigen::Index i = 0; i < 2; ++i) {
             p.angle[static_cast<std::size_t>(i)] = y[i];
@@ -93,12 +93,12 @@ double symplecticity_error(const Quad& step) {
         }
         const auto bobs = bobs_of_particles<Quad>(p, after<Which, Model>(p, Model::start(p), step, 1));
         y << bobs[0].theta, bobs[1].theta, bobs[0].omega, bobs[1].omega;
-        State end;
+        State end = y;
         form.momenta(y, end);
         return end;
     };
-    State z;
-    form.momenta(DoublePendulum<Quad>::start(p), z);
+    State z = DoublePendulum<Quad>::start(p);
+    form.momenta(State(z), z);
     return doppel::symplecticity_error(one, z);
 }
 

@@ -2,7 +2,6 @@
 
 #include "integrate/dormand_prince.hpp"
 #include "integrate/pendulums.hpp"
-#include "integrate/taylor.hpp"
 #include "physics/angle_chain.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,7 @@ using Model = DoublePendulum<double>;
 
 template <class Which>
 class Reset : public testing::Test {};
-using Methods = testing::Types<Dopri5, Dop853, Taylor>;
+using Methods = testing::Types<Dopri5, Dop853>;
 TYPED_TEST_SUITE(Reset, Methods);
 
 TYPED_TEST(Reset, GoesOnFromAnotherStateByTheStepsItHad) {

@@ -145,7 +145,7 @@ TEST(Projected, SaysWhenThereIsNoWayBack) {
     // a rod without length has no direction: J M⁻¹ Jᵀ is 0
     const auto p = released(0, 0);
     Projected<Chain> model(p);
-    Chain::State y = Chain::State::Zero();
+    Chain::State y = Chain::State::Zero(8);
     try {
         model.project(y);
         FAIL();
@@ -187,7 +187,7 @@ TEST(Baumgarte, AddsNothingOnTheConstraints) {
     Chain bare(p);
     Baumgarte<Chain> held(p, 100);
     const auto y = Chain::start(p);
-    Chain::State expected, rate;
+    Chain::State expected = y, rate = y;
     bare.rate(y, expected);
     held.rate(y, rate);
     EXPECT_LT((rate - expected).cwiseAbs().maxCoeff(), 5e-12);  // measured 1e-12, α² ε = 2e-12
@@ -200,7 +200,7 @@ TEST(Baumgarte, PullsBackAsItsEquationSays) {
     p.rate = {1, -2};
     const double alpha = 7;
     Baumgarte<Chain> model(p, alpha);
-    Chain::State y = Chain::start(p), dydt;
+    Chain::State y = Chain::start(p), dydt = y;
     y[1] += 0.02;
     y[6] -= 0.3;
     model.rate(y, dydt);

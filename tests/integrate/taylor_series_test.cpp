@@ -1,3 +1,5 @@
+#include "integrate/angle_series.hpp"
+#include "integrate/lane_series.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
 #include "integrate/widths.hpp"
@@ -12,6 +14,9 @@
 namespace doppel {
 namespace taylor_series_test {
 
+template <class Scalar>
+using Vector = State<Scalar, Eigen::Dynamic>;
+
 /// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks like h^order only if every
 /// coefficient is right. In quad; y′ by central differences.
 template <class Model>
@@ -19,11 +24,11 @@ double residual(const Pendulum<double>& p, int order, double h) {
     const auto q = p.cast<Quad>();
     Model model(q);
     const typename Model::State start = Model::start(q);
-    typename SeriesOf<Model>::type series(model, order);
-    series.expand(start);
+    const auto series = series_of(model, order);
+    series->expand(start);
     const auto moved = [&](const Quad& by) {
-        typename Model::State change = start;
-        series.move(by, change);
+        Vector<Quad> change = start;
+        series->move(by, change);
         return typename Model::State(start + change);
     };
     const Quad at(h), d(1e-9);
@@ -55,26 +60,25 @@ TEST(TaylorSeries, SolvesTheEquationsOfMotionOrderByOrder) {
 }
 
 /// Coefficient k of the rates: what a series of order k has more than one of order k − 1, at h = 1.
-template <class Series, class Scalar, int M>
-State<Scalar, M / 2> coefficient(const Pendulum<Scalar>& p, const State<Scalar, M>& y, int k) {
+template <class Series, class Scalar>
+Vector<Scalar> coefficient(const Pendulum<Scalar>& p, const Vector<Scalar>& y, int k) {
     Series with(p, k), without(p, k - 1);
-    State<Scalar, M> one = y, other = y;
+    auto one = y, other = y;
     with.expand(y);
     with.move(Scalar(1), one);
     without.expand(y);
     without.move(Scalar(1), other);
-    return (one - other).template tail<M / 2>();
+    return (one - other).tail(y.size() / 2);
 }
 
 template <int N>
 void expect_lanes_like_quad() {
     const auto p = uneven(N);
-    const auto y = AngleChain<double, N>::start(p);
+    const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
     for (int k = 2; k <= 24; ++k) {
         const auto lanes = coefficient<LaneSeries<N>>(p, y, k);
-        const auto chain = coefficient<AngleSeries<double, N>>(p, y, k);
-        const auto quad =
-            coefficient<AngleSeries<Quad, N>>(p.template cast<Quad>(), State<Quad, 2 * N>(y.template cast<Quad>()), k);
+        const auto chain = coefficient<AngleSeries<double>>(p, y, k);
+        const auto quad = coefficient<AngleSeries<Quad>>(p.template cast<Quad>(), Vector<Quad>(y.cast<Quad>()), k);
         const double size = static_cast<double>(Quad(quad.cwiseAbs().maxCoeff()));
         for (int i = 0; i < N; ++i) {
             EXPECT_NEAR(lanes[i], static_cast<double>(quad[i]), 1e-12 * size) << k;  // measured 1e-13
@@ -91,15 +95,15 @@ TEST(TaylorSeries, LanesHoldTheSameCoefficients) {
 template <int N>
 void expect_same_bits() {
     const auto p = uneven(N);
-    const auto y = AngleChain<double, N>::start(p);
+    const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
     for (int order : {5, 8, 13, 24, 33}) {
         LaneSeries<N> wide(p, order, std::min(register_widths().back(), 4)), narrow(p, order, 2);
-        auto one = y, other = y;
+        Vector<double> one = y, other = y;
         wide.expand(y);
         wide.move(0.02, one);
         narrow.expand(y);
         narrow.move(0.02, other);
-        EXPECT_EQ(std::memcmp(one.data(), other.data(), sizeof(one)), 0);
+        EXPECT_EQ(std::memcmp(one.data(), other.data(), sizeof(double) * static_cast<std::size_t>(y.size())), 0);
         for (int k = 0; k <= order; ++k) EXPECT_EQ(wide.size(k), narrow.size(k));
     }
 }

@@ -43,7 +43,7 @@ TEST(Mechanism, RodsInAChainMoveAsTheChainDoes) {
         const auto parts = parts_of(p);
         check(parts);
         RodChain<double, 2> chain(p);
-        State<double, 8> expected;
+        RodChain<double, 2>::State expected(8);
         chain.rate(chain.start(p), expected);
         EXPECT_LT((rate_at_start(parts) - expected).norm(), 5e-15 * expected.norm());  // measured 4e-14, absolute
     }
