@@ -1,9 +1,11 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/series.hpp"
 #include "integrate/stabilise.hpp"
 #include "integrate/stepper.hpp"
+#include "numeric/compensated.hpp"
 #include "numeric/quad.hpp"
 #include "numeric/roots.hpp"
 #include "physics/angle_chain.hpp"
@@ -11,15 +13,21 @@
 #include "physics/physical_chain.hpp"
 #include "physics/rod_chain.hpp"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace doppel {
 
 /// The Taylor method. Each step computes the series of the motion to a high order by recurrence, and goes as far as its
 /// last coefficients allow; output times shorten no step, as the series holds anywhere inside one.
 ///
-/// Order   p = 10 − ½ ln ε (taylor_order()).
+/// Order   p = 10 − ½ ln ε, more than the usual 1 − ½ ln ε, since the work grows more like p than like p².
 /// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the rates' amount.
 ///         Rates are the harder part: an angle errs by about h/p times as much. No step is more than twice the one
 ///         before.
@@ -34,19 +42,49 @@ public:
 
     /// `system` where it projects or has events.
     SeriesStepper(std::unique_ptr<Series<Scalar>> series, std::optional<AnySystem<State>> system, const State& start,
-                  double tolerance, int order);
+                  double tolerance, int order)
+        : tolerance_(tolerance),
+          order_(order),
+          series_(std::move(series)),
+          system_(std::move(system)),
+          base_(start),
+          lost_(State::Zero(start.size())),
+          change_(start),
+          out_(start) {
+        if (has_events()) system_->take_modes(base_);
+    }
 
-    void advance(const Scalar& seconds);
+    void advance(const Scalar& seconds) {
+        add_compensated(offset_, offset_lost_, seconds);
+        while (offset_ > step_) next_step(static_cast<double>(seconds));
+        at(offset_);
+    }
     const State& state() const { return out_; }
 
     /// In place of advance(), for what evaluates inside every step: on to the end of the last one, where the next is
     /// expanded. On it, at(t) holds for 0 ≤ t ≤ step(), s from where it starts; at(step()) is at(0) of the one after,
     /// to the bit.
-    void take_step();
-    const State& at(const Scalar& t);
+    void take_step() {
+        offset_ = step_;
+        offset_lost_ = Scalar(0);
+        next_step(static_cast<double>(step_));
+        at(Scalar(0));
+    }
+    const State& at(const Scalar& t) {
+        series_->move(t, change_);
+        out_ = base_ + (change_ + lost_);
+        project(out_);
+        return out_;
+    }
     const Scalar& step() const { return step_; }
     /// A coordinate on the step, at whose ends it is what at() says.
-    Bernstein on_step(Eigen::Index coordinate);
+    Bernstein on_step(Eigen::Index coordinate) {
+        std::vector<double> powers{static_cast<double>(at(Scalar(0))[coordinate])};
+        for (int k = 0; k <= order_; ++k) powers.push_back(series_->rate(k, coordinate) / (k + 1));
+        auto path = Bernstein::of_powers(powers, static_cast<double>(step_));
+        path.b.back() = static_cast<double>(at(step_)[coordinate]);
+        return path;
+    }
 
     int order() const { return order_; }
     long steps() const { return steps_; }
@@ -55,13 +93,76 @@ public:
     long evaluations() const { return steps_ * order_; }
 
 private:
-    void next_step(double seconds);
-    void expand(double seconds);
-    bool ends_at_event();
-    double chosen_step();
     bool has_events() const { return system_ && system_->switches(); }
     void project(State& y) {
         if (system_) system_->project(y);
+    }
+
+    /// Goes to the end of the step and expands the next one there. `seconds`, the interval asked for, tells when steps
+    /// have vanished.
+    void next_step(double seconds) {
+        if (steps_ > 0) {
+            series_->move(step_, change_);
+            for (Eigen::Index i = 0; i < base_.size(); ++i) add_compensated(base_[i], lost_[i], change_[i]);
+            project(base_);
+            add_compensated(offset_, offset_lost_, Scalar(-step_));
+            if (ends_at_event_) {
+                system_->settle(base_);
+                lost_.setZero();
+            }
+        }
+        expand(seconds);
+    }
+
+    void expand(double seconds) {
+        series_->expand(base_);
+        const double h = chosen_step();
+        step_ = Scalar(h);
+        if (has_events()) {
+            if (step_ > system_->longest_step()) step_ = system_->longest_step();
+            ends_at_event_ = ends_at_event();
+        }
+        if (!(h > static_cast<double>(std::numeric_limits<Scalar>::epsilon()) * seconds))
+            throw method_failed(
+                "taylor: a step of {:.3g} s is all that tolerance = {:.3g} allows, too little to get on; "
+                "the motion has a singularity there, which no explicit method passes",
+                h, tolerance_);
+        if (steps_ == 0 || step_ < smallest_) smallest_ = step_;
+        ++steps_;
+    }
+
+    /// Whether the system has an event in the step, which then ends there.
+    bool ends_at_event() {
+        const auto event = first_event(*system_, step_, [&](const Scalar& t) -> const State& {
+            series_->move(t, change_);
+            change_ = base_ + (change_ + lost_);
+            return change_;
+        });
+        if (!event) return false;
+        stall_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * step_);
+        step_ = *event;
+        return true;
+    }
+
+    double chosen_step() {
+        constexpr double growth = 2;
+        double exponent = 900;  // log2 h
+        for (int k = order_ - watched_coefficients + 1; k <= order_; ++k) {
+            const double room = series_->log2_room(tolerance_, k);
+            if (std::isnan(room))
+                throw method_failed("taylor: coefficient {} of the series is not finite; the motion has blown up", k);
+            exponent = std::min(exponent, room / k);
+        }
+        const double longest = series_->longest_step();
+        free_step_ =
+            std::min({power_of_two(std::max(exponent, -900.0)), longest, steps_ == 0 ? longest : growth * free_step_});
+        return series_->first_event(free_step_);
+    }
+    /// 2^a within 0.3 % for |a| < 1000.
+    static double power_of_two(double a) {
+        const double whole = std::floor(a), part = a - whole;
+        const auto power = std::bit_cast<double>((static_cast<std::int64_t>(whole) + 1023) << 52);
+        return power * (1 + part * (0.6565 + 0.3435 * part));
     }
 
     double tolerance_;
@@ -77,12 +178,9 @@ private:
     bool ends_at_event_ = false;  // the step
     Stall stall_;
 };
+// Compiled in integrate/taylor.cpp.
 extern template class SeriesStepper<double>;
 extern template class SeriesStepper<Quad>;
-
-/// The order that a tolerance takes: more than the usual 1 − ½ ln ε, since the work grows more like p than like p².
-/// `asked`, from 5 to 64, where it is not 0. Errors  exit 2 where the tolerance is less than 4 `epsilon`.
-int taylor_order(double tolerance, double epsilon, int digits, int asked = 0);
 
 // The series of a model that has one. A chain of particles on rods is the mechanism of its parts; projected after every step
 // it is the same motion, pulled back by Baumgarte's terms it is not.
@@ -121,11 +219,10 @@ class TaylorStepper : public SeriesStepper<typename Model::Scalar> {
 public:
     using Scalar = typename Model::Scalar;
 
+    /// `order` from 5 to 64, or 0: by the tolerance.
     TaylorStepper(Model& model, const typename Model::State& start, const Scalar& tolerance, int order = 0)
-        : TaylorStepper(Order{taylor_order(static_cast<double>(tolerance),
-                                           static_cast<double>(std::numeric_limits<Scalar>::epsilon()),
-                                           std::numeric_limits<Scalar>::digits10 + 1, order)},
-                        model, start, static_cast<double>(tolerance)) {}
+        : TaylorStepper(Order{order_for(static_cast<double>(tolerance), order)}, model, start,
+                        static_cast<double>(tolerance)) {}
 
 private:
     using State = typename SeriesStepper<Scalar>::State;
@@ -135,6 +232,14 @@ private:
     TaylorStepper(Order order, Model& model, const State& start, double tolerance)
         : SeriesStepper<Scalar>(series_of(model, order.value), system_of(model), start, tolerance, order.value) {}
 
+    static int order_for(double tolerance, int asked) {
+        const auto least = 4 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+        if (!(tolerance >= least))
+            throw bad_input("taylor: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", tolerance,
+                            std::numeric_limits<Scalar>::digits10 + 1, least);
+        const long order = asked == 0 ? std::lround(10 - 0.5 * std::log(tolerance)) : asked;
+        return static_cast<int>(std::clamp(order, watched_coefficients + 1L, 64L));
+    }
     static std::optional<AnySystem<State>> system_of([[maybe_unused]] Model& model) {
         if constexpr (std::is_same_v<typename Model::State, State>) return AnySystem<State>::of(model);
         return std::nullopt;
