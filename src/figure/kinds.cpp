@@ -182,8 +182,8 @@ std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::s
 
 std::span<const FigureKind> figure_kinds() {
     static const std::array<FigureKind, scene_kinds.size() - 1> kinds{
-        sweep_kind,       curves_kind, convergence_kind,    spectrum_kind,  section_kind, map_kind,      flip_map_kind,
-        bifurcation_kind, links_kind,  work_precision_kind, stability_kind, drift_kind,   encoders_kind, audit_kind};
+        sweep_kind,    curves_kind,      convergence_kind, spectrum_kind,       section_kind,   map_kind,
+        flip_map_kind, bifurcation_kind, links_kind,       work_precision_kind, stability_kind, drift_kind};
     return kinds;
 }
 

@@ -160,6 +160,6 @@ std::span<const FigureKind> figure_kinds();
 
 // One file each.
 extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, bifurcation_kind,
-    map_kind, flip_map_kind, links_kind, work_precision_kind, stability_kind, drift_kind, encoders_kind, audit_kind;
+    map_kind, flip_map_kind, links_kind, work_precision_kind, stability_kind, drift_kind;
 
 }  // namespace doppel

@@ -58,7 +58,7 @@ struct Theme {
     Color rod, bob, pivot;       // what all pendulums share
     std::array<Color, 2> sides;  // a, b
     Color trace;                 // what belongs to both
-    Color good, bad, open;       // verdicts
+    Color bad, open;             // what broke down; what is not known
     Color none;                  // where a map has no value
     float glow;                  // how far the light of trails reaches, px of a 1920×1080 picture; 0 = none
     std::array<Color, 8>
@@ -79,7 +79,6 @@ inline constexpr std::array<Theme, 3> themes{{
      .pivot = rgb(0x6f7a8a),
      .sides = {rgb(0xffa640), rgb(0x4fb0ff)},
      .trace = rgb(0xb9f0c0),
-     .good = rgb(0x5fd38a),
      .bad = rgb(0xff7b6b),
      .open = rgb(0xe8c34a),
      .none = rgb(0x3a3f49),
@@ -99,7 +98,6 @@ inline constexpr std::array<Theme, 3> themes{{
      .pivot = rgb(0x9aa4b3),
      .sides = {rgb(0xb85200), rgb(0x0068b8)},
      .trace = rgb(0x1b7a3d),
-     .good = rgb(0x14743a),
      .bad = rgb(0xb3261e),
      .open = rgb(0x8a6100),
      .none = rgb(0xdde1e7),
@@ -119,7 +117,6 @@ inline constexpr std::array<Theme, 3> themes{{
      .pivot = rgb(0xb4b4b4),
      .sides = {rgb(0xffd000), rgb(0x3fc8ff)},
      .trace = rgb(0x7dff9a),
-     .good = rgb(0x7dff9a),
      .bad = rgb(0xff8a8a),
      .open = rgb(0xffd000),
      .none = rgb(0x5a5a5a),

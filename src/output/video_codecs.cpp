@@ -141,7 +141,7 @@ void check_rate(const VideoOptions& options) {
 /// Threads of x264 in "doppel", a slice of the picture each: with a frame each, as else, it takes a fifth more CPU time.
 constexpr std::size_t slice_threads = 4;
 
-/// In "doppel", found by `figure encoders`, all that serves pictures which change everywhere is off: of ours 97 % of the
+/// In "doppel", found by tests/bench/encoders, all that serves pictures which change everywhere is off: of ours 97 % of the
 /// macroblocks stay as they are. A fine first frame keeps sharp what rests; quantizers are constant, and a frame is whole
 /// every 5 s. A narrow dead zone keeps the last faint steps of trails that fade, which coarser B-frames pay for. It looks
 /// as veryfast does at the same crf.
@@ -158,7 +158,7 @@ Metadata x264_options(const VideoOptions& options) {
                                     quantizer, std::max<std::int64_t>(key_interval, 1))}};
 }
 
-/// In "doppel", found by `figure encoders`, as for a live screen: an eighth of the CPU time for 1.2 times the bytes. (Ten
+/// In "doppel", found by tests/bench/encoders, as for a live screen: an eighth of the CPU time for 1.2 times the bytes. (Ten
 /// bits lose 7 dB by that.)
 Metadata vpx_options(const VideoOptions& options) {
     const bool is_live = options.preset == "doppel" && options.pixel_format != PixelFormat::yuv420_10;

@@ -92,17 +92,6 @@ void check(const HeatMap& map) {
         if (!std::isfinite(edge)) throw bad_input("an edge of the map \"{}\" is {}", map.label, edge);
 }
 
-void check(const PlotTable& table) {
-    for (const PlotTable::Column& column : table.columns)
-        if (!(column.share > 0 && std::isfinite(column.share)))
-            throw bad_input("the share of the column \"{}\" must be more than 0; it is {}", column.heading,
-                            column.share);
-    for (std::size_t row = 0; row < table.rows.size(); ++row)
-        if (table.rows[row].size() > table.columns.size())
-            throw bad_input("row {} of the table has {} cells for {} columns", row, table.rows[row].size(),
-                            table.columns.size());
-}
-
 }  // namespace
 
 PlotRanges fitted_ranges(const Plot& plot) {
@@ -138,9 +127,7 @@ Axis fitted_scale(const HeatMap& map) {
 }
 
 void check(const Figure& figure) {
-    if (figure.table && !figure.panels.empty()) throw bad_input("a figure has panels or a table, not both");
     if (figure.columns < 0) throw bad_input("a figure has 0 or more columns; it is {}", figure.columns);
-    if (figure.table) check(*figure.table);
     for (const Plot& plot : figure.panels) {
         check(plot.x);
         check(plot.y);

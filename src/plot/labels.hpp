@@ -94,10 +94,4 @@ struct TextBlock {
 /// One line in as much as `width` px: shrunk to three quarters, but not below 9 px, if need be, then broken.
 TextBlock fitted_block(std::string_view text, float size, Weight weight, Color color, float width);
 
-/// The size of text at which the table fits into `area`, px an em.
-float fitting_table_size(const PlotTable& table, const Area& area, const PlotStyle& style);
-
-/// The table in `area`, its text shrunk until all fits.
-void draw_table(const PlotTable& table, const Area& area, const PlotStyle& style, DisplayList& list);
-
 }  // namespace doppel

@@ -42,7 +42,6 @@ Page laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style, b
 
 /// Whether what stands in the body can be read there.
 bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
-    if (figure.table) return fitting_table_size(*figure.table, body, style) >= 0.8f * style.text;
     if (figure.panels.empty()) return body.height() >= 0;
     const auto rows = static_cast<float>(grid_of(figure, body).rows);
     return body.height() >= std::max(0.5f * sheet.height(), 12.5f * style.tick * rows);
@@ -111,7 +110,6 @@ DisplayList compose(const Figure& figure, Size size, const Theme& theme, float s
     DisplayList list{Box{0, 0, width, height, 0, theme.background}};
     page.title.draw({sheet.left, sheet.top}, list);
     page.subtitle.draw({sheet.left, sheet.top + page.title.height()}, list);
-    if (figure.table) draw_table(*figure.table, page.body, style, list);
     if (!figure.panels.empty()) draw_panels(figure, page.body, style, list);
     float top = page.captions_top;
     for (const TextBlock& caption : page.captions) {

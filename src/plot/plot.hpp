@@ -72,28 +72,12 @@ struct Plot {
     bool needs_no_legend = false;  // words that have no room beside their curves stand on them
 };
 
-/// A table for reading: a page of claims and verdicts.
-struct PlotTable {
-    struct Column {
-        std::string heading;
-        float share = 1;  // of the width
-    };
-    enum class Tone { plain, quiet, good, bad, open };
-    struct Cell {
-        std::string text;  // broken into lines where it is long
-        Tone tone = Tone::plain;
-    };
-    std::vector<Column> columns;
-    std::vector<std::vector<Cell>> rows;
-};
-
-/// A picture fit for a paper: headings, panels (or a table) in a grid, and lines of caption below.
+/// A picture fit for a paper: headings, panels in a grid, and lines of caption below.
 struct Figure {
     std::string title, subtitle;
     std::vector<Plot> panels;
     int columns = 0;           // of panels; 0 = as fits
     bool shares_axes = false;  // numbers and names stand once for a row, or column, of panels whose axes are alike
-    std::optional<PlotTable> table;
     std::vector<std::string> captions;  // paragraphs, broken into lines
 };
 

@@ -1,9 +1,9 @@
 #include "film/film.hpp"
 
 #include "base/clock.hpp"
+#include "bench/encoders/encoding_trial.hpp"
 #include "film/composer.hpp"
 #include "film/run.hpp"
-#include "output/encoding_trial.hpp"
 #include "output/png.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"

@@ -52,8 +52,6 @@ TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
     }
     EXPECT_EQ(faults_of("curves", "[[curve]]\ncolumn = 3\n[curve.a]\nlinks = 0\n[[curve]]\nfoo = 1\n", {}, 18),
               (Lines{"4:1: [[curve]] 1 c", "6:1: [a] links mus", "8:1: [[curve]] 2 h"}));
-    EXPECT_EQ(faults_of("encoders", "[[film]]\nfps = 0\n[[film]]\nsize = 1\n", {}, 18),
-              (Lines{"4:1: [[film]] 1 fp", "6:1: [[film]] 2 si"}));
 }
 
 TEST(AllFaultsOfAFigure, LeaveOutWhatMayFollowFromAnother) {

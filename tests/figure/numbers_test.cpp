@@ -98,35 +98,5 @@ TEST(NumbersOfWork, AreThoseOfWholeRungs) {
     EXPECT_FALSE(work.fits(0, TrialNumbers{3, infinite}));
 }
 
-TEST(NumbersOfAudit, AreAsManyAsTheClaimTakes) {
-    const auto figure = figure_of("audit");
-    const auto& work = *figure.experiment;
-    KnownTrials trials(work.trials());
-    for (std::size_t i = 0; i < work.trials(); ++i) {
-        std::size_t count = 1;
-        while (count < 10 && !work.fits(i, TrialNumbers(count, 1.0))) ++count;
-        ASSERT_LT(count, 10u);
-        EXPECT_FALSE(work.fits(i, TrialNumbers(count + 1, 1.0)));
-        EXPECT_FALSE(work.fits(i, TrialNumbers(count, none)));
-        trials[i].assign(count, 1);
-    }
-    EXPECT_FALSE(table_text(figure, trials).empty());  // they are enough to tell it: under ASan none is missing
-}
-
-TEST(NumbersOfAudit, OfTheAveragesAreThoseOfTheStudy) {
-    const auto figure = figure_of("audit");
-    const std::atomic<bool> never = false;
-    const auto measured = [&](std::size_t claim) {
-        KnownTrials trial(1);
-        figure.experiment->compute(claim, trial, never);
-        EXPECT_TRUE(figure.experiment->fits(claim, trial[0])) << claim;
-        return trial[0];
-    };
-    EXPECT_NEAR(measured(1).at(0), 2.205, 0.001);  // explicit Euler at 20°, as published
-    EXPECT_NEAR(measured(6).at(0), 5.6, 0.1);      // beyond 130°, in ln
-    const auto from_rest = measured(7);
-    EXPECT_LT(from_rest.at(0), from_rest.at(1));  // θ₂ = 0 and 90°
-}
-
 }  // namespace numbers_test
 }  // namespace doppel

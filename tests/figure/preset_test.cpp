@@ -123,7 +123,7 @@ TEST(FigurePreset, IsCalledAsItWasGiven) {
     // a preset of one's own is no name that doppel knows
     const auto film = error_of([] { read_figure({"base", "base.toml", "", "base.toml"}); });
     EXPECT_NE(film.second.find("doppel render base.toml"), std::string::npos) << film.second;
-    const auto figure = error_of([] { read_preset({"x", "my/x.toml", "[scene]\nkind = \"audit\"", "my/x.toml"}); });
+    const auto figure = error_of([] { read_preset({"x", "my/x.toml", "[scene]\nkind = \"links\"", "my/x.toml"}); });
     EXPECT_NE(figure.second.find("doppel figure my/x.toml"), std::string::npos) << figure.second;
 }
 

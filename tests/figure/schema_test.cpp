@@ -127,7 +127,7 @@ TEST(Schema, KeepsKindsApart) {
     EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[sweep]"));
     EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[chart]\ncost = \"time\""));
     EXPECT_TRUE(accepts("[scene]\nkind = \"work-precision\"\n[chart]\ncost = \"time\""));
-    EXPECT_FALSE(accepts("[scene]\nkind = \"audit\"\n[system]"));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"work-precision\"\n[system]"));
 }
 
 }  // namespace schema_test

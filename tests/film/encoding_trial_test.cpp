@@ -1,5 +1,5 @@
 // What an encoder makes of recorded frames. Against a film that is written, read and compared pixel by pixel.
-#include "output/encoding_trial.hpp"
+#include "bench/encoders/encoding_trial.hpp"
 
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"

@@ -1,10 +1,15 @@
-// docs/encoders.csv, as `figure encoders` measured it: the default of H.264 is worth its place.
-#include "figure/encoder_settings.hpp"
-#include "figure/support.hpp"
+// docs/encoders.csv, as tests/bench/encoders measured it: the default of H.264 is worth its place.
+#include "bench/encoders/encoder_quality.hpp"
+#include "bench/encoders/encoder_settings.hpp"
+
+#include <gtest/gtest.h>
 
 #include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace doppel {
 namespace kept_encoders_test {
@@ -81,6 +86,23 @@ TEST(KeptEncoders, ASettingThatTookLessWouldBeFound) {
     settings["less of both"] = {0.88 * cpu, 0.98 * bytes};
     settings["less of one"] = {0.5 * cpu, 1.01 * bytes};
     EXPECT_EQ(better_than_default(settings), std::set<std::string>{"less of both"});
+}
+
+TEST(KeptEncoders, EqualQualityIsByTheWorstMeasure) {
+    const auto rows = [](double cpu_ms, double db_more) {
+        std::vector<EncodedRow> all;
+        for (const double crf : {15., 18., 21.})
+            all.push_back(
+                {crf, cpu_ms, 1000 * std::pow(2, (18 - crf) / 6), 50 + db_more + (18 - crf), 40, 0.999, 0.998});
+        return all;
+    };
+    const auto reference = rows(10, 0), better = rows(5, 3);
+    // 3 dB more are 3 of crf, of which 6 are twice the bytes
+    EXPECT_NEAR(equal_quality(better, reference).bytes, 1 / std::sqrt(2), 1e-12);
+    EXPECT_NEAR(equal_quality(better, reference).cpu, 0.5, 1e-12);
+    auto coarser = better;
+    for (std::size_t q = 0; q < 3; ++q) coarser[q].moving_psnr_db = 46 - 3 * static_cast<double>(q + 2);
+    EXPECT_NEAR(equal_quality(coarser, reference).bytes, std::sqrt(2), 1e-12);  // 40 dB, at crf 15
 }
 
 }  // namespace kept_encoders_test

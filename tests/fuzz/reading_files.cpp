@@ -76,8 +76,7 @@ const std::map<std::string, FigurePreset>& figures() {
             {"stability", {"stability.rows=2", "stability.columns=2", "stability.methods=[\"rk4\", \"taylor\"]"}},
             {"speed-accuracy",
              {"work_precision.problems=[\"P1\"]", "work_precision.models=[\"angles\"]",
-              "work_precision.methods=[\"rk4\"]", "work_precision.repeats=2"}},
-            {"audit", {}}};
+              "work_precision.methods=[\"rk4\"]", "work_precision.repeats=2"}}};
         for (const auto& [name, arguments] : presets) {
             std::vector<Override> overrides;
             for (const auto* argument : arguments) overrides.push_back(parse_set(argument));

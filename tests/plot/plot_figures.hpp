@@ -93,21 +93,6 @@ inline Figure sections(int count) {
     return figure;
 }
 
-inline Figure audit() {
-    using Tone = PlotTable::Tone;
-    PlotTable table{.columns = {{"figure", 0.6f}, {"claim", 3}, {"what we found", 4}, {"verdict", 1.2f}}};
-    for (int row = 1; row <= 12; ++row)
-        table.rows.push_back({{"F" + std::to_string(row), Tone::quiet},
-                              {"The average is positive, hence the motion is chaotic"},
-                              {"It is positive for perfectly regular motion too; the exponent needs renormalisation or "
-                               "the equations of the tangent."},
-                              {row % 2 ? "holds" : "does not hold", row % 2 ? Tone::good : Tone::bad}});
-    return {.title = "Claim by claim",
-            .subtitle = "what holds and what does not",
-            .table = table,
-            .captions = {"Double precision."}};
-}
-
 inline Figure crowded() {
     Figure figure = convergence();
     figure.title = "A title that goes on and on until no line of any picture could ever hold all of its many words";
@@ -138,8 +123,8 @@ inline Figure extremes() {
 }
 
 inline std::vector<Figure> all_figures() {
-    return {sweep(),     convergence(), map(false), map(true), sections(1), sections(3), sections(5),
-            sections(6), audit(),       crowded(),  twins(),   extremes(),  {}};
+    return {sweep(),     convergence(), map(false), map(true), sections(1), sections(3),
+            sections(5), sections(6),   crowded(),  twins(),   extremes(),  {}};
 }
 
 }  // namespace doppel

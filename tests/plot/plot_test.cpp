@@ -144,26 +144,6 @@ TEST(Plot, NamesAllThatIsNamed) {
     for (int order = 1; order <= 8; ++order) EXPECT_TRUE(says(eight, "order " + std::to_string(order))) << order;
 }
 
-TEST(Plot, ATableKeepsAllItsWords) {
-    for (const Size size : {Size{480, 270}, {1600, 900}, {300, 900}}) {
-        std::string all, expected;
-        const auto add = [](std::string& to, const std::string& text) {
-            std::copy_if(text.begin(), text.end(), std::back_inserter(to), [](char c) { return c != ' '; });
-        };
-        Figure figure = audit();
-        figure.title = figure.subtitle = "";
-        figure.captions.clear();
-        for (const Words& words : words_of(compose(figure, size, light))) add(all, words.text);
-        for (std::size_t c = 0; c < 4; ++c) {
-            add(expected, figure.table->columns[c].heading);
-            for (const auto& row : figure.table->rows) add(expected, row[c].text);
-        }
-        std::sort(all.begin(), all.end());
-        std::sort(expected.begin(), expected.end());
-        EXPECT_EQ(all, expected) << size.width;
-    }
-}
-
 TEST(Plot, SaysWhatCannotBeDrawn) {
     const auto refused = [](auto change) {
         Figure figure = sweep();
@@ -176,7 +156,6 @@ TEST(Plot, SaysWhatCannotBeDrawn) {
     refused([](Figure& f) { f.panels[0].y = {.low = 0, .high = 1, .logarithmic = true}; });
     refused([](Figure& f) { f.panels[0].right.reset(); });
     refused([](Figure& f) { f.panels[0].map = HeatMap{.columns = 2, .rows = 2, .values = {1, 2, 3}}; });
-    refused([](Figure& f) { f.table = PlotTable{}; });
     EXPECT_THROW(compose(sweep(), {480, 270}, light, 0), Error);
 }
 

@@ -1,4 +1,4 @@
-#include "output/encoding_trial.hpp"
+#include "bench/encoders/encoding_trial.hpp"
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
