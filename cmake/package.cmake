@@ -1,6 +1,6 @@
 # What `cmake --install` puts beside the program, and the Debian package: cmake --build --preset release --target package.
 include(GNUInstallDirs)
-set(pages ${PROJECT_BINARY_DIR}/pages)  # written by the program itself
+set(pages ${PROJECT_BINARY_DIR}/pages)  # of what the program says of itself
 
 install(TARGETS doppel)
 install(DIRECTORY presets DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel FILES_MATCHING PATTERN *.toml PATTERN *.json)
@@ -11,21 +11,20 @@ add_custom_command(
     OUTPUT ${pages}/made
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}/man
-    COMMAND doppel man --all ${pages}/man
+    COMMAND ${PROJECT_SOURCE_DIR}/packaging/manual-pages $<TARGET_FILE:doppel> ${pages}/man
     COMMAND gzip -9nr ${pages}/man
     COMMAND doppel completion bash > ${pages}/doppel
     COMMAND doppel completion zsh > ${pages}/_doppel
     COMMAND doppel completion fish > ${pages}/doppel.fish
     COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > ${pages}/changelog.gz
     COMMAND ${CMAKE_COMMAND} -E touch ${pages}/made
-    DEPENDS doppel CHANGELOG.md VERBATIM)
+    DEPENDS doppel CHANGELOG.md packaging/manual-pages VERBATIM)
 add_custom_target(pages ALL DEPENDS ${pages}/made)
 # OPTIONAL: there are none where the target doppel alone was built
 install(CODE "if(NOT EXISTS \"${pages}/made\")
     message(STATUS \"doppel: the manual pages and completions are not built, and left out; for them: cmake --build ${PROJECT_BINARY_DIR} --target pages\")
 endif()")
 install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL FILES_MATCHING PATTERN *.1.gz)
-install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man5 OPTIONAL FILES_MATCHING PATTERN *.5.gz)
 install(FILES ${pages}/doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
 install(FILES ${pages}/_doppel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions OPTIONAL)
 install(FILES ${pages}/doppel.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)

@@ -93,7 +93,6 @@ int run_program(int argc, char** argv) {
         add_init(app);
         add_schema(app);
         add_completion(app);
-        add_man(app);
         if (completes) {
             write_out(completions(app, {words.begin() + 2, words.end()}));
             return 0;

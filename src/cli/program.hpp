@@ -22,6 +22,5 @@ void add_check(CLI::App& app);
 void add_schema(CLI::App& app);
 void add_init(CLI::App& app);
 void add_completion(CLI::App& app);
-void add_man(CLI::App& app);  // of all commands added before
 
 }  // namespace doppel

@@ -115,18 +115,11 @@ bool begins_with(const Folder& folder, const std::string& name, std::string_view
     return bytes_of(folder, name, start.size()) == start;
 }
 
-/// ".TH DOPPEL-RENDER 1 "" "Doppel 1.0.0" "Doppel"", the first line of a manual page.
-static bool is_manual_page(std::string_view head) {
-    const auto line = head.substr(0, head.find('\n'));
-    return line.starts_with(".TH DOPPEL") && line.find("\"\" \"Doppel ") != std::string_view::npos;
-}
-
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written, const std::string& within) {
     if (written.contains(within + name)) return true;
     if (name.ends_with(".json")) return !manifest_of(folder, name).is_null();
     if (maker_of_picture(folder, name).starts_with("Doppel")) return true;
     const auto head = bytes_of(folder, name, 64);
-    if (is_manual_page(head)) return true;
     for (const std::string_view start : {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", "<!DOCTYPE html>\n"})
         if (head.starts_with(start) && std::string_view(head).substr(start.size()).starts_with("<!-- Doppel "))
             return true;

@@ -32,7 +32,7 @@ inline constexpr std::string_view pdf_mark = "%%EOF\n% Doppel";
 
 /// Whether Doppel made the regular file `name` there: a manifest lists it (as `within` + name), or its contents show it
 /// (a PNG of Doppel's, a manifest, the trials of a figure, a report or an SVG with a first comment "<!-- Doppel …", a PDF
-/// with a last one, a manual page by its title).
+/// with a last one).
 bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written,
                 const std::string& within = {});
 /// Whether manifests list it with a SHA-256, and it has none of these: somebody changed or replaced it.

@@ -131,7 +131,6 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"check", "butterfly", "--set", "system.lenght_m=1"}, "did you mean \"length_m\"?"},
         {{"compare", "nothing.png", "stdout"}, "nothing.png: there is no such file or folder"},
         {{"render", "butterfly", "-o", "-"}, "--out: this is not written to standard output; give a name, or ./- for"},
-        {{"man", "--all", "-"}, "--all: this is not written to standard output"},
     };
     for (const auto& [arguments, words] : cases) {
         const auto result = doppel(folder, arguments);

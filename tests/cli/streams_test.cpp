@@ -24,8 +24,8 @@ TEST(Streams, WhatCannotBePrintedIsExit4) {
         shell(folder, "\"$DOPPEL\" render triple --format png --size 64x64 --frames 0:2 -o two --progress none").code,
         0);
     for (const std::string command :
-         {"show butterfly", "list", "list methods", "schema", "man", "completion bash", "complete bash sim",
-          "check calm", "check fig6", "--help", "render --help", "--version", "compare one/calm/frames one/calm/frames",
+         {"show butterfly", "list", "list methods", "schema", "completion bash", "complete bash sim", "check calm",
+          "check fig6", "--help", "render --help", "--version", "compare one/calm/frames one/calm/frames",
           "compare one/calm/frames two/triple/frames"}) {
         for (const auto& [to, why] :
              {std::pair(">/dev/full", "No space left on device"), std::pair(">&-", "Bad file descriptor")}) {
