@@ -7,11 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <limits>
-#include <map>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,48 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    std::istringstream stream(text);
-    for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-    return parts;
-}
-
 /// The numbers that a file begins with: none where it says "max".
 std::vector<double> numbers_in(const fs::path& file) {
     std::ifstream stream(file);
     std::vector<double> numbers;
     for (double number = 0; stream >> number;) numbers.push_back(number);
     return numbers;
-}
-
-/// The group of this process that holds each controller; of version 2, which has one for all, under "".
-std::map<std::string, std::string> groups_of(const fs::path& root) {
-    // "4:cpu,cpuacct:/a/b"; version 2: "0::/a/b"
-    std::map<std::string, std::string> groups;
-    std::ifstream file(root / "proc/self/cgroup");
-    for (std::string line; std::getline(file, line);) {
-        const auto first = line.find(':'), second = line.find(':', first + 1);
-        if (second == std::string::npos) continue;
-        const auto path = line.substr(second + 1);
-        const auto names = split(line.substr(first + 1, second - first - 1), ',');
-        if (names.empty()) groups[""] = path;
-        for (const auto& name : names) groups[name] = path;
-    }
-    return groups;
-}
-
-/// Calls visit(folder) for the group's folder below a place where a controller is mounted, and those of all groups
-/// around it: each has limits of its own. `top` = the group that the mount shows at its place.
-void for_each_around(const fs::path& place, const fs::path& top, const fs::path& group,
-                     const std::function<void(const fs::path&)>& visit) {
-    const auto below = group.lexically_relative(top);
-    // of a group out of sight ("/..") only what is around it can be seen
-    const bool is_below = !below.empty() && *below.begin() != ".." && below != ".";
-    for (auto folder = is_below ? place / below : place;; folder = folder.parent_path()) {
-        visit(folder);
-        if (folder == place || folder == folder.parent_path()) return;
-    }
 }
 
 int cores_of(double quota, double period, int cores) {
@@ -99,43 +59,22 @@ Machine read_machine() {
 
 }  // namespace
 
-// Linux, Documentation/admin-guide/cgroup-v2.rst and cgroup-v1/; man 5 proc: mountinfo.
+// Linux, Documentation/admin-guide/cgroup-v2.rst
 Machine within_control_groups(Machine machine, const fs::path& root) {
-    const auto groups = groups_of(root);
-    std::ifstream mounts(root / "proc/self/mountinfo");
-    for (std::string line; std::getline(mounts, line);) {
-        // 36 35 98:0 TOP PLACE options … - TYPE source options
-        const auto words = split(line, ' ');
-        const auto dash = std::find(words.begin(), words.end(), "-");
-        if (words.size() < 5 || words.end() - dash < 4) continue;
-        const auto place = root / fs::path(words[4]).relative_path();
-        const auto visit = [&](const std::string& controller, const std::function<void(const fs::path&)>& read) {
-            if (const auto group = groups.find(controller); group != groups.end())
-                for_each_around(place, words[3], group->second, read);
-        };
-        if (dash[1] == "cgroup2")
-            visit("", [&](const fs::path& folder) {
-                if (const auto quota = numbers_in(folder / "cpu.max"); quota.size() == 2)
-                    machine.cores = cores_of(quota[0], quota[1], machine.cores);
-                if (const auto limit = numbers_in(folder / "memory.max"); !limit.empty())
-                    machine.memory = least(machine.memory, limit[0]);
-            });
-        if (dash[1] != "cgroup") continue;
-        for (const auto& controller : split(dash[3], ',')) {
-            if (controller == "cpu")
-                visit(controller, [&](const fs::path& folder) {
-                    const auto quota = numbers_in(folder / "cpu.cfs_quota_us"),
-                               period = numbers_in(folder / "cpu.cfs_period_us");
-                    if (!quota.empty() && !period.empty()) machine.cores = cores_of(quota[0], period[0], machine.cores);
-                });
-            if (controller == "memory")
-                visit(controller, [&](const fs::path& folder) {
-                    if (const auto limit = numbers_in(folder / "memory.limit_in_bytes"); !limit.empty())
-                        machine.memory = least(machine.memory, limit[0]);
-                });
-        }
+    const auto top = root / "sys/fs/cgroup";
+    std::ifstream file(root / "proc/self/cgroup");
+    std::string line;  // "0::/a/b"
+    while (std::getline(file, line) && !line.starts_with("0::/")) {
     }
-    return machine;
+    // a group has its own limits and those of all around it; of one out of sight ("/..") only the top can be seen
+    const bool is_seen = line.starts_with("0::/") && line.find("/..") == std::string::npos;
+    for (auto folder = is_seen ? top / line.substr(4) : top;; folder = folder.parent_path()) {
+        if (const auto quota = numbers_in(folder / "cpu.max"); quota.size() == 2)
+            machine.cores = cores_of(quota[0], quota[1], machine.cores);
+        if (const auto limit = numbers_in(folder / "memory.max"); !limit.empty())
+            machine.memory = least(machine.memory, limit[0]);
+        if (folder == top || folder == folder.parent_path()) return machine;
+    }
 }
 
 std::size_t affordable(std::size_t bytes, std::size_t most, const Machine& machine) {

@@ -12,12 +12,12 @@ struct Machine {
     std::uintmax_t memory = 0;  // bytes
 };
 
-/// By the affinity mask and the size of the memory, and by the limits of control groups (of both versions) and of the
+/// By the affinity mask and the size of the memory, and by the limits of control groups (version 2) and of the
 /// address space; read once.
 const Machine& this_machine();
 
-/// `machine` with what the control groups of this process leave of it. Below `root` are proc/self/cgroup,
-/// proc/self/mountinfo and the folders that these name. A share of a core counts as a whole one.
+/// `machine` with what the control groups of this process leave of it. Below `root` are proc/self/cgroup and
+/// sys/fs/cgroup. A share of a core counts as a whole one.
 Machine within_control_groups(Machine machine, const std::filesystem::path& root);
 
 /// How many things of so many bytes may exist at once: `most`, or as many of them as take no more than a quarter

@@ -32,15 +32,12 @@ protected:
         fs::path(DOPPEL_TEST_OUTPUT) / "ControlGroups" / testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
-const char* const unified = "35 24 0:30 / /sys/fs/cgroup rw,nosuid - cgroup2 cgroup2 rw,nsdelegate";
-
 TEST_F(ControlGroups, WithoutAnyThereIsAllOfTheMachine) {
     expect(bare.cores, bare.memory);
 }
 
 TEST_F(ControlGroups, OfVersion2LimitCoresAndMemory) {
     put("proc/self/cgroup", "0::/user.slice/job");
-    put("proc/self/mountinfo", unified);
     put("sys/fs/cgroup/user.slice/job/cpu.max", "250000 100000");
     put("sys/fs/cgroup/user.slice/job/memory.max", "1073741824");
     expect(3, std::uintmax_t{1} << 30);  // two and a half cores
@@ -51,40 +48,20 @@ TEST_F(ControlGroups, OfVersion2LimitCoresAndMemory) {
 
 TEST_F(ControlGroups, OutsideLimitToo) {
     put("proc/self/cgroup", "0::/user.slice/job");
-    put("proc/self/mountinfo", unified);
     put("sys/fs/cgroup/user.slice/job/cpu.max", "800000 100000");
     put("sys/fs/cgroup/user.slice/cpu.max", "50000 100000");
     put("sys/fs/cgroup/user.slice/memory.max", "4096");
     expect(1, 4096);
 }
 
-TEST_F(ControlGroups, OfVersion1LimitByController) {
-    // as in a container: the mount shows the container's group at its place
-    put("proc/self/cgroup", "4:memory:/docker/ab12\n2:cpu,cpuacct:/docker/ab12/inner\n1:name=systemd:/docker/ab12");
-    put("proc/self/mountinfo",
-        "31 23 0:28 / /sys/fs/cgroup rw - tmpfs tmpfs rw,mode=755\n"
-        "32 31 0:29 /docker/ab12 /sys/fs/cgroup/cpu,cpuacct ro shared:9 - cgroup cgroup rw,cpu,cpuacct\n"
-        "33 31 0:32 /docker/ab12 /sys/fs/cgroup/memory ro - cgroup cgroup rw,memory");
-    put("sys/fs/cgroup/cpu,cpuacct/inner/cpu.cfs_quota_us", "-1");
-    put("sys/fs/cgroup/cpu,cpuacct/inner/cpu.cfs_period_us", "100000");
-    put("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "200000");
-    put("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000");
-    put("sys/fs/cgroup/memory/memory.limit_in_bytes", "536870912");
-    expect(2, std::uintmax_t{512} << 20);
-    put("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712");  // none
-    expect(2, bare.memory);
-}
-
 TEST_F(ControlGroups, OutOfSightLeaveWhatIsAroundThem) {
     put("proc/self/cgroup", "0::/../elsewhere");
-    put("proc/self/mountinfo", unified);
     put("sys/fs/cgroup/cpu.max", "400000 100000");
     expect(4, bare.memory);
 }
 
 TEST_F(ControlGroups, ThatMakeNoSenseLimitNothing) {
     put("proc/self/cgroup", "nonsense\n0:\n0::");
-    put("proc/self/mountinfo", std::string("- - -\n\n1 2 3\n") + unified);
     put("sys/fs/cgroup/cpu.max", "0 0");
     put("sys/fs/cgroup/memory.max", "x");
     expect(bare.cores, bare.memory);
