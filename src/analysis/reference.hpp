@@ -49,12 +49,12 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
 /// would cost too much, and of a motion in quad, by Taylor series as fine as its own precision allows; how far those
 /// may be off is told by others of another tolerance, from a start some roundings away.
 struct ReferenceTrajectory : ErrorMeasure {
-    std::vector<std::vector<Quad>> seen;  // coordinates() at samples 0, 1 …
+    std::vector<std::vector<Quad>> seen{};  // coordinates() at samples 0, 1 …
     /// How far that may be off: rad, or units of `reach`, the largest so far. Where `is_wider`, what one rounding of the
     /// motion's numbers to its precision does: they are not known better.
-    std::vector<double> uncertainty;
+    std::vector<double> uncertainty{};
     bool is_wider = false;  // in more digits than the motion's own
-    std::string failure;    // why it could not go on
+    std::string failure{};  // why it could not go on
 
     /// How far a motion is from it at a sample that was seen.
     double off_at(std::size_t sample, const Observation& observed) const {

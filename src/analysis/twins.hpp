@@ -16,18 +16,10 @@ struct Twins {
     Pendulum<double> a, b;
 };
 
-/// The equations and the step of one side of all twins.
-struct TwinSide {
-    Model model = Model::angles;
-    std::string method = "euler";
-    long steps_per_sample = 250;
-    friend bool operator==(const TwinSide&, const TwinSide&) = default;
-};
-
+/// How they are stepped and sampled.
 struct TwinRun {
-    TwinSide a, b;
-    double sample_interval = 1.0 / 120;  // s
-    long samples = 0;                    // without the one at the start
+    MotionSpec a, b;   // the model, method, steps and sample interval of one side of all twins
+    long samples = 0;  // without the one at the start
 };
 
 /// How many pendulums are best stepped at once.

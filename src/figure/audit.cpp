@@ -81,7 +81,7 @@ std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, 
     return all;
 }
 
-std::vector<double> averages(const std::vector<SideTwins>& sides, const TwinSide& method,
+std::vector<double> averages(const std::vector<SideTwins>& sides, const MotionSpec& method,
                              const std::atomic<bool>& stop) {
     std::vector<Twins> twins;
     for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});

@@ -45,7 +45,7 @@ SideTwins mass_twins(int theta1_deg, int theta2_deg, double ratio);
 /// The distances of a pair at samples 0 … count.
 std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, const std::atomic<bool>& stop);
 /// The study's averages over 25 s.
-std::vector<double> averages(const std::vector<SideTwins>& sides, const TwinSide& method,
+std::vector<double> averages(const std::vector<SideTwins>& sides, const MotionSpec& method,
                              const std::atomic<bool>& stop);
 
 }  // namespace doppel

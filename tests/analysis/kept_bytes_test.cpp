@@ -77,7 +77,7 @@ std::string hash_of_exponents() {
     return hash.text();
 }
 
-std::string hash_of_twins(const TwinSide& side, std::size_t links) {
+std::string hash_of_twins(const MotionSpec& side, std::size_t links) {
     std::vector<Twins> twins;
     for (int i = 0; i < 5; ++i) {
         auto p = released(links), other = p;
@@ -104,8 +104,9 @@ std::map<std::string, std::string> hashes() {
     }
     all["exponents"] = hash_of_exponents();
     for (const char* method : {"euler", "rk4"}) {
-        all[fmt::format("twins {} angles 2", method)] = hash_of_twins({Model::angles, method, 250}, 2);
-        all[fmt::format("twins {} constraints 3", method)] = hash_of_twins({Model::constraints, method, 250}, 3);
+        all[fmt::format("twins {} angles 2", method)] = hash_of_twins({.model = Model::angles, .method = method}, 2);
+        all[fmt::format("twins {} constraints 3", method)] =
+            hash_of_twins({.model = Model::constraints, .method = method}, 3);
     }
     return all;
 }
