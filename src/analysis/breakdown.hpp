@@ -41,6 +41,7 @@ struct WatchedMotion {
 
     /// On to the next sample. False where the method breaks down. Errors: those of advanced().
     bool advance(const std::atomic<bool>& stop);
+    double evaluations() const { return static_cast<double>(motion->effort().evaluations); }
 };
 
 }  // namespace doppel

@@ -34,36 +34,27 @@ MotionSpec at_setting(MotionSpec motion, long n) {
     return motion;
 }
 
-/// Watched, with its time.
-struct DriftMotion : WatchedMotion {
-    DriftMotion(const MotionSpec& spec, const Pendulum<double>& chain)
-        : WatchedMotion(spec, chain.potential_range(), chain.reach()), interval(spec.sample_interval) {}
+WatchedMotion watched(const MotionSpec& spec) {
+    const auto chain = spec.chain->cast<double>();
+    return {spec, chain.potential_range(), chain.reach()};
+}
 
-    bool advance(const std::atomic<bool>& stop) {
-        ++sample;
-        return WatchedMotion::advance(stop);
-    }
-    /// Of the last sample, or of that so many later, s.
-    double time(long later = 0) const {
-        return static_cast<double>(sample + later) * static_cast<double>(interval.numerator) /
-               static_cast<double>(interval.denominator);
-    }
-    double evaluations() const { return static_cast<double>(motion->effort().evaluations); }
-
-    Rational interval;
-    long sample = 0;
-};
+/// Of a sample, s.
+double time_of(const MotionSpec& spec, long sample) {
+    return static_cast<double>(sample) * static_cast<double>(spec.sample_interval.numerator) /
+           static_cast<double>(spec.sample_interval.denominator);
+}
 
 /// Evaluations a second between the first sample and the last, or the last before a breakdown; NaN where there are not
 /// two.
 double evaluation_rate(const MotionSpec& spec, double duration_s, const std::atomic<bool>& stop) {
-    DriftMotion motion(spec, spec.chain->cast<double>());
+    auto motion = watched(spec);
     double first = NAN, rate = NAN;
-    while (motion.time() < duration_s && motion.advance(stop))
-        if (std::isnan(first))
+    for (long sample = 0; time_of(spec, sample) < duration_s && motion.advance(stop); ++sample)
+        if (sample == 0)
             first = motion.evaluations();
         else
-            rate = (motion.evaluations() - first) / motion.time(-1);
+            rate = (motion.evaluations() - first) / time_of(spec, sample);
     return rate;
 }
 
@@ -102,26 +93,28 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
     constexpr double calibration_s = 200;
     spec.follows_turns = false;
     spec = calibrated(spec, evaluations_per_s, std::min(calibration_s, times_s.back()), stop);
-    const auto chain = spec.chain->cast<double>();
-    const double shortest = *std::min_element(chain.length.begin(), chain.length.end());
+    const auto lengths = spec.chain->cast<double>().length;
+    const double shortest = *std::min_element(lengths.begin(), lengths.end());
     DriftRun made;
     made.energy_error = made.length_error = std::vector<double>(times_s.size(), NAN);
     made.setting = is_adaptive(spec) ? static_cast<double>(spec.tolerance)
                                      : quotient(spec.sample_interval, {spec.steps_per_sample, 1})->value();
 
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-    DriftMotion motion(spec, chain);
+    auto motion = watched(spec);
+    long sample = 0;
     for (std::size_t point = 0; point < times_s.size() && std::isnan(made.broken_at_s); ++point)
-        while (motion.time(1) <= times_s[point]) {
+        while (time_of(spec, sample + 1) <= times_s[point]) {
+            ++sample;
             if (!motion.advance(stop) || motion.energy_error >= 1 || motion.length_error >= shortest) {
-                made.broken_at_s = motion.time();
+                made.broken_at_s = time_of(spec, sample);
                 break;
             }
             made.energy_error[point] = std::fmax(made.energy_error[point], motion.energy_error);
             made.length_error[point] = std::fmax(made.length_error[point], motion.length_error);
         }
     made.cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
-    made.evaluations_per_s = motion.evaluations() / motion.time();
+    made.evaluations_per_s = motion.evaluations() / time_of(spec, sample);
     return made;
 }
 

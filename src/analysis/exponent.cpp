@@ -99,13 +99,13 @@ constexpr std::size_t blocks = 20;
 Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
     double mean = 0, error = 0, whole = 0, last = 0;
     for (const double value : local) mean += value / static_cast<double>(local.size());
-    for (std::size_t count = 4 * blocks; count >= blocks / 4; count /= 2)
-        if (count <= local.size()) {
-            last = standard_error(local, count);
-            error = std::max(error, last);
-            if (count <= blocks && whole == 0) whole = last;
-        }
-    if (whole > 0 && last > whole) error *= last / whole;
+    for (std::size_t count = 4 * blocks; count >= blocks / 4; count /= 2) {
+        if (count > local.size()) continue;
+        last = standard_error(local, count);
+        error = std::max(error, last);
+        if (count == blocks) whole = last;
+    }
+    if (last > whole) error *= last / whole;
     // of 48 runs in two chaotic seas 1 is beyond, of 24 from 70°, where orbits stick, 6, of 24 in a transient 15
     constexpr double unlike = 3;
     const bool is_settled = !(error > unlike * whole);

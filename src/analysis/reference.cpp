@@ -126,42 +126,23 @@ MotionSpec some_roundings_away(MotionSpec spec) {
     return spec;
 }
 
-/// Both to the next sample; else the trajectory says why not.
-bool advanced(Motion& motion, Motion& beside, ReferenceTrajectory& trajectory, const std::atomic<bool>& stop) {
-    return advanced(motion, stop, &trajectory.failure) && advanced(beside, stop, &trajectory.failure);
-}
-
-/// In the motion's own precision, with its uncertainty: from how far another is off that starts some roundings away.
-ReferenceTrajectory own_trajectory(Motion& motion, Motion& beside, const ErrorMeasure& measure, long samples,
-                                   double enough, const std::atomic<bool>& stop) {
-    ReferenceTrajectory own{measure};
+/// A motion and another beside it, sample by sample, `further` times as far as to where `caution` times what they are apart
+/// is more than `enough`; its uncertainty is the largest of that so far.
+ReferenceTrajectory followed(Motion& motion, Motion& beside, const ErrorMeasure& measure, long samples, double enough,
+                             double further, const std::atomic<bool>& stop) {
+    ReferenceTrajectory all{measure};
+    const auto advance = [&](Motion& one) { return advanced(one, stop, &all.failure); };
+    long last = samples, sample = -1;
     double worst = 0;
     do {
-        own.seen.push_back(measure.coordinates(motion.observe()));
-        const double off = own.off_at(own.uncertainty.size(), beside.observe());
-        if (!std::isfinite(off)) {
-            own.seen.pop_back();
-            break;
-        }
-        own.uncertainty.push_back(worst = std::max(worst, caution * off));
-    } while (worst <= enough && static_cast<long>(own.seen.size()) <= samples && advanced(motion, beside, own, stop));
-    return own;
-}
-
-/// Of a motion in double, in quad; `beside` is as fine as double can be.
-ReferenceTrajectory wide_trajectory(Motion& motion, Motion& beside, const ErrorMeasure& measure, long samples,
-                                    double enough, const std::atomic<bool>& stop) {
-    constexpr double further = 1.25;  // than a run in double is of use; quad at that tolerance gets as much further
-    ReferenceTrajectory wide{measure};
-    wide.is_wider = true;
-    long last = samples, sample = 0;
-    do {
-        wide.seen.push_back(measure.coordinates(motion.observe()));
-        sample = static_cast<long>(wide.seen.size()) - 1;
-        if (last == samples && !(wide.off_at(wide.seen.size() - 1, beside.observe()) <= enough))
+        ++sample;
+        all.seen.push_back(measure.coordinates(motion.observe()));
+        const double apart = caution * all.off_at(all.seen.size() - 1, beside.observe());
+        all.uncertainty.push_back(worst = apart <= worst ? worst : apart);
+        if (last == samples && !(apart <= enough))
             last = std::min(samples, std::lround(further * static_cast<double>(sample)));
-    } while (sample < last && advanced(motion, beside, wide, stop));
-    return wide;
+    } while (sample < last && advance(motion) && advance(beside));
+    return all;
 }
 
 }  // namespace
@@ -174,8 +155,9 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
     };
     const bool quad = spec.precision == Precision::in_quad;
     const auto fine = made(spec, quad ? "1e-33" : "1e-15");
-    auto own = own_trajectory(*fine, *made(some_roundings_away(spec), quad ? "3e-33" : "3e-15"), measure, samples,
-                              enough, stop);
+    auto own =
+        followed(*fine, *made(some_roundings_away(spec), quad ? "3e-33" : "3e-15"), measure, samples, enough, 1, stop);
+    if (!std::isfinite(own.uncertainty.back())) own.seen.pop_back(), own.uncertainty.pop_back();
     const auto bodies = static_cast<double>(spec.parts ? spec.parts->particles.size() : spec.chain->links());
     // series by a tape take as long as those of so many ideal links; where joints stick, steps are tiny
     constexpr double of_tape = 30;
@@ -183,9 +165,12 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
     if (quad || work > most_work || (spec.physical && !spec.physical->friction.coulomb.empty())) return own;
     auto in_quad = spec;
     in_quad.precision = Precision::in_quad;
-    auto wide = wide_trajectory(*made(in_quad, "1e-20"), *made(spec, "1e-15"), measure, samples, enough, stop);
+    constexpr double further = 1.25;  // than a run in double is of use; quad at that tolerance gets as much further
+    auto wide =
+        followed(*made(in_quad, "1e-20"), *made(spec, "1e-15"), measure, samples, caution * enough, further, stop);
+    wide.is_wider = true;
     // a run in double begins at numbers that were rounded once; that it errs by less may be chance
-    wide.uncertainty.resize(wide.seen.size());
+    wide.uncertainty.assign(wide.seen.size(), 0);
     for (std::size_t sample = 0; sample < wide.seen.size() && !own.uncertainty.empty(); ++sample)
         wide.uncertainty[sample] =
             own.uncertainty[std::min(sample, own.uncertainty.size() - 1)] / (caution * roundings_away);

@@ -227,16 +227,14 @@ std::vector<const Ladder*> best_models(std::span<const Ladder> ladders, Cost cos
         }
         return count;
     };
-    std::map<std::string, std::pair<int, const Ladder*>> best;  // by method: − its wins
-    for (const auto& ladder : ladders) {
-        const std::pair found(-wins(ladder), &ladder);
-        auto& known = best.try_emplace(ladder.solver.name(), found).first->second;
-        known = std::min(known, found);
-    }
-    std::vector<const Ladder*> models;
-    for (const auto& [name, found] : best) models.push_back(found.second);
-    std::sort(models.begin(), models.end());
-    return models;
+    std::vector<const Ladder*> best;
+    for (const auto& ladder : ladders)
+        if (std::none_of(ladders.begin(), ladders.end(), [&](const Ladder& other) {
+                return other.solver.name() == ladder.solver.name() &&
+                       std::pair(wins(other), &ladder) > std::pair(wins(ladder), &other);
+            }))
+            best.push_back(&ladder);
+    return best;
 }
 
 std::vector<std::string> ranked(std::span<const std::vector<Ladder>> problems, Cost cost,

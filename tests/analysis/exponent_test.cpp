@@ -213,40 +213,6 @@ TEST(Exponent, UncertaintyIsNotMuchMoreThanTheScatter) {
     EXPECT_LT(scatter / uncertainty, 1.5);
 }
 
-TEST(Exponent, UncertaintyIsTheGreatestOfBlocksOfGrowingLength) {
-    // how much the tangent grows in each of 20 s, from runs that end after it; then the errors of the mean of 20, 10 and 5
-    // blocks, independent within each
-    constexpr int parts = 20;
-    constexpr double transient_s = 10, end_s = transient_s + parts;
-    const auto run = [&](int seconds) {
-        const ExponentSpec spec{.duration_s = transient_s + seconds, .transient_s = transient_s, .tolerance = 1e-12};
-        return largest_exponent(from_rest({140, 0}), spec, never);
-    };
-    std::vector<double> grown;  // of ln|δ|, 1/s
-    double before = 0;
-    for (int seconds = 1; seconds <= parts; ++seconds) {
-        const double all = run(seconds).value * seconds;
-        grown.push_back(all - std::exchange(before, all));
-    }
-    double greatest = 0, whole = 0, last = 0;
-    // two-sided 68.27 % of Student's distribution
-    for (const auto& [blocks, student] : {std::pair{20, 1.0270}, {10, 1.0587}, {5, 1.1416}}) {
-        const int length = parts / blocks;
-        double square = 0;
-        for (int k = 0; k < blocks; ++k) {
-            double block = 0;
-            for (int i = 0; i < length; ++i) block += grown[static_cast<std::size_t>(k * length + i)] / length;
-            square += std::pow(block - before / parts, 2);
-        }
-        last = student * std::sqrt(square / (blocks * (blocks - 1)));
-        greatest = std::max(greatest, last);
-        if (blocks == parts) whole = last;
-    }
-    greatest *= std::max(1.0, last / whole);
-    const double expected = std::sqrt(1.25) * std::hypot(greatest, std::log(end_s / transient_s) / parts);
-    EXPECT_NEAR(run(parts).uncertainty / expected, 1, 2e-3);  // measured MEASURED
-}
-
 TEST(Exponent, OfATransientSaysThatItsStretchesDiffer) {
     // a weak drive: chaos for as long as the run, then a cycle; 38 % of such exponents are within their uncertainty
     auto driven = physical(from_rest({120}));

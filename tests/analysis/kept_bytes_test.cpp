@@ -39,13 +39,11 @@ private:
 };
 
 Pendulum<double> released(std::size_t links) {
-    Pendulum<double> p;
-    for (auto* numbers : {&p.mass, &p.length, &p.angle, &p.rate}) numbers->clear();
+    Pendulum<double> p{.mass = {}, .length = {}, .angle = {}, .rate = std::vector<double>(links, 0)};
     for (std::size_t i = 0; i < links; ++i) {
         p.mass.push_back(1 + 0.25 * static_cast<double>(i));
         p.length.push_back(1 - 0.125 * static_cast<double>(i % 3));
         p.angle.push_back(2 + 0.25 * static_cast<double>(i));
-        p.rate.push_back(0);
     }
     return p;
 }

@@ -100,26 +100,6 @@ TEST(Section, ReturnsThatAllButTouchAreFound) {
     }
 }
 
-TEST(Section, OfSmallSwingsIsAnEllipse) {
-    // unit masses and lengths: q± = θ1 ± θ2/√2 swing on their own, with ω² = (2 ∓ √2) g and energies
-    // (2 ± √2)/4 (q±′² + ω² q±²), each an ellipse in the section's plane
-    const double energy_J = 1e-6, root = std::sqrt(0.5);
-    for (const auto& release : releases_of_energy({}, energy_J, 6)) {
-        double plus = 0;
-        for (const auto& point : poincare_section(release, {.crossings = 40}, never)) {
-            const auto y = state_at(release, point);
-            const double half = 9.8 * y[1] * y[1] / 2;
-            const double now_plus = (1 + root) / 2 * (std::pow(y[2] + root * y[3], 2) + (2 - 2 * root) * half);
-            const double now_minus = (1 - root) / 2 * (std::pow(y[2] - root * y[3], 2) + (2 + 2 * root) * half);
-            EXPECT_NEAR((now_plus + now_minus) / energy_J, 1, 3e-7);  // measured 5e-8
-            if (plus > 0) {
-                EXPECT_NEAR((now_plus - plus) / energy_J, 0, 2e-7);  // measured 2e-8
-            }
-            plus = now_plus;
-        }
-    }
-}
-
 TEST(Section, IsItsOwnMirrorImageBackwardsInTime) {
     // (−θ1, −θ2, p1, p2) is the motion run backwards
     const auto release = releases_of_energy(odd_one(), 12, 7)[4];

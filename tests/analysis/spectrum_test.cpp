@@ -85,36 +85,22 @@ private:
     static Eigen::Index links(const PhysicalPendulum<double>& p) { return static_cast<Eigen::Index>(p.chain.links()); }
 };
 
-/// C_jk = −∂Q_j/∂ω_k of viscous joints, of drag on arms, on ends and of the air met.
-Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd& theta, const Eigen::VectorXd& omega,
-                        double t) {
+/// C_jk = −∂Q_j/∂ω_k of viscous joints, of drag on arms and on ends by their velocity.
+Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd& theta, const Eigen::VectorXd& omega) {
     const auto n = theta.size();
     const auto& f = p.friction;
     const auto of = [](const std::vector<double>& list, Eigen::Index i) {
         return list.empty() ? 0.0 : list[static_cast<std::size_t>(i)];
     };
     Eigen::MatrixXd c = Eigen::MatrixXd::Zero(n, n), way = Eigen::MatrixXd::Zero(2, n);  // ∂v/∂ω of a link's end
-    const double nu = p.pivot.frequency;
-    Eigen::Vector2d v = -nu * std::sin(nu * t + p.pivot.phase) * Eigen::Vector2d(p.pivot.x, p.pivot.y);
     for (Eigen::Index i = 0; i < n; ++i) {
         Eigen::VectorXd joint = Eigen::VectorXd::Unit(n, i);
         if (i > 0) joint[i - 1] = -1;
         c += of(f.viscous, i) * joint * joint.transpose();
         c(i, i) += of(f.arm_linear, i) + 2 * of(f.arm_quadratic, i) * std::abs(omega[i]);
-        const auto u = static_cast<std::size_t>(i);
-        const double first = p.chain.mass[u] * p.center[u], by_arm = first / (p.inertia[u] + first * p.center[u]);
-        const Eigen::Vector2d across(std::cos(theta[i]), std::sin(theta[i]));
-        Eigen::VectorXd met = by_arm * way.transpose() * across;  // ∂/∂ω of the rate that meets the air
-        met[i] += 1;
-        const double rate = omega[i] + by_arm * across.dot(v);
-        c += 2 * of(f.air_quadratic, i) * std::abs(rate) * met * met.transpose();
         way.col(i) =
             p.chain.length[static_cast<std::size_t>(i)] * Eigen::Vector2d(std::cos(theta[i]), std::sin(theta[i]));
-        v += way.col(i) * omega[i];
-        Eigen::Matrix2d by_speed = of(f.drag_linear, i) * Eigen::Matrix2d::Identity();
-        if (const double speed = v.norm(); speed > 0)
-            by_speed += of(f.drag_quadratic, i) * (speed * Eigen::Matrix2d::Identity() + v * v.transpose() / speed);
-        c += way.transpose() * by_speed * way;
+        c += of(f.drag_linear, i) * way.transpose() * way;
     }
     return c;
 }
@@ -129,7 +115,7 @@ double mean_contraction(const PhysicalPendulum<double>& p, double seconds, int s
         const Eigen::VectorXd state = chain.layout.of_links(y);
         const auto n = state.size() / 2;
         const Eigen::VectorXd theta = state.head(n), omega = state.tail(n);
-        return -lagrange.mass(theta).ldlt().solve(damping(p, theta, omega, chain.layout.time_of(y))).trace();
+        return -lagrange.mass(theta).ldlt().solve(damping(p, theta, omega)).trace();
     };
     double sum = now();
     for (int i = 1; i <= steps; ++i) {
@@ -155,14 +141,10 @@ TEST(Spectrum, SumsToWhatFrictionDoesToTheVolume) {
     three.friction.arm_linear = {0.02, 0, 0.03};
     three.friction.drag_linear = {0, 0.02, 0.03};
     EXPECT_LT(apart(three, 10, 20000), 1e-11);  // measured 4e-13
-    // driven, with drag; the squares of rates have corners at 0
-    EXPECT_LT(apart(driven_bodies<double>(2), 5, 20000), 1e-11);  // measured 8e-14
-    auto airy = two;
-    airy.friction.air_quadratic = {0.05, 0.08};
-    airy.pivot = {0.2, 0.1, 5.5, 0.5};
-    EXPECT_LT(apart(airy, 5, 20000), 2e-7);  // measured 2.4e-8
+    // driven; the squares of rates have corners at 0
     auto arms = two;
     arms.friction.arm_quadratic = {0.05, 0.08};
+    arms.pivot = {0.2, 0.1, 5.5, 0.5};
     EXPECT_LT(apart(arms, 5, 20000), 4e-7);  // measured 7e-8
 }
 
@@ -195,7 +177,7 @@ std::vector<double> real_parts(const PhysicalPendulum<double>& p) {
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     all.topRightCorner(n, n).setIdentity();
     all.bottomLeftCorner(n, n) = -mass.solve(lagrange.stiffness);
-    all.bottomRightCorner(n, n) = -mass.solve(damping(p, none, none, 0));
+    all.bottomRightCorner(n, n) = -mass.solve(damping(p, none, none));
     const Eigen::VectorXd real = all.eigenvalues().real();
     std::vector<double> parts(real.data(), real.data() + real.size());
     std::sort(parts.rbegin(), parts.rend());
