@@ -174,10 +174,6 @@ void demand_smooth(const PhysicalPendulum<double>& p) {
             "come to rest and let go again");
 }
 
-bool is_regular(const Exponent& exponent) {
-    return exponent.value <= 1.5 * exponent.uncertainty;
-}
-
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     using Two = DoublePendulum<Dual<double, 1>>;
     using Chain = AngleChain<Dual<double, 1>, Eigen::Dynamic>;

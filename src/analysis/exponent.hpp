@@ -30,7 +30,9 @@ struct Exponent {
 
 /// Whether the exponent cannot be told from 0, as for regular motion: up to 1.5 times its uncertainty (regular
 /// motions had up to 0.8, of 40).
-bool is_regular(const Exponent& exponent);
+inline bool is_regular(const Exponent& exponent) {
+    return exponent.value <= 1.5 * exponent.uncertainty;
+}
 
 /// The largest exponent of the motion that `p` is released into, any number of links, by the tangent equations in
 /// (θ, ω). The time, by which a driven pendulum moves, is given: no exponent is its own.

@@ -177,14 +177,6 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
     return wide;
 }
 
-double ErrorHistory::at(std::size_t sample) const {
-    return sample < error.size() ? error[sample] : std::numeric_limits<double>::infinity();
-}
-
-long ErrorHistory::last_within(double allowed) const {
-    return std::upper_bound(error.begin(), error.end(), allowed) - error.begin() - 1;
-}
-
 ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double enough,
                            const std::atomic<bool>& stop) {
     auto watched = spec;

@@ -2,6 +2,8 @@
 
 #include "integrate/motion.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -85,8 +87,14 @@ struct ErrorHistory {
     long effort_samples = 0;    // up to that one
     std::string failure;        // why it, or the reference, could not go on
 
-    double at(std::size_t sample) const;     // infinity where nothing was seen that far
-    long last_within(double allowed) const;  // the last sample before an error is greater; −1 = none
+    /// Infinity where nothing was seen that far.
+    double at(std::size_t sample) const {
+        return sample < error.size() ? error[sample] : std::numeric_limits<double>::infinity();
+    }
+    /// The last sample before an error is greater; −1 = none.
+    long last_within(double allowed) const {
+        return std::upper_bound(error.begin(), error.end(), allowed) - error.begin() - 1;
+    }
 };
 
 /// The run of `spec` beside the reference, sample by sample; errors until it is off by more than `enough`, breaks down,

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace doppel {
 namespace {
@@ -60,15 +59,6 @@ private:
     Quad time_ = 0;                          // s, where the step starts: a sum of tens of thousands
 };
 
-/// Point number k of a sequence that fills the unit square evenly, however many are taken.
-/// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences: multiples of 1/ρ and 1/ρ², where
-///         ρ³ = ρ + 1.
-std::pair<double, double> spread(int k) {
-    constexpr double rho = 1.324717957244746;
-    const auto part = [](double x) { return x - std::floor(x); };
-    return {part(0.5 + k / rho), part(0.5 + k / (rho * rho))};
-}
-
 }  // namespace
 
 std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const SectionSpec& spec,
@@ -88,7 +78,9 @@ std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const Sect
 
 /// On the section, with D = −θ2, the energy above that of hanging is
 ///     E = ½ l1² (m1 + m2 sin²θ2) ω1² + p2² / (2 m2 l2²) + m2 g l2 (1 − cosθ2) ,
-/// so that |p2| has a greatest value at each θ2, and ω1 follows.
+/// so that |p2| has a greatest value at each θ2, and ω1 follows. Points are spread by multiples of 1/ρ and 1/ρ², where
+/// ρ³ = ρ + 1: they fill the unit square evenly, however many are taken.
+/// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences.
 std::vector<Pendulum<double>> releases_of_energy(const Pendulum<double>& p, double energy_J, int count) {
     if (!(energy_J > 0) || !(p.gravity >= 0))
         throw bad_input("a section takes an energy > 0 J and a gravity ≥ 0; they are {} J and {} m/s²", energy_J,
@@ -96,13 +88,14 @@ std::vector<Pendulum<double>> releases_of_energy(const Pendulum<double>& p, doub
     const double m1 = p.mass[0], m2 = p.mass[1], l1 = p.length[0], l2 = p.length[1];
     const double weight = m2 * p.gravity * l2, inertia = m2 * l2 * l2;
     const double widest = std::acos(std::max(-1.0, 1 - energy_J / weight));
+    constexpr double rho = 1.324717957244746;
     std::vector<Pendulum<double>> releases;
     for (int k = 0; k < count; ++k) {
-        const auto [u, v] = spread(k);
-        const double theta2 = widest * (2 * u - 1);
+        const double u = 0.5 + k / rho, v = 0.5 + k / (rho * rho);  // their fractions
+        const double theta2 = widest * (2 * (u - std::floor(u)) - 1);
         const SinCos<double> turn(theta2);
         const double kinetic = energy_J - weight * (1 - turn.cos);
-        const double p2 = std::sqrt(2 * inertia * kinetic) * (2 * v - 1);
+        const double p2 = std::sqrt(2 * inertia * kinetic) * (2 * (v - std::floor(v)) - 1);
         const double sin2 = turn.sin;
         const double omega1 = std::sqrt(2 * (kinetic - p2 * p2 / (2 * inertia)) / (m1 + m2 * sin2 * sin2)) / l1;
         releases.push_back(p);

@@ -4,7 +4,6 @@
 #include "integrate/widths.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <tuple>
 
@@ -67,16 +66,6 @@ void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatc
         for (std::size_t i = 0; i < twins.size(); ++i)
             watch(i, n, batch_a.seen[members[i].first], batch_b.seen[members[i].second]);
     }
-}
-
-void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
-                        const std::atomic<bool>& stop) {
-    std::vector<AverageLogRatio> means(twins.size());
-    const auto watch = [&](std::size_t trial, long, const Bobs<double>& a, const Bobs<double>& b) {
-        means[trial].add(state_space_distance(a, b));
-    };
-    step_twins(twins, run, watch, stop);
-    std::transform(means.begin(), means.end(), averages.begin(), [](const auto& mean) { return mean.value(); });
 }
 
 }  // namespace doppel

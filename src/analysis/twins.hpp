@@ -1,13 +1,10 @@
 #pragma once
 
-#include "analysis/difference.hpp"
 #include "integrate/batch.hpp"
 
 #include <atomic>
-#include <cmath>
 #include <functional>
 #include <span>
-#include <string>
 
 namespace doppel {
 
@@ -34,9 +31,5 @@ std::size_t twins_block();
 using TwinWatch = std::function<void(std::size_t trial, long sample, const Bobs<double>& a, const Bobs<double>& b)>;
 void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch,
                 const std::atomic<bool>& stop);
-
-/// The study's measure of chaos for each of the twins, AverageLogRatio. Errors: those of step_twins().
-void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
-                        const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -85,8 +85,13 @@ std::vector<double> averages(const std::vector<SideTwins>& sides, const MotionSp
                              const std::atomic<bool>& stop) {
     std::vector<Twins> twins;
     for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});
-    std::vector<double> found(twins.size());
-    average_log_ratios(twins, {.a = method, .b = method, .samples = 3000}, found, stop);
+    std::vector<AverageLogRatio> means(twins.size());
+    const auto watch = [&](std::size_t pair, long, const Bobs<double>& a, const Bobs<double>& b) {
+        means[pair].add(state_space_distance(a, b));
+    };
+    step_twins(twins, {.a = method, .b = method, .samples = 3000}, watch, stop);
+    std::vector<double> found;
+    for (const auto& mean : means) found.push_back(mean.value());
     return found;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "analysis/difference.hpp"
 #include "analysis/twins.hpp"
 #include "figure/experiment.hpp"
 #include "scene/preset.hpp"

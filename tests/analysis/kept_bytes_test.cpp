@@ -1,3 +1,4 @@
+#include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
 #include "analysis/spectrum.hpp"
 #include "analysis/twins.hpp"
@@ -84,9 +85,12 @@ std::string hash_of_twins(const MotionSpec& side, std::size_t links) {
         twins.push_back({p, other});
     }
     Hash hash;
-    std::vector<double> averages(twins.size());
-    average_log_ratios(twins, {.a = side, .b = side, .samples = 2400}, averages, never);
-    for (const double average : averages) hash.add(average);
+    std::vector<AverageLogRatio> means(twins.size());
+    const auto watch = [&](std::size_t i, long, const Bobs<double>& a, const Bobs<double>& b) {
+        means[i].add(state_space_distance(a, b));
+    };
+    step_twins(twins, {.a = side, .b = side, .samples = 2400}, watch, never);
+    for (const auto& mean : means) hash.add(mean.value());
     return hash.text();
 }
 
