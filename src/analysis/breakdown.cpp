@@ -16,4 +16,12 @@ bool advanced(Motion& motion, const std::atomic<bool>& stop, std::string* why) {
     }
 }
 
+bool WatchedMotion::advance(const std::atomic<bool>& stop) {
+    if (!advanced(*motion, stop)) return false;
+    const auto seen = motion->observe();
+    energy_error = proportion.energy_error(seen);
+    length_error = seen.length_error;
+    return proportion.holds(seen);
+}
+
 }  // namespace doppel

@@ -29,4 +29,19 @@ struct Proportion {
 /// set.
 bool advanced(Motion& motion, const std::atomic<bool>& stop, std::string* why = nullptr);
 
+/// A motion whose errors are watched from sample to sample.
+struct WatchedMotion {
+    std::unique_ptr<Motion> motion;
+    Proportion proportion;
+    double energy_error = 0, length_error = 0;  // at the last sample: relative; m
+
+    /// `potential_range`, J, and `reach`, m, as Proportion has them.
+    WatchedMotion(const MotionSpec& spec, double potential_range, double reach)
+        : motion(make_motion(spec)), proportion(motion->observe(), potential_range, reach) {}
+
+    /// On to the next sample. False where the method breaks down. Errors: those of advanced().
+    bool advance(const std::atomic<bool>& stop);
+    double evaluations() const { return static_cast<double>(motion->effort().evaluations); }
+};
+
 }  // namespace doppel

@@ -17,15 +17,14 @@ namespace {
 /// The growth of one tangent, told in logarithms.
 class TangentGrowth {
 public:
-    /// `rate` of a state that starts as `y`.
-    TangentGrowth(TangentRate rate, TangentState y, const PhysicalPendulum<double>& p, double tolerance,
-                  const NaturalUnits& units)
-        : motion_(std::move(rate), p.chain.links(), tolerance),
+    TangentGrowth(const TangentFlow& flow, const PhysicalPendulum<double>& p, double tolerance, double unit_s)
+        : motion_(flow, p.chain.links(), tolerance),
           links_(static_cast<Eigen::Index>(p.chain.links())),
-          size_(y.size() / 2),
-          unit_(units.time),
+          size_(flow.start.size() / 2),
+          unit_(unit_s),
           least_(p.friction.is_none() ? -huge : tenth) {
         // a direction that no symmetry knows: 1, 1/2, 1/3 …
+        auto y = flow.start;
         for (Eigen::Index i = 0; i < links_; ++i) {
             y[size_ + i] = 1 / static_cast<double>(i + 1);
             y[size_ + size_ / 2 + i] = 1 / static_cast<double>(links_ + i + 1) / unit_;
@@ -37,8 +36,7 @@ public:
     /// How much ln|δ| grows in so many seconds.
     double advance(double seconds) {
         constexpr double many_turns = 100;  // rad
-        motion_.advance(seconds);
-        TangentState y = motion_.state();
+        TangentState y = motion_.advance(seconds);
         const double now = log_norm(y), growth = now - last_;
         last_ = now;
         if (now > huge || now < least_ || y.head(links_).cwiseAbs().maxCoeff() > many_turns) {
@@ -70,13 +68,6 @@ private:
     double last_ = 0;
 };
 
-void check(const ExponentSpec& spec) {
-    if (!(spec.transient_s > 0 && spec.duration_s > spec.transient_s))
-        throw bad_input("an exponent takes a transient > 0 s and a duration beyond it; they are {} s and {} s",
-                        spec.transient_s, spec.duration_s);
-    if (spec.blocks < 2) throw bad_input("an exponent takes at least 2 blocks; there are {}", spec.blocks);
-}
-
 /// In standard errors from `count` numbers, what holds as much of Student's distribution as one standard deviation does
 /// of a normal one, within 2 %.
 /// Source  Abramowitz & Stegun, 26.7.5, for x = 1.
@@ -96,6 +87,9 @@ double standard_error(const std::vector<double>& local, std::size_t count) {
     return student(count) * std::sqrt(square / static_cast<double>(count * (count - 1)));
 }
 
+/// What follows the transient is cut into so many blocks for the standard error; from four times as many to a quarter.
+constexpr std::size_t blocks = 20;
+
 /// Mean and uncertainty of the local exponents of equal parts. Its own parts:
 ///     standard error      of the mean, the greatest of those from blocks of growing length (Flyvbjerg & Petersen 1989,
 ///                         J. Chem. Phys. 91:461): near sticky orbits, blocks that are short are not independent. Where
@@ -105,14 +99,13 @@ double standard_error(const std::vector<double>& local, std::size_t count) {
 Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
     double mean = 0, error = 0, whole = 0, last = 0;
     for (const double value : local) mean += value / static_cast<double>(local.size());
-    const auto blocks = static_cast<std::size_t>(spec.blocks);
-    for (std::size_t count = 4 * blocks; count >= std::max<std::size_t>(2, blocks / 4); count /= 2)
-        if (count <= local.size()) {
-            last = standard_error(local, count);
-            error = std::max(error, last);
-            if (count <= blocks && whole == 0) whole = last;
-        }
-    if (whole > 0 && last > whole) error *= last / whole;
+    for (std::size_t count = 4 * blocks; count >= blocks / 4; count /= 2) {
+        if (count > local.size()) continue;
+        last = standard_error(local, count);
+        error = std::max(error, last);
+        if (count == blocks) whole = last;
+    }
+    if (last > whole) error *= last / whole;
     // of 48 runs in two chaotic seas 1 is beyond, of 24 from 70°, where orbits stick, 6, of 24 in a transient 15
     constexpr double unlike = 3;
     const bool is_settled = !(error > unlike * whole);
@@ -120,23 +113,11 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
     return {mean, std::sqrt(1.25 * (error * error + finite_time * finite_time)), is_settled};
 }
 
-Exponent measured(TangentRate rate, TangentState start, const PhysicalPendulum<double>& p, const ExponentSpec& spec,
-                  const std::atomic<bool>& stop) {
-    const NaturalUnits units(p);
-    TangentGrowth growth(std::move(rate), std::move(start), p, spec.tolerance, units);
-    const auto exponents_of_parts = [&](double seconds, long parts) {
-        std::vector<double> local;
-        for (long i = 0; i < parts; ++i) {
-            throw_if_set(stop);
-            local.push_back(growth.advance(seconds) / seconds);
-        }
-        return local;
-    };
-    const long parts = parts_of(spec.transient_s, units);
-    exponents_of_parts(spec.transient_s / static_cast<double>(parts), parts);
-    const double block_s = (spec.duration_s - spec.transient_s) / spec.blocks;
-    const long of_block = parts_of(block_s, units);
-    return summary(exponents_of_parts(block_s / static_cast<double>(of_block), spec.blocks * of_block), spec);
+/// Of the equations for bodies.
+TangentFlow flow_of(const PhysicalPendulum<double>& p) {
+    using Chain = PhysicalChain<Dual<double, 1>>;
+    const auto release = p.cast<Dual<double, 1>>();
+    return tangent_flow(Chain(release, false), Chain::start(release, false));
 }
 
 /// Nothing where the release is no equilibrium, as of what is driven.
@@ -148,28 +129,40 @@ std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
     if (p.is_driven()) return std::nullopt;
     if (p.chain.gravity == 0) return 0.0;
     // ∂(θ′, ω′)/∂(θ, ω)
-    using Number = Dual<double, 1>;
-    PhysicalChain<Number> chain(p.cast<Number>(), false);
-    auto y = chain.start(p.cast<Number>(), false), rate = y;
-    Eigen::MatrixXd jacobian(y.size(), y.size());
-    for (Eigen::Index j = 0; j < y.size(); ++j) {
-        y[j].tangent[0] = 1;
-        chain.rate(y, rate);
-        y[j].tangent[0] = 0;
-        for (Eigen::Index i = 0; i < y.size(); ++i) jacobian(i, j) = rate[i].tangent[0];
+    const auto flow = flow_of(p);
+    const auto size = flow.start.size() / 2;
+    Eigen::MatrixXd jacobian(size, size);
+    TangentState y = flow.start, rates;
+    for (Eigen::Index j = 0; j < size; ++j) {
+        y.tail(size) = Eigen::VectorXd::Unit(size, j);
+        flow.rate(y, rates);
+        jacobian.col(j) = rates.tail(size);
     }
     if (!p.friction.is_none()) return greatest_real_part(jacobian);
     // θ″ = A θ
-    return std::sqrt(std::max(0.0, greatest_real_part(jacobian.bottomLeftCorner(y.size() / 2, y.size() / 2))));
+    return std::sqrt(std::max(0.0, greatest_real_part(jacobian.bottomLeftCorner(size / 2, size / 2))));
 }
 
-/// Of a model that starts as start().
-template <class Model>
-Exponent exponent_of(const Model& model, const typename Model::State& start, const PhysicalPendulum<double>& p,
-                     const ExponentSpec& spec, const std::atomic<bool>& stop) {
-    TangentState y;
-    from_dual(start, y);
-    return measured(tangent_rate(model, start), y, p, spec, stop);
+/// `flow` = the tangents' of the pendulum.
+Exponent exponent_of(const TangentFlow& flow, const PhysicalPendulum<double>& p, const ExponentSpec& spec,
+                     const std::atomic<bool>& stop) {
+    if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
+    const NaturalUnits units(p);
+    TangentGrowth growth(flow, p, spec.tolerance, units.time);
+    const auto exponents_of_parts = [&](double seconds, long parts) {
+        std::vector<double> local;
+        for (long i = 0; i < parts; ++i) {
+            throw_if_set(stop);
+            local.push_back(growth.advance(seconds) / seconds);
+        }
+        return local;
+    };
+    const long parts = parts_of(spec.transient_s, units);
+    exponents_of_parts(spec.transient_s / static_cast<double>(parts), parts);
+    const double block_s = (spec.duration_s - spec.transient_s) / static_cast<double>(blocks);
+    const long of_block = parts_of(block_s, units);
+    return summary(exponents_of_parts(block_s / static_cast<double>(of_block), static_cast<long>(blocks) * of_block),
+                   spec);
 }
 
 }  // namespace
@@ -181,27 +174,18 @@ void demand_smooth(const PhysicalPendulum<double>& p) {
             "come to rest and let go again");
 }
 
-bool is_regular(const Exponent& exponent) {
-    return exponent.value <= 1.5 * exponent.uncertainty;
-}
-
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
-    check(spec);
-    if (const auto exact = equilibrium_exponent(physical(p))) return {*exact, 0};
-    const auto release = p.cast<Dual<double, 1>>();
     using Two = DoublePendulum<Dual<double, 1>>;
     using Chain = AngleChain<Dual<double, 1>, Eigen::Dynamic>;
-    if (p.links() == 2) return exponent_of(Two(release), Two::start(release), physical(p), spec, stop);
-    return exponent_of(Chain(release), Chain::start(release), physical(p), spec, stop);
+    const auto release = p.cast<Dual<double, 1>>();
+    const auto flow = p.links() == 2 ? tangent_flow(Two(release), Two::start(release))
+                                     : tangent_flow(Chain(release), Chain::start(release));
+    return exponent_of(flow, physical(p), spec, stop);
 }
 
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
-    check(spec);
     demand_smooth(p);
-    if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};
-    const auto release = p.cast<Dual<double, 1>>();
-    using Chain = PhysicalChain<Dual<double, 1>>;
-    return exponent_of(Chain(release, false), Chain::start(release, false), p, spec, stop);
+    return exponent_of(flow_of(p), p, spec, stop);
 }
 
 }  // namespace doppel

@@ -7,11 +7,9 @@
 namespace doppel {
 
 struct ExponentSpec {
-    double duration_s = 500;  // of the motion, the transient included
-    double transient_s = 50;  // left out at the start, while the tangent finds its direction; > 0
+    double duration_s = 500;               // of the motion, the transient included; > 0
+    double transient_s = duration_s / 10;  // left out at the start, while the tangent finds its direction
     double tolerance = 1e-7;  // of dop853, state and tangent alike; energy keeps to 3e-7 of its range over 500 s
-    int blocks = 20;          // that what follows the transient is cut into, for the standard error; from four times as
-                              // many to a quarter
 };
 
 /// The largest Lyapunov exponent, λ = lim ln|δ(t)|/t.
@@ -32,15 +30,17 @@ struct Exponent {
 
 /// Whether the exponent cannot be told from 0, as for regular motion: up to 1.5 times its uncertainty (regular
 /// motions had up to 0.8, of 40).
-bool is_regular(const Exponent& exponent);
+inline bool is_regular(const Exponent& exponent) {
+    return exponent.value <= 1.5 * exponent.uncertainty;
+}
 
 /// The largest exponent of the motion that `p` is released into, any number of links, by the tangent equations in
 /// (θ, ω). The time, by which a driven pendulum moves, is given: no exponent is its own.
 /// One released at an equilibrium, at rest and all links upright or hanging to rounding (or g = 0), stays there: its
 /// exponent is the greatest real part of the eigenvalues of the linearised equations.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:21.
-/// Errors  exit 2 where the spec makes no sense or joints have Coulomb's friction (demand_smooth()), exit 3 where dop853
-///         breaks down, exit 130 soon after `stop` is set.
+/// Errors  exit 2 where joints have Coulomb's friction (demand_smooth()), exit 3 where dop853 breaks down, exit 130 soon
+///         after `stop` is set.
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
 

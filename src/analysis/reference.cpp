@@ -37,15 +37,24 @@ double ErrorMeasure::distance(std::span<const Quad> one, std::span<const Quad> o
     return worst;
 }
 
+MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance) {
+    if (spec.model == Model::constraints) spec.model = Model::angles;
+    spec.method = "taylor";
+    spec.tolerance = tolerance;
+    spec.stabilise = Stabilise::none;
+    spec.follows_turns = spec.wants_tension = false;
+    return spec;
+}
+
 namespace {
 
-Observation end_of(MotionSpec spec, const char* tolerance, const Rational& seconds, const std::atomic<bool>& stop) {
+/// Of a motion by Taylor series.
+Observation end_in_quad(MotionSpec spec, const char* tolerance, const Rational& seconds,
+                        const std::atomic<bool>& stop) {
     constexpr long parts = 64;  // an interruption is noticed between them
-    spec.method = "taylor";
     spec.precision = Precision::in_quad;
     spec.tolerance = parse_quad(tolerance);
     spec.sample_interval = *quotient(seconds, {parts, 1});
-    spec.follows_turns = false;
     const auto motion = make_motion(spec);
     for (long i = 0; i < parts; ++i) motion->advance(stop);
     return motion->observe();
@@ -54,22 +63,20 @@ Observation end_of(MotionSpec spec, const char* tolerance, const Rational& secon
 }  // namespace
 
 Reference reference_end(MotionSpec spec, const Rational& seconds, const std::atomic<bool>& stop) {
-    spec.stabilise = Stabilise::none;
-    if (spec.model != Model::mechanism) spec.model = Model::angles;
+    spec = by_taylor_series(spec, 0);
     const bool is_plain = spec.model == Model::angles && !spec.physical;
     const ErrorMeasure measure{spec.chain.has_value()};
-    Reference reference{end_of(spec, "1e-32", seconds, stop), 0, NAN};
+    Reference reference{end_in_quad(spec, "1e-32", seconds, stop), 0, NAN};
     for (std::size_t i = 0; is_plain && i < spec.chain->links(); ++i) {
         constexpr double apart = 1e-14;  // rad: far above the tolerance; what grows from it stays small
         auto beside = spec;
         beside.chain->angle[i] += Quad(apart);
-        reference.sensitivity = std::fmax(
-            reference.sensitivity, measure.distance(end_of(beside, "1e-24", seconds, stop), reference.end) / apart);
+        const double grown = measure.distance(end_in_quad(beside, "1e-24", seconds, stop), reference.end);
+        reference.sensitivity = std::fmax(reference.sensitivity, grown / apart);
     }
-    auto other = spec;
-    if (is_plain) other.model = Model::constraints;
+    if (is_plain) spec.model = Model::constraints;
     reference.disagreement =
-        measure.distance(reference.end, end_of(other, is_plain ? "1e-32" : "1e-30", seconds, stop));
+        measure.distance(reference.end, end_in_quad(spec, is_plain ? "1e-32" : "1e-30", seconds, stop));
     // quad at its tolerance comes to some 1e-30 of the sensitivity; that of a mechanism is not known
     const double allowed = is_plain ? 1e-26 * std::max(reference.sensitivity, 1.0) : 1e-15;
     if (!(reference.disagreement <= allowed))
@@ -78,15 +85,6 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
             "motion is too chaotic for so long a time",
             reference.disagreement, measure.in_angles ? "rad" : "m", seconds.value(), allowed);
     return reference;
-}
-
-MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance) {
-    if (spec.model == Model::constraints) spec.model = Model::angles;
-    spec.method = "taylor";
-    spec.tolerance = tolerance;
-    spec.stabilise = Stabilise::none;
-    spec.follows_turns = spec.wants_tension = false;
-    return spec;
 }
 
 namespace {
@@ -128,57 +126,23 @@ MotionSpec some_roundings_away(MotionSpec spec) {
     return spec;
 }
 
-/// A motion and another beside it, sample by sample, as long as goes_on(how far apart they are) and both can go on.
-template <class GoesOn>
-ReferenceTrajectory followed(const ErrorMeasure& measure, Motion& motion, Motion& beside, const GoesOn& goes_on,
-                             const std::atomic<bool>& stop) {
-    ReferenceTrajectory trajectory{measure, {}, {}, false, {}};
-    const auto advance = [&](Motion& one) { return advanced(one, stop, &trajectory.failure); };
-    do {
-        trajectory.seen.push_back(measure.coordinates(motion.observe()));
-    } while (goes_on(trajectory.off_at(trajectory.seen.size() - 1, beside.observe())) && advance(motion) &&
-             advance(beside));
-    return trajectory;
-}
-
-/// In the motion's own precision, with its uncertainty.
-ReferenceTrajectory own_trajectory(const MotionSpec& spec, Motion& motion, const ErrorMeasure& measure, long samples,
-                                   double enough, const std::atomic<bool>& stop) {
-    const auto tolerance = parse_quad(spec.precision == Precision::in_quad ? "3e-33" : "3e-15");
-    const auto beside = make_motion(by_taylor_series(some_roundings_away(spec), tolerance));
-    std::vector<double> uncertainty;
-    auto trajectory = followed(
-        measure, motion, *beside,
-        [&](double off) {
-            if (!std::isfinite(off)) return false;
-            uncertainty.push_back(std::max(uncertainty.empty() ? 0 : uncertainty.back(), caution * off));
-            return uncertainty.back() <= enough && static_cast<long>(uncertainty.size()) <= samples;
-        },
-        stop);
-    trajectory.seen.resize(uncertainty.size());
-    trajectory.uncertainty = std::move(uncertainty);
-    return trajectory;
-}
-
-/// Of a motion in double, in quad.
-ReferenceTrajectory wide_trajectory(const MotionSpec& spec, const ErrorMeasure& measure, long samples, double enough,
-                                    const std::atomic<bool>& stop) {
-    constexpr double further = 1.25;  // than a run in double is of use; quad at that tolerance gets as much further
-    auto wide = by_taylor_series(spec, parse_quad("1e-20"));
-    wide.precision = Precision::in_quad;
-    const auto motion = make_motion(wide), beside = make_motion(by_taylor_series(spec, parse_quad("1e-15")));
+/// A motion and another beside it, sample by sample, `further` times as far as to where `caution` times what they are apart
+/// is more than `enough`; its uncertainty is the largest of that so far.
+ReferenceTrajectory followed(Motion& motion, Motion& beside, const ErrorMeasure& measure, long samples, double enough,
+                             double further, const std::atomic<bool>& stop) {
+    ReferenceTrajectory all{measure};
+    const auto advance = [&](Motion& one) { return advanced(one, stop, &all.failure); };
     long last = samples, sample = -1;
-    auto trajectory = followed(
-        measure, *motion, *beside,
-        [&](double off) {
-            ++sample;
-            if (last == samples && !(off <= enough))
-                last = std::min(samples, std::lround(further * static_cast<double>(sample)));
-            return sample < last;
-        },
-        stop);
-    trajectory.is_wider = true;
-    return trajectory;
+    double worst = 0;
+    do {
+        ++sample;
+        all.seen.push_back(measure.coordinates(motion.observe()));
+        const double apart = caution * all.off_at(all.seen.size() - 1, beside.observe());
+        all.uncertainty.push_back(worst = apart <= worst ? worst : apart);
+        if (last == samples && !(apart <= enough))
+            last = std::min(samples, std::lround(further * static_cast<double>(sample)));
+    } while (sample < last && advance(motion) && advance(beside));
+    return all;
 }
 
 }  // namespace
@@ -186,29 +150,31 @@ ReferenceTrajectory wide_trajectory(const MotionSpec& spec, const ErrorMeasure& 
 ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
                                          const std::atomic<bool>& stop, double most_work) {
     const ErrorMeasure measure{spec.chain.has_value(), reach};
+    const auto made = [](const MotionSpec& of, const char* tolerance) {
+        return make_motion(by_taylor_series(of, parse_quad(tolerance)));
+    };
     const bool quad = spec.precision == Precision::in_quad;
-    const auto motion = make_motion(by_taylor_series(spec, parse_quad(quad ? "1e-33" : "1e-15")));
-    auto own = own_trajectory(spec, *motion, measure, samples, enough, stop);
+    const auto fine = made(spec, quad ? "1e-33" : "1e-15");
+    auto own =
+        followed(*fine, *made(some_roundings_away(spec), quad ? "3e-33" : "3e-15"), measure, samples, enough, 1, stop);
+    if (!std::isfinite(own.uncertainty.back())) own.seen.pop_back(), own.uncertainty.pop_back();
     const auto bodies = static_cast<double>(spec.parts ? spec.parts->particles.size() : spec.chain->links());
     // series by a tape take as long as those of so many ideal links; where joints stick, steps are tiny
     constexpr double of_tape = 30;
-    const double work = static_cast<double>(motion->effort().evaluations) * bodies * (spec.physical ? of_tape : 1);
+    const double work = static_cast<double>(fine->effort().evaluations) * bodies * (spec.physical ? of_tape : 1);
     if (quad || work > most_work || (spec.physical && !spec.physical->friction.coulomb.empty())) return own;
-    auto wide = wide_trajectory(spec, measure, samples, enough, stop);
+    auto in_quad = spec;
+    in_quad.precision = Precision::in_quad;
+    constexpr double further = 1.25;  // than a run in double is of use; quad at that tolerance gets as much further
+    auto wide =
+        followed(*made(in_quad, "1e-20"), *made(spec, "1e-15"), measure, samples, caution * enough, further, stop);
+    wide.is_wider = true;
     // a run in double begins at numbers that were rounded once; that it errs by less may be chance
-    wide.uncertainty.resize(wide.seen.size());
+    wide.uncertainty.assign(wide.seen.size(), 0);
     for (std::size_t sample = 0; sample < wide.seen.size() && !own.uncertainty.empty(); ++sample)
         wide.uncertainty[sample] =
             own.uncertainty[std::min(sample, own.uncertainty.size() - 1)] / (caution * roundings_away);
     return wide;
-}
-
-double ErrorHistory::at(std::size_t sample) const {
-    return sample < error.size() ? error[sample] : std::numeric_limits<double>::infinity();
-}
-
-long ErrorHistory::last_within(double allowed) const {
-    return std::upper_bound(error.begin(), error.end(), allowed) - error.begin() - 1;
 }
 
 ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double enough,

@@ -2,6 +2,8 @@
 
 #include "integrate/motion.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,12 +51,12 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
 /// would cost too much, and of a motion in quad, by Taylor series as fine as its own precision allows; how far those
 /// may be off is told by others of another tolerance, from a start some roundings away.
 struct ReferenceTrajectory : ErrorMeasure {
-    std::vector<std::vector<Quad>> seen;  // coordinates() at samples 0, 1 …
+    std::vector<std::vector<Quad>> seen{};  // coordinates() at samples 0, 1 …
     /// How far that may be off: rad, or units of `reach`, the largest so far. Where `is_wider`, what one rounding of the
     /// motion's numbers to its precision does: they are not known better.
-    std::vector<double> uncertainty;
+    std::vector<double> uncertainty{};
     bool is_wider = false;  // in more digits than the motion's own
-    std::string failure;    // why it could not go on
+    std::string failure{};  // why it could not go on
 
     /// How far a motion is from it at a sample that was seen.
     double off_at(std::size_t sample, const Observation& observed) const {
@@ -85,8 +87,14 @@ struct ErrorHistory {
     long effort_samples = 0;    // up to that one
     std::string failure;        // why it, or the reference, could not go on
 
-    double at(std::size_t sample) const;     // infinity where nothing was seen that far
-    long last_within(double allowed) const;  // the last sample before an error is greater; −1 = none
+    /// Infinity where nothing was seen that far.
+    double at(std::size_t sample) const {
+        return sample < error.size() ? error[sample] : std::numeric_limits<double>::infinity();
+    }
+    /// The last sample before an error is greater; −1 = none.
+    long last_within(double allowed) const {
+        return std::upper_bound(error.begin(), error.end(), allowed) - error.begin() - 1;
+    }
 };
 
 /// The run of `spec` beside the reference, sample by sample; errors until it is off by more than `enough`, breaks down,

@@ -8,14 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace doppel {
 namespace {
-
-void check_links(const Pendulum<double>& p) {
-    if (p.links() != 2) throw bad_input("a Poincaré section is of 2 links; there are {}", p.links());
-}
 
 /// A double pendulum on its way from crossing to crossing, step by step.
 class Crossings {
@@ -27,31 +22,29 @@ public:
 
     double time() const { return static_cast<double>(time_); }  // s, up to which all crossings are found
 
-    /// Another step; the crossings on it, in order.
-    std::vector<SectionPoint> step() {
+    /// Another step; the crossings on it are added, in order.
+    void step(std::vector<SectionPoint>& points) {
         stepper_.take_step();
         const auto angle = stepper_.on_step(0);
         const auto [least, greatest] = std::minmax_element(angle.b.begin(), angle.b.end());
-        std::vector<SectionPoint> points;
+        const auto before = static_cast<std::ptrdiff_t>(points.size());
         for (double turns = std::floor(*least / (2 * pi)); turns <= std::ceil(*greatest / (2 * pi)); ++turns)
             for (const auto& bracket : angle.rises(2 * pi * turns)) points.push_back(crossing(bracket, 2 * pi * turns));
-        std::sort(points.begin(), points.end(), [](auto& one, auto& other) { return one.time_s < other.time_s; });
+        std::sort(points.begin() + before, points.end(),
+                  [](auto& one, auto& other) { return one.time_s < other.time_s; });
         time_ += stepper_.step();
-        return points;
     }
 
 private:
-    /// θ1 above a level, rad, and its rate.
-    struct Height {
-        double value, rate;
-    };
-
     /// Where θ1 rises through `level`, rad, within a bracket.
     SectionPoint crossing(const Bracket& bracket, double level) {
         constexpr double rounding = 1e-15;  // rad, and relative
         const double at = root(bracket, [&](double t) {
             const auto& y = stepper_.at(t);
             const bool is_there = std::abs(y[0] - level) <= rounding * (1 + std::abs(y[0]));
+            struct Height {
+                double value, rate;
+            };
             return Height{is_there ? 0 : y[0] - level, y[2]};
         });
         canonical_.momenta(stepper_.at(at), z_);
@@ -66,54 +59,43 @@ private:
     Quad time_ = 0;                          // s, where the step starts: a sum of tens of thousands
 };
 
-/// Point number k of a sequence that fills the unit square evenly, however many are taken.
-/// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences: multiples of 1/ρ and 1/ρ², where
-///         ρ³ = ρ + 1.
-std::pair<double, double> spread(int k) {
-    constexpr double rho = 1.324717957244746;
-    const auto part = [](double x) { return x - std::floor(x); };
-    return {part(0.5 + k / rho), part(0.5 + k / (rho * rho))};
-}
-
 }  // namespace
 
 std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const SectionSpec& spec,
                                            const std::atomic<bool>& stop) {
-    check_links(p);
-    if (spec.crossings < 1 || !(spec.longest_s > 0))
-        throw bad_input("a section takes at least one crossing and a time > 0 s; they are {} and {} s", spec.crossings,
-                        spec.longest_s);
     Crossings motion(p, spec.tolerance);
     std::vector<SectionPoint> points;
-    while (motion.time() < spec.longest_s) {
+    const auto wanted = static_cast<std::size_t>(spec.crossings);
+    while (points.size() < wanted && motion.time() < spec.longest_s) {
         throw_if_set(stop);
-        for (const auto& point : motion.step()) {
-            if (point.time_s > spec.longest_s) break;
-            points.push_back(point);
-            if (points.size() == static_cast<std::size_t>(spec.crossings)) return points;
-        }
+        motion.step(points);
     }
+    const auto is_late = [&](const SectionPoint& point) { return point.time_s > spec.longest_s; };
+    points.erase(std::find_if(points.begin(), points.end(), is_late), points.end());
+    if (points.size() > wanted) points.erase(points.begin() + spec.crossings, points.end());
     return points;
 }
 
 /// On the section, with D = −θ2, the energy above that of hanging is
 ///     E = ½ l1² (m1 + m2 sin²θ2) ω1² + p2² / (2 m2 l2²) + m2 g l2 (1 − cosθ2) ,
-/// so that |p2| has a greatest value at each θ2, and ω1 follows.
+/// so that |p2| has a greatest value at each θ2, and ω1 follows. Points are spread by multiples of 1/ρ and 1/ρ², where
+/// ρ³ = ρ + 1: they fill the unit square evenly, however many are taken.
+/// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences.
 std::vector<Pendulum<double>> releases_of_energy(const Pendulum<double>& p, double energy_J, int count) {
-    check_links(p);
     if (!(energy_J > 0) || !(p.gravity >= 0))
         throw bad_input("a section takes an energy > 0 J and a gravity ≥ 0; they are {} J and {} m/s²", energy_J,
                         p.gravity);
     const double m1 = p.mass[0], m2 = p.mass[1], l1 = p.length[0], l2 = p.length[1];
     const double weight = m2 * p.gravity * l2, inertia = m2 * l2 * l2;
     const double widest = std::acos(std::max(-1.0, 1 - energy_J / weight));
+    constexpr double rho = 1.324717957244746;
     std::vector<Pendulum<double>> releases;
     for (int k = 0; k < count; ++k) {
-        const auto [u, v] = spread(k);
-        const double theta2 = widest * (2 * u - 1);
+        const double u = 0.5 + k / rho, v = 0.5 + k / (rho * rho);  // their fractions
+        const double theta2 = widest * (2 * (u - std::floor(u)) - 1);
         const SinCos<double> turn(theta2);
         const double kinetic = energy_J - weight * (1 - turn.cos);
-        const double p2 = std::sqrt(2 * inertia * kinetic) * (2 * v - 1);
+        const double p2 = std::sqrt(2 * inertia * kinetic) * (2 * (v - std::floor(v)) - 1);
         const double sin2 = turn.sin;
         const double omega1 = std::sqrt(2 * (kinetic - p2 * p2 / (2 * inertia)) / (m1 + m2 * sin2 * sin2)) / l1;
         releases.push_back(p);

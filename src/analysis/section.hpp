@@ -8,7 +8,7 @@
 namespace doppel {
 
 struct SectionSpec {
-    int crossings = 400;       // wanted
+    int crossings = 400;       // wanted, at least one
     double longest_s = 10000;  // of the motion: an orbit that never comes back ends here, with fewer
     double tolerance = 1e-13;  // of taylor
 };
@@ -22,11 +22,10 @@ struct SectionPoint {
     double time_s;
 };
 
-/// The crossings of the motion that `p` is released into, the release left out, to rounding. All of them: on each step
+/// The crossings of the motion that a double pendulum `p` is released into, the release left out, to rounding. All of them: on each step
 /// of taylor, the roots of the polynomial that its series makes of θ1 (numeric/roots.hpp), none beyond the step.
 /// Only where θ1 passes and is back within 1e-15 of a step, a crossing may not be seen.
-/// Errors  exit 2 where the spec makes no sense or there are not two links, exit 3 where taylor breaks down, exit 130
-///         soon after `stop` is set.
+/// Errors  exit 3 where taylor breaks down, exit 130 soon after `stop` is set.
 std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const SectionSpec& spec,
                                            const std::atomic<bool>& stop);
 

@@ -8,8 +8,8 @@
 namespace doppel {
 
 struct SpectrumSpec {
-    double duration_s = 500;   // of the motion
-    int samples = 500;         // equally spaced, the last at the end
+    double duration_s = 500;   // of the motion; > 0
+    int samples = 500;         // at least one; equally spaced, the last at the end
     double tolerance = 1e-10;  // of dop853, for the state and its tangents alike
 };
 
@@ -21,8 +21,8 @@ struct SpectrumSample {
 
 /// Estimates of all 2N Lyapunov exponents of a chain of 1 to 4 links, in the canonical (θ, p). At any time their sum is
 /// 0 without friction, and with it the mean of what that does to the volume: of viscous friction −tr(C M⁻¹).
-/// Errors  exit 2 where the spec or the number of links makes no sense or joints have Coulomb's friction, exit 3 where the
-///         method breaks down, exit 130 soon after `stop` is set.
+/// Errors  exit 2 where there are more links or joints have Coulomb's friction, exit 3 where the method breaks down, exit
+///         130 soon after `stop` is set.
 std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
                                               const std::atomic<bool>& stop);
 

@@ -13,7 +13,6 @@ namespace doppel {
 ///     semi-implicit-euler, rattle, rattle6 the square of their spectral radius: 1 up to z = 2, that of rattle6 2.53 ,
 ///     adams, whose growing roots begin small, what its steps make of the true motion ,
 ///     gauss4 and gauss6 1: they are stable at every z (the iteration for their stages is not).
-/// Throws Error (exit 2) where the method has no fixed step, or there is none of that name.
 /// Source  Hairer & Wanner, Solving Ordinary Differential Equations II, §IV.2 and §V.1.
 double energy_growth(std::string_view method, double z, long steps);
 

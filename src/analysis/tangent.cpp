@@ -26,34 +26,33 @@ long parts_of(double seconds, const NaturalUnits& units) {
 }
 
 struct TangentMotion::Stepper {
-    struct Flow {
+    struct System {
         using Scalar = double;
         using State = TangentState;
-        TangentRate of;
-        void rate(const State& all, State& rates) { of(all, rates); }
+        TangentFlow flow;
+        void rate(const State& all, State& rates) { flow.rate(all, rates); }
     };
-    Flow flow;
+    System system;
+    Eigen::Index angles;
     double tolerance;
-    std::optional<Dop853::Stepper<Flow>> dop853{};  // knows where the flow is
+    std::optional<Dop853::Stepper<System>> dop853{};  // knows where the system is
 };
 
-TangentMotion::TangentMotion(TangentRate rate, std::size_t angles, double tolerance)
-    : stepper_(new Stepper{{std::move(rate)}, tolerance}), angles_(static_cast<Eigen::Index>(angles)) {}
+TangentMotion::TangentMotion(TangentFlow flow, std::size_t angles, double tolerance)
+    : stepper_(new Stepper{{std::move(flow)}, static_cast<Eigen::Index>(angles), tolerance}) {}
 TangentMotion::~TangentMotion() = default;
 
 void TangentMotion::restart(TangentState y) {
-    for (Eigen::Index i = 0; i < angles_; ++i) y[i] = std::remainder(y[i], 2 * pi);
-    if (stepper_->dop853)
-        stepper_->dop853->reset(y);
+    auto& [system, angles, tolerance, dop853] = *stepper_;
+    for (Eigen::Index i = 0; i < angles; ++i) y[i] = std::remainder(y[i], 2 * pi);
+    if (dop853)
+        dop853->reset(y);
     else
-        stepper_->dop853.emplace(stepper_->flow, y, stepper_->tolerance);
+        dop853.emplace(system, y, tolerance);
 }
 
-void TangentMotion::advance(double seconds) {
+const TangentState& TangentMotion::advance(double seconds) {
     stepper_->dop853->advance(seconds);
-}
-
-const TangentState& TangentMotion::state() const {
     return stepper_->dop853->state();
 }
 

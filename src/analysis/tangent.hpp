@@ -48,32 +48,37 @@ void from_dual(const DualState& y, TangentState& all) {
 ///     y′ = f(y) ,    δ′ = Df(y) δ
 /// both from one evaluation of f in dual numbers.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:9.
-using TangentRate = std::function<void(const TangentState& all, TangentState& rates)>;
+struct TangentFlow {
+    std::function<void(const TangentState& all, TangentState& rates)> rate;
+    TangentState start;
+};
 
 template <class Model>
-TangentRate tangent_rate(Model model, const typename Model::State& start) {
-    return [model = std::move(model), y = start, rate = start](const TangentState& all, TangentState& rates) mutable {
+TangentFlow tangent_flow(Model model, const typename Model::State& start) {
+    TangentFlow flow;
+    from_dual(start, flow.start);
+    flow.rate = [model = std::move(model), y = start, rate = start](const TangentState& all,
+                                                                    TangentState& rates) mutable {
         to_dual(all, y);
         model.rate(y, rate);
         from_dual(rate, rates);
     };
+    return flow;
 }
 
 /// Both by dop853, from where they are set down again and again: error control knows only the size of tangents, so these
 /// are to be neither huge nor tiny, and the first `angles` numbers not many turns.
 class TangentMotion {
 public:
-    TangentMotion(TangentRate rate, std::size_t angles, double tolerance);
+    TangentMotion(TangentFlow flow, std::size_t angles, double tolerance);
     ~TangentMotion();
 
     void restart(TangentState y);
-    void advance(double seconds);
-    const TangentState& state() const;
+    const TangentState& advance(double seconds);
 
 private:
     struct Stepper;
     std::unique_ptr<Stepper> stepper_;
-    Eigen::Index angles_;
 };
 
 }  // namespace doppel

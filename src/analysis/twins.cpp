@@ -4,15 +4,15 @@
 #include "integrate/widths.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <tuple>
 
 namespace doppel {
 namespace {
 
 /// The pendulums of one side, or of both where they obey the same equations, each of them once.
 struct SideBatch {
-    TwinSide side;
+    const MotionSpec& side;
     std::vector<Pendulum<double>> members{};
     std::optional<Batch> batch{};
     std::vector<Bobs<double>> seen{};
@@ -45,15 +45,18 @@ std::size_t twins_block() {
 
 void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch,
                 const std::atomic<bool>& stop) {
+    const auto stepping = [](const MotionSpec& side) {
+        return std::tie(side.model, side.method, side.steps_per_sample);
+    };
     std::vector<SideBatch> batches;
     batches.push_back({run.a});
-    if (run.b != run.a) batches.push_back({run.b});
+    if (stepping(run.b) != stepping(run.a)) batches.push_back({run.b});
     auto &batch_a = batches.front(), &batch_b = batches.back();
     std::vector<std::pair<std::size_t, std::size_t>> members;
     for (const auto& pair : twins) members.emplace_back(batch_a.add(pair.a), batch_b.add(pair.b));
     for (auto& [side, pendulums, batch, seen, state] : batches)
         batch.emplace(pendulums, side.model, side.method,
-                      run.sample_interval / static_cast<double>(side.steps_per_sample));
+                      side.sample_interval.value() / static_cast<double>(side.steps_per_sample));
     for (long n = 0; n <= run.samples; ++n) {
         throw_if_set(stop);
         for (auto& batch : batches) {
@@ -63,16 +66,6 @@ void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatc
         for (std::size_t i = 0; i < twins.size(); ++i)
             watch(i, n, batch_a.seen[members[i].first], batch_b.seen[members[i].second]);
     }
-}
-
-void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
-                        const std::atomic<bool>& stop) {
-    std::vector<AverageLogRatio> means(twins.size());
-    const auto watch = [&](std::size_t trial, long, const Bobs<double>& a, const Bobs<double>& b) {
-        means[trial].add(state_space_distance(a, b));
-    };
-    step_twins(twins, run, watch, stop);
-    std::transform(means.begin(), means.end(), averages.begin(), [](const auto& mean) { return mean.value(); });
 }
 
 }  // namespace doppel

@@ -1,13 +1,10 @@
 #pragma once
 
-#include "analysis/difference.hpp"
 #include "integrate/batch.hpp"
 
 #include <atomic>
-#include <cmath>
 #include <functional>
 #include <span>
-#include <string>
 
 namespace doppel {
 
@@ -16,18 +13,10 @@ struct Twins {
     Pendulum<double> a, b;
 };
 
-/// The equations and the step of one side of all twins.
-struct TwinSide {
-    Model model = Model::angles;
-    std::string method = "euler";
-    long steps_per_sample = 250;
-    friend bool operator==(const TwinSide&, const TwinSide&) = default;
-};
-
+/// How they are stepped and sampled.
 struct TwinRun {
-    TwinSide a, b;
-    double sample_interval = 1.0 / 120;  // s
-    long samples = 0;                    // without the one at the start
+    MotionSpec a, b;   // the model, method, steps and sample interval of one side of all twins
+    long samples = 0;  // without the one at the start
 };
 
 /// How many pendulums are best stepped at once.
@@ -42,9 +31,5 @@ std::size_t twins_block();
 using TwinWatch = std::function<void(std::size_t trial, long sample, const Bobs<double>& a, const Bobs<double>& b)>;
 void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch,
                 const std::atomic<bool>& stop);
-
-/// The study's measure of chaos for each of the twins, AverageLogRatio. Errors: those of step_twins().
-void average_log_ratios(std::span<const Twins> twins, const TwinRun& run, std::span<double> averages,
-                        const std::atomic<bool>& stop);
 
 }  // namespace doppel

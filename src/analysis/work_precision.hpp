@@ -2,12 +2,8 @@
 
 #include "analysis/reference.hpp"
 
-#include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
-#include <string>
-#include <utility>
 
 namespace doppel {
 
@@ -22,14 +18,10 @@ struct ExternalMethod {
 
 /// A motion to compute, and what its errors are measured by.
 struct WorkProblem {
-    enum class Kind {
-        chain,     // point masses on massless rods under gravity: every model serves
-        bodies,    // links with mass, friction or a drive
-        mechanism  // anything else
-    };
     std::string name, title;  // "P1", "P1 · 90°/90°, 10 s"
-    MotionSpec motion;        // what moves; one sample interval is the whole duration; method and model do not matter
-    Kind kind = Kind::chain;
+    /// What moves, by the model of its reference: angles or mechanism; one sample interval is the whole duration. The method
+    /// does not matter. A chain of point masses has `parts` as well: every model serves it.
+    MotionSpec motion;
     bool conserves_energy = true;
     double natural_time = 1;  // s
     double energy_unit = 1;   // J
@@ -37,9 +29,8 @@ struct WorkProblem {
 
     double duration() const { return motion.sample_interval.value(); }  // s
     bool has_angles() const { return motion.chain.has_value(); }
-    MotionSpec motion_in(Model model) const;
-    /// Throws as reference_end() does.
-    Reference reference(const std::atomic<bool>& stop) const;
+    /// Whether it is of point masses on massless rods under gravity.
+    bool is_plain_chain() const { return motion.model == Model::angles && !motion.physical; }
 };
 
 /// A method on a model, or one of another library, which outlives this.
@@ -52,23 +43,29 @@ struct Solver {
     /// The method of the published study.
     bool is_study() const { return method == "euler" && model == Model::angles; }
     /// Whether it can compute the problem.
-    bool serves(const WorkProblem& problem) const;
+    bool serves(const WorkProblem& problem) const {
+        return problem.is_plain_chain() || (!external && model == problem.motion.model);
+    }
 };
 
 inline constexpr double study_step = 1.0 / 30000;  // s
 
+/// What a run costs.
+enum class Cost { time, evaluations };
+
 /// What one setting of a method came to; NaN where a number could not be had. A run has failed that gives up, is no
 /// longer finite, or whose energy or rods are out of all proportion (analysis/breakdown.hpp).
 struct Rung {
-    double setting;                     // step, s, or tolerance
-    double error;                       // at the end: of the worst angle, rad, or the worst place, of the size
-    double energy_error, length_error;  // the worst on the way: relative; m
-    double cpu_s;                       // of one run
-    double evaluations, steps;
+    double setting = NAN;  // step, s, or tolerance
+    double error = NAN;    // at the end: of the worst angle, rad, or the worst place, of the size
+    double energy_error = NAN, length_error = NAN;  // the worst on the way: relative; m
+    double cpu_s = NAN;                             // of one run
+    double evaluations = NAN, steps = NAN;
 
     bool failed() const { return !std::isnan(setting) && !std::isfinite(error); }
     /// Whether it has the study's step, as nearly as whole steps allow.
     bool is_study() const { return std::abs(setting / study_step - 1) < 1e-3; }
+    double cost(Cost of) const { return of == Cost::time ? cpu_s : evaluations; }
 };
 
 struct LadderSpec {
@@ -86,36 +83,28 @@ struct LadderSpec {
 std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& reference, const Solver& solver,
                              const LadderSpec& spec, const std::atomic<bool>& stop);
 
-/// A ladder as measured: CPU times are medians over the repeats.
+/// The median of a rung's repeats.
+struct MeasuredRung : Rung {
+    double spread = 0;  // of the CPU time: half the range of its middle half, relative
+};
+
+/// A solver's rungs on a problem.
 struct Ladder {
-    std::size_t problem;
     Solver solver;
-    std::vector<Rung> rungs;
-    std::vector<double> spread;  // of each rung's CPU time: half the range of its middle half, relative
+    std::vector<MeasuredRung> rungs;
 };
 
 /// The ladder of several repeats, the first of which has everything.
-Ladder merged(std::size_t problem, const Solver& solver, const std::vector<std::vector<Rung>>& repeats);
-
-/// What a run costs.
-enum class Cost { time, evaluations };
+Ladder merged(const Solver& solver, const std::vector<std::vector<Rung>>& repeats);
 
 /// The range of errors shown; what is below `least` is at the floor.
 struct ErrorRange {
     double least, most;
 };
 
-/// A rung as it is drawn.
-struct WorkPoint {
-    double cost, error, spread;
-};
-
-/// The rungs that no cheaper one beats, cheapest first, until one is at the floor. A rung whose next finer one errs more
-/// than twice as much was lucky and does not count.
-std::vector<WorkPoint> front_of(const Ladder& ladder, Cost cost, const ErrorRange& range);
-/// The same of all of Doppel's methods on a problem.
-std::vector<WorkPoint> front_of(std::size_t problem, const std::vector<Ladder>& all, Cost cost,
-                                const ErrorRange& range);
+/// Of ladders of one problem the rungs that no cheaper one beats, cheapest first, until one is at the floor. A rung whose
+/// next finer one errs more than twice as much was lucky and does not count.
+std::vector<MeasuredRung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range);
 
 /// The ladder that takes the least to err by no more than `error`: by the cheapest rung that does so, and whose next finer
 /// one does, too, for now and then a coarse one is lucky.
@@ -123,18 +112,19 @@ struct Cheapest {
     const Ladder* ladder = nullptr;  // none does; of equals the first
     double cost = std::numeric_limits<double>::infinity();
 };
-/// Of Doppel's methods or of the external ones on a problem.
-Cheapest cheapest(std::size_t problem, const std::vector<Ladder>& all, Cost cost, double error, bool external);
+/// Of ladders of one problem, by the solvers that count.
+Cheapest cheapest(std::span<const Ladder> ladders, Cost cost, double error,
+                  const std::function<bool(const Solver&)>& counts);
 
 /// Of each method on a problem the model that is the cheapest at most powers of ten of the error; of equals the first.
-std::vector<const Ladder*> best_models(std::size_t problem, const std::vector<Ladder>& all, Cost cost);
+std::vector<const Ladder*> best_models(std::span<const Ladder> ladders, Cost cost);
 
-/// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems at all
-/// `errors`. One that does not come so far ranks behind all that do; of equals the first.
-std::vector<std::string> ranked(const std::vector<Ladder>& all, Cost cost, std::span<const double> errors,
-                                bool external);
+/// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems, whose
+/// ladders these are, at all `errors`. One that does not come so far ranks behind all that do; of equals the first.
+std::vector<std::string> ranked(std::span<const std::vector<Ladder>> problems, Cost cost,
+                                std::span<const double> errors, bool external);
 
 /// Median and greatest spread of the CPU times of all useful rungs; NaN where there are none.
-std::pair<double, double> time_spread(const std::vector<Ladder>& all);
+std::pair<double, double> time_spread(std::span<const std::vector<Ladder>> problems);
 
 }  // namespace doppel

@@ -15,11 +15,6 @@
 namespace doppel {
 namespace {
 
-/// What a trial's numbers begin with; the energy errors and the length errors of all points follow.
-struct RunRow {
-    double setting, evaluations_per_s, cpu_s, broken_at_s;
-};
-
 /// The name and look of a kind of growth: one hue for all its curves, and its law beside their names.
 struct GrowthLook {
     Growth::Kind kind;
@@ -53,18 +48,17 @@ public:
     }
     explicit Drift(FigureReader& reader) : Drift() {
         release_ = reader.release();
-        spec_.release = chain_of(release_);
         auto table = reader.settings(*this);
         find_times();
         if (methods_.empty()) throw table.fault("methods", "must name at least one");
         for (const auto& name : methods_)
-            if (known(table, "methods", name).angles) runs_.push_back({name, Model::angles});
+            if (known(table, "methods", name).angles) add_run(name, Model::angles);
         for (const auto& name : methods_)
-            if (find_method(name)->constraints) runs_.push_back({name, Model::constraints});
+            if (find_method(name)->constraints) add_run(name, Model::constraints);
         for (const auto& name : projected_) {
             if (!known(table, "projected", name).constraints)
                 throw table.fault("projected", "takes methods that step constraints; \"{}\" does not", name);
-            runs_.push_back({name, Model::constraints, true});
+            add_run(name, Model::constraints, Stabilise::projection);
         }
         check_distinct(table, "methods", methods_);
         check_distinct(table, "projected", projected_);
@@ -78,7 +72,7 @@ public:
         visit({"duration_s", "of the motion", "s", durations}, duration_s_);
         visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100)}, points_per_decade_);
         visit({"evaluations_per_s", "of the right-hand side, a second of motion: the same for all methods", "", costs},
-              spec_.evaluations_per_s);
+              evaluations_per_s_);
         visit({.key = "methods",
                .help = "names of methods",
                .absent = "all that step chains",
@@ -94,8 +88,8 @@ public:
     std::string unit() const override { return "motions"; }
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        constexpr std::size_t finite = 3;  // all of a RunRow but its last
-        return numbers.size() == numbers_in<RunRow> + 2 * spec_.times_s.size() && all_finite(numbers.first(finite)) &&
+        constexpr std::size_t finite = 3;  // all of a DriftCost but its last
+        return numbers.size() == numbers_in<DriftCost> + 2 * times_s_.size() && all_finite(numbers.first(finite)) &&
                finite_or_none(numbers.subspan(finite));
     }
 
@@ -106,10 +100,10 @@ public:
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for (std::size_t r = 0; r < runs_.size(); ++r) {
             const auto run = run_of(numbers[r]);
-            for (std::size_t i = 0; i < spec_.times_s.size(); ++i)
+            for (std::size_t i = 0; i < times_s_.size(); ++i)
                 if (!std::isnan(run.energy_error[i]))
-                    add_row(table, runs_[r].name, model_words(runs_[r]), run.setting, time(run, i), run.energy_error[i],
-                            run.length_error[i]);
+                    add_row(table, runs_[r].method, model_words(runs_[r]), run.setting, time(run, i),
+                            run.energy_error[i], run.length_error[i]);
         }
     }
 
@@ -117,7 +111,7 @@ public:
         for (const bool of_rods : {false, true}) {
             Plot plot;
             // room for names beyond the end
-            plot.x = {.label = "time, s", .low = 1, .high = 9 * spec_.times_s.back(), .logarithmic = true};
+            plot.x = {.label = "time, s", .low = 1, .high = 9 * times_s_.back(), .logarithmic = true};
             plot.y = {.label = of_rods ? "worst error of a rod so far, m, in constraints"
                                        : "worst relative error of the energy so far",
                       .high = 10,
@@ -133,24 +127,24 @@ public:
     std::string subtitle() const override {
         return fmt::format("{} {}, {}; every method at some {:g} evaluations a second of motion",
                            pendulum_words(release_.links()), released_words(release_), links_words(release_),
-                           spec_.evaluations_per_s);
+                           evaluations_per_s_);
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         for (const auto& trial : numbers)
-            if (std::any_of(trial.begin() + numbers_in<RunRow>, trial.end(), [](double x) { return x > 0; }))
+            if (std::any_of(trial.begin() + numbers_in<DriftCost>, trial.end(), [](double x) { return x > 0; }))
                 return std::nullopt;
         return fmt::format(
             "no method makes an error, or none came as far as {} s, the first point: more evaluations_per_s take it "
             "further",
-            spec_.times_s.front());
+            times_s_.front());
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
         for (std::size_t r = 0; r < runs_.size(); ++r) {
             const auto run = run_of(numbers[r]);
-            auto name = fmt::format("{}_{}", runs_[r].name, model_words(runs_[r]));
+            auto name = fmt::format("{}_{}", runs_[r].method, model_words(runs_[r]));
             std::replace(name.begin(), name.end(), ' ', '_');
             all.push_back({name + "_setting", run.setting});
             all.push_back({name + "_evaluations_per_s", run.evaluations_per_s});
@@ -161,7 +155,7 @@ public:
                 const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
                 all.push_back({quantity + "growth", std::string(look_of(found).words)});
                 all.push_back({quantity + "exponent", found.exponent});
-                if (found.broken_at_s > 0) all.push_back({quantity + "doubling_s", found.doubling_s});
+                if (run.broken_at_s > 0) all.push_back({quantity + "doubling_s", found.doubling_s});
             }
             if (run.broken_at_s > 0) all.push_back({name + "_broken_at_s", run.broken_at_s});
         }
@@ -176,9 +170,9 @@ private:
             const double part = std::pow(10, static_cast<double>(i % points_per_decade_) / points_per_decade_);
             const double time = std::round(100 * part) / 100 * std::pow(10, decade);
             if (time >= duration_s_) break;
-            spec_.times_s.push_back(time);
+            times_s_.push_back(time);
         }
-        spec_.times_s.push_back(duration_s_);
+        times_s_.push_back(duration_s_);
     }
 
     static const MethodEntry& known(const TomlReader& table, std::string_view key, const std::string& name) {
@@ -187,39 +181,41 @@ private:
         throw table.fault(key, "must be names of methods (doppel list methods); \"{}\" is none", name);
     }
 
-    static std::string model_words(const DriftMethod& run) {
-        return run.projected ? "projected constraints" : std::string(name_of(run.model));
+    void add_run(const std::string& method, Model model, Stabilise stabilise = Stabilise::none) {
+        runs_.push_back({.chain = chain_of(release_), .model = model, .method = method, .stabilise = stabilise});
+    }
+
+    static bool is_projected(const MotionSpec& run) { return run.stabilise == Stabilise::projection; }
+    static std::string model_words(const MotionSpec& run) {
+        return is_projected(run) ? "projected constraints" : std::string(name_of(run.model));
     }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        const auto run = drift(spec_, runs_[trial], stop);
-        auto numbers = numbers_of(RunRow{run.setting, run.evaluations_per_s, run.cpu_s, run.broken_at_s});
+        const auto run = drift(runs_[trial], evaluations_per_s_, times_s_, stop);
+        auto numbers = numbers_of<DriftCost>(run);
         for (const auto* errors : {&run.energy_error, &run.length_error})
             numbers.insert(numbers.end(), errors->begin(), errors->end());
         return numbers;
     }
     DriftRun run_of(const TrialNumbers& trial) const {
-        const auto row = row_of<RunRow>(trial);
-        const auto energy = trial.begin() + numbers_in<RunRow>;
-        const auto rods = energy + static_cast<std::ptrdiff_t>(spec_.times_s.size());
-        return {row.setting, row.evaluations_per_s, row.cpu_s, row.broken_at_s, {energy, rods}, {rods, trial.end()}};
+        const auto energy = trial.begin() + numbers_in<DriftCost>;
+        const auto rods = energy + static_cast<std::ptrdiff_t>(times_s_.size());
+        return {row_of<DriftCost>(trial), {energy, rods}, {rods, trial.end()}};
     }
 
     /// Of a point, or of the breakdown that came before it, s.
-    double time(const DriftRun& run, std::size_t point) const {
-        return std::fmin(spec_.times_s[point], run.broken_at_s);
-    }
+    double time(const DriftRun& run, std::size_t point) const { return std::fmin(times_s_[point], run.broken_at_s); }
     Growth growth(const DriftRun& run, bool of_rods) const {
-        return growth_of(spec_.times_s, worst_so_far(of_rods ? run.length_error : run.energy_error), run.broken_at_s);
+        return growth_of(times_s_, worst_so_far(of_rods ? run.length_error : run.energy_error), run.broken_at_s);
     }
 
     /// The energy in the best model that a method serves; the rods in all that have any.
     bool shows(std::size_t run, bool of_rods) const {
         if (of_rods || runs_[run].model == Model::angles) return of_rods == (runs_[run].model == Model::constraints);
-        return !runs_[run].projected && !find_method(runs_[run].name)->angles;
+        return !is_projected(runs_[run]) && !find_method(runs_[run].method)->angles;
     }
     std::string curve_words(std::size_t run) const {
-        return runs_[run].name + (runs_[run].projected ? " projected" : "");
+        return runs_[run].method + (is_projected(runs_[run]) ? " projected" : "");
     }
 
     /// So that the labels of curves that end early stand at their ends.
@@ -228,7 +224,7 @@ private:
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
             const auto end = [&](std::size_t r) {
-                return std::fmin(spec_.times_s.back(), row_of<RunRow>(numbers[r]).broken_at_s);
+                return std::fmin(times_s_.back(), row_of<DriftCost>(numbers[r]).broken_at_s);
             };
             return end(one) > end(other);
         });
@@ -270,11 +266,11 @@ private:
     }
 
     SideSpec release_;
-    DriftSpec spec_;
-    double duration_s_ = 1e5;
+    double duration_s_ = 1e5, evaluations_per_s_ = 500;
+    std::vector<double> times_s_;  // of the points, rising; the last is the end
     int points_per_decade_ = 10;
     std::vector<std::string> methods_, projected_;
-    std::vector<DriftMethod> runs_;
+    std::vector<MotionSpec> runs_;
 };
 
 }  // namespace

@@ -28,7 +28,6 @@ public:
     explicit Links(FigureReader& reader) : release_(reader.release()) {
         auto table = reader.settings(*this);
         if (to_ < from_) throw table.fault("to", "must be at least `from`, {}; it is {}", from_, to_);
-        spec_.transient_s = spec_.duration_s / 10;
         settings_ = resolved_release(release_) + table.finish();
         if (release_.links() != 1)
             throw table.fault("from", "takes a [system] of one link, which all links are like; it has {}",
@@ -40,7 +39,7 @@ public:
         constexpr int most = 1000;
         visit({"from", "links of the shortest chain", "", from_to(1, most)}, from_);
         visit({"to", "links of the longest", "", from_to(1, most)}, to_);
-        visit({"duration_s", "of the motion that an exponent is found by", "s", positive}, spec_.duration_s);
+        visit({"duration_s", "of the motion that an exponent is found by", "s", positive}, duration_s_);
     }
 
     /// The costs, all in one, so that they are measured in turn; then the exponent of each chain.
@@ -89,7 +88,7 @@ public:
     std::string subtitle() const override {
         return fmt::format(
             "chains {}, {}; exponents from {:g} s, in a band for two of three longer runs; Euler at 30 kHz",
-            released_words(release_), links_words(release_), spec_.duration_s);
+            released_words(release_), links_words(release_), duration_s_);
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -103,7 +102,8 @@ private:
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         if (trial == 0) return step_costs(stop);
-        const auto exponent = largest_exponent(chain_of(chain(trial - 1)).cast<double>(), spec_, stop);
+        const auto exponent =
+            largest_exponent(chain_of(chain(trial - 1)).cast<double>(), {.duration_s = duration_s_}, stop);
         return numbers_of(ExponentRow{exponent.value, exponent.uncertainty});
     }
 
@@ -134,7 +134,7 @@ private:
     }
 
     SideSpec release_;
-    ExponentSpec spec_;
+    double duration_s_ = ExponentSpec{}.duration_s;
     int from_ = 2, to_ = 32;
 };
 

@@ -57,7 +57,6 @@ public:
     explicit Map(FigureReader& reader) : Map() {
         pair_ = reader.pair();
         auto table = reader.settings(*this);
-        exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
         x_ = parameter_of(reader, table, "x_parameter", x_name_, pair_);
         y_ = parameter_of(reader, table, "y_parameter", y_name_, pair_);
         if (x_name_ == y_name_) throw table.fault("y_parameter", "must be another than x_parameter, \"{}\"", x_name_);
@@ -68,7 +67,7 @@ public:
         settings_ = resolved_pair(pair_) + table.finish();
         if (x_.keeps_method && y_.keeps_method) step_by_series(pair_);
         measurement_.emplace(table, "quantity", quantity_, twins(0, 0), x_.keeps_method && y_.keeps_method,
-                             exponent_spec_);
+                             exponent_duration_s_);
         demand_apart(table, quantity_, x_, difference_,
                      {make_scene(twins(0, 0)), make_scene(twins(frame_.y.count - 1, frame_.x.count - 1))});
         make_frame(table);
@@ -107,7 +106,7 @@ public:
                positive,
                "",
                {.holds = quantity_ == Quantity::exponent, .hides = true}},
-              exponent_spec_.duration_s);
+              exponent_duration_s_);
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
@@ -203,7 +202,7 @@ private:
     Quantity quantity_ = Quantity::flip_time;
     Edge edge_ = Edge::none;
     std::optional<Range> color_range_;
-    ExponentSpec exponent_spec_;
+    double exponent_duration_s_ = ExponentSpec{}.duration_s;
     std::optional<Measurement> measurement_;
     std::string subtitle_;
 };

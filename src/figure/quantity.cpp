@@ -60,17 +60,15 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
 
 /// How all pairs are stepped in lanes, where they can be: plain chains in double by the methods of Batch.
 std::optional<TwinRun> lanes_of(const Scene& scene) {
-    TwinRun run{.sample_interval = 1 / scene.preset.sample_hz.value(), .samples = scene.samples};
-    const auto take = [](const Side& side, TwinSide& into) {
+    const auto serves = [](const Side& side) {
         const auto& motion = side.motion;
-        into = {motion.model, motion.method, motion.steps_per_sample};
         return !side.choice && !motion.physical && motion.model != Model::mechanism &&
                motion.precision == Precision::in_double && motion.stabilise == Stabilise::none &&
                Batch::serves(motion.method, motion.chain->links());
     };
-    if (!take(scene.a, run.a) || !take(scene.b, run.b)) return std::nullopt;
-    if (scene.a.motion.chain->links() != scene.b.motion.chain->links()) return std::nullopt;
-    return run;
+    const auto &a = scene.a.motion, &b = scene.b.motion;
+    if (!serves(scene.a) || !serves(scene.b) || a.chain->links() != b.chain->links()) return std::nullopt;
+    return TwinRun{a, b, scene.samples};
 }
 
 /// A quantity of distances, from those at all samples in their order.
@@ -165,10 +163,10 @@ void step_by_series(Preset& pair) {
 }
 
 Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
-                         bool alike, const ExponentSpec& exponent)
+                         bool alike, double exponent_duration_s)
     : quantity_(quantity),
       words_(words_of(quantity, pair.duration_s.text())),
-      exponent_(exponent),
+      exponent_{.duration_s = exponent_duration_s},
       flip_{pair.duration_s.value(), flip_tolerance(pair.duration_s.value())} {
     const auto& a = pair.a;
     if (quantity == Quantity::exponent && a.is_mechanism())
@@ -234,8 +232,9 @@ void Measurement::append_in_lanes(std::span<const Preset> pairs, std::span<Trial
     }
     if (is_of_distance(quantity_)) {
         std::vector<DistanceWatch> watches(pairs.size(), DistanceWatch(quantity_));
+        const double interval = run_->a.sample_interval.value();
         const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>& b) {
-            watches[i].add(static_cast<double>(n) * run_->sample_interval, state_space_distance(a, b));
+            watches[i].add(static_cast<double>(n) * interval, state_space_distance(a, b));
         };
         step_twins(twins, *run_, watch, stop);
         for (std::size_t i = 0; i < pairs.size(); ++i) into[i].push_back(watches[i].value());

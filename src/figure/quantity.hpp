@@ -70,7 +70,7 @@ public:
     /// Of pairs like `pair`; `alike` = they have one method and as many links. Throws Error (exit 2), of the table's
     /// `key`, where such pairs have no such quantity.
     Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair, bool alike,
-                const ExponentSpec& exponent);
+                double exponent_duration_s);
 
     const QuantityWords& words() const { return words_; }
     std::size_t numbers() const { return words_.columns.size(); }

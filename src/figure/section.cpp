@@ -42,8 +42,6 @@ public:
                 throw system.fault(key, "is not for a section, whose orbits start all over their energy");
         auto table = reader.settings(*this);
         if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
-        constexpr int transient = 10;  // a part of the time: the tangent finds its direction
-        exponent_spec_.transient_s = exponent_spec_.duration_s / transient;
         settings_ = resolved_chain(release_) + table.finish();
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
@@ -62,7 +60,7 @@ public:
         visit({"tolerance", "of taylor: relative error of a step", "", positive}, spec_.tolerance);
         visit({"exponent_duration_s", "of the motion by whose largest exponent an orbit is regular or chaotic", "s",
                positive},
-              exponent_spec_.duration_s);
+              exponent_duration_s_);
     }
 
     std::size_t trials() const override { return energies_.size() * orbits(); }
@@ -98,7 +96,7 @@ public:
             fmt::format("In colour, regular orbits ({}): the largest Lyapunov exponent of {} s of their motion is at "
                         "most 1.5 times its uncertainty. In grey, chaotic ones.",
                         most > static_cast<long>(themes.front().palette.size()) ? "colours repeat" : "a colour each",
-                        grouped(std::lround(exponent_spec_.duration_s))));
+                        grouped(std::lround(exponent_duration_s_))));
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
@@ -127,7 +125,7 @@ private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto& release = releases_[trial / orbits()][trial % orbits()];
         const auto points = poincare_section(release, spec_, stop);
-        const auto exponent = largest_exponent(release, exponent_spec_, stop);
+        const auto exponent = largest_exponent(release, {.duration_s = exponent_duration_s_}, stop);
         auto numbers = numbers_of(OrbitRow{exponent.value, exponent.uncertainty, static_cast<double>(points.size())});
         for (const auto& point : points) append(numbers, CrossingRow{point.theta2, point.p2, point.time_s});
         return numbers;
@@ -160,7 +158,7 @@ private:
 
     SideSpec release_;
     SectionSpec spec_;
-    ExponentSpec exponent_spec_{.duration_s = 10000};
+    double exponent_duration_s_ = 10000;
     std::vector<double> energies_{9.8, 49, 98};  // above hanging at rest, J
     int orbits_ = 24;
     std::vector<std::vector<Pendulum<double>>> releases_;  // by energy

@@ -17,16 +17,15 @@ public:
     Sweep() = default;
     explicit Sweep(FigureReader& reader) : pair_(reader.pair()) {
         auto table = reader.settings(*this);
-        exponent_spec_.transient_s = exponent_spec_.duration_s / 10;
         parameter_ = parameter_of(reader, table, "parameter", parameter_name_, pair_);
         check_range(table);
         settings_ = resolved_pair(pair_) + table.finish();
         if (parameter_.keeps_method) step_by_series(pair_);
         const auto first = twins(0);
-        measurements_.emplace_back(table, "quantity", quantity_, first, parameter_.keeps_method, exponent_spec_);
+        measurements_.emplace_back(table, "quantity", quantity_, first, parameter_.keeps_method, exponent_duration_s_);
         if (exponent_ && quantity_ != Quantity::exponent)
             measurements_.emplace_back(table, "exponent", Quantity::exponent, first, parameter_.keeps_method,
-                                       exponent_spec_);
+                                       exponent_duration_s_);
         demand_apart(table, quantity_, parameter_, difference_, {make_scene(first), make_scene(twins(trials_ - 1))});
         subtitle_ = varied_subtitle(pair_, std::array{&std::as_const(parameter_)}, std::array{value(0)}, difference_,
                                     measurements_.front().words());
@@ -52,7 +51,7 @@ public:
                positive,
                "",
                {.holds = exponent_ || quantity_ == Quantity::exponent, .hides = true}},
-              exponent_spec_.duration_s);
+              exponent_duration_s_);
     }
 
     std::size_t trials() const override { return trials_; }
@@ -249,7 +248,7 @@ private:
     Quantity quantity_ = Quantity::divergence;
     std::size_t trials_ = 0;
     bool exponent_ = false;
-    ExponentSpec exponent_spec_;
+    double exponent_duration_s_ = ExponentSpec{}.duration_s;
     std::vector<Measurement> measurements_;  // of the quantity, and of the exponent where it is asked for besides
     std::string subtitle_;
 };

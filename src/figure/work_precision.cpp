@@ -46,8 +46,8 @@ public:
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
         if (ladders_.empty())
-            throw table.fault("models", "must name one that serves; {} takes {}", problems_.all[0].name,
-                              problems_.all[0].kind == WorkProblem::Kind::bodies ? "\"angles\"" : "\"mechanism\"");
+            throw table.fault("models", "must name one that serves; {} takes \"{}\"", problems_.all[0].name,
+                              name_of(problems_.all[0].motion.model));
     }
 
     template <class Visit>
@@ -106,33 +106,32 @@ public:
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (const auto& ladder : merged_ladders(numbers))
-            for (const auto& rung : ladder.rungs) {
-                for (const std::string_view word :
-                     {std::string_view(problems_.all[ladder.problem].name), name_of(ladder.solver.model)})
-                    table.add(word);
-                table.add(std::string_view(ladder.solver.name()));
-                table.add_or_empty(rung.setting);
-                if (rung.failed())
-                    table.add(std::string_view("failed"));
-                else
-                    table.add_or_empty(rung.error);
-                for (const double number :
-                     {rung.energy_error, rung.length_error, rung.cpu_s, rung.evaluations, rung.steps})
-                    table.add_or_empty(number);
-                table.end_row();
-            }
+        const auto problems = merged_ladders(numbers);
+        for (std::size_t p = 0; p < problems.size(); ++p)
+            for (const auto& [solver, rungs] : problems[p])
+                for (const auto& rung : rungs) {
+                    for (const std::string_view word : {std::string_view(problems_.all[p].name), name_of(solver.model)})
+                        table.add(word);
+                    table.add(std::string_view(solver.name()));
+                    table.add_or_empty(rung.setting);
+                    if (rung.failed())
+                        table.add(std::string_view("failed"));
+                    else
+                        table.add_or_empty(rung.error);
+                    add_row(table, rung.energy_error, rung.length_error, rung.cpu_s, rung.evaluations, rung.steps);
+                }
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         bool any = false;
-        for (const auto& ladder : merged_ladders(numbers)) {
-            if (!front_of(ladder, cost_, {0, most_error_shown}).empty()) return std::nullopt;
-            for (const auto& rung : ladder.rungs) {
-                any |= std::isfinite(rung.error);
-                if (ladder.solver.is_study() && rung.is_study() && !rung.failed()) return std::nullopt;
+        for (const auto& ladders : merged_ladders(numbers))
+            for (const auto& ladder : ladders) {
+                if (!front_of({&ladder, 1}, cost_, {0, most_error_shown}).empty()) return std::nullopt;
+                for (const auto& rung : ladder.rungs) {
+                    any |= std::isfinite(rung.error);
+                    if (ladder.solver.is_study() && rung.is_study() && !rung.failed()) return std::nullopt;
+                }
             }
-        }
         if (!any)
             return "every run of every method broke down; raise work_precision.most_evaluations for finer settings";
         return fmt::format(
@@ -145,9 +144,8 @@ public:
         const auto ladders = merged_ladders(numbers);
         const auto named = names_in_colour(ladders);
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
-            figure.panels.push_back(
-                work_plot({p, problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity, ladders, cost_,
-                           named, has_libraries()}));
+            figure.panels.push_back(work_plot({problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
+                                               ladders[p], cost_, named, has_libraries()}));
         figure.captions.push_back(color_words(ladders));
         figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
@@ -164,7 +162,7 @@ public:
             const auto problem = row_of<ProblemRow>(numbers[p]);
             all.push_back({name + "_sensitivity", problem.sensitivity});
             all.push_back({name + "_reference_disagreement", problem.disagreement});
-            for (const double accuracy : accuracies) add_findings(ladders, p, accuracy, all);
+            for (const double accuracy : accuracies) add_findings(ladders[p], name, accuracy, all);
         }
         if (cost_ == Cost::evaluations) return all;
         const auto [typical, worst] = time_spread(ladders);
@@ -174,6 +172,8 @@ public:
     }
 
 private:
+    using Ladders = std::vector<std::vector<Ladder>>;  // of each problem
+
     std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
     bool has_libraries() const {
         return std::any_of(ladders_.begin(), ladders_.end(),
@@ -211,26 +211,28 @@ private:
     /// Computed when it is first asked for, by any thread.
     const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const {
         auto& shared = references_[problem];
-        std::call_once(shared.once, [&] { shared.reference = problems_.all[problem].reference(stop); });
+        const auto& motion = problems_.all[problem].motion;
+        std::call_once(shared.once, [&] { shared.reference = reference_end(motion, motion.sample_interval, stop); });
         return shared.reference;
     }
 
-    std::vector<Ladder> merged_ladders(std::span<const TrialNumbers> numbers) const {
-        std::vector<Ladder> all;
+    /// Of each problem, those of other libraries last.
+    Ladders merged_ladders(std::span<const TrialNumbers> numbers) const {
+        Ladders all(problems_.all.size());
         for (std::size_t i = 0; i < ladders_.size(); ++i) {
             std::vector<std::vector<Rung>> repeats;
             for (std::size_t trial = problems_.all.size() + i; trial < numbers.size(); trial += ladders_.size())
                 repeats.push_back(rows_of<Rung>(numbers[trial]));
-            all.push_back(merged(ladders_[i].first, ladders_[i].second, repeats));
+            all[ladders_[i].first].push_back(merged(ladders_[i].second, repeats));
         }
         return all;
     }
 
-    void add_findings(const std::vector<Ladder>& ladders, std::size_t p, double accuracy,
+    void add_findings(const std::vector<Ladder>& ladders, const std::string& problem, double accuracy,
                       std::vector<Finding>& all) const {
-        const auto key = fmt::format("{}_1e{}_", problems_.all[p].name, std::lround(std::log10(accuracy)));
-        const auto best = cheapest(p, ladders, cost_, accuracy, false);
-        const auto external = cheapest(p, ladders, cost_, accuracy, true);
+        const auto key = fmt::format("{}_1e{}_", problem, std::lround(std::log10(accuracy)));
+        const auto best = cheapest(ladders, cost_, accuracy, [](const Solver& solver) { return !solver.external; });
+        const auto external = cheapest(ladders, cost_, accuracy, [](const Solver& solver) { return solver.external; });
         if (best.ladder) {
             const auto& solver = best.ladder->solver;
             all.push_back({key + "best", fmt::format("{}, {}", solver.method, name_of(solver.model))});
@@ -243,7 +245,7 @@ private:
     }
 
     /// The five best; of other libraries with Doppel's best before them.
-    std::vector<std::string> names_in_colour(const std::vector<Ladder>& ladders) const {
+    std::vector<std::string> names_in_colour(const Ladders& ladders) const {
         auto names = ranked(ladders, cost_, accuracies, false);
         if (!has_libraries()) {
             names.resize(std::min(names.size(), best_shown));
@@ -255,7 +257,7 @@ private:
         return names;
     }
 
-    std::string color_words(const std::vector<Ladder>& ladders) const {
+    std::string color_words(const Ladders& ladders) const {
         const bool all = ranked(ladders, cost_, accuracies, has_libraries()).size() <= best_shown;
         const auto rank = fmt::format("by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}", has_angles() ? " rad" : "");
         if (has_libraries())
@@ -269,14 +271,13 @@ private:
     }
 
     std::string error_words(bool floors) const {
-        return fmt::format(
-            "Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
-            has_angles() ? "angle" : "place, as a part of the mechanism's size,",
-            problems_.all.front().kind == WorkProblem::Kind::chain ? "in two formulations" : "at two tolerances",
-            floors ? " Dashed: the rounding of a double, and what the motion makes of it." : "");
+        return fmt::format("Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
+                           has_angles() ? "angle" : "place, as a part of the mechanism's size,",
+                           problems_.all.front().is_plain_chain() ? "in two formulations" : "at two tolerances",
+                           floors ? " Dashed: the rounding of a double, and what the motion makes of it." : "");
     }
 
-    std::string spread_words(const std::vector<Ladder>& ladders) const {
+    std::string spread_words(const Ladders& ladders) const {
         const auto [typical, worst] = time_spread(ladders);
         return fmt::format(
             "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "

@@ -63,8 +63,8 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
         curve.hue = look.hue;
         curve.dashed = look.dashed;
     }
-    for (const auto& point : front_of(ladder, diagram.cost, range_of(diagram)))
-        add_point(curve, point.cost, shown(point.error));
+    for (const auto& point : front_of({&ladder, 1}, diagram.cost, range_of(diagram)))
+        add_point(curve, point.cost(diagram.cost), shown(point.error));
     return curve;
 }
 
@@ -72,11 +72,11 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
 Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
     Curve bars{.hue = hue, .background = Background::line};
     constexpr double shows = 0.05, most = 0.9;
-    for (const auto& point : front_of(ladder, diagram.cost, range_of(diagram))) {
+    for (const auto& point : front_of({&ladder, 1}, Cost::time, range_of(diagram))) {
         const double spread = std::min(point.spread, most);
         if (spread < shows) continue;
-        add_point(bars, point.cost * (1 - spread), shown(point.error));
-        add_point(bars, point.cost * (1 + spread), shown(point.error));
+        add_point(bars, point.cpu_s * (1 - spread), shown(point.error));
+        add_point(bars, point.cpu_s * (1 + spread), shown(point.error));
         add_point(bars, NAN, NAN);
     }
     return bars;
@@ -84,19 +84,21 @@ Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
 
 Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.background = Background::band};
-    for (const auto& point : front_of(diagram.index, diagram.ladders, diagram.cost, range_of(diagram)))
-        add_point(curve, point.cost, shown(point.error));
+    const auto own = std::find_if(diagram.ladders.begin(), diagram.ladders.end(),
+                                  [](const Ladder& ladder) { return ladder.solver.external != nullptr; });
+    for (const auto& point : front_of({diagram.ladders.begin(), own}, diagram.cost, range_of(diagram)))
+        add_point(curve, point.cost(diagram.cost), shown(point.error));
     return curve;
 }
 
 /// The point of the published study.
 void add_study(const WorkDiagram& diagram, Plot& plot) {
     for (const auto& ladder : diagram.ladders) {
-        if (ladder.problem != diagram.index || !ladder.solver.is_study()) continue;
+        if (!ladder.solver.is_study()) continue;
         for (const auto& rung : ladder.rungs)
             if (rung.is_study())
                 plot.curves.push_back({.label = "the study: Euler, 30 kHz",
-                                       .x = {diagram.cost == Cost::time ? rung.cpu_s : rung.evaluations},
+                                       .x = {rung.cost(diagram.cost)},
                                        .y = {rung.error},
                                        .mark = Mark::points,
                                        .quiet = true});
@@ -140,7 +142,7 @@ Plot work_plot(const WorkDiagram& diagram) {
     plot.curves.push_back(front_curve(diagram));
     if (!diagram.of_libraries) add_study(diagram, plot);
     for (const bool named : {false, true})
-        for (const auto* ladder : best_models(diagram.index, diagram.ladders, diagram.cost)) {
+        for (const auto* ladder : best_models(diagram.ladders, diagram.cost)) {
             const bool is_named = std::count(diagram.named.begin(), diagram.named.end(), ladder->solver.name()) > 0;
             const bool is_subject = (ladder->solver.external != nullptr) == diagram.of_libraries;
             if (is_named != named || !(named || is_subject)) continue;

@@ -37,19 +37,19 @@ std::string title_words(const std::string& name, const SideSpec& side, const Rat
 WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational& duration) {
     if (spec.physical.has_coulomb())
         throw bad_input("{}: methods are compared on smooth motions; joints with joint_coulomb_N_m stick", name);
-    using Kind = WorkProblem::Kind;
-    const auto kind = spec.is_mechanism() ? Kind::mechanism : spec.physical.is_none() ? Kind::chain : Kind::bodies;
-    spec.model = kind == Kind::mechanism ? ModelChoice::mechanism : ModelChoice::automatic;
+    const bool is_mechanism = spec.is_mechanism();
+    spec.model = is_mechanism ? ModelChoice::mechanism : ModelChoice::automatic;
     spec.integrator = "taylor";
     spec.precision = Precision::in_double;
     spec.stabilise = Stabilise::none;
     const auto side = make_side(spec, {1, 1});
-    WorkProblem problem{.name = name, .title = title_words(name, spec, duration), .kind = kind};
+    WorkProblem problem{.name = name, .title = title_words(name, spec, duration)};
     problem.motion = {.chain = side.motion.chain,
                       .physical = side.motion.physical,
+                      .model = is_mechanism ? Model::mechanism : Model::angles,
                       .sample_interval = duration,
                       .follows_turns = false};
-    if (kind != Kind::bodies) problem.motion.parts = assembly_of(spec);
+    if (is_mechanism || !side.motion.physical) problem.motion.parts = assembly_of(spec);
     problem.conserves_energy = side.has_energy_error;
     problem.energy_unit = side.energy_unit;
     problem.size = side.reach;
@@ -74,9 +74,9 @@ std::string system_words(const WorkProblem& problem, const SideSpec& side) {
     if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
     const auto chain = problem.motion.chain->cast<double>();
     const bool rests = std::all_of(chain.rate.begin(), chain.rate.end(), [](double rate) { return rate == 0; });
-    const auto besides = problem.kind == WorkProblem::Kind::mechanism ? ", and more"
-                         : problem.kind == WorkProblem::Kind::bodies  ? " with " + physical_words(side.physical)
-                                                                      : "";
+    const auto besides = side.is_mechanism()        ? ", and more"
+                         : problem.is_plain_chain() ? ""
+                                                    : " with " + physical_words(side.physical);
     return fmt::format("side a of {}{}: {}{}; {}", problem.name, rests ? ", released at rest" : "",
                        links_words(chain.length, chain.mass, chain.gravity), besides, computed);
 }

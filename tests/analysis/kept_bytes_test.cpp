@@ -1,3 +1,4 @@
+#include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
 #include "analysis/spectrum.hpp"
 #include "analysis/twins.hpp"
@@ -39,13 +40,11 @@ private:
 };
 
 Pendulum<double> released(std::size_t links) {
-    Pendulum<double> p;
-    for (auto* numbers : {&p.mass, &p.length, &p.angle, &p.rate}) numbers->clear();
+    Pendulum<double> p{.mass = {}, .length = {}, .angle = {}, .rate = std::vector<double>(links, 0)};
     for (std::size_t i = 0; i < links; ++i) {
         p.mass.push_back(1 + 0.25 * static_cast<double>(i));
         p.length.push_back(1 - 0.125 * static_cast<double>(i % 3));
         p.angle.push_back(2 + 0.25 * static_cast<double>(i));
-        p.rate.push_back(0);
     }
     return p;
 }
@@ -77,7 +76,7 @@ std::string hash_of_exponents() {
     return hash.text();
 }
 
-std::string hash_of_twins(const TwinSide& side, std::size_t links) {
+std::string hash_of_twins(const MotionSpec& side, std::size_t links) {
     std::vector<Twins> twins;
     for (int i = 0; i < 5; ++i) {
         auto p = released(links), other = p;
@@ -86,9 +85,12 @@ std::string hash_of_twins(const TwinSide& side, std::size_t links) {
         twins.push_back({p, other});
     }
     Hash hash;
-    std::vector<double> averages(twins.size());
-    average_log_ratios(twins, {.a = side, .b = side, .samples = 2400}, averages, never);
-    for (const double average : averages) hash.add(average);
+    std::vector<AverageLogRatio> means(twins.size());
+    const auto watch = [&](std::size_t i, long, const Bobs<double>& a, const Bobs<double>& b) {
+        means[i].add(state_space_distance(a, b));
+    };
+    step_twins(twins, {.a = side, .b = side, .samples = 2400}, watch, never);
+    for (const auto& mean : means) hash.add(mean.value());
     return hash.text();
 }
 
@@ -104,8 +106,9 @@ std::map<std::string, std::string> hashes() {
     }
     all["exponents"] = hash_of_exponents();
     for (const char* method : {"euler", "rk4"}) {
-        all[fmt::format("twins {} angles 2", method)] = hash_of_twins({Model::angles, method, 250}, 2);
-        all[fmt::format("twins {} constraints 3", method)] = hash_of_twins({Model::constraints, method, 250}, 3);
+        all[fmt::format("twins {} angles 2", method)] = hash_of_twins({.model = Model::angles, .method = method}, 2);
+        all[fmt::format("twins {} constraints 3", method)] =
+            hash_of_twins({.model = Model::constraints, .method = method}, 3);
     }
     return all;
 }

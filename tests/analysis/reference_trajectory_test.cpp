@@ -65,17 +65,6 @@ TEST(ReferenceTrajectory, KnowsInItsOwnPrecisionHowFarItMayBeOff) {
     }
 }
 
-TEST(ReferenceTrajectory, OfARunWithStabilisedRodsIsThatOfTheTrueMotion) {
-    auto rods = in_double({30, 20});
-    rods.model = Model::constraints;
-    rods.method = "rk4";
-    const auto trajectory = reference_trajectory(rods, 10, 1, enough, never);
-    rods.stabilise = Stabilise::projection;
-    const auto same = reference_trajectory(rods, 10, 1, enough, never);
-    ASSERT_EQ(same.seen.size(), 11u);
-    EXPECT_EQ(same.seen.back(), trajectory.seen.back());
-}
-
 TEST(ReferenceTrajectory, EndsSomewhatBeyondWhatDoubleCanTell) {
     const auto wide = reference_trajectory(in_double({150, 90}), 1000, 2, enough, never);
     EXPECT_LT(wide.seen.size(), 600u);
