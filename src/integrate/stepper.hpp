@@ -94,8 +94,8 @@ private:
     struct Held final : Interface {
         using Model = std::remove_cvref_t<As>;
         As model;
-        explicit Held(const Model& held) requires(!std::is_reference_v<As>) : model(held) {}
-        explicit Held(Model& held) requires std::is_reference_v<As> : model(held) {}
+        template <class From>
+        explicit Held(From& held) : model(held) {}
         void rate(const State& y, State& dydt) override { model.rate(y, dydt); }
         void project(State& y) override { doppel::project(model, y); }
         void take_modes(State& y) override { doppel::take_modes(model, y); }
