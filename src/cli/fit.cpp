@@ -20,21 +20,20 @@ struct FitCommandOptions {
 };
 
 void fit(const FitCommandOptions& options) {
-    FitOptions fit_options{.question = {.convention = {options.gravity, options.mass}},
+    FitOptions fit_options{.bodies = options.model == "point"      ? Bodies::point
+                                     : options.model == "compound" ? Bodies::compound
+                                                                   : Bodies::automatic,
+                           .convention = {options.gravity, options.mass},
                            .out = options.out,
                            .name = options.name,
                            .jobs = options.jobs,
                            .gl = gl_named(options.gl),
                            .force = options.force};
-    fit_options.question.bodies = options.model == "point"      ? Bodies::point
-                                  : options.model == "compound" ? Bodies::compound
-                                                                : Bodies::automatic;
-    if (options.every_s > 0) fit_options.question.every_s = options.every_s;
+    if (options.every_s > 0) fit_options.every_s = options.every_s;
     outlive_readers();
-    const auto name = options.name.empty() ? fit_name(options.tracks.front()) : options.name;
-    ProgressReport report(progress_style(options.progress), name, "models");
+    const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
+    ProgressReport report(progress_style(options.progress), fit_name(files, fit_options), "models");
     try {
-        const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
         const auto done = run_fit(files, fit_options, watch_interrupts(), std::ref(report));
         for (const auto& sentence : done.sentences) report.note(sentence);
         report.done(done.run);

@@ -8,8 +8,8 @@
 namespace doppel {
 
 /// The motion from one start, step after step, to be asked for angles at ascending times: Dormand and Prince's method of order
-/// 5 at fixed steps, so that derivatives are those of what is computed. N derivatives are carried along: by the start
-/// (0 to 3) and by the first N − 4 fitted parameters that move the arms; or none.
+/// 5 at fixed steps, so that derivatives are those of what is computed. N derivatives are carried along: none, those by the
+/// start (0 to 3), or by the fitted parameters that move the arms, too (4 + their number).
 ///
 /// With Coulomb friction each step keeps to one law and counts as far as that holds, until a joint comes to rest or is let
 /// go. Then the slope f jumps, and with it how the state changes with what fixes the time t* of the event:
@@ -25,8 +25,8 @@ public:
     // For a time in the last step, or a little outside:
 
     using Column = Eigen::Matrix<double, 1 + N, 1>;  // a number and its derivatives
-    Column angle(Eigen::Index arm, double t) const;
-    double rate(Eigen::Index arm, double t) const;
+    Column angle(std::size_t arm, double t) const;
+    double rate(std::size_t arm, double t) const;
     ArmState values_at(double t) const { return {angle(0, t)[0], angle(1, t)[0], rate(0, t), rate(1, t)}; }
 
 private:
@@ -42,17 +42,22 @@ private:
     static Column relative(const State& y, std::size_t joint) {
         return joint == 0 ? Column(y.col(2)) : Column(y.col(3) - y.col(2));
     }
-    Arms<double> law() const;
+    /// The sum, by these weights, of an arm's angle, rate and acceleration where the step begins, and where it ends.
+    auto weighted(const std::array<double, 6>& w, std::size_t arm) const {
+        return w[0] * before_.col(arm) + w[1] * before_.col(arm + 2) + w[2] * slope_before_.col(arm + 2) +
+               w[3] * after_.col(arm) + w[4] * after_.col(arm + 2) + w[5] * slope_after_.col(arm + 2);
+    }
     State slope_of(const State& y) const;
     /// y and its slope h seconds later; the slope is the first stage of the next step.
     void take_step(double h, State& y, State& slope) const;
     bool go_on();
     /// An event of this joint before those already found: at the end, or where its rate is nearest to rest before.
-    void find_event(const Arms<double>& law, std::size_t joint);
+    void find_event(std::size_t joint);
     /// Goes to the event and on by the law that holds from there. False where they are too many to end.
     bool pass_event();
 
     Arms<Scalar> arms_;
+    Arms<double> values_;       // theirs alone
     double step_, origin_ = 0;  // s, of the last event or the start
     long done_ = 0;             // steps since
     double events_ = 0;
@@ -60,7 +65,7 @@ private:
     State before_, slope_before_, after_, slope_after_;
 };
 
-/// How many directions there are for a start and few parameters or none, and for all; no others are compiled, but 0.
-constexpr int few_directions = 8, all_directions = 4 + static_cast<int>(dynamic_count);
+/// How many directions there are for a start alone, and with all that moves the arms; no others are compiled, but 0.
+constexpr int start_directions = 4, all_directions = 4 + static_cast<int>(dynamic_count);
 
 }  // namespace doppel

@@ -1,6 +1,5 @@
 #include "fit/horizon.hpp"
 
-#include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
 
@@ -31,9 +30,7 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
             if (piece.is_outlier[arm][i]) continue;
             const double at = from_start + (arm == 1 ? p[lag] : 0);
             if (!flow.reach(at)) return false;
-            const double shown =
-                p[offset_1 + arm] + p[scale_1 + arm] * flow.angle(static_cast<Eigen::Index>(arm), at)[0];
-            double off = piece.angle[arm][i] - shown;
+            double off = piece.angle[arm][i] - (p[offset_1 + arm] + p[scale_1 + arm] * flow.angle(arm, at)[0]);
             if (!is_first_piece) off -= turn * std::round(off / turn);  // a piece may count turns anew
             error = std::max(error, std::abs(off));
         }
@@ -51,22 +48,21 @@ void attribute(const Fit& fit, const Shot& start, const Uncertainty& uncertainty
     constexpr double looked_at_s = 40, beyond = 1.7, steps = 2;  // as fine as a standard error is known
     const double step = steps * fit.step_s;
     const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
-    const auto moving = fit.model.moving();  // the first of them
-    const Eigen::MatrixXd of_parameters = uncertainty.covariance.topLeftCorner(moving, moving);
-    const Eigen::MatrixXd of_start = inverse_of(start.sums.matrix) * std::pow(uncertainty.inflation, 2);
+    const auto of_parameters = uncertainty.covariance.topLeftCorner<dynamic_count, dynamic_count>();
+    const Eigen::Matrix4d of_start = start.sums.inverse_of_start() * std::pow(uncertainty.inflation, 2);
+    auto &start_s = prediction.start_alone_s, &parameters_s = prediction.parameters_alone_s;
     Flow<all_directions> flow(fit.model, fit.parameters, start.start, step);
-    const auto note = [&](std::optional<double>& when, const Eigen::MatrixXd& covariance, Eigen::Index first,
-                          double t) {
-        for (Eigen::Index arm = 0; arm < 2 && !when; ++arm) {
-            const Eigen::VectorXd by = flow.angle(arm, t).segment(first, covariance.rows());
-            if (by.dot(covariance * by) > limit * limit) when = t - prediction.data_s;
+    for (double t = prediction.data_s; t < end && flow.reach(t) && !(start_s && parameters_s); t += step)
+        for (std::size_t arm = 0; arm < 2; ++arm) {
+            const auto angle = flow.angle(arm, t);
+            const ArmState by_start = angle.segment<4>(1);
+            const Eigen::Matrix<double, dynamic_count, 1> by_parameters = angle.tail<dynamic_count>();
+            const auto note = [&](std::optional<double>& when, double variance) {
+                if (!when && variance > limit * limit) when = t - prediction.data_s;
+            };
+            note(start_s, by_start.dot(of_start * by_start));
+            note(parameters_s, by_parameters.dot(of_parameters * by_parameters));
         }
-    };
-    for (double t = prediction.data_s; t < end && flow.reach(t); t += step) {
-        note(prediction.start_alone_s, of_start, 1, t);
-        note(prediction.parameters_alone_s, of_parameters, 5, t);
-        if (prediction.start_alone_s && prediction.parameters_alone_s) return;
-    }
 }
 
 /// 0 the model, 1 the start, 2 the parameters (Horizon::left_by).
@@ -90,7 +86,7 @@ Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Un
     Prediction prediction{.start_s = time_of(track, shot, shot.first), .data_s = times[shot.last - 1] - begin};
     // each unit after is judged by parameters that know neither it nor the first
     for (auto judged = unit; judged < fit.units(); ++judged) {
-        const auto without = fit_without(fit, unit, judged);
+        const auto without = stepped(fit, 0, unit, judged);
         if (judged == unit) shot.start = without.unit(unit).front().start;
         const auto start = fit_starts(job, without, {&shot, 1}, 10, 1e-5);
         if (!start) break;

@@ -1,6 +1,5 @@
 #include "fit/ladder.hpp"
 
-#include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/beginning.hpp"
 #include "numeric/portable_math.hpp"
@@ -42,7 +41,7 @@ std::vector<FittedModel> models_of(Bodies bodies) {
 void leave_out(const FitJob& job, FittedModel& rung) {
     rung.left_out.resize(rung.fit.units());
     parallel_for(rung.left_out.size(), job.threads, [&](std::size_t unit) {
-        const auto without = fit_without(rung.fit, unit, unit);
+        const auto without = stepped(rung.fit, 0, unit, unit);
         const auto alone = fit_starts({job.track, job.stop}, without, without.unit(unit), 8, 1e-3);
         rung.left_out[unit] = alone ? alone->rms * alone->rms : std::numeric_limits<double>::infinity();
     });
@@ -72,8 +71,8 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
 Fit as_model(const ModelSpec& model, Fit fit) {
     fit.model = model;
     fit.is_evaluated = false;
-    for (auto k = viscous_1; k <= quadratic_2; k = static_cast<FitParameter>(k + 1))
-        if (!model.fits(k)) fit.parameters[k] = 0;
+    for (std::size_t k = viscous_1; k <= quadratic_2; ++k)
+        if (!model.fitted[k]) fit.parameters[k] = 0;
     return fit;
 }
 
@@ -94,8 +93,7 @@ bool is_as_likely(const FittedModel& rung, const FittedModel& best) {
 
 }  // namespace
 
-ModelLadder climb(const FitJob& job, Bodies bodies,
-                  const std::function<void(std::size_t done, std::size_t of)>& report) {
+ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report) {
     constexpr double roughly = 5e-4;  // enough to compare
     const auto models = models_of(bodies);
     const auto first = begin_fit(job);
@@ -104,25 +102,23 @@ ModelLadder climb(const FitJob& job, Bodies bodies,
     for (auto rung : models) {
         throw_if_set(job.stop);
         const auto model = rung.fit.model;
-        try {
-            // from the nearer of two places: where all began, and where the model before ended
-            auto start = as_model(model, first);
-            if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
-                auto other = as_model(model, rungs.back().fit);
-                start.step_s = other.step_s, start.scale = other.scale;
-                evaluate_fit(job, start);
-                evaluate_fit(job, other);
-                if (other.cost <= start.cost) start = std::move(other);
-            }
-            rung.fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = roughly});
-        } catch (const Error& error) {  // of this model alone
-            if (error.code() != ExitCode::method_failed || (rung.name == models.back().name && rungs.empty())) throw;
-            continue;
+        // from the nearer of two places: where all began, and where the model before ended
+        auto start = as_model(model, first);
+        if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
+            auto other = as_model(model, rungs.back().fit);
+            start.step_s = other.step_s, start.scale = other.scale;
+            evaluate_fit(job, start);
+            evaluate_fit(job, other);
+            if (other.cost <= start.cost) start = std::move(other);
         }
+        auto fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = roughly});
+        if (!fit) continue;
+        rung.fit = *std::move(fit);
         leave_out(job, rung);
         rungs.push_back(std::move(rung));
-        report(rungs.size(), models.size());
+        report({static_cast<long>(rungs.size()), static_cast<long>(models.size())});
     }
+    if (rungs.empty()) throw no_motion(job.track);
     for (std::size_t k = 0; k < rungs.size(); ++k)
         if (rungs[k].left_out_rms < rungs[ladder.best].left_out_rms) ladder.best = k;
     const auto& best = rungs[ladder.best];

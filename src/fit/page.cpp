@@ -125,7 +125,7 @@ Figure fit_page(const FitResult& result, const std::string& name) {
     const auto& track = result.track;
     std::vector<std::string> models, numbers;
     for (const auto& other : result.ladder.rungs) models.push_back(fmt::format("{} {}", models.size() + 1, other.name));
-    for (const auto parameter : rung.fit.model.fitted)
+    for (const auto parameter : rung.fit.model.list())
         numbers.push_back(parameter_text(rung.fit, result.uncertainty, parameter));
     return {
         .title = fmt::format("{}: {}", name, rung.name),

@@ -22,18 +22,12 @@ double most_held(const Arms<double>& arms, std::size_t joint) {
 }  // namespace
 
 ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
-    ModelSpec model{.point_masses = point, .drag = drag, .fitted = {inertia, coupling}};
-    const auto add = [&](bool is_fitted, std::initializer_list<FitParameter> parameters) {
-        if (is_fitted) model.fitted.insert(model.fitted.end(), parameters);
-    };
-    add(!point, {gravity_1});
-    add(true, {gravity_2});
-    add(friction > 0, {viscous_1, viscous_2});
-    add(friction > 1, {coulomb_1, coulomb_2});
-    add(friction > 2, {quadratic_1, quadratic_2});
-    add(true, {offset_1, offset_2});
-    add(reading > 0, {lag});
-    add(reading > 1, {scale_1, scale_2});
+    ModelSpec model{.point_masses = point, .drag = drag};
+    for (std::size_t k = 0; k < parameter_count; ++k)
+        model.fitted[k] = k < viscous_1  ? k != gravity_1 || !point
+                          : k < offset_1 ? k < viscous_1 + static_cast<std::size_t>(2 * friction)
+                          : k < lag      ? true
+                                         : reading > (k == lag ? 0 : 1);
     return model;
 }
 
@@ -44,7 +38,7 @@ double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
 
 std::array<int, 2> settled(Arms<double> arms, std::size_t joint, ArmState y) {
     const bool was_held = std::exchange(arms.modes[joint], 0) == 0;
-    y[2 + static_cast<Eigen::Index>(joint)] = joint == 0 ? 0 : y[2];
+    y[2 + joint] = joint == 0 ? 0 : y[2];
     if (arms.is_held(1)) y[3] = y[2];
     const double torque = holding(arms, joint, y);
     if (was_held || std::abs(torque) > most_held(arms, joint)) arms.modes[joint] = torque < 0 ? -1 : 1;

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <array>
+#include <bitset>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,12 +37,9 @@ enum FitParameter : std::size_t {
     parameter_count,
     dynamic_count = offset_1  // so many move the arms, the others read them
 };
-using Parameters = std::array<double, parameter_count>;
+using Parameters = Eigen::Matrix<double, parameter_count, 1>;
 
-constexpr bool is_dynamic(FitParameter parameter) {
-    return parameter < dynamic_count;
-}
-constexpr bool is_friction(FitParameter parameter) {
+constexpr bool is_friction(std::size_t parameter) {
     return parameter >= viscous_1 && parameter <= quadratic_2;
 }
 
@@ -77,14 +74,16 @@ enum class Drag {
 struct ModelSpec {
     bool point_masses = false;  // then D1 = A D2/C, and gravity_1 is not among `fitted`
     Drag drag = Drag::own;
-    std::vector<FitParameter> fitted;  // those that move the arms first
-    bool may_gain = false;             // friction may be negative
+    std::bitset<parameter_count> fitted;
+    bool may_gain = false;  // friction may be negative
 
-    bool fits(FitParameter parameter) const {
-        return std::find(fitted.begin(), fitted.end(), parameter) != fitted.end();
+    /// Those that are fitted, in their order.
+    std::vector<std::size_t> list() const {
+        std::vector<std::size_t> all;
+        for (std::size_t k = 0; k < parameter_count; ++k)
+            if (fitted[k]) all.push_back(k);
+        return all;
     }
-    /// How many of them move the arms.
-    Eigen::Index moving() const { return std::count_if(fitted.begin(), fitted.end(), is_dynamic); }
 };
 
 /// The model with friction: 0 none, 1 viscous, 2 and Coulomb, 3 and drag; and with a reading: 0 offsets, 1 and a lag, 2 and
@@ -92,15 +91,6 @@ struct ModelSpec {
 ModelSpec model_of(bool point, int friction, Drag drag = Drag::own, int reading = 0);
 
 using ArmState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; ω1, ω2, rad/s
-
-/// The value alone of a number that may carry derivatives.
-template <class Scalar>
-double value_of(const Scalar& x) {
-    if constexpr (requires { x.tangent; })
-        return x.value;
-    else
-        return x;
-}
 
 /// Two rigid bodies on joints with friction, in a vertical plane, divided by B.
 ///
@@ -156,20 +146,21 @@ struct Arms {
     bool is_held(std::size_t joint) const { return has_coulomb && modes[joint] == 0; }
 };
 
-/// The arms of a model, with the derivatives by its fitted parameters from direction 4 on, as far as there are directions.
+/// The arms of a model. Derivatives by fitted parameters are along direction 4 + their number, where there is one.
 template <class Scalar>
 Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
     Arms<Scalar> arms{.p = {}, .drag = model.drag};
     for (std::size_t k = 0; k < dynamic_count; ++k) {
-        const auto parameter = static_cast<FitParameter>(k);
         arms.p[k] = Scalar(parameters[k]);
-        const bool acts = is_friction(parameter) && (parameters[k] != 0 || model.fits(parameter));
+        const bool acts = is_friction(k) && (parameters[k] != 0 || model.fitted[k]);
         arms.has_friction |= acts;
-        arms.has_coulomb |= acts && (parameter == coulomb_1 || parameter == coulomb_2);
+        arms.has_coulomb |= acts && (k == coulomb_1 || k == coulomb_2);
+        if constexpr (requires {
+                          requires Scalar::Tangent::SizeAtCompileTime >
+                          4;
+                      })
+            if (model.fitted[k]) arms.p[k].tangent[4 + k] = 1;
     }
-    if constexpr (requires { arms.p[0].tangent; })
-        for (Eigen::Index k = 0; k < std::min(model.moving(), arms.p[0].tangent.size() - 4); ++k)
-            arms.p[model.fitted[static_cast<std::size_t>(k)]].tangent[4 + k] = 1;
     if (model.point_masses) arms.p[gravity_1] = arms.p[inertia] * arms.p[gravity_2] / arms.p[coupling];
     return arms;
 }

@@ -35,21 +35,24 @@ Json or_null(const std::optional<double>& value) {
 }
 
 Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
+    const auto parameters = rung.fit.model.list();
     Json ratios = Json::object();
-    for (const auto parameter : rung.fit.model.fitted) {
+    for (const auto parameter : parameters) {
         auto& ratio = ratios[std::string(parameter_words[parameter].key)];
-        ratio = {{"value", rung.fit.of(parameter)}, {"standard_error", uncertainty.standard_error_of(parameter)}};
+        ratio = {{"value", rung.fit.parameters[parameter]}, {"standard_error", uncertainty.standard_error(parameter)}};
         if (rung.fit.is_at_bound(parameter)) ratio["at_bound"] = true;
     }
-    const Eigen::VectorXd errors = uncertainty.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-    const Eigen::ArrayXXd products = errors * errors.transpose();
-    const Eigen::ArrayXXd correlations = (products > 0).select(uncertainty.covariance.array() / products, 0.0);
+    const auto correlations = [&](auto one) {
+        return list_of(parameters, [&](auto other) {
+            const double product = uncertainty.standard_error(one) * uncertainty.standard_error(other);
+            return product > 0 ? uncertainty.covariance(one, other) / product : 0;
+        });
+    };
     return {{"name", rung.name},
             {"ratios_to_B", ratios},
             {"correlations",
-             {{"parameters", list_of(uncertainty.parameters, [](auto p) { return parameter_words[p].key; })},
-              {"matrix", list_of(correlations.rowwise(),
-                                 [](const auto& row) { return std::vector<double>(row.begin(), row.end()); })}}},
+             {{"parameters", list_of(parameters, [](auto p) { return parameter_words[p].key; })},
+              {"matrix", list_of(parameters, correlations)}}},
             {"rms_rad", rung.fit.rms},
             {"left_out_rms_rad", rung.left_out_rms}};
 }
@@ -150,11 +153,11 @@ std::string horizon_sentence(const FitResult& result) {
     return sentence + fmt::format("; of {} predictions {} left, limited by: {}.", h.predictions.size(), left, because);
 }
 
-std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, FitParameter parameter) {
+std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter) {
     const auto& words = parameter_words[parameter];
-    const double error = uncertainty.standard_error_of(parameter);
+    const double error = uncertainty.standard_error(parameter);
     const int decimals = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
-    return fmt::format("{} = {:.{}f} ± {:.{}f}{}", words.symbol, fit.of(parameter), decimals, error, decimals,
+    return fmt::format("{} = {:.{}f} ± {:.{}f}{}", words.symbol, fit.parameters[parameter], decimals, error, decimals,
                        words.unit);
 }
 
@@ -164,7 +167,7 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto files = files_of(result.track);
     const auto& shot = rung.fit.shots.front();
     // what the start is known to by itself; what it shares with the parameters would add little
-    const Eigen::MatrixXd covariance = inverse_of(shot.sums.matrix.topLeftCorner(4, 4));
+    const Eigen::Matrix4d covariance = shot.sums.inverse_of_start();
     const ArmState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
     auto text = fmt::format(
         "# Fitted by doppel fit to {}{}: {}.\n"

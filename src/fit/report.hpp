@@ -25,6 +25,6 @@ std::string residual_sentence(const FitResult& result);
 /// One on the horizon, and what limits it.
 std::string horizon_sentence(const FitResult& result);
 /// "A/B = 1.7988 ± 0.0007", with as many digits as the error bears.
-std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, FitParameter parameter);
+std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter);
 
 }  // namespace doppel

@@ -36,26 +36,23 @@ std::vector<std::string> sentences_of(const FitResult& result) {
 
 }  // namespace
 
-std::string fit_name(const std::filesystem::path& file) {
-    return file.stem().string();
+std::string fit_name(const std::vector<std::filesystem::path>& files, const FitOptions& options) {
+    return options.name.empty() ? files.front().stem().string() : options.name;
 }
 
 FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions& options,
                const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
-    const auto name = options.name.empty() ? fit_name(files.front()) : options.name;
+    const auto name = fit_name(files, options);
     if (name.empty() || name.find('/') != std::string::npos)
         throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
     check_preset_name(options.name.empty() ? files.front().string() : "--name", name);
-    const int jobs = options.jobs > 0 ? options.jobs : cores();
     const double start = seconds_of(CLOCK_MONOTONIC);
     auto track = read_tracks(files, stop);
     Transaction parts(options.out / name, name, "fit", {files, options.force});
     parts.demand(name + ".fit.json");
     const auto place = [&](const char* ending) { return parts.file(name + ending); };
     const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
-    const auto result = answer(std::move(track), options.question, jobs, stop, [&](std::size_t done, std::size_t of) {
-        report({static_cast<long>(done), static_cast<long>(of)});
-    });
+    const auto result = answer(std::move(track), options, stop, report);
     const auto finish = [&] {
         write_text(preset, fitted_preset(result, name));
         parts.finished(name + ".toml");
@@ -70,7 +67,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
                   {.metadata = metadata_of(name, name, fmt::format("how it was made is in {}.fit.json", name))}, stop);
         parts.finished(name + ".png");
         auto manifest = fit_json(result);
-        manifest["threads"] = jobs;
+        manifest["threads"] = options.jobs > 0 ? options.jobs : cores();
         manifest["time"] = {{"models_cpu_s", result.models_cpu_s}, {"fit_cpu_s", result.cpu_s}};
         manifest["libraries"] = {{"gl", renderer.description()}, {"compiler", __VERSION__}};
         write_manifest(parts, name + ".fit.json", std::move(manifest));

@@ -26,12 +26,12 @@ Coverage coverage_of(int trials, const Parameters& truth, const ModelSpec& model
         measuring.seed = static_cast<unsigned>(1000 + trial);
         const auto track = simulated(truth, model.drag, measuring);
         const FitJob job{track, no_stop, 2};
-        const auto fit = fit_model(job, fit_at(model, truth, track), {});
+        const auto fit = *fit_model(job, fit_at(model, truth, track), {});
         const auto uncertainty = uncertainty_of(job, fit);
         coverage.white += uncertainty.is_white;
-        for (const auto parameter : uncertainty.parameters) {
+        for (const auto parameter : model.list()) {
             const double off = fit.parameters[parameter] - truth[parameter];
-            const bool is_within = std::abs(off) < 1.96 * uncertainty.standard_error_of(parameter);
+            const bool is_within = std::abs(off) < 1.96 * uncertainty.standard_error(parameter);
             within[parameter_words[parameter].key] += is_within;
             sum += is_within, ++count;
         }

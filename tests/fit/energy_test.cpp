@@ -13,7 +13,7 @@ using namespace test;
 /// The exit code and the message that a track's fit ends with; 0 where it is taken.
 std::pair<int, std::string> ending(const Track& track, Bodies bodies = Bodies::automatic) {
     try {
-        answer(track, {.bodies = bodies}, 2, no_stop, [](std::size_t, std::size_t) {});
+        answered(track, bodies);
     } catch (const Error& error) {
         return {static_cast<int>(error.code()), error.what()};
     }
@@ -23,8 +23,8 @@ std::pair<int, std::string> ending(const Track& track, Bodies bodies = Bodies::a
 /// How many standard errors the loss of energy is from 0.
 double errors_from_zero(const Track& track, const Parameters& guess, bool point = false) {
     const FitJob job{track, no_stop, 2};
-    const auto fit = fit_model(job, fit_at(model_of(point, 1), guess, track), {.step_share = 0.2, .relative = 5e-4});
-    const auto loss = energy_loss(job, fit);
+    const auto fit = *fit_model(job, fit_at(model_of(point, 1), guess, track), {.step_share = 0.2, .relative = 5e-4});
+    const auto loss = energy_loss(job, fit).value();
     return loss.share / loss.standard_error;
 }
 

@@ -57,7 +57,7 @@ TEST(FitStudy, EnergeticTracksAreFittedToTheirNoise) {
     for (const auto seed : seeds) {
         const auto track = energetic_track(seed);
         try {
-            const auto result = answer(track, {}, 2, no_stop, [](std::size_t, std::size_t) {});
+            const auto result = answered(track);
             EXPECT_LT(result.chosen().fit.rms, 5.3e-4)
                 << seed << ": " << result.chosen().name;  // measured 4.8 to 5.1e-4
             ++fitted;
@@ -109,13 +109,13 @@ TEST(FitStudy, IntervalsHoldCoulombFriction) {
     int within = 0, count = 0;
     double worst = 0;
     for (const auto seed : seeds) {
-        Parameters truth{};
+        Parameters truth;
         const auto track = rubbing_track(seed, truth);
-        const auto result = answer(track, {}, 2, no_stop, [](std::size_t, std::size_t) {});
-        for (const auto parameter : result.uncertainty.parameters) {
+        const auto result = answered(track);
+        for (const auto parameter : result.chosen().fit.model.list()) {
             if (!is_friction(parameter)) continue;
-            const double off = std::abs(result.chosen().fit.of(parameter) - truth[parameter]) /
-                               result.uncertainty.standard_error_of(parameter);
+            const double off = std::abs(result.chosen().fit.parameters[parameter] - truth[parameter]) /
+                               result.uncertainty.standard_error(parameter);
             within += off < 1.96, ++count;
             worst = std::max(worst, off);
         }

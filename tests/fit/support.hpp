@@ -2,6 +2,7 @@
 
 #include "fit/beginning.hpp"
 #include "fit/flow.hpp"
+#include "fit/result.hpp"
 #include "integrate/motion.hpp"
 #include "physics/physical_pendulum.hpp"
 
@@ -17,7 +18,7 @@ namespace doppel::test {
 
 /// A laboratory's arms, some 17 cm and 29 cm long; with friction of all kinds.
 inline Parameters lab_arms(bool with_friction = true) {
-    Parameters p{};
+    Parameters p = Parameters::Zero();
     p[inertia] = 1.8, p[coupling] = 0.88, p[gravity_1] = 106, p[gravity_2] = 50;
     p[scale_1] = p[scale_2] = 1;
     if (!with_friction) return p;
@@ -72,8 +73,9 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
 inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
     const auto &m = pendulum.chain.mass, &a = pendulum.center, &i = pendulum.inertia;
     const double l1 = pendulum.chain.length[0], g = pendulum.chain.gravity, b = i[1] + m[1] * a[1] * a[1];
-    Parameters p{(i[0] + m[0] * a[0] * a[0] + m[1] * l1 * l1) / b, m[1] * l1 * a[1] / b,
-                 (m[0] * a[0] + m[1] * l1) * g / b, m[1] * a[1] * g / b};
+    Parameters p = Parameters::Zero();
+    p.head<4>() << (i[0] + m[0] * a[0] * a[0] + m[1] * l1 * l1) / b, m[1] * l1 * a[1] / b,
+        (m[0] * a[0] + m[1] * l1) * g / b, m[1] * a[1] * g / b;
     const auto take = [&](FitParameter first, const std::vector<double>& list) {
         for (std::size_t k = 0; k < list.size(); ++k) p[first + k] = list[k] / b;
     };
@@ -138,5 +140,9 @@ inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Tr
 }
 
 inline const std::atomic<bool> no_stop = false;
+
+inline FitResult answered(const Track& track, Bodies bodies = Bodies::automatic) {
+    return answer(track, {.bodies = bodies, .jobs = 2}, no_stop, [](const Progress&) {});
+}
 
 }  // namespace doppel::test

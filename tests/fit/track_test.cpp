@@ -19,7 +19,7 @@ Track read(const std::vector<std::string>& texts) {
 /// The exit code and the words with which a text is refused, by the reader or by the fit.
 std::pair<int, std::string> refusal(const std::vector<std::string>& texts) {
     try {
-        answer(read(texts), {}, 2, no_stop, [](std::size_t, std::size_t) {});
+        answered(read(texts));
         return {0, "it was fitted"};
     } catch (const Error& fault) {
         return {static_cast<int>(fault.code()), fault.what()};
