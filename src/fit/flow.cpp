@@ -30,25 +30,22 @@ std::array<double, 6> rate_weights(double t, double h) {
 
 template <int N>
 Flow<N>::Flow(const ModelSpec& model, const Parameters& parameters, const ArmState& start, double step)
-    : arms_(arms_of<Scalar>(model, parameters)),
-      values_(arms_of<double>(model, parameters)),
-      step_(step),
-      before_(State::Zero()) {
-    before_.row(0) = start;
-    if constexpr (N > 0) before_.template block<4, 4>(1, 0).setIdentity();
+    : arms_(arms_of<Scalar>(model, parameters)), values_(arms_of<double>(model, parameters)), step_(step) {
+    before_.y.setZero();
+    before_.y.row(0) = start;
+    if constexpr (N > 0) before_.y.template block<4, 4>(1, 0).setIdentity();
     arms_.modes = values_.modes = turning(start);
-    slope_before_ = slope_of(before_);
+    before_.slope = slope_of(before_.y);
     go_on();
 }
 
 template <int N>
 bool Flow<N>::reach(double t) {
-    while (t > begin() + (event_ ? event_->after : step_)) {
-        if (event_) {
+    while (t > begin() + length_) {
+        if (joint_) {
             if (!pass_event()) return false;
         } else {
-            std::swap(before_, after_);
-            std::swap(slope_before_, slope_after_);
+            before_ = after_;
             ++done_;
         }
         if (!go_on()) return false;
@@ -85,27 +82,28 @@ typename Flow<N>::State Flow<N>::slope_of(const State& y) const {
     return slope;
 }
 
+/// The slope is the first stage of the next step.
 template <int N>
-void Flow<N>::take_step(double h, State& y, State& slope) const {
+typename Flow<N>::Moment Flow<N>::later(const Moment& from, double h) const {
     constexpr std::size_t stages = Dopri5::pair.stages;
     std::array<State, stages> k;
-    const State from = y;
+    Moment to = from;
     for (std::size_t i = 1; i <= stages; ++i) {
-        k[i - 1] = slope;
-        y = from;
-        for (std::size_t j = 0; j < i; ++j) y += (h * value<double>(Dopri5::pair.a[i][j])) * k[j];
-        slope = slope_of(y);
+        k[i - 1] = to.slope;
+        to.y = from.y;
+        for (std::size_t j = 0; j < i; ++j) to.y += (h * value<double>(Dopri5::pair.a[i][j])) * k[j];
+        to.slope = slope_of(to.y);
     }
+    return to;
 }
 
 template <int N>
 bool Flow<N>::go_on() {
-    after_ = before_;
-    slope_after_ = slope_before_;
-    take_step(step_, after_, slope_after_);
-    event_.reset();
+    after_ = later(before_, step_);
+    length_ = step_;
+    joint_.reset();
     constexpr double fastest = 1e4;  // rad/s
-    const bool is_finite = std::abs(after_(0, 2)) < fastest && std::abs(after_(0, 3)) < fastest;
+    const bool is_finite = std::abs(after_.y(0, 2)) < fastest && std::abs(after_.y(0, 3)) < fastest;
     if (is_finite && arms_.has_coulomb)
         for (std::size_t joint = 0; joint < 2; ++joint) find_event(joint);
     return is_finite;
@@ -118,33 +116,32 @@ void Flow<N>::find_event(std::size_t joint) {
         return margin(values_, joint,
                       values_.is_held(joint) ? values_at(at) : ArmState(0, 0, rate(0, at), rate(1, at)));
     };
-    double last = event_ ? event_->after : step_;
+    double last = length_;
     if (!(margin_at(last) < 0)) {
-        const double slope = values_.modes[joint] * relative(slope_before_, joint)[0];
-        const double slope_then = values_.modes[joint] * relative(slope_after_, joint)[0];
+        const double slope = values_.modes[joint] * relative(before_.slope, joint)[0];
+        const double slope_then = values_.modes[joint] * relative(after_.slope, joint)[0];
         if (!(slope < 0 && slope_then > 0)) return;
         last = std::min(last, step_ * slope / (slope - slope_then));
         if (!(margin_at(last) < 0)) return;
     }
-    event_ = {bisect_event(0.0, last, step_, margin_at), joint};
+    length_ = bisect_event(0.0, last, step_, margin_at);
+    joint_ = joint;
 }
 
 template <int N>
 bool Flow<N>::pass_event() {
     constexpr double at_once = 100, a_step = 4;  // events
-    const auto [after, joint] = *event_;
-    take_step(after, before_, slope_before_);
-    origin_ = begin() + after;
+    origin_ = begin() + length_;
     done_ = 0;
-    const bool was_held = values_.is_held(joint);
-    arms_.modes = values_.modes = settled(values_, joint, before_.row(0));
-    const Column rate = relative(before_, joint), acceleration = relative(slope_before_, joint);
+    auto& [y, slope] = before_ = later(before_, length_);
+    const bool was_held = values_.is_held(*joint_);
+    arms_.modes = values_.modes = settled(values_, *joint_, y.row(0));
+    const Column rate = relative(y, *joint_), acceleration = relative(slope, *joint_);
     if (N > 0 && !was_held && acceleration[0] != 0)
-        before_.template bottomRows<N>() -=
-            rate.template tail<N>() * ((slope_before_ - slope_of(before_)).row(0) / acceleration[0]);
-    if (arms_.is_held(0)) before_.col(2).setZero();
-    if (arms_.is_held(1)) before_.col(3) = before_.col(2);
-    slope_before_ = slope_of(before_);
+        y.template bottomRows<N>() -= rate.template tail<N>() * ((slope - slope_of(y)).row(0) / acceleration[0]);
+    if (arms_.is_held(0)) y.col(2).setZero();
+    if (arms_.is_held(1)) y.col(3) = y.col(2);
+    slope = slope_of(y);
     ++events_;
     return events_ < at_once + a_step * origin_ / step_;
 }

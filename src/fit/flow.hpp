@@ -32,24 +32,22 @@ public:
 private:
     using Scalar = std::conditional_t<N == 0, double, Dual<double, N>>;
     using State = Eigen::Matrix<double, 1 + N, 4>;  // the state in the first row, its derivatives below
-    struct Event {
-        double after;  // s into the step
-        std::size_t joint;
+    struct Moment {
+        State y, slope;
     };
 
-    double begin() const { return origin_ + static_cast<double>(done_) * step_; }
     /// The joint's own rate of a state, or its acceleration of a slope.
     static Column relative(const State& y, std::size_t joint) {
         return joint == 0 ? Column(y.col(2)) : Column(y.col(3) - y.col(2));
     }
+    double begin() const { return origin_ + static_cast<double>(done_) * step_; }
     /// The sum, by these weights, of an arm's angle, rate and acceleration where the step begins, and where it ends.
     auto weighted(const std::array<double, 6>& w, std::size_t arm) const {
-        return w[0] * before_.col(arm) + w[1] * before_.col(arm + 2) + w[2] * slope_before_.col(arm + 2) +
-               w[3] * after_.col(arm) + w[4] * after_.col(arm + 2) + w[5] * slope_after_.col(arm + 2);
+        return w[0] * before_.y.col(arm) + w[1] * before_.y.col(arm + 2) + w[2] * before_.slope.col(arm + 2) +
+               w[3] * after_.y.col(arm) + w[4] * after_.y.col(arm + 2) + w[5] * after_.slope.col(arm + 2);
     }
     State slope_of(const State& y) const;
-    /// y and its slope h seconds later; the slope is the first stage of the next step.
-    void take_step(double h, State& y, State& slope) const;
+    Moment later(const Moment& from, double h) const;
     bool go_on();
     /// An event of this joint before those already found: at the end, or where its rate is nearest to rest before.
     void find_event(std::size_t joint);
@@ -57,12 +55,13 @@ private:
     bool pass_event();
 
     Arms<Scalar> arms_;
-    Arms<double> values_;       // theirs alone
-    double step_, origin_ = 0;  // s, of the last event or the start
-    long done_ = 0;             // steps since
-    double events_ = 0;
-    std::optional<Event> event_;  // that cuts the last step
-    State before_, slope_before_, after_, slope_after_;
+    Arms<double> values_;               // theirs alone
+    double step_, origin_ = 0;          // s, of the last event or the start
+    long done_ = 0;                     // steps since
+    double events_ = 0;                 // so far
+    double length_ = 0;                 // s, of the last step, which an event may cut
+    std::optional<std::size_t> joint_;  // that of the event
+    Moment before_, after_;
 };
 
 /// How many directions there are for a start alone, and with all that moves the arms; no others are compiled, but 0.

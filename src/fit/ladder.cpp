@@ -13,26 +13,21 @@ namespace {
 
 /// The models, from the smallest: of point masses and of bodies as long as there is no dry friction.
 std::vector<FittedModel> models_of(Bodies bodies) {
-    struct Row {
-        const char* words;
-        int friction;
-        Drag drag;
-        int reading;
-    };
-    constexpr Row rows[]{{"no friction", 0, Drag::own, 0},
-                         {"viscous friction", 1, Drag::own, 0},
-                         {"viscous and dry friction", 2, Drag::own, 0},
-                         {"viscous, dry, drag by own rates", 3, Drag::own, 0},
-                         {"viscous, dry, drag by the air met", 3, Drag::carried, 0},
-                         {"drag by the air met, a lag", 3, Drag::carried, 1},
-                         {"drag by the air met, a lag, scales", 3, Drag::carried, 2}};
+    constexpr const char* words[]{"no friction",
+                                  "viscous friction",
+                                  "viscous and dry friction",
+                                  "viscous, dry, drag by own rates",
+                                  "viscous, dry, drag by the air met",
+                                  "drag by the air met, a lag",
+                                  "drag by the air met, a lag, scales"};
     std::vector<FittedModel> models;
     for (const bool point : {true, false})
-        for (const auto& [words, friction, drag, reading] : rows) {
+        for (int k = 0; k < 7; ++k) {
             if (bodies == (point ? Bodies::compound : Bodies::point)) continue;
-            if (point && friction > 1 && bodies != Bodies::point) continue;
-            models.push_back({.name = std::string(point ? "point masses, " : "compound, ") + words, .fit = {}});
-            models.back().fit.model = model_of(point, friction, drag, reading);
+            if (point && k > 1 && bodies != Bodies::point) continue;
+            models.push_back({.name = std::string(point ? "point masses, " : "compound, ") + words[k], .fit = {}});
+            models.back().fit.model =
+                model_of(point, std::min(k, 3), k < 4 ? Drag::own : Drag::carried, std::max(k - 4, 0));
         }
     return models;
 }
@@ -53,9 +48,10 @@ void leave_out(const FitJob& job, FittedModel& rung) {
     rung.left_out_rms = std::sqrt(squares / samples);
 }
 
-/// Whether pieces left out are predicted as well as by the best, within what pieces differ by.
-bool serves(const FittedModel& rung, const FittedModel& best) {
-    constexpr double negligible = 0.1;  // of the mean square: a twentieth of the rms
+/// Whether a model predicts pieces left out as well as the best, within what pieces differ by; and, where the best leaves
+/// no more than samples scatter from one to the next, so noise, is as likely: by the ratio of likelihoods, at some 99.9 %.
+bool is_as_good(const Track& track, const FittedModel& rung, const FittedModel& best) {
+    constexpr double negligible = 0.1, about = 1.3;  // of the mean square: a twentieth of the rms; of the noise
     double sum = 0, squares = 0;
     const auto count = static_cast<double>(rung.left_out.size());
     for (std::size_t u = 0; u < rung.left_out.size(); ++u) {
@@ -64,7 +60,12 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
         squares += ratio * ratio;
     }
     const double mean = sum / count, variance = (squares - sum * mean) / std::max(count - 1, 1.0);
-    return mean <= std::max(negligible, std::sqrt(variance / count));
+    if (!(mean <= std::max(negligible, std::sqrt(variance / count)))) return false;
+    const double noise = std::sqrt(0.5 * (track.noise[0] * track.noise[0] + track.noise[1] * track.noise[1]));
+    const double more = static_cast<double>(best.fit.free_count()) - static_cast<double>(rung.fit.free_count());
+    return best.fit.rms >= about * noise ||
+           2 * static_cast<double>(rung.fit.residual_count()) * portable_log(rung.fit.rms / best.fit.rms) <
+               10 + 2 * std::max(more, 0.0);
 }
 
 /// Another model at the same parameters, without the friction that it leaves out.
@@ -74,21 +75,6 @@ Fit as_model(const ModelSpec& model, Fit fit) {
     for (std::size_t k = viscous_1; k <= quadratic_2; ++k)
         if (!model.fitted[k]) fit.parameters[k] = 0;
     return fit;
-}
-
-/// Whether samples scatter about the model no more than from one to the next.
-bool like_noise(const Track& track, const FittedModel& rung) {
-    constexpr double about = 1.3;
-    const double noise = std::sqrt(0.5 * (track.noise[0] * track.noise[0] + track.noise[1] * track.noise[1]));
-    return rung.fit.rms < about * noise;
-}
-
-/// Whether its residuals are no larger than fewer parameters explain, where they are noise: by the ratio of
-/// likelihoods, at some 99.9 %.
-bool is_as_likely(const FittedModel& rung, const FittedModel& best) {
-    const auto samples = static_cast<double>(rung.fit.residual_count());
-    const double more = static_cast<double>(best.fit.free_count()) - static_cast<double>(rung.fit.free_count());
-    return 2 * samples * portable_log(rung.fit.rms / best.fit.rms) < 10 + 2 * std::max(more, 0.0);
 }
 
 }  // namespace
@@ -101,8 +87,8 @@ ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(con
     auto& rungs = ladder.rungs;
     for (auto rung : models) {
         throw_if_set(job.stop);
-        const auto model = rung.fit.model;
         // from the nearer of two places: where all began, and where the model before ended
+        const auto model = rung.fit.model;
         auto start = as_model(model, first);
         if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
             auto other = as_model(model, rungs.back().fit);
@@ -121,11 +107,8 @@ ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(con
     if (rungs.empty()) throw no_motion(job.track);
     for (std::size_t k = 0; k < rungs.size(); ++k)
         if (rungs[k].left_out_rms < rungs[ladder.best].left_out_rms) ladder.best = k;
-    const auto& best = rungs[ladder.best];
-    const auto is_as_good = [&](const FittedModel& rung) {
-        return serves(rung, best) && (!like_noise(job.track, best) || is_as_likely(rung, best));
-    };
-    while (ladder.chosen < ladder.best && !is_as_good(rungs[ladder.chosen])) ++ladder.chosen;
+    while (ladder.chosen < ladder.best && !is_as_good(job.track, rungs[ladder.chosen], rungs[ladder.best]))
+        ++ladder.chosen;
     return ladder;
 }
 

@@ -67,10 +67,9 @@ FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, cons
     body.friction.coulomb = friction(coulomb_1, coulomb_2);
     (model.drag == Drag::own ? body.friction.arm_quadratic : body.friction.air_quadratic) =
         friction(quadratic_1, quadratic_2);
-    return {body, b,
-            model.point_masses ? "points at the ends of massless rods"
-            : share == of_rod  ? "each arm a uniform rod about its own centre of mass"
-                               : "the second arm more compact than a rod, as the first leaves it no more inertia"};
+    return {body, model.point_masses ? "points at the ends of massless rods"
+                  : share == of_rod  ? "each arm a uniform rod about its own centre of mass"
+                                    : "the second arm more compact than a rod, as the first leaves it no more inertia"};
 }
 
 }  // namespace doppel

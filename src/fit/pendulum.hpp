@@ -188,8 +188,7 @@ struct Convention {
 /// is given less inertia.
 struct FittedPendulum {
     PhysicalPendulum<double> body;
-    double second_inertia = 0;  // B, kg m², by which ratios become these
-    std::string rule;           // the sentence above, as it applied
+    std::string rule;  // the sentence above, as it applied
 };
 FittedPendulum fitted_pendulum(const Parameters& parameters, const ModelSpec& model, const Convention& convention);
 

@@ -70,20 +70,14 @@ std::vector<std::pair<std::string, std::vector<double>>> lists_of(const Physical
              own ? body.friction.arm_quadratic : body.friction.air_quadratic}};
 }
 
-Json pendulum_json(const FittedPendulum& p) {
-    Json json = {{"convention", p.rule}, {"gravity_m_per_s2", p.body.chain.gravity}, {"B_kg_m2", p.second_inertia}};
-    for (const auto& [key, values] : lists_of(p.body)) json[key] = values;
-    return json;
-}
-
 Json horizon_json(const FitResult& result) {
     if (!result.horizon) return {{"sentence", horizon_sentence(result)}};
     const auto& horizon = *result.horizon;
-    const auto& [model, start, parameters] = horizon.left_by;
+    const auto& by = horizon.left_by;
     return {{"limit_rad", horizon.limit},
             {"median_s", or_null(horizon.median_s)},
             {"longest_s", horizon.longest_s},
-            {"left_by", {{"model", model}, {"start", start}, {"parameters", parameters}}},
+            {"left_by", {{"model", by[0]}, {"start", by[1]}, {"parameters", by[2]}}},
             {"sentence", horizon_sentence(result)},
             {"predictions", list_of(horizon.predictions, [](const Prediction& p) {
                  return Json{{"start_s", p.start_s},
@@ -122,12 +116,10 @@ std::string horizon_sentence(const FitResult& result) {
                    ? "No horizon: it is not known when each piece began; --every SECONDS tells."
                    : "No horizon: stretches are too short to predict from.";
     const auto& h = *result.horizon;
-    const auto left = h.left_by[0] + h.left_by[1] + h.left_by[2];
+    const int left = h.left();
     const auto span = [&](auto member) {
-        const auto [least, most] =
-            std::minmax_element(h.predictions.begin(), h.predictions.end(),
-                                [&](const Prediction& a, const Prediction& b) { return a.*member < b.*member; });
-        const auto from = fmt::format("{:.1f}", (*least).*member), to = fmt::format("{:.1f}", (*most).*member);
+        const auto [least, most] = std::ranges::minmax(h.predictions, {}, member);
+        const auto from = fmt::format("{:.1f}", least.*member), to = fmt::format("{:.1f}", most.*member);
         return from == to ? from : from + " to " + to;
     };
     auto sentence =
@@ -195,6 +187,10 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
 Json fit_json(const FitResult& result) {
     const auto& track = result.track;
     const auto& uncertainty = result.uncertainty;
+    const auto& body = result.pendulum.body;
+    const double b = body.inertia[1] + body.chain.mass[1] * body.center[1] * body.center[1];
+    Json pendulum = {{"convention", result.pendulum.rule}, {"gravity_m_per_s2", body.chain.gravity}, {"B_kg_m2", b}};
+    for (const auto& [key, values] : lists_of(body)) pendulum[key] = values;
     const auto file_name = [](const std::string& file) {
         std::error_code ignored;  // of a folder that is gone: the path is empty
         return on_one_line(std::filesystem::proximate(file, ignored).string());
@@ -230,7 +226,7 @@ Json fit_json(const FitResult& result) {
                    {"inflation", uncertainty.inflation},
                    {"sentence", residual_sentence(result)}}},
                  {"horizon", horizon_json(result)},
-                 {"pendulum", pendulum_json(result.pendulum)}};
+                 {"pendulum", pendulum}};
     if (const auto& period = result.period)
         json["track"]["period"] = {{"seconds", period->seconds}, {"standard_error", period->standard_error}};
     return json;
