@@ -103,8 +103,8 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
             "{}: no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
             track.pieces.front().name, 100 * best.unexplained);
     Parameters p = Parameters::Zero();
-    p.head<4>() << best.inertia, std::min(best.coupling, 0.95 * std::sqrt(best.inertia)), best.gravity[0],
-        best.gravity[1];
+    std::ranges::copy(best.ratios, p.begin());
+    p[coupling] = std::min(p[coupling], 0.95 * std::sqrt(p[inertia]));
     p[scale_1] = p[scale_2] = 1;
     return p;
 }

@@ -19,7 +19,7 @@ double time_of(const Track& track, const Shot& shot, std::size_t sample) {
 /// Goes along a shot after the data, by the motion from a fitted start. False where the error is well beyond the limit.
 bool follow(const Track& track, const Shot& shot, bool is_first_piece, double limit, const Parameters& p, Flow<0>& flow,
             Prediction& prediction) {
-    constexpr double kept_every_s = 0.0199, afterwards_s = 10, far = 10, turn = 2 * std::numbers::pi;  // far: limits
+    constexpr double kept_every_s = 0.02, afterwards_s = 10, far = 10, turn = 2 * std::numbers::pi;  // far: limits
     const auto& piece = track.pieces[shot.piece];
     auto &times = prediction.time_s, &errors = prediction.error;
     for (std::size_t i = shot.first; i < shot.last; ++i) {

@@ -227,8 +227,8 @@ Fit stepped(const Fit& fit, double damping, std::size_t without, std::size_t oth
 }
 
 ArmState guessed_start(const Track& track, std::size_t piece, std::size_t sample) {
-    const auto seen = glimpse_at(track, track.pieces[piece], track.pieces[piece].time_s[sample]);
-    return {seen.angle[0], seen.angle[1], seen.rate[0], seen.rate[1]};
+    const auto [one, two] = glimpse_at(track, track.pieces[piece], track.pieces[piece].time_s[sample]);
+    return {one.angle, two.angle, one.rate, two.rate};
 }
 
 std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int most_passes,

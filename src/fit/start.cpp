@@ -78,9 +78,9 @@ FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std:
     Unknowns x = Unknowns::Zero();
     for (Eigen::Index k = most; k-- > 0;) {
         const double time = replay.start_s + static_cast<double>(k) * interval.value();
-        const auto seen = glimpse_at(*replay.track, replay.samples(), time);
-        measured.segment<2>(2 * k) << seen.angle[0], seen.angle[1];
-        x.head<4>() << seen.angle[0], seen.angle[1], seen.rate[0], seen.rate[1];
+        const auto [one, two] = glimpse_at(*replay.track, replay.samples(), time);
+        x.head<4>() << one.angle, two.angle, one.rate, two.rate;
+        measured.segment<2>(2 * k) = x.head<2>();
     }
     FittedStart start{.angle = {x[0], x[1]}, .rate = {x[2], x[3]}};
     for (auto count = std::min(first_count, most);; count = std::min(2 * count, most)) {

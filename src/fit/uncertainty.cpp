@@ -106,10 +106,10 @@ std::optional<EnergyLoss> energy_loss(const FitJob& job, Fit start) {
     const auto& p = fit->parameters;
     Parameters taken = Parameters::Zero();
     double energy = 0;
-    for (const auto& [angle, rate, acceleration] : glimpses_of(job.track, job.stop)) {
-        const auto [w1, w2] = rate;
+    for (const auto& [one, two] : glimpses_of(job.track, job.stop)) {
+        const double w1 = one.rate, w2 = two.rate;
         taken[viscous_1] += w1 * w1, taken[viscous_2] += (w2 - w1) * (w2 - w1);
-        energy += 0.5 * (p[inertia] * w1 * w1 + w2 * w2) + p[coupling] * std::cos(angle[0] - angle[1]) * w1 * w2;
+        energy += 0.5 * (p[inertia] * w1 * w1 + w2 * w2) + p[coupling] * std::cos(one.angle - two.angle) * w1 * w2;
     }
     taken /= energy;
     const auto covariance = uncertainty_of(job, *fit).covariance;

@@ -48,19 +48,16 @@ TEST(FitModel, PointMassesMoveAsThePhysicsRoomHasIt) {
 }
 
 TEST(FitModel, FrictionTakesTheEnergyThatItShould) {
-    for (const auto drag : {Drag::own, Drag::carried}) {
-        const auto p = lab_arms();
-        const double angle1 = somewhere[0], angle2 = somewhere[1], w1 = somewhere[2], w2 = somewhere[3];
-        const double relative = w2 - w1;
-        const double u = drag == Drag::own ? w2 : w2 + p[coupling] * std::cos(angle1 - angle2) * w1;
-        const double lost = p[viscous_1] * w1 * w1 + p[viscous_2] * relative * relative + p[coulomb_1] * std::abs(w1) +
-                            p[coulomb_2] * std::abs(relative) + p[quadratic_1] * std::pow(std::abs(w1), 3) +
-                            p[quadratic_2] * std::pow(std::abs(u), 3);
-        EXPECT_NEAR(power(p, somewhere, slope_at(somewhere, p, drag)), -lost,
-                    1e-6);  // measured 4e-8, of the differences
-    }
-    const auto p = lab_arms(false);
-    EXPECT_NEAR(power(p, somewhere, slope_at(somewhere, p, Drag::own)), 0, 1e-6);
+    for (const auto drag : {Drag::own, Drag::carried})
+        for (const bool with_friction : {false, true}) {
+            const auto p = lab_arms(with_friction);
+            const double w1 = somewhere[2], w2 = somewhere[3], relative = w2 - w1;
+            const double u = drag == Drag::own ? w2 : w2 + p[coupling] * std::cos(somewhere[0] - somewhere[1]) * w1;
+            const double lost = p[viscous_1] * w1 * w1 + p[viscous_2] * relative * relative +
+                                p[coulomb_1] * std::abs(w1) + p[coulomb_2] * std::abs(relative) +
+                                p[quadratic_1] * std::pow(std::abs(w1), 3) + p[quadratic_2] * std::pow(std::abs(u), 3);
+            EXPECT_NEAR(power(p, somewhere, slope_at(somewhere, p, drag)), -lost, 1e-6);  // measured 4e-8
+        }
 }
 
 /// A mirrored track is as good: counter-clockwise may be either way.
@@ -112,19 +109,25 @@ TEST(FitFlow, InterpolatesAsWellAsItSteps) {
     EXPECT_LT(worst, 2e-6);  // measured 3e-7
 }
 
+void expect_there_and_back(const Parameters& p, const PhysicalPendulum<double>& pendulum) {
+    for (const auto& parts : {pendulum.chain.mass, pendulum.inertia}) EXPECT_GT(parts[0], 0);
+    const auto back = ratios_of(pendulum);
+    for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
+}
+
 TEST(FitPhysical, RatiosGoThereAndBack) {
     for (const double mass : {1.0, 0.138})
         for (const double gravity : {9.8, 1.62}) {
-            const auto p = lab_arms();
-            const auto pendulum = fitted_pendulum(p, {}, {gravity, mass});
-            const auto back = ratios_of(pendulum.body);
-            for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
-            EXPECT_EQ(pendulum.body.chain.mass[1], mass);
-            EXPECT_NEAR(pendulum.body.chain.length[0], gravity * 0.88 / 50, 1e-15);  // g C/D2
-            EXPECT_NEAR(pendulum.body.inertia[1], mass * std::pow(pendulum.body.center[1], 2) / 3, 1e-15);
-            EXPECT_GT(pendulum.body.chain.mass[0], 0);
-            EXPECT_GT(pendulum.body.inertia[0], 0);
+            const auto pendulum = fitted_pendulum(lab_arms(), {}, {gravity, mass}).body;
+            expect_there_and_back(lab_arms(), pendulum);
+            EXPECT_EQ(pendulum.chain.mass[1], mass);
+            EXPECT_NEAR(pendulum.chain.length[0], gravity * 0.88 / 50, 1e-15);  // g C/D2
+            EXPECT_NEAR(pendulum.inertia[1], mass * std::pow(pendulum.center[1], 2) / 3, 1e-15);
         }
+    // a second arm that takes most of the first one's inertia for its own joint is more compact
+    auto p = lab_arms(false);
+    p[inertia] = 1.2 * 0.88 * 0.88;
+    expect_there_and_back(p, fitted_pendulum(p, {}, {}).body);
 }
 
 TEST(FitPhysical, PointMassesStayPoints) {
@@ -135,17 +138,6 @@ TEST(FitPhysical, PointMassesStayPoints) {
         EXPECT_NEAR(back.chain.length[k], points.chain.length[k], 1e-12);
         EXPECT_EQ(back.inertia[k], 0);
     }
-}
-
-/// A second arm that takes most of the first one's inertia for its own joint.
-TEST(FitPhysical, MakesTheSecondArmCompactWhereItMust) {
-    auto p = lab_arms(false);
-    p[inertia] = 1.2 * 0.88 * 0.88;
-    const auto pendulum = fitted_pendulum(p, {}, {});
-    EXPECT_GT(pendulum.body.inertia[0], 0);
-    EXPECT_GT(pendulum.body.chain.mass[0], 0);
-    const auto back = ratios_of(pendulum.body);
-    for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
 }
 
 }  // namespace model_test

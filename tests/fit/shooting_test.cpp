@@ -1,4 +1,3 @@
-#include "base/error.hpp"
 #include "fit/report.hpp"
 #include "fit/support.hpp"
 
@@ -69,21 +68,17 @@ TEST(FitShooting, FindsANoiselessTruth) {
     auto model = model_of(false, 1, Drag::carried);
     model.fitted[quadratic_1] = model.fitted[quadratic_2] = true;
     auto wrong = truth;
-    for (const auto parameter : model.list()) wrong[parameter] *= 1.05;
-    const auto fit = *fit_model({track, no_stop}, fit_at(model, wrong, track), {.most_passes = 60, .relative = 1e-12});
-    for (const auto parameter : model.list()) {
-        const double expected = truth[parameter];
-        EXPECT_NEAR(fit.parameters[parameter], expected, 1e-6 * std::max(std::abs(expected), 0.1))
-            << parameter_words[parameter].key;  // measured 3e-8
-    }
+    for (const auto k : model.list()) wrong[k] *= 1.05;
+    const auto fit = fitted(model, wrong, track, {.most_passes = 60, .relative = 1e-12});
+    for (const auto k : model.list())  // measured 3e-8
+        EXPECT_NEAR(fit.parameters[k], truth[k], 1e-6 * std::max(std::abs(truth[k]), 0.1)) << parameter_words[k].key;
     EXPECT_LT(fit.rms, 1e-8);
 }
 
 TEST(FitShooting, KeepsFrictionFromBeingNegative) {
     auto truth = lab_arms(false);
     truth[viscous_1] = -0.05, truth[viscous_2] = 0.02;
-    const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
-    const auto fit = *fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(false), track), {});
+    const auto fit = fitted(model_of(false, 1), lab_arms(false), simulated(truth, Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(fit.parameters[viscous_1], 0);
     EXPECT_TRUE(fit.is_at_bound(viscous_1));
     EXPECT_FALSE(fit.is_at_bound(viscous_2));
@@ -94,7 +89,7 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
     auto track = simulated(lab_arms(false), Drag::own, {.noise = 1e-3});
     for (auto& piece : track.pieces)
         for (std::size_t i = 7; i < piece.size(); i += 100) piece.angle[i % 2][i] += 0.5;
-    const auto fit = *fit_model({track, no_stop}, fit_at(model_of(false, 0), lab_arms(false), track), {});
+    const auto fit = fitted(model_of(false, 0), lab_arms(false), track);
     EXPECT_NEAR(fit.parameters[inertia], 1.8, 0.004);  // measured 0.0009; least squares: 0.08
     EXPECT_NEAR(fit.parameters[gravity_2], 50, 0.05);  // measured 0.01
 }
@@ -103,9 +98,8 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
 TEST(FitShooting, OneBadStartEndsItselfNotTheFit) {
     const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
     auto start = fit_at(model_of(false, 0), lab_arms(false), track);
-    start.shots[1].start[2] = 2e4;  // rad/s
-    const auto fit = *fit_model({track, no_stop}, start, {});
-    EXPECT_NEAR(fit.rms, 1e-3, 5e-5);  // measured 1.00e-3: the noise
+    start.shots[1].start[2] = 2e4;                                         // rad/s
+    EXPECT_NEAR(fit_model({track, no_stop}, start, {})->rms, 1e-3, 5e-5);  // measured 1.00e-3: the noise
 }
 
 TEST(FitShooting, EndsSoonAfterItIsStopped) {
@@ -130,48 +124,45 @@ TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
 /// What is left out by one step is near what a fit without it finds.
 TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
-    const auto all = *fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(), track), {});
+    const auto all = fitted(model_of(false, 1), lab_arms(), track);
     const auto quick = stepped(all, 0, 2, 2);
     auto rest = all;
     rest.is_evaluated = false;
     std::erase_if(rest.shots, [](const Shot& shot) { return shot.unit == 2; });
     const auto exact = *fit_model({track, no_stop}, rest, {.finds_scale = false, .step_share = 0});
-    for (const auto parameter : all.model.list()) {
-        const auto k = parameter;
+    for (const auto k : all.model.list()) {
         const double moved = std::abs(exact.parameters[k] - all.parameters[k]);
-        EXPECT_NEAR(quick.parameters[k], exact.parameters[k], 0.1 * moved + 1e-6) << parameter_words[parameter].key;
+        EXPECT_NEAR(quick.parameters[k], exact.parameters[k], 0.1 * moved + 1e-6) << parameter_words[k].key;
     }
 }
 
 TEST(FitLadder, ChoosesWhatMadeTheTrack) {
     auto compound = lab_arms(false);
     compound[viscous_1] = 0.1, compound[viscous_2] = 0.05;
-    auto track = simulated(compound, Drag::own, {.noise = 1e-3});
-    auto result = answered(track);
+    auto result = answered(simulated(compound, Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(result.chosen().name, "compound, viscous friction");
     EXPECT_TRUE(result.uncertainty.is_white);
     EXPECT_NEAR(result.chosen().left_out_rms, 1e-3, 5e-5);  // measured 1.02e-3
 
-    track = simulated(ratios_of(point_masses(1.3, 1, 0.2, 0.25)), Drag::own, {.noise = 1e-3});
-    result = answered(track);
+    result = answered(simulated(ratios_of(point_masses(1.3, 1, 0.2, 0.25)), Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(result.chosen().name, "point masses, no friction");
-    EXPECT_NEAR(result.pendulum.body.chain.length[0], 0.2, 1e-3);
-    EXPECT_NEAR(result.pendulum.body.chain.length[1], 0.25, 1e-3);
-    EXPECT_NEAR(result.pendulum.body.chain.mass[0], 1.3, 1e-2);
+    const auto& chain = result.pendulum.body.chain;
+    EXPECT_NEAR(chain.length[0], 0.2, 1e-3);
+    EXPECT_NEAR(chain.length[1], 0.25, 1e-3);
+    EXPECT_NEAR(chain.mass[0], 1.3, 1e-2);
 }
 
 /// Over the top again and again: stretches of three seconds have more than one minimum, short ones do not.
 TEST(FitLadder, FollowsAnEnergeticSwing) {
-    auto truth = lab_arms();
+    const auto truth = lab_arms();
     const auto track =
         simulated(truth, Drag::own, {.pieces = 4, .piece_s = 3, .hz = 240, .noise = 2e-3, .amplitude = 3.1, .seed = 8});
     const auto result = answered(track, Bodies::compound);
     EXPECT_TRUE(result.uncertainty.is_white);
     EXPECT_NEAR(result.chosen().fit.rms, 2e-3, 1e-4);  // its noise
-    for (const auto parameter : {inertia, coupling, gravity_1, gravity_2})
-        EXPECT_NEAR(result.chosen().fit.parameters[parameter], truth[parameter],
-                    4 * result.uncertainty.standard_error(parameter))
-            << parameter_words[parameter].key;
+    for (const auto k : {inertia, coupling, gravity_1, gravity_2})
+        EXPECT_NEAR(result.chosen().fit.parameters[k], truth[k], 4 * result.uncertainty.standard_error(k))
+            << parameter_words[k].key;
 }
 
 /// Where the model is the right one, the start's error alone ends predictions; and the pieces' interval is found.

@@ -3,16 +3,12 @@
 #include "fit/beginning.hpp"
 #include "fit/flow.hpp"
 #include "fit/result.hpp"
-#include "integrate/motion.hpp"
-#include "physics/physical_pendulum.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <string>
-#include <vector>
 
 namespace doppel::test {
 
@@ -38,34 +34,33 @@ struct Measuring {
 /// A simulated track: steps of a millisecond, whose own error is some 1e-11 rad without dry friction.
 inline Track simulated(const Parameters& truth, Drag drag, const Measuring& measuring) {
     constexpr double step = 0.001;
-    std::mt19937_64 random(measuring.seed);
+    const auto& [pieces, piece_s, hz, noise, amplitude, seed, every_s] = measuring;
+    std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> even(-1, 1);
-    Track track;
+    Track track{.noise = {noise, noise}};
     ArmState start;
-    for (std::size_t k = 0; k < measuring.pieces; ++k) {
-        if (k == 0 || measuring.every_s == 0)
-            start = {measuring.amplitude * even(random), measuring.amplitude * even(random), 4 * even(random),
-                     4 * even(random)};
-        TrackPiece piece{.name = "simulated.csv", .time_s = {}, .angle = {}, .is_outlier = {}};
-        Flow<0> flow({.drag = drag}, truth, start, step);
-        const auto samples = static_cast<std::size_t>(std::lround(measuring.piece_s * measuring.hz)) + 1;
+    for (std::size_t k = 0; k < pieces; ++k) {
+        if (k == 0 || every_s == 0)
+            start = {amplitude * even(random), amplitude * even(random), 4 * even(random), 4 * even(random)};
+        auto& piece = track.pieces.emplace_back(TrackPiece{.name = "simulated.csv"});
+        std::array flows{Flow<0>({.drag = drag}, truth, start, step), Flow<0>({.drag = drag}, truth, start, step)};
+        const auto samples = static_cast<std::size_t>(std::lround(piece_s * hz)) + 1;
         for (std::size_t i = 0; i < samples; ++i) {
-            const double t = static_cast<double>(i) / measuring.hz;
-            flow.reach(t);
-            piece.time_s.push_back(t);
-            for (std::size_t arm = 0; arm < 2; ++arm)
-                piece.angle[arm].push_back(truth[offset_1 + arm] + flow.angle(static_cast<Eigen::Index>(arm), t)[0] +
-                                           measuring.noise * normal(random));
+            piece.time_s.push_back(static_cast<double>(i) / hz);
+            for (std::size_t arm = 0; arm < 2; ++arm) {
+                const double t = piece.time_s[i] + static_cast<double>(arm) * truth[lag];
+                flows[arm].reach(t);
+                piece.angle[arm].push_back(truth[offset_1 + arm] + flows[arm].angle(arm, t)[0] +
+                                           noise * normal(random));
+                piece.is_outlier[arm].push_back(0);
+            }
         }
-        for (auto& outliers : piece.is_outlier) outliers.assign(samples, 0);
-        track.pieces.push_back(std::move(piece));
-        if (measuring.every_s > 0) {
-            flow.reach(measuring.every_s);
-            start = flow.values_at(measuring.every_s);
+        if (every_s > 0) {
+            flows[0].reach(every_s);
+            start = flows[0].values_at(every_s);
         }
     }
-    track.noise = {measuring.noise, measuring.noise};
     return track;
 }
 
@@ -134,15 +129,29 @@ inline std::string csv_of(const TrackPiece& piece) {
     return text;
 }
 
-/// A fit that stands at the truth, its starts guessed from the samples.
+inline const std::atomic<bool> no_stop = false;
+
+/// A fit that stands at the truth, its starts guessed from the samples; and the fit that is found from there.
 inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track) {
     return {.model = model, .parameters = parameters, .shots = divide(track)};
 }
-
-inline const std::atomic<bool> no_stop = false;
+inline Fit fitted(const ModelSpec& model, const Parameters& parameters, const Track& track, FitEffort effort = {}) {
+    return fit_model({track, no_stop, 2}, fit_at(model, parameters, track), effort).value();
+}
 
 inline FitResult answered(const Track& track, Bodies bodies = Bodies::automatic) {
     return answer(track, {.bodies = bodies, .jobs = 2}, no_stop, [](const Progress&) {});
+}
+
+/// The exit code and the message that a fit ends with, of a track that work() returns; 0 where it is taken.
+template <class Work>
+std::pair<int, std::string> ending(const Work& work, Bodies bodies = Bodies::automatic) {
+    try {
+        answered(work(), bodies);
+    } catch (const Error& error) {
+        return {static_cast<int>(error.code()), error.what()};
+    }
+    return {0, ""};
 }
 
 }  // namespace doppel::test
