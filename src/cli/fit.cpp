@@ -2,7 +2,7 @@
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
-#include "fit/run.hpp"
+#include "fit/result.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -50,7 +50,7 @@ std::vector<Shot> parts_of(const Track& track, const std::vector<Shot>& wholes, 
 bool leads(const Track& track, const Fit& fit, const Shot& one, const Shot& next) {
     constexpr double near = 0.3, most_growth = 100;  // rad; of an angle, per angle or per rate over the pendulum's own
     const auto& piece = track.pieces[one.piece];
-    Flow<start_directions> flow(fit.model, fit.parameters, one.start, fit.step_s);
+    Flow<> flow(fit.model, fit.parameters, one.start, fit.step_s);
     const double rate = std::sqrt(fit.parameters[gravity_2]);
     for (auto i = next.first; i < next.last; ++i) {
         const double t = piece.time_s[i] - piece.time_s[one.first];

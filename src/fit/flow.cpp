@@ -30,10 +30,10 @@ std::array<double, 6> rate_weights(double t, double h) {
 
 template <int N>
 Flow<N>::Flow(const ModelSpec& model, const Parameters& parameters, const ArmState& start, double step)
-    : arms_(arms_of<Scalar>(model, parameters)), values_(arms_of<double>(model, parameters)), step_(step) {
+    : arms_(arms_of<Dual<double, N>>(model, parameters)), values_(arms_of<double>(model, parameters)), step_(step) {
     before_.y.setZero();
     before_.y.row(0) = start;
-    if constexpr (N > 0) before_.y.template block<4, 4>(1, 0).setIdentity();
+    before_.y.template block<4, 4>(1, 0).setIdentity();
     arms_.modes = values_.modes = turning(start);
     before_.slope = slope_of(before_.y);
     go_on();
@@ -65,20 +65,11 @@ double Flow<N>::rate(std::size_t arm, double t) const {
 
 template <int N>
 typename Flow<N>::State Flow<N>::slope_of(const State& y) const {
-    const auto number = [&](Eigen::Index q) -> Scalar {
-        if constexpr (N == 0)
-            return y(0, q);
-        else
-            return {y(0, q), y.col(q).template tail<N>()};
-    };
+    const auto number = [&](Eigen::Index q) { return Dual<double, N>(y(0, q), y.col(q).template tail<N>()); };
     State slope;
     slope.template leftCols<2>() = y.template rightCols<2>();
     const auto alpha = arms_.accelerations(arms_.sides(number(0), number(1), number(2), number(3)));
-    for (std::size_t arm = 0; arm < 2; ++arm)
-        if constexpr (N == 0)
-            slope(0, arm + 2) = alpha[arm];
-        else
-            slope.col(arm + 2) << alpha[arm].value, alpha[arm].tangent;
+    for (std::size_t arm = 0; arm < 2; ++arm) slope.col(arm + 2) << alpha[arm].value, alpha[arm].tangent;
     return slope;
 }
 
@@ -137,7 +128,7 @@ bool Flow<N>::pass_event() {
     const bool was_held = values_.is_held(*joint_);
     arms_.modes = values_.modes = settled(values_, *joint_, y.row(0));
     const Column rate = relative(y, *joint_), acceleration = relative(slope, *joint_);
-    if (N > 0 && !was_held && acceleration[0] != 0)
+    if (!was_held && acceleration[0] != 0)
         y.template bottomRows<N>() -= rate.template tail<N>() * ((slope - slope_of(y)).row(0) / acceleration[0]);
     if (arms_.is_held(0)) y.col(2).setZero();
     if (arms_.is_held(1)) y.col(3) = y.col(2);
@@ -146,7 +137,6 @@ bool Flow<N>::pass_event() {
     return events_ < at_once + a_step * origin_ / step_;
 }
 
-template class Flow<0>;
 template class Flow<start_directions>;
 template class Flow<all_directions>;
 

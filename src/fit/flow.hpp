@@ -3,18 +3,20 @@
 #include "fit/pendulum.hpp"
 
 #include <optional>
-#include <type_traits>
 
 namespace doppel {
 
+/// How many directions there are for a start alone, and with all that moves the arms; no others are compiled.
+constexpr int start_directions = 4, all_directions = 4 + static_cast<int>(dynamic_count);
+
 /// The motion from one start, step after step, to be asked for angles at ascending times: Dormand and Prince's method of order
-/// 5 at fixed steps, so that derivatives are those of what is computed. N derivatives are carried along: none, those by the
-/// start (0 to 3), or by the fitted parameters that move the arms, too (4 + their number).
+/// 5 at fixed steps, so that derivatives are those of what is computed. N derivatives are carried along: those by the start
+/// (0 to 3), or by the fitted parameters that move the arms, too (4 + their number).
 ///
 /// With Coulomb friction each step keeps to one law and counts as far as that holds, until a joint comes to rest or is let
 /// go. Then the slope f jumps, and with it how the state changes with what fixes the time t* of the event:
 ///     ∂y after = ∂y before + (f before − f after) ∂t*,   ∂t* = −∂ω/ω′ of the joint's rate ω
-template <int N>
+template <int N = start_directions>
 class Flow {
 public:
     Flow(const ModelSpec& model, const Parameters& parameters, const ArmState& start, double step);
@@ -30,7 +32,6 @@ public:
     ArmState values_at(double t) const { return {angle(0, t)[0], angle(1, t)[0], rate(0, t), rate(1, t)}; }
 
 private:
-    using Scalar = std::conditional_t<N == 0, double, Dual<double, N>>;
     using State = Eigen::Matrix<double, 1 + N, 4>;  // the state in the first row, its derivatives below
     struct Moment {
         State y, slope;
@@ -54,7 +55,7 @@ private:
     /// Goes to the event and on by the law that holds from there. False where they are too many to end.
     bool pass_event();
 
-    Arms<Scalar> arms_;
+    Arms<Dual<double, N>> arms_;
     Arms<double> values_;               // theirs alone
     double step_, origin_ = 0;          // s, of the last event or the start
     long done_ = 0;                     // steps since
@@ -63,8 +64,5 @@ private:
     std::optional<std::size_t> joint_;  // that of the event
     Moment before_, after_;
 };
-
-/// How many directions there are for a start alone, and with all that moves the arms; no others are compiled, but 0.
-constexpr int start_directions = 4, all_directions = 4 + static_cast<int>(dynamic_count);
 
 }  // namespace doppel

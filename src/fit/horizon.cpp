@@ -17,7 +17,7 @@ double time_of(const Track& track, const Shot& shot, std::size_t sample) {
 }
 
 /// Goes along a shot after the data, by the motion from a fitted start. False where the error is well beyond the limit.
-bool follow(const Track& track, const Shot& shot, bool is_first_piece, double limit, const Parameters& p, Flow<0>& flow,
+bool follow(const Track& track, const Shot& shot, bool is_first_piece, double limit, const Parameters& p, Flow<>& flow,
             Prediction& prediction) {
     constexpr double kept_every_s = 0.02, afterwards_s = 10, far = 10, turn = 2 * std::numbers::pi;  // far: limits
     const auto& piece = track.pieces[shot.piece];
@@ -91,7 +91,7 @@ Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Un
         const auto start = fit_starts(job, without, {&shot, 1}, 10, 1e-5);
         if (!start) break;
         shot = start->shots.front();
-        Flow<0> flow(start->model, start->parameters, shot.start, start->step_s);
+        Flow<> flow(start->model, start->parameters, shot.start, start->step_s);
         const auto follows = fit.unit(judged);
         if (!std::all_of(follows.begin(), follows.end(), [&](const Shot& next) {
                 return follow(track, next, next.piece == shot.piece, limit, start->parameters, flow, prediction);

@@ -1,5 +1,3 @@
-#include "fit/page.hpp"
-
 #include "fit/report.hpp"
 
 #include <fmt/format.h>

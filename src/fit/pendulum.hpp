@@ -2,7 +2,6 @@
 
 #include "numeric/dual.hpp"
 #include "numeric/sin_cos.hpp"
-#include "physics/physical_pendulum.hpp"
 
 #include <Eigen/Core>
 
@@ -10,6 +9,7 @@
 #include <bitset>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -187,8 +187,9 @@ struct Convention {
 /// mass), or, where point masses were fitted, points at their ends (I = 0). A second arm too light in its first for that
 /// is given less inertia.
 struct FittedPendulum {
-    PhysicalPendulum<double> body;
-    std::string rule;  // the sentence above, as it applied
+    std::vector<std::pair<std::string, std::array<double, 2>>> arms;  // what presets say of both, by key
+    double gravity = 0, second_inertia = 0;                           // m/s²; B, kg m², by which ratios become these
+    std::string rule;                                                 // the sentence above, as it applied
 };
 FittedPendulum fitted_pendulum(const Parameters& parameters, const ModelSpec& model, const Convention& convention);
 

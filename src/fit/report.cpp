@@ -57,19 +57,6 @@ Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
             {"left_out_rms_rad", rung.left_out_rms}};
 }
 
-/// What a pendulum has of each arm, as presets name it.
-std::vector<std::pair<std::string, std::vector<double>>> lists_of(const PhysicalPendulum<double>& body) {
-    const bool own = body.friction.air_quadratic.empty();
-    return {{"mass_kg", body.chain.mass},
-            {"length_m", body.chain.length},
-            {"center_m", body.center},
-            {"inertia_kg_m2", body.inertia},
-            {"joint_viscous_N_m_s", body.friction.viscous},
-            {"joint_coulomb_N_m", body.friction.coulomb},
-            {own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2",
-             own ? body.friction.arm_quadratic : body.friction.air_quadratic}};
-}
-
 Json horizon_json(const FitResult& result) {
     if (!result.horizon) return {{"sentence", horizon_sentence(result)}};
     const auto& horizon = *result.horizon;
@@ -172,10 +159,10 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto add = [&](const std::string& key, double first, double second) {
         text += fmt::format("{} = [{:.10g}, {:.10g}]\n", key, first, second);
     };
-    for (const auto& [key, values] : lists_of(p.body))
+    for (const auto& [key, values] : p.arms)
         if ((values[0] != 0 || values[1] != 0) && !(rung.fit.model.point_masses && key == "center_m"))
             add(key, values[0], values[1]);
-    text += fmt::format("gravity_m_per_s2 = {}\n", p.body.chain.gravity);
+    text += fmt::format("gravity_m_per_s2 = {}\n", p.gravity);
     const ArmState start = degrees * shot.start, further = degrees * (shot.start + errors);
     add("angle_deg", start[0], start[1]);
     add("omega_deg_per_s", start[2], start[3]);
@@ -187,10 +174,9 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
 Json fit_json(const FitResult& result) {
     const auto& track = result.track;
     const auto& uncertainty = result.uncertainty;
-    const auto& body = result.pendulum.body;
-    const double b = body.inertia[1] + body.chain.mass[1] * body.center[1] * body.center[1];
-    Json pendulum = {{"convention", result.pendulum.rule}, {"gravity_m_per_s2", body.chain.gravity}, {"B_kg_m2", b}};
-    for (const auto& [key, values] : lists_of(body)) pendulum[key] = values;
+    const auto& [arms, gravity, second_inertia, rule] = result.pendulum;
+    Json pendulum = {{"convention", rule}, {"gravity_m_per_s2", gravity}, {"B_kg_m2", second_inertia}};
+    for (const auto& [key, values] : arms) pendulum[key] = values;
     const auto file_name = [](const std::string& file) {
         std::error_code ignored;  // of a folder that is gone: the path is empty
         return on_one_line(std::filesystem::proximate(file, ignored).string());

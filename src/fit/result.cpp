@@ -14,16 +14,13 @@ namespace {
 
 /// How far the angles are spread about their mean, rms of both arms, rad.
 double spread_of(const Track& track) {
-    double squares = 0, count = 0;
-    for (std::size_t arm = 0; arm < 2; ++arm)
-        for (const auto& piece : track.pieces) {
-            double sum = 0;
-            for (const double angle : piece.angle[arm]) sum += angle;
-            const double mean = sum / static_cast<double>(piece.size());
-            for (const double angle : piece.angle[arm]) squares += (angle - mean) * (angle - mean);
-            count += static_cast<double>(piece.size());
+    double squares = 0;
+    for (const auto& piece : track.pieces)
+        for (const auto& angles : piece.angle) {
+            const Eigen::Map<const Eigen::ArrayXd> all(angles.data(), angles.size());
+            squares += (all - all.mean()).square().sum();
         }
-    return std::sqrt(squares / count);
+    return std::sqrt(squares / static_cast<double>(2 * track.samples()));
 }
 
 /// How much a model may leave, rms, rad.
@@ -76,23 +73,22 @@ void demand_order(const Track& track, const ModelLadder& ladder) {
 /// times a piece stands out.
 std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
     constexpr double longest = 4, apart_s = 0.15, close = 0.05, times = 3, diverged = 0.25;
-    const auto pieces = job.track.pieces.size();
-    if (pieces < 3) return std::nullopt;
-    double shortest = job.track.pieces[0].duration();
-    for (const auto& piece : job.track.pieces) shortest = std::min(shortest, piece.duration());
-    // the state at the start of each piece, and the motion of each far beyond its end: rates in units of the pendulums' own
-    const double step = fit.step_s, rate = std::sqrt(fit.parameters[gravity_2]),
-                 leads = static_cast<double>(pieces - 1);
+    const auto& pieces = job.track.pieces;
+    if (pieces.size() < 3) return std::nullopt;
+    const double shortest = std::ranges::min_element(pieces, {}, &TrackPiece::duration)->duration(), step = fit.step_s;
+    // the state at the start of each piece, and how far the motion of each is from it, far beyond its end: rates in units of
+    // the pendulums' own
+    const double rate = std::sqrt(fit.parameters[gravity_2]), leads = static_cast<double>(pieces.size() - 1);
     const ArmState unit(1, 1, rate, rate);
-    std::vector<ArmState> starts(pieces);
+    std::vector<ArmState> starts(pieces.size());
     for (std::size_t k = fit.shots.size(); k-- > 0;) starts[fit.shots[k].piece] = fit.shots[k].start;
     const auto count = static_cast<std::size_t>(longest * shortest / step);
     const auto from = static_cast<std::size_t>(0.95 * shortest / step);
-    std::vector<std::vector<ArmState>> motions(pieces - 1);
+    std::vector<std::vector<ArmState>> motions(pieces.size() - 1);
     std::vector<double> distance(count, 0);  // of the ends, mean square, for each interval
-    for (std::size_t k = 0; k + 1 < pieces; ++k) {
+    for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
         throw_if_set(job.stop);
-        Flow<0> flow(fit.model, fit.parameters, starts[k], step);
+        Flow<> flow(fit.model, fit.parameters, starts[k], step);
         for (std::size_t i = 0; i < count; ++i) {
             const double t = static_cast<double>(i) * step;
             flow.reach(t);
@@ -102,11 +98,11 @@ std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
     }
     const auto least = std::min_element(distance.begin() + static_cast<std::ptrdiff_t>(from), distance.end() - 1);
     const auto best = static_cast<std::size_t>(least - distance.begin());
-    double rival = 1;
-    for (std::size_t i = from; i < count; ++i)
-        if (std::abs(static_cast<double>(i) - static_cast<double>(best)) * step > apart_s)
-            rival = std::min(rival, distance[i]);
-    if (distance[best] > close || rival < times * distance[best]) return std::nullopt;
+    const double found_s = static_cast<double>(best) * step;
+    for (std::size_t i = from; i < count; ++i)  // rivals
+        if (std::abs(static_cast<double>(i) * step - found_s) > apart_s && distance[i] < times * *least)
+            return std::nullopt;
+    if (*least > close) return std::nullopt;
     // between the steps: the shift along each motion that brings the ends together, without those that have diverged
     double along = 0, speed = 0, rest = 0, used = 0;
     for (const auto& off : motions) {
@@ -115,8 +111,7 @@ std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
         along += off[best].dot(slope), speed += slope.squaredNorm(), rest += off[best].squaredNorm(), used += 4;
     }
     const double shift = along / speed;
-    rest -= shift * along;
-    return Period{static_cast<double>(best) * step + shift, std::sqrt(rest / std::max(used - 1, 1.0) / speed)};
+    return Period{found_s + shift, std::sqrt((rest - shift * along) / std::max(used - 1, 1.0) / speed)};
 }
 
 void put_on_one_clock(FitResult& result, std::optional<double> every_s, const std::atomic<bool>& stop) {

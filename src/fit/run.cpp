@@ -1,9 +1,5 @@
-#include "fit/run.hpp"
-
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/machine.hpp"
-#include "fit/page.hpp"
 #include "fit/report.hpp"
 #include "output/png.hpp"
 
@@ -15,22 +11,14 @@ namespace {
 constexpr Size page_size{1600, 1300};
 constexpr const auto& light = themes[1];
 
-void write_text(const FilePlace& place, const std::string& text) {
-    OutputFile file(place);
-    file.write(text);
-    file.close();
-}
-
 std::vector<std::string> sentences_of(const FitResult& result) {
-    const auto& rung = result.chosen();
-    std::vector<std::string> all;
-    all.push_back(fmt::format("{}, {} parameters: rms {:.2g} rad, {:.2g} on pieces left out.", rung.name,
-                              rung.fit.free_count(), rung.fit.rms, rung.left_out_rms));
-    if (result.period)
-        all.push_back(fmt::format("Pieces begin every {:.4f} ± {:.4f} s, by the fit.", result.period->seconds,
-                                  result.period->standard_error));
-    all.push_back(residual_sentence(result));
-    all.push_back(horizon_sentence(result));
+    const auto& [name, fit, left_out_rms, left_out] = result.chosen();
+    std::vector all{fmt::format("{}, {} parameters: rms {:.2g} rad, {:.2g} on pieces left out.", name, fit.free_count(),
+                                fit.rms, left_out_rms)};
+    if (const auto& period = result.period)
+        all.push_back(
+            fmt::format("Pieces begin every {:.4f} ± {:.4f} s, by the fit.", period->seconds, period->standard_error));
+    all.insert(all.end(), {residual_sentence(result), horizon_sentence(result)});
     return all;
 }
 
@@ -54,7 +42,9 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
     const auto result = answer(std::move(track), options, stop, report);
     const auto finish = [&] {
-        write_text(preset, fitted_preset(result, name));
+        OutputFile text(preset);
+        text.write(fitted_preset(result, name));
+        text.close();
         parts.finished(name + ".toml");
         write_residuals(result, table);
         parts.finished(name + ".residuals.csv");

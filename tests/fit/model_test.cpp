@@ -72,8 +72,8 @@ TEST(FitFlow, CoulombFrictionMovesAsThePhysicsRoomHasIt) {
     p[coulomb_1] = 4, p[coulomb_2] = 3;
     constexpr std::size_t samples = 501;
     constexpr long hz = 100;
-    const auto expected = simulated_angles(fitted_pendulum(p, {}, {}).body, {1.5, -0.8, 1, -2}, hz, samples);
-    Flow<0> flow({}, p, {1.5, -0.8, 1, -2}, 1.0 / 512);
+    const auto expected = simulated_angles(pendulum_of(fitted_pendulum(p, {}, {})), {1.5, -0.8, 1, -2}, hz, samples);
+    Flow<> flow({}, p, {1.5, -0.8, 1, -2}, 1.0 / 512);
     double worst = 0;
     for (std::size_t i = 0; i < samples; ++i) {
         const double t = static_cast<double>(i) / hz;
@@ -88,7 +88,7 @@ TEST(FitFlow, CoulombFrictionMovesAsThePhysicsRoomHasIt) {
 
 TEST(FitFlow, IsOfOrderFive) {
     const auto end = [&](double step) {
-        Flow<0> flow({}, lab_arms(false), somewhere, step);
+        Flow<> flow({}, lab_arms(false), somewhere, step);
         flow.reach(1);
         return flow.angle(1, 1)[0];
     };
@@ -98,7 +98,7 @@ TEST(FitFlow, IsOfOrderFive) {
 
 TEST(FitFlow, InterpolatesAsWellAsItSteps) {
     const auto p = lab_arms(false);
-    Flow<0> coarse({}, p, somewhere, 1.0 / 128), fine({}, p, somewhere, 1.0 / 4096);
+    Flow<> coarse({}, p, somewhere, 1.0 / 128), fine({}, p, somewhere, 1.0 / 4096);
     double worst = 0;
     for (int i = 1; i < 200; ++i) {
         const double t = i * 0.00137;
@@ -118,7 +118,7 @@ void expect_there_and_back(const Parameters& p, const PhysicalPendulum<double>& 
 TEST(FitPhysical, RatiosGoThereAndBack) {
     for (const double mass : {1.0, 0.138})
         for (const double gravity : {9.8, 1.62}) {
-            const auto pendulum = fitted_pendulum(lab_arms(), {}, {gravity, mass}).body;
+            const auto pendulum = pendulum_of(fitted_pendulum(lab_arms(), {}, {gravity, mass}));
             expect_there_and_back(lab_arms(), pendulum);
             EXPECT_EQ(pendulum.chain.mass[1], mass);
             EXPECT_NEAR(pendulum.chain.length[0], gravity * 0.88 / 50, 1e-15);  // g C/D2
@@ -127,12 +127,12 @@ TEST(FitPhysical, RatiosGoThereAndBack) {
     // a second arm that takes most of the first one's inertia for its own joint is more compact
     auto p = lab_arms(false);
     p[inertia] = 1.2 * 0.88 * 0.88;
-    expect_there_and_back(p, fitted_pendulum(p, {}, {}).body);
+    expect_there_and_back(p, pendulum_of(fitted_pendulum(p, {}, {})));
 }
 
 TEST(FitPhysical, PointMassesStayPoints) {
     const auto points = point_masses(1.3, 1, 0.4, 0.6);
-    const auto back = fitted_pendulum(ratios_of(points), {.point_masses = true}, {}).body;
+    const auto back = pendulum_of(fitted_pendulum(ratios_of(points), {.point_masses = true}, {}));
     for (std::size_t k = 0; k < 2; ++k) {
         EXPECT_NEAR(back.chain.mass[k], points.chain.mass[k], 1e-12);
         EXPECT_NEAR(back.chain.length[k], points.chain.length[k], 1e-12);

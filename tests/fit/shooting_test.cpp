@@ -146,7 +146,7 @@ TEST(FitLadder, ChoosesWhatMadeTheTrack) {
 
     result = answered(simulated(ratios_of(point_masses(1.3, 1, 0.2, 0.25)), Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(result.chosen().name, "point masses, no friction");
-    const auto& chain = result.pendulum.body.chain;
+    const auto chain = pendulum_of(result.pendulum).chain;
     EXPECT_NEAR(chain.length[0], 0.2, 1e-3);
     EXPECT_NEAR(chain.length[1], 0.25, 1e-3);
     EXPECT_NEAR(chain.mass[0], 1.3, 1e-2);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
 namespace doppel::test {
@@ -44,7 +45,7 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
         if (k == 0 || every_s == 0)
             start = {amplitude * even(random), amplitude * even(random), 4 * even(random), 4 * even(random)};
         auto& piece = track.pieces.emplace_back(TrackPiece{.name = "simulated.csv"});
-        std::array flows{Flow<0>({.drag = drag}, truth, start, step), Flow<0>({.drag = drag}, truth, start, step)};
+        std::array flows{Flow<>({.drag = drag}, truth, start, step), Flow<>({.drag = drag}, truth, start, step)};
         const auto samples = static_cast<std::size_t>(std::lround(piece_s * hz)) + 1;
         for (std::size_t i = 0; i < samples; ++i) {
             piece.time_s.push_back(static_cast<double>(i) / hz);
@@ -80,6 +81,17 @@ inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
     take(quadratic_1, friction.arm_quadratic.empty() ? friction.air_quadratic : friction.arm_quadratic);
     p[scale_1] = p[scale_2] = 1;
     return p;
+}
+inline PhysicalPendulum<double> pendulum_of(const FittedPendulum& fitted) {
+    std::map<std::string, std::vector<double>> lists;
+    for (const auto& [key, both] : fitted.arms) lists[key] = {both[0], both[1]};
+    return {.chain = {.mass = lists["mass_kg"], .length = lists["length_m"], .gravity = fitted.gravity},
+            .center = lists["center_m"],
+            .inertia = lists["inertia_kg_m2"],
+            .friction = {.viscous = lists["joint_viscous_N_m_s"],
+                         .coulomb = lists["joint_coulomb_N_m"],
+                         .arm_quadratic = lists["arm_drag_quadratic_N_m_s2"],
+                         .air_quadratic = lists["air_drag_quadratic_N_m_s2"]}};
 }
 inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, double l2) {
     return physical(Pendulum<double>{.mass = {m1, m2}, .length = {l1, l2}, .angle = {}, .rate = {}, .gravity = 9.8});
