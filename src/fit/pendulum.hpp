@@ -107,7 +107,7 @@ template <class Scalar>
 struct Arms {
     std::array<Scalar, dynamic_count> p;
     Drag drag = Drag::own;
-    bool has_friction = false, has_coulomb = false;
+    bool has_coulomb = false;
     std::array<int, 2> modes{1, 1};
 
     /// Both right sides, and the factor of the other arm's acceleration on both left.
@@ -119,7 +119,6 @@ struct Arms {
         const SinCos<Scalar> between(Scalar(angle_1 - angle_2)), first(angle_1), second(angle_2);
         const Scalar cosine = p[coupling] * between.cos, sine = p[coupling] * between.sin;
         Sides to{-sine * (w2 * w2) - p[gravity_1] * first.sin, sine * (w1 * w1) - p[gravity_2] * second.sin, cosine};
-        if (!has_friction) return to;
         using std::abs;
         const Scalar relative = w2 - w1;
         Scalar pivot = p[viscous_1] * w1, middle = p[viscous_2] * relative;
@@ -152,9 +151,7 @@ Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
     Arms<Scalar> arms{.p = {}, .drag = model.drag};
     for (std::size_t k = 0; k < dynamic_count; ++k) {
         arms.p[k] = Scalar(parameters[k]);
-        const bool acts = is_friction(k) && (parameters[k] != 0 || model.fitted[k]);
-        arms.has_friction |= acts;
-        arms.has_coulomb |= acts && (k == coulomb_1 || k == coulomb_2);
+        arms.has_coulomb |= (k == coulomb_1 || k == coulomb_2) && (parameters[k] != 0 || model.fitted[k]);
         if constexpr (requires {
                           requires Scalar::Tangent::SizeAtCompileTime >
                           4;

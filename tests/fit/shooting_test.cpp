@@ -1,7 +1,6 @@
 #include "fit/report.hpp"
 #include "fit/support.hpp"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,23 +40,6 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
         for (Eigen::Index q = 0; q < 4; ++q) check(fit.shots[0].start[q], sums.normal(4, q), "start");
         for (const auto k : fit.model.list()) check(p[k], sums.normal(4, 5 + k), parameter_words[k].key);
     }
-}
-
-/// Starts eliminated or not, the solution of the normal equations is the same.
-TEST(FitShooting, EliminatesStartsExactly) {
-    const auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .noise = 1e-3});
-    const auto model = model_of(false, 1);
-    auto fit = fit_at(model, lab_arms(), track);
-    evaluate_fit({track, no_stop}, fit);
-    const auto& sums = fit.shots[0].sums;
-    std::vector<Eigen::Index> all{0, 1, 2, 3}, fitted;
-    for (const auto k : model.list()) all.push_back(5 + k), fitted.push_back(1 + k);
-    const auto part = sums.reduced();
-    const Eigen::MatrixXd whole = sums.normal(all, all), rest = part(fitted, fitted);
-    const Eigen::VectorXd slope = sums.normal.col(4)(all), slope_of_rest = part.col(0)(fitted);
-    const Eigen::VectorXd expected = whole.fullPivLu().solve(slope).tail(rest.rows());
-    const Eigen::VectorXd change = rest.fullPivLu().solve(slope_of_rest);
-    EXPECT_LT((change - expected).norm(), 1e-6 * expected.norm());  // measured 2e-9
 }
 
 TEST(FitShooting, FindsANoiselessTruth) {
