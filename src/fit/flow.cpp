@@ -126,6 +126,8 @@ bool Flow<N>::pass_event() {
     done_ = 0;
     auto& [y, slope] = before_ = later(before_, length_);
     const bool was_held = values_.is_held(*joint_);
+    y(0, 2 + *joint_) = *joint_ == 0 ? 0 : y(0, 2);  // it is to rounding; less than 0 would be an event again, for ever
+    if (values_.is_held(1)) y(0, 3) = y(0, 2);
     arms_.modes = values_.modes = settled(values_, *joint_, y.row(0));
     const Column rate = relative(y, *joint_), acceleration = relative(slope, *joint_);
     if (!was_held && acceleration[0] != 0)

@@ -36,10 +36,8 @@ double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
     return arms.modes[joint] * (joint == 0 ? y[2] : y[3] - y[2]);
 }
 
-std::array<int, 2> settled(Arms<double> arms, std::size_t joint, ArmState y) {
+std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState& y) {
     const bool was_held = std::exchange(arms.modes[joint], 0) == 0;
-    y[2 + joint] = joint == 0 ? 0 : y[2];
-    if (arms.is_held(1)) y[3] = y[2];
     const double torque = holding(arms, joint, y);
     if (was_held || std::abs(torque) > most_held(arms, joint)) arms.modes[joint] = torque < 0 ? -1 : 1;
     return arms.modes;

@@ -170,8 +170,8 @@ inline std::array<int, 2> turning(const ArmState& y) {
 }
 /// 0 or more while the joint keeps to its mode.
 double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y);
-/// The modes in which the joints go on after an event of this joint: whether it was held before matters.
-std::array<int, 2> settled(Arms<double> arms, std::size_t joint, ArmState y);
+/// The modes in which the joints go on after an event of this joint, now at rest: whether it was held before matters.
+std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState& y);
 
 /// What angles do not tell, and so has to be given.
 struct Convention {
