@@ -65,15 +65,6 @@ void attribute(const Fit& fit, const Shot& start, const Uncertainty& uncertainty
         }
 }
 
-/// 0 the model, 1 the start, 2 the parameters (Horizon::left_by).
-std::size_t limit_of(const Prediction& prediction) {
-    constexpr double never = 1e300, much = 0.6;
-    const double start = prediction.start_alone_s.value_or(never);
-    const double parameters = prediction.parameters_alone_s.value_or(never);
-    if (prediction.within_s < much * std::min(start, parameters)) return 0;
-    return start < parameters ? 1 : 2;
-}
-
 Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Uncertainty& uncertainty, double limit) {
     const auto& track = job.track;
     constexpr double data_s = 2, most_of_unit = 0.75;  // something must be left to predict
@@ -119,7 +110,8 @@ std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
 
 Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& uncertainty) {
     Horizon horizon;
-    constexpr double noises = 5;  // so that no single sample's noise ends a prediction
+    constexpr double never = 1e300, much = 0.6,
+                     noises = 5;  // noises: so that no single sample's noise ends a prediction
     horizon.limit = std::max(horizon.limit, noises * std::max(job.track.noise[0], job.track.noise[1]));
     std::vector<Prediction> all(fit.units());
     parallel_for(all.size(), job.threads, [&](std::size_t unit) {
@@ -130,7 +122,10 @@ Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& un
         if (prediction.time_s.empty()) continue;
         times.emplace_back(prediction.within_s, prediction.left_s.has_value());
         horizon.longest_s = std::max(horizon.longest_s, prediction.within_s);
-        if (prediction.left_s) ++horizon.left_by[limit_of(prediction)];
+        const double start = prediction.start_alone_s.value_or(never);
+        const double parameters = prediction.parameters_alone_s.value_or(never);
+        const bool by_model = prediction.within_s < much * std::min(start, parameters);
+        if (prediction.left_s) ++horizon.left_by[by_model ? 0 : start < parameters ? 1 : 2];
         horizon.predictions.push_back(std::move(prediction));
     }
     horizon.median_s = median_of(times);
