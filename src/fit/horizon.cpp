@@ -110,8 +110,8 @@ std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
 
 Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& uncertainty) {
     Horizon horizon;
-    constexpr double never = 1e300, much = 0.6,
-                     noises = 5;  // noises: so that no single sample's noise ends a prediction
+    constexpr double noises = 5;                 // so that no single sample's noise ends a prediction
+    constexpr double never = 1e300, much = 0.6;  // of the time until errors of start or parameters end it
     horizon.limit = std::max(horizon.limit, noises * std::max(job.track.noise[0], job.track.noise[1]));
     std::vector<Prediction> all(fit.units());
     parallel_for(all.size(), job.threads, [&](std::size_t unit) {

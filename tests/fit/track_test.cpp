@@ -98,22 +98,20 @@ TEST(FitTrack, RefusesWhatNoDoublePendulumDoes) {
 }
 
 TEST(FitTrack, TakesOtherConventionsAndSaysSo) {
-    const auto found = [](const auto& change) {
-        const auto track = read({changed(change)});
-        EXPECT_EQ(track.notes.size(), 1u);
-        return track;
-    };
     const auto straight = read({swing()});
     EXPECT_TRUE(straight.notes.empty());
     constexpr double half = std::numbers::pi / 2;
-    for (const auto& track : {found([](double, double a, double b) { return std::pair(a + half, b + half); }),
-                              found([](double, double a, double b) { return std::pair(a - 2 * half, b - 2 * half); }),
-                              found([](double, double a, double b) { return std::pair(a, b - a); }),
-                              found([](double, double a, double b) { return std::pair(a, -b); })})
+    for (const auto& text : {changed([](double, double a, double b) { return std::pair(a + half, b + half); }),
+                             changed([](double, double a, double b) { return std::pair(a - 2 * half, b - 2 * half); }),
+                             changed([](double, double a, double b) { return std::pair(a, b - a); }),
+                             changed([](double, double a, double b) { return std::pair(a, -b); })}) {
+        const auto track = read({text});
+        EXPECT_EQ(track.notes.size(), 1u);
         for (std::size_t arm = 0; arm < 2; ++arm)
             for (std::size_t i = 0; i < track.samples(); i += 50)
                 EXPECT_NEAR(std::remainder(track.pieces[0].angle[arm][i] - straight.pieces[0].angle[arm][i], 4 * half),
                             0, 1e-8);
+    }
     // both mirrored is as good, and no news
     EXPECT_TRUE(read({changed([](double, double a, double b) { return std::pair(-a, -b); })}).notes.empty());
 }
@@ -135,34 +133,25 @@ TEST(FitTrack, ReadsPlacesInAPicture) {
 }
 
 TEST(FitTrack, CutsAtGapsAndNumbersAndJoinsTurns) {
-    auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6});
-    auto& piece = track.pieces[0];
-    std::string gap = "time_s,theta1_rad,theta2_rad,piece\n", wrapped = "time_s,theta1_rad,theta2_rad\n";
+    const auto piece = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 8}).pieces[0];
+    std::string gap = "time_s,theta1_rad,theta2_rad,piece\n", wrapped = "time_s,theta1_rad,theta2_rad\n",
+                fragment = wrapped;
     for (std::size_t i = 0; i < piece.size(); ++i) {
-        const double a = piece.angle[0][i], b = piece.angle[1][i];
-        if (i < 200 || i > 240)
-            gap += fmt::format("{},{},{},{}\n", i < 400 ? piece.time_s[i] : piece.time_s[i] - 4, a, b, i < 400 ? 1 : 2);
-        wrapped += fmt::format("{},{},{}\n", piece.time_s[i], std::remainder(a + 2.5, 2 * std::numbers::pi) - 2.5, b);
+        const double t = piece.time_s[i], a = piece.angle[0][i], b = piece.angle[1][i];
+        if (i < 200 || i > 240) gap += fmt::format("{},{},{},{}\n", i < 400 ? t : t - 4, a, b, i < 400 ? 1 : 2);
+        wrapped += fmt::format("{},{},{}\n", t, std::remainder(a + 2.5, 2 * std::numbers::pi) - 2.5, b);
+        if (i < 400 || (i > 440 && i < 446) || i > 480) fragment += fmt::format("{},{},{}\n", t, a, b);
     }
     const auto cut = read({gap});
     ASSERT_EQ(cut.pieces.size(), 3u);  // a gap of 0.42 s, and the number
     EXPECT_TRUE(cut.start_s.empty());  // the last begins anew
-    EXPECT_EQ(read({swing()}).start_s, std::vector<double>{0});
     const auto joined = read({wrapped});
+    EXPECT_EQ(joined.start_s, std::vector<double>{0});
     for (std::size_t i = 1; i < joined.samples(); ++i)
         EXPECT_LT(std::abs(joined.pieces[0].angle[0][i] - joined.pieces[0].angle[0][i - 1]), 1);
-}
-
-TEST(FitTrack, LeavesCrumbsBetweenGapsOut) {
-    const auto piece = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 8}).pieces[0];
-    std::string text = "time_s,theta1_rad,theta2_rad\n";
-    for (std::size_t i = 0; i < piece.size(); ++i)
-        if (i < 400 || (i > 440 && i < 446) || i > 480)
-            text += fmt::format("{},{},{}\n", piece.time_s[i], piece.angle[0][i], piece.angle[1][i]);
-    const auto track = read({text});
-    ASSERT_EQ(track.pieces.size(), 2u);
-    EXPECT_EQ(track.start_s, (std::vector{0, 4.81}));
-    EXPECT_EQ(track.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
+    const auto without = read({fragment});
+    EXPECT_EQ(without.start_s, (std::vector{0, 4.81}));
+    EXPECT_EQ(without.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
 }
 
 /// 100 000 pieces of one row each.
