@@ -2,7 +2,7 @@
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
-#include "fit/run.hpp"
+#include "fit/result.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -13,28 +13,23 @@ namespace {
 
 struct FitCommandOptions {
     std::vector<std::string> tracks;
-    std::string model = "auto", out = "out", progress = "auto", name, gl = "auto";
-    double gravity = Convention{}.gravity, mass = Convention{}.second_mass, every_s = 0;
-    int jobs = 0;
-    bool force = false;
+    std::string model = "auto", out = "out", progress = "auto", gl = "auto";
+    double every_s = 0;
+    FitOptions fit;
 };
 
 void fit(const FitCommandOptions& options) {
-    FitOptions fit_options{.question = {.convention = {options.gravity, options.mass}},
-                           .out = options.out,
-                           .name = options.name,
-                           .jobs = options.jobs,
-                           .gl = gl_named(options.gl),
-                           .force = options.force};
-    fit_options.question.bodies = options.model == "point"      ? Bodies::point
-                                  : options.model == "compound" ? Bodies::compound
-                                                                : Bodies::automatic;
-    if (options.every_s > 0) fit_options.question.every_s = options.every_s;
+    auto fit_options = options.fit;
+    fit_options.bodies = options.model == "point"      ? Bodies::point
+                         : options.model == "compound" ? Bodies::compound
+                                                       : Bodies::automatic;
+    fit_options.out = options.out;
+    fit_options.gl = gl_named(options.gl);
+    if (options.every_s > 0) fit_options.every_s = options.every_s;
     outlive_readers();
-    const auto name = options.name.empty() ? fit_name(options.tracks.front()) : options.name;
-    ProgressReport report(progress_style(options.progress), name, "models");
+    const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
+    ProgressReport report(progress_style(options.progress), fit_name(files, fit_options), "models");
     try {
-        const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
         const auto done = run_fit(files, fit_options, watch_interrupts(), std::ref(report));
         for (const auto& sentence : done.sentences) report.note(sentence);
         report.done(done.run);
@@ -71,22 +66,24 @@ void add_fit(CLI::App& app) {
         ->type_name("KIND")
         ->check(CLI::IsMember({"auto", "point", "compound"}))
         ->capture_default_str();
-    command.add_option("--name", options->name, "Name of the results; that of the first file where not given")
+    command.add_option("--name", options->fit.name, "Name of the results; that of the first file where not given")
         ->type_name("NAME");
     command.add_option("--every", options->every_s, "Seconds from the beginning of a piece to that of the next")
         ->type_name("S")
         ->check(CLI::Range(1e-3, 1e6));
-    command.add_option("--gravity", options->gravity, "Of the preset, m/s²: angles do not tell it")
+    command.add_option("--gravity", options->fit.convention.gravity, "Of the preset, m/s²: angles do not tell it")
         ->type_name("G")
         ->check(CLI::Range(1e-3, 1e4))
         ->capture_default_str();
-    command.add_option("--mass", options->mass, "Of the second arm in the preset, kg: angles do not tell it")
+    command
+        .add_option("--mass", options->fit.convention.second_mass,
+                    "Of the second arm in the preset, kg: angles do not tell it")
         ->type_name("KG")
         ->check(CLI::Range(1e-9, 1e9))
         ->capture_default_str();
-    add_out_options(command, options->out, options->progress, options->force);
+    add_out_options(command, options->out, options->progress, options->fit.force);
     command
-        .add_option("-j,--jobs", options->jobs,
+        .add_option("-j,--jobs", options->fit.jobs,
                     "Threads that compute; one a core where not given. The numbers stay the same")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));

@@ -50,13 +50,13 @@ std::vector<Shot> parts_of(const Track& track, const std::vector<Shot>& wholes, 
 bool leads(const Track& track, const Fit& fit, const Shot& one, const Shot& next) {
     constexpr double near = 0.3, most_growth = 100;  // rad; of an angle, per angle or per rate over the pendulum's own
     const auto& piece = track.pieces[one.piece];
-    Flow<few_directions> flow(fit.model, fit.parameters, one.start, fit.step_s);
-    const double rate = std::sqrt(fit.of(gravity_2));
+    Flow<> flow(fit.model, fit.parameters, one.start, fit.step_s);
+    const double rate = std::sqrt(fit.parameters[gravity_2]);
     for (auto i = next.first; i < next.last; ++i) {
         const double t = piece.time_s[i] - piece.time_s[one.first];
         if (!flow.reach(t)) return false;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            const auto angle = flow.angle(static_cast<Eigen::Index>(arm), t);
+            const auto angle = flow.angle(arm, t);
             if (!piece.is_outlier[arm][i] && std::abs(angle[0] - piece.angle[arm][i]) > near) return false;
             if (std::hypot(angle.segment<2>(1).norm(), rate * angle.segment<2>(3).norm()) > most_growth) return false;
         }
@@ -102,30 +102,27 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
         throw method_failed(
             "{}: no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
             track.pieces.front().name, 100 * best.unexplained);
-    Parameters p{best.inertia, std::min(best.coupling, 0.95 * std::sqrt(best.inertia)), best.gravity[0],
-                 best.gravity[1]};
+    Parameters p = Parameters::Zero();
+    std::ranges::copy(best.ratios, p.begin());
+    p[coupling] = std::min(p[coupling], 0.95 * std::sqrt(p[inertia]));
     p[scale_1] = p[scale_2] = 1;
     return p;
 }
 
 /// Fits stretches in parts, joined as far as one leads to the next.
-Fit fitted_in_parts(const FitJob& job, const std::vector<Shot>& wholes, long most, const Parameters& guess) {
+std::optional<Fit> fitted_in_parts(const FitJob& job, const std::vector<Shot>& wholes, long most,
+                                   const Parameters& guess) {
     const auto& track = job.track;
-    Fit fit{.model = model_of(false, 0), .parameters = guess, .shots = parts_of(track, wholes, most)};
-    fit.scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
-    const auto refit = [&] {
-        fit.is_evaluated = false;  // of other shots, or another model
-        fit = fit_model(job, std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
-    };
-    refit();
-    halve_lost(track, fit);
-    fit.model = model_of(false, 3);
-    for (auto joins = most; joins > 1; joins /= 2) {
-        refit();
-        halve_lost(track, fit);
-        join(track, fit);
+    std::optional<Fit> fit{{.model = model_of(false, 0), .parameters = guess, .shots = parts_of(track, wholes, most)}};
+    fit->scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
+    for (auto parts = 2 * most; parts > 0; parts /= 2) {
+        fit->is_evaluated = false;  // of other shots, or another model
+        fit = fit_model(job, *std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
+        if (!fit || parts == 1) break;
+        halve_lost(track, *fit);
+        if (parts <= most) join(track, *fit);
+        fit->model = model_of(false, 3);
     }
-    refit();
     return fit;
 }
 
@@ -151,11 +148,9 @@ Fit begin_fit(const FitJob& job) {
     const auto wholes = divide(job.track);
     const auto guess = regressed(job.track, job.stop);
     constexpr long quarters = 4, shortest = 16;
-    for (auto most = quarters;; most *= 2) try {
-            return fitted_in_parts(job, wholes, most, guess);
-        } catch (const Error& error) {  // shorter ones may stay finite
-            if (error.code() != ExitCode::method_failed || most == shortest) throw;
-        }
+    for (auto most = quarters; most <= shortest; most *= 2)  // of shorter ones the motion may stay finite
+        if (auto fit = fitted_in_parts(job, wholes, most, guess)) return *fit;
+    throw no_motion(job.track);
 }
 
 }  // namespace doppel

@@ -8,17 +8,6 @@
 namespace doppel {
 namespace {
 
-/// The coefficients of Dormand & Prince's order 5: six stages, then the weights of the step.
-constexpr auto fifth_order = [] {
-    std::array<std::array<double, 6>, 7> a{};
-    for (std::size_t i = 0; i < a.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) {
-            const auto& fraction = Dopri5::pair.a[i][j];
-            a[i][j] = static_cast<double>(fraction.numerator) / static_cast<double>(fraction.denominator);
-        }
-    return a;
-}();
-
 /// The angle at t seconds into a step of h: the polynomial of degree 5 through angle, rate and acceleration at both
 /// ends (error h⁶ θ⁽⁶⁾/46080). Weights of these six, in that order.
 std::array<double, 6> angle_weights(double t, double h) {
@@ -41,22 +30,22 @@ std::array<double, 6> rate_weights(double t, double h) {
 
 template <int N>
 Flow<N>::Flow(const ModelSpec& model, const Parameters& parameters, const ArmState& start, double step)
-    : arms_(arms_of<Scalar>(model, parameters)), step_(step), before_(State::Zero()) {
-    before_.row(0) = start;
-    if constexpr (N > 0) before_.template block<4, 4>(1, 0).setIdentity();
-    arms_.modes = turning(start);
-    slope_before_ = slope_of(before_);
+    : arms_(arms_of<Dual<double, N>>(model, parameters)), values_(arms_of<double>(model, parameters)), step_(step) {
+    before_.y.setZero();
+    before_.y.row(0) = start;
+    before_.y.template block<4, 4>(1, 0).setIdentity();
+    arms_.modes = values_.modes = turning(start);
+    before_.slope = slope_of(before_.y);
     go_on();
 }
 
 template <int N>
 bool Flow<N>::reach(double t) {
-    while (t > begin() + (event_ ? event_->after : step_)) {
-        if (event_) {
+    while (t > begin() + length_) {
+        if (joint_) {
             if (!pass_event()) return false;
         } else {
-            std::swap(before_, after_);
-            std::swap(slope_before_, slope_after_);
+            before_ = after_;
             ++done_;
         }
         if (!go_on()) return false;
@@ -65,109 +54,92 @@ bool Flow<N>::reach(double t) {
 }
 
 template <int N>
-typename Flow<N>::Column Flow<N>::angle(Eigen::Index arm, double t) const {
-    const auto w = angle_weights(t - begin(), step_);
-    return w[0] * before_.col(arm) + w[1] * before_.col(arm + 2) + w[2] * slope_before_.col(arm + 2) +
-           w[3] * after_.col(arm) + w[4] * after_.col(arm + 2) + w[5] * slope_after_.col(arm + 2);
+typename Flow<N>::Column Flow<N>::angle(std::size_t arm, double t) const {
+    return weighted(angle_weights(t - begin(), step_), arm);
 }
 
 template <int N>
-double Flow<N>::rate(Eigen::Index arm, double t) const {
-    const auto w = rate_weights(t - begin(), step_);
-    return w[0] * before_(0, arm) + w[1] * before_(0, arm + 2) + w[2] * slope_before_(0, arm + 2) +
-           w[3] * after_(0, arm) + w[4] * after_(0, arm + 2) + w[5] * slope_after_(0, arm + 2);
-}
-
-template <int N>
-Arms<double> Flow<N>::law() const {
-    Arms<double> law{.p = {}, .drag = arms_.drag, .has_friction = true, .has_coulomb = true, .modes = arms_.modes};
-    std::transform(arms_.p.begin(), arms_.p.end(), law.p.begin(), [](const Scalar& x) { return value_of(x); });
-    return law;
+double Flow<N>::rate(std::size_t arm, double t) const {
+    return weighted(rate_weights(t - begin(), step_), arm)[0];
 }
 
 template <int N>
 typename Flow<N>::State Flow<N>::slope_of(const State& y) const {
-    const auto number = [&](Eigen::Index q) -> Scalar {
-        if constexpr (N == 0)
-            return y(0, q);
-        else
-            return {y(0, q), y.col(q).template tail<N>()};
-    };
+    const auto number = [&](Eigen::Index q) { return Dual<double, N>(y(0, q), y.col(q).template tail<N>()); };
     State slope;
     slope.template leftCols<2>() = y.template rightCols<2>();
     const auto alpha = arms_.accelerations(arms_.sides(number(0), number(1), number(2), number(3)));
-    for (Eigen::Index arm = 0; arm < 2; ++arm) {
-        const auto& one = alpha[static_cast<std::size_t>(arm)];
-        slope(0, arm + 2) = value_of(one);
-        if constexpr (N > 0) slope.col(arm + 2).template tail<N>() = one.tangent;
-    }
+    for (std::size_t arm = 0; arm < 2; ++arm) slope.col(arm + 2) << alpha[arm].value, alpha[arm].tangent;
     return slope;
 }
 
+/// The slope is the first stage of the next step.
 template <int N>
-void Flow<N>::take_step(double h, State& y, State& slope) const {
-    std::array<State, 6> k;
-    const State from = y;
-    for (std::size_t i = 1; i <= k.size(); ++i) {
-        k[i - 1] = slope;
-        y = from;
-        for (std::size_t j = 0; j < i; ++j) y += (h * fifth_order[i][j]) * k[j];
-        slope = slope_of(y);
+typename Flow<N>::Moment Flow<N>::later(const Moment& from, double h) const {
+    constexpr std::size_t stages = Dopri5::pair.stages;
+    std::array<State, stages> k;
+    Moment to = from;
+    for (std::size_t i = 1; i <= stages; ++i) {
+        k[i - 1] = to.slope;
+        to.y = from.y;
+        for (std::size_t j = 0; j < i; ++j) to.y += (h * value<double>(Dopri5::pair.a[i][j])) * k[j];
+        to.slope = slope_of(to.y);
     }
+    return to;
 }
 
 template <int N>
 bool Flow<N>::go_on() {
-    after_ = before_;
-    slope_after_ = slope_before_;
-    take_step(step_, after_, slope_after_);
-    event_.reset();
+    after_ = later(before_, step_);
+    length_ = step_;
+    joint_.reset();
     constexpr double fastest = 1e4;  // rad/s
-    const bool is_finite = std::abs(after_(0, 2)) < fastest && std::abs(after_(0, 3)) < fastest;
+    const bool is_finite = std::abs(after_.y(0, 2)) < fastest && std::abs(after_.y(0, 3)) < fastest;
     if (is_finite && arms_.has_coulomb)
-        for (std::size_t joint = 0; joint < 2; ++joint) find_event(law(), joint);
+        for (std::size_t joint = 0; joint < 2; ++joint) find_event(joint);
     return is_finite;
 }
 
 template <int N>
-void Flow<N>::find_event(const Arms<double>& law, std::size_t joint) {
+void Flow<N>::find_event(std::size_t joint) {
     const auto margin_at = [&](double t) {
         const double at = begin() + t;
-        return margin(law, joint, law.is_held(joint) ? values_at(at) : ArmState(0, 0, rate(0, at), rate(1, at)));
+        return margin(values_, joint,
+                      values_.is_held(joint) ? values_at(at) : ArmState(0, 0, rate(0, at), rate(1, at)));
     };
-    double last = event_ ? event_->after : step_;
+    double last = length_;
     if (!(margin_at(last) < 0)) {
-        const double slope = law.modes[joint] * relative(slope_before_, joint)[0];
-        const double slope_then = law.modes[joint] * relative(slope_after_, joint)[0];
+        const double slope = values_.modes[joint] * relative(before_.slope, joint)[0];
+        const double slope_then = values_.modes[joint] * relative(after_.slope, joint)[0];
         if (!(slope < 0 && slope_then > 0)) return;
         last = std::min(last, step_ * slope / (slope - slope_then));
         if (!(margin_at(last) < 0)) return;
     }
-    event_ = {bisect_event(0.0, last, step_, margin_at), joint};
+    length_ = bisect_event(0.0, last, step_, margin_at);
+    joint_ = joint;
 }
 
 template <int N>
 bool Flow<N>::pass_event() {
     constexpr double at_once = 100, a_step = 4;  // events
-    const auto [after, joint] = *event_;
-    take_step(after, before_, slope_before_);
-    origin_ = begin() + after;
+    origin_ = begin() + length_;
     done_ = 0;
-    const bool was_held = arms_.is_held(joint);
-    arms_.modes = settled(law(), joint, before_.row(0));
-    const Column rate = relative(before_, joint), acceleration = relative(slope_before_, joint);
-    if (N > 0 && !was_held && acceleration[0] != 0)
-        before_.template bottomRows<N>() -=
-            rate.template tail<N>() * ((slope_before_ - slope_of(before_)).row(0) / acceleration[0]);
-    if (arms_.is_held(0)) before_.col(2).setZero();
-    if (arms_.is_held(1)) before_.col(3) = before_.col(2);
-    slope_before_ = slope_of(before_);
+    auto& [y, slope] = before_ = later(before_, length_);
+    const bool was_held = values_.is_held(*joint_);
+    y(0, 2 + *joint_) = *joint_ == 0 ? 0 : y(0, 2);  // it is to rounding; less than 0 would be an event again, for ever
+    if (values_.is_held(1)) y(0, 3) = y(0, 2);
+    arms_.modes = values_.modes = settled(values_, *joint_, y.row(0));
+    const Column rate = relative(y, *joint_), acceleration = relative(slope, *joint_);
+    if (!was_held && acceleration[0] != 0)
+        y.template bottomRows<N>() -= rate.template tail<N>() * ((slope - slope_of(y)).row(0) / acceleration[0]);
+    if (arms_.is_held(0)) y.col(2).setZero();
+    if (arms_.is_held(1)) y.col(3) = y.col(2);
+    slope = slope_of(y);
     ++events_;
     return events_ < at_once + a_step * origin_ / step_;
 }
 
-template class Flow<0>;
-template class Flow<few_directions>;
+template class Flow<start_directions>;
 template class Flow<all_directions>;
 
 }  // namespace doppel

@@ -1,6 +1,5 @@
 #include "fit/horizon.hpp"
 
-#include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/flow.hpp"
 
@@ -18,7 +17,7 @@ double time_of(const Track& track, const Shot& shot, std::size_t sample) {
 }
 
 /// Goes along a shot after the data, by the motion from a fitted start. False where the error is well beyond the limit.
-bool follow(const Track& track, const Shot& shot, bool is_first_piece, double limit, const Parameters& p, Flow<0>& flow,
+bool follow(const Track& track, const Shot& shot, bool is_first_piece, double limit, const Parameters& p, Flow<>& flow,
             Prediction& prediction) {
     constexpr double kept_every_s = 0.02, afterwards_s = 10, far = 10, turn = 2 * std::numbers::pi;  // far: limits
     const auto& piece = track.pieces[shot.piece];
@@ -31,9 +30,7 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
             if (piece.is_outlier[arm][i]) continue;
             const double at = from_start + (arm == 1 ? p[lag] : 0);
             if (!flow.reach(at)) return false;
-            const double shown =
-                p[offset_1 + arm] + p[scale_1 + arm] * flow.angle(static_cast<Eigen::Index>(arm), at)[0];
-            double off = piece.angle[arm][i] - shown;
+            double off = piece.angle[arm][i] - (p[offset_1 + arm] + p[scale_1 + arm] * flow.angle(arm, at)[0]);
             if (!is_first_piece) off -= turn * std::round(off / turn);  // a piece may count turns anew
             error = std::max(error, std::abs(off));
         }
@@ -51,31 +48,21 @@ void attribute(const Fit& fit, const Shot& start, const Uncertainty& uncertainty
     constexpr double looked_at_s = 40, beyond = 1.7, steps = 2;  // as fine as a standard error is known
     const double step = steps * fit.step_s;
     const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
-    const auto moving = fit.model.moving();  // the first of them
-    const Eigen::MatrixXd of_parameters = uncertainty.covariance.topLeftCorner(moving, moving);
-    const Eigen::MatrixXd of_start = inverse_of(start.sums.matrix) * std::pow(uncertainty.inflation, 2);
+    const auto of_parameters = uncertainty.covariance.topLeftCorner<dynamic_count, dynamic_count>();
+    const Eigen::Matrix4d of_start = start.sums.inverse_of_start() * std::pow(uncertainty.inflation, 2);
+    auto &start_s = prediction.start_alone_s, &parameters_s = prediction.parameters_alone_s;
     Flow<all_directions> flow(fit.model, fit.parameters, start.start, step);
-    const auto note = [&](std::optional<double>& when, const Eigen::MatrixXd& covariance, Eigen::Index first,
-                          double t) {
-        for (Eigen::Index arm = 0; arm < 2 && !when; ++arm) {
-            const Eigen::VectorXd by = flow.angle(arm, t).segment(first, covariance.rows());
-            if (by.dot(covariance * by) > limit * limit) when = t - prediction.data_s;
+    for (double t = prediction.data_s; t < end && flow.reach(t) && !(start_s && parameters_s); t += step)
+        for (std::size_t arm = 0; arm < 2; ++arm) {
+            const auto angle = flow.angle(arm, t);
+            const ArmState by_start = angle.segment<4>(1);
+            const Eigen::Matrix<double, dynamic_count, 1> by_parameters = angle.tail<dynamic_count>();
+            const auto note = [&](std::optional<double>& when, double variance) {
+                if (!when && variance > limit * limit) when = t - prediction.data_s;
+            };
+            note(start_s, by_start.dot(of_start * by_start));
+            note(parameters_s, by_parameters.dot(of_parameters * by_parameters));
         }
-    };
-    for (double t = prediction.data_s; t < end && flow.reach(t); t += step) {
-        note(prediction.start_alone_s, of_start, 1, t);
-        note(prediction.parameters_alone_s, of_parameters, 5, t);
-        if (prediction.start_alone_s && prediction.parameters_alone_s) return;
-    }
-}
-
-/// 0 the model, 1 the start, 2 the parameters (Horizon::left_by).
-std::size_t limit_of(const Prediction& prediction) {
-    constexpr double never = 1e300, much = 0.6;
-    const double start = prediction.start_alone_s.value_or(never);
-    const double parameters = prediction.parameters_alone_s.value_or(never);
-    if (prediction.within_s < much * std::min(start, parameters)) return 0;
-    return start < parameters ? 1 : 2;
 }
 
 Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Uncertainty& uncertainty, double limit) {
@@ -90,12 +77,12 @@ Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Un
     Prediction prediction{.start_s = time_of(track, shot, shot.first), .data_s = times[shot.last - 1] - begin};
     // each unit after is judged by parameters that know neither it nor the first
     for (auto judged = unit; judged < fit.units(); ++judged) {
-        const auto without = fit_without(fit, unit, judged);
+        const auto without = stepped(fit, 0, unit, judged);
         if (judged == unit) shot.start = without.unit(unit).front().start;
         const auto start = fit_starts(job, without, {&shot, 1}, 10, 1e-5);
         if (!start) break;
         shot = start->shots.front();
-        Flow<0> flow(start->model, start->parameters, shot.start, start->step_s);
+        Flow<> flow(start->model, start->parameters, shot.start, start->step_s);
         const auto follows = fit.unit(judged);
         if (!std::all_of(follows.begin(), follows.end(), [&](const Shot& next) {
                 return follow(track, next, next.piece == shot.piece, limit, start->parameters, flow, prediction);
@@ -123,7 +110,8 @@ std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
 
 Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& uncertainty) {
     Horizon horizon;
-    constexpr double noises = 5;  // so that no single sample's noise ends a prediction
+    constexpr double noises = 5;                 // so that no single sample's noise ends a prediction
+    constexpr double never = 1e300, much = 0.6;  // of the time until errors of start or parameters end it
     horizon.limit = std::max(horizon.limit, noises * std::max(job.track.noise[0], job.track.noise[1]));
     std::vector<Prediction> all(fit.units());
     parallel_for(all.size(), job.threads, [&](std::size_t unit) {
@@ -134,7 +122,10 @@ Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& un
         if (prediction.time_s.empty()) continue;
         times.emplace_back(prediction.within_s, prediction.left_s.has_value());
         horizon.longest_s = std::max(horizon.longest_s, prediction.within_s);
-        if (prediction.left_s) ++horizon.left_by[limit_of(prediction)];
+        const double start = prediction.start_alone_s.value_or(never);
+        const double parameters = prediction.parameters_alone_s.value_or(never);
+        const bool by_model = prediction.within_s < much * std::min(start, parameters);
+        if (prediction.left_s) ++horizon.left_by[by_model ? 0 : start < parameters ? 1 : 2];
         horizon.predictions.push_back(std::move(prediction));
     }
     horizon.median_s = median_of(times);

@@ -26,6 +26,7 @@ struct Horizon {
     /// Of the predictions that left what ended them: where neither the error of the start nor that of the parameters
     /// explains it, the model; start; parameters.
     std::array<int, 3> left_by{};
+    int left() const { return left_by[0] + left_by[1] + left_by[2]; }
 };
 
 /// The median of times of which some are only known to be longer.

@@ -1,6 +1,5 @@
 #include "fit/ladder.hpp"
 
-#include "base/error.hpp"
 #include "base/threads.hpp"
 #include "fit/beginning.hpp"
 #include "numeric/portable_math.hpp"
@@ -14,26 +13,21 @@ namespace {
 
 /// The models, from the smallest: of point masses and of bodies as long as there is no dry friction.
 std::vector<FittedModel> models_of(Bodies bodies) {
-    struct Row {
-        const char* words;
-        int friction;
-        Drag drag;
-        int reading;
-    };
-    constexpr Row rows[]{{"no friction", 0, Drag::own, 0},
-                         {"viscous friction", 1, Drag::own, 0},
-                         {"viscous and dry friction", 2, Drag::own, 0},
-                         {"viscous, dry, drag by own rates", 3, Drag::own, 0},
-                         {"viscous, dry, drag by the air met", 3, Drag::carried, 0},
-                         {"drag by the air met, a lag", 3, Drag::carried, 1},
-                         {"drag by the air met, a lag, scales", 3, Drag::carried, 2}};
+    constexpr const char* words[]{"no friction",
+                                  "viscous friction",
+                                  "viscous and dry friction",
+                                  "viscous, dry, drag by own rates",
+                                  "viscous, dry, drag by the air met",
+                                  "drag by the air met, a lag",
+                                  "drag by the air met, a lag, scales"};
     std::vector<FittedModel> models;
     for (const bool point : {true, false})
-        for (const auto& [words, friction, drag, reading] : rows) {
+        for (int k = 0; k < 7; ++k) {
             if (bodies == (point ? Bodies::compound : Bodies::point)) continue;
-            if (point && friction > 1 && bodies != Bodies::point) continue;
-            models.push_back({.name = std::string(point ? "point masses, " : "compound, ") + words, .fit = {}});
-            models.back().fit.model = model_of(point, friction, drag, reading);
+            if (point && k > 1 && bodies != Bodies::point) continue;
+            models.push_back({.name = std::string(point ? "point masses, " : "compound, ") + words[k], .fit = {}});
+            models.back().fit.model =
+                model_of(point, std::min(k, 3), k < 4 ? Drag::own : Drag::carried, std::max(k - 4, 0));
         }
     return models;
 }
@@ -42,7 +36,7 @@ std::vector<FittedModel> models_of(Bodies bodies) {
 void leave_out(const FitJob& job, FittedModel& rung) {
     rung.left_out.resize(rung.fit.units());
     parallel_for(rung.left_out.size(), job.threads, [&](std::size_t unit) {
-        const auto without = fit_without(rung.fit, unit, unit);
+        const auto without = stepped(rung.fit, 0, unit, unit);
         const auto alone = fit_starts({job.track, job.stop}, without, without.unit(unit), 8, 1e-3);
         rung.left_out[unit] = alone ? alone->rms * alone->rms : std::numeric_limits<double>::infinity();
     });
@@ -54,9 +48,10 @@ void leave_out(const FitJob& job, FittedModel& rung) {
     rung.left_out_rms = std::sqrt(squares / samples);
 }
 
-/// Whether pieces left out are predicted as well as by the best, within what pieces differ by.
-bool serves(const FittedModel& rung, const FittedModel& best) {
-    constexpr double negligible = 0.1;  // of the mean square: a twentieth of the rms
+/// Whether a model predicts pieces left out as well as the best, within what pieces differ by; and, where the best leaves
+/// no more than samples scatter from one to the next, so noise, is as likely: by the ratio of likelihoods, at some 99.9 %.
+bool is_as_good(const Track& track, const FittedModel& rung, const FittedModel& best) {
+    constexpr double negligible = 0.1, about = 1.3;  // of the mean square: a twentieth of the rms; of the noise
     double sum = 0, squares = 0;
     const auto count = static_cast<double>(rung.left_out.size());
     for (std::size_t u = 0; u < rung.left_out.size(); ++u) {
@@ -65,37 +60,26 @@ bool serves(const FittedModel& rung, const FittedModel& best) {
         squares += ratio * ratio;
     }
     const double mean = sum / count, variance = (squares - sum * mean) / std::max(count - 1, 1.0);
-    return mean <= std::max(negligible, std::sqrt(variance / count));
+    if (!(mean <= std::max(negligible, std::sqrt(variance / count)))) return false;
+    const double noise = std::sqrt(0.5 * (track.noise[0] * track.noise[0] + track.noise[1] * track.noise[1]));
+    const double more = static_cast<double>(best.fit.free_count()) - static_cast<double>(rung.fit.free_count());
+    return best.fit.rms >= about * noise ||
+           2 * static_cast<double>(rung.fit.residual_count()) * portable_log(rung.fit.rms / best.fit.rms) <
+               10 + 2 * std::max(more, 0.0);
 }
 
 /// Another model at the same parameters, without the friction that it leaves out.
 Fit as_model(const ModelSpec& model, Fit fit) {
     fit.model = model;
     fit.is_evaluated = false;
-    for (auto k = viscous_1; k <= quadratic_2; k = static_cast<FitParameter>(k + 1))
-        if (!model.fits(k)) fit.parameters[k] = 0;
+    for (std::size_t k = viscous_1; k <= quadratic_2; ++k)
+        if (!model.fitted[k]) fit.parameters[k] = 0;
     return fit;
-}
-
-/// Whether samples scatter about the model no more than from one to the next.
-bool like_noise(const Track& track, const FittedModel& rung) {
-    constexpr double about = 1.3;
-    const double noise = std::sqrt(0.5 * (track.noise[0] * track.noise[0] + track.noise[1] * track.noise[1]));
-    return rung.fit.rms < about * noise;
-}
-
-/// Whether its residuals are no larger than fewer parameters explain, where they are noise: by the ratio of
-/// likelihoods, at some 99.9 %.
-bool is_as_likely(const FittedModel& rung, const FittedModel& best) {
-    const auto samples = static_cast<double>(rung.fit.residual_count());
-    const double more = static_cast<double>(best.fit.free_count()) - static_cast<double>(rung.fit.free_count());
-    return 2 * samples * portable_log(rung.fit.rms / best.fit.rms) < 10 + 2 * std::max(more, 0.0);
 }
 
 }  // namespace
 
-ModelLadder climb(const FitJob& job, Bodies bodies,
-                  const std::function<void(std::size_t done, std::size_t of)>& report) {
+ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report) {
     constexpr double roughly = 5e-4;  // enough to compare
     const auto models = models_of(bodies);
     const auto first = begin_fit(job);
@@ -103,33 +87,28 @@ ModelLadder climb(const FitJob& job, Bodies bodies,
     auto& rungs = ladder.rungs;
     for (auto rung : models) {
         throw_if_set(job.stop);
+        // from the nearer of two places: where all began, and where the model before ended
         const auto model = rung.fit.model;
-        try {
-            // from the nearer of two places: where all began, and where the model before ended
-            auto start = as_model(model, first);
-            if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
-                auto other = as_model(model, rungs.back().fit);
-                start.step_s = other.step_s, start.scale = other.scale;
-                evaluate_fit(job, start);
-                evaluate_fit(job, other);
-                if (other.cost <= start.cost) start = std::move(other);
-            }
-            rung.fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = roughly});
-        } catch (const Error& error) {  // of this model alone
-            if (error.code() != ExitCode::method_failed || (rung.name == models.back().name && rungs.empty())) throw;
-            continue;
+        auto start = as_model(model, first);
+        if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
+            auto other = as_model(model, rungs.back().fit);
+            start.step_s = other.step_s, start.scale = other.scale;
+            evaluate_fit(job, start);
+            evaluate_fit(job, other);
+            if (other.cost <= start.cost) start = std::move(other);
         }
+        auto fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = roughly});
+        if (!fit) continue;
+        rung.fit = *std::move(fit);
         leave_out(job, rung);
         rungs.push_back(std::move(rung));
-        report(rungs.size(), models.size());
+        report({static_cast<long>(rungs.size()), static_cast<long>(models.size())});
     }
+    if (rungs.empty()) throw no_motion(job.track);
     for (std::size_t k = 0; k < rungs.size(); ++k)
         if (rungs[k].left_out_rms < rungs[ladder.best].left_out_rms) ladder.best = k;
-    const auto& best = rungs[ladder.best];
-    const auto is_as_good = [&](const FittedModel& rung) {
-        return serves(rung, best) && (!like_noise(job.track, best) || is_as_likely(rung, best));
-    };
-    while (ladder.chosen < ladder.best && !is_as_good(rungs[ladder.chosen])) ++ladder.chosen;
+    while (ladder.chosen < ladder.best && !is_as_good(job.track, rungs[ladder.chosen], rungs[ladder.best]))
+        ++ladder.chosen;
     return ladder;
 }
 

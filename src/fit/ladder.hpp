@@ -1,10 +1,7 @@
 #pragma once
 
+#include "film/run.hpp"
 #include "fit/shooting.hpp"
-
-#include <functional>
-#include <string>
-#include <vector>
 
 namespace doppel {
 
@@ -30,7 +27,6 @@ struct ModelLadder {
 /// describes the track, 130.
 ///
 /// Source  Hastie, Tibshirani & Friedman, The Elements of Statistical Learning, §7.10 (the rule of one standard error)
-ModelLadder climb(const FitJob& job, Bodies bodies,
-                  const std::function<void(std::size_t done, std::size_t of)>& report);
+ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report);
 
 }  // namespace doppel

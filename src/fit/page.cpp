@@ -1,5 +1,3 @@
-#include "fit/page.hpp"
-
 #include "fit/report.hpp"
 
 #include <fmt/format.h>
@@ -12,30 +10,29 @@
 namespace doppel {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN(), mrad = 1e3;
-
-Curve curve_of(std::size_t arm, Mark mark) {
-    return {.label = mark == Mark::points ? "" : arm == 0 ? "θ1" : "θ2", .mark = mark, .hue = static_cast<int>(arm)};
-}
+constexpr double mrad = 1e3;
+constexpr std::array<const char*, 2> names{"θ1", "θ2"};  // of the arms
 
 /// The first shot: some samples as points, the model as lines.
 Plot track_plot(const FitResult& result) {
     const auto& shot = result.chosen().fit.shots.front();
     const auto& piece = result.track.pieces[shot.piece];
-    Plot plot{.title = "A stretch of the track", .note = "points: measured, lines: model"};
     const double begin = piece.time_s[shot.first];
+    Plot plot{.title = "A stretch of the track", .note = "points: measured, lines: model"};
     plot.x = {.label = "time, s", .low = 0, .high = piece.time_s[shot.last - 1] - begin};
     plot.y = {.label = "angle, rad"};
     constexpr std::size_t points = 60;
-    for (const auto mark : {Mark::line, Mark::points})
+    for (const bool measured : {false, true})
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            auto& curve = plot.curves.emplace_back(curve_of(arm, mark));
-            const auto every = mark == Mark::line ? 1 : std::max<std::size_t>(shot.size() / points, 1);
-            for (std::size_t i = shot.first; i < shot.last; i += every) {
-                const double residual = shot.sums.residuals[i - shot.first][arm];
-                curve.x.push_back(piece.time_s[i] - begin);
-                curve.y.push_back(piece.angle[arm][i] - (mark == Mark::line ? residual : 0));
+            Curve curve{.label = measured ? "" : names[arm], .hue = static_cast<int>(arm)};
+            if (measured) curve.mark = Mark::points;
+            for (std::size_t i = 0; i < shot.size();
+                 i += measured ? std::max<std::size_t>(shot.size() / points, 1) : 1) {
+                const auto sample = shot.first + i;
+                curve.x.push_back(piece.time_s[sample] - begin);
+                curve.y.push_back(piece.angle[arm][sample] - (measured ? 0 : shot.sums.residuals[i][arm]));
             }
+            plot.curves.push_back(std::move(curve));
         }
     return plot;
 }
@@ -43,33 +40,31 @@ Plot track_plot(const FitResult& result) {
 /// All residuals, piece after piece, thinned to what a panel can show: the one of a stretch that is largest.
 Plot residual_plot(const FitResult& result) {
     const auto& fit = result.chosen().fit;
-    Plot plot{.title = "Residuals, measured − model", .note = fmt::format("rms {:.2g} mrad", mrad * fit.rms)};
-    plot.y = {.label = "residual, mrad"};
-    constexpr double points = 900;
+    constexpr double points = 900, none = std::numeric_limits<double>::quiet_NaN();
     const auto bin = static_cast<std::size_t>(std::max(static_cast<double>(result.track.samples()) / points, 1.0));
     double end = 0;
-    std::array curves{curve_of(0, Mark::line), curve_of(1, Mark::line)};
+    std::array curves{Curve{.label = names[0], .hue = 0}, Curve{.label = names[1], .hue = 1}};
     for (const auto& shot : fit.shots) {
         const auto* times = result.track.pieces[shot.piece].time_s.data() + shot.first;
+        const auto& residuals = shot.sums.residuals;
         for (std::size_t arm = 0; arm < 2; ++arm) {
-            const auto smaller = [&](const auto& a, const auto& b) {
-                return std::abs(a[arm]) < std::abs(b[arm]) || (std::isnan(a[arm]) && !std::isnan(b[arm]));
-            };
-            const auto all = shot.sums.residuals.begin();
+            auto &x = curves[arm].x, &y = curves[arm].y;
             for (std::size_t from = 0; from < shot.size(); from += bin) {
-                const auto to = std::min(from + bin, shot.size());
-                const auto largest = std::max_element(all + static_cast<std::ptrdiff_t>(from),
-                                                      all + static_cast<std::ptrdiff_t>(to), smaller);
-                curves[arm].x.push_back(end + times[largest - all] - times[0]);
-                curves[arm].y.push_back(mrad * (*largest)[arm]);
+                auto largest = from;
+                for (auto i = from; i < std::min(from + bin, shot.size()); ++i)
+                    if (std::isnan(residuals[largest][arm]) ||
+                        std::abs(residuals[i][arm]) > std::abs(residuals[largest][arm]))
+                        largest = i;
+                x.push_back(end + times[largest] - times[0]), y.push_back(mrad * residuals[largest][arm]);
             }
-            curves[arm].x.push_back(end);
-            curves[arm].y.push_back(none);
+            x.push_back(end), y.push_back(none);
         }
         end += times[shot.size() - 1] - times[0];
     }
-    plot.x = {.label = "time measured, piece after piece, s", .low = 0, .high = end};
     const double band = 2 * mrad * fit.rms;
+    Plot plot{.title = "Residuals, measured − model", .note = fmt::format("rms {:.2g} mrad", mrad * fit.rms)};
+    plot.x = {.label = "time measured, piece after piece, s", .low = 0, .high = end};
+    plot.y = {.label = "residual, mrad"};
     plot.curves = {{.x = {0, end}, .y = {0, 0}, .uncertainty = {band, band}, .quiet = true}, curves[0], curves[1]};
     return plot;
 }
@@ -88,32 +83,29 @@ Plot ladder_plot(const FitResult& result) {
                                .x = {count},
                                .y = {mrad * rung.left_out_rms},
                                .mark = Mark::points,
-                               .hue = chosen ? 1 : 0,
+                               .hue = chosen,
                                .quiet = !chosen});
     }
     plot.x = {.label = "parameters fitted", .low = least - 1, .high = most + 1, .every = 1};
     return plot;
 }
 
-Plot horizon_plot(const FitResult& result) {
+Plot horizon_plot(const std::optional<Horizon>& horizon) {
     Plot plot{.title = "Predictions from at most two seconds of data", .note = "not measured"};
     plot.x = {.label = "time predicted, s", .low = 0, .high = 1};
     plot.y = {.label = "largest error so far, rad", .logarithmic = true};
-    if (!result.horizon) return plot;
-    const auto& horizon = *result.horizon;
-    std::size_t count = 0;
+    if (!horizon) return plot;
     for (const bool left : {true, false})
-        for (const auto& p : horizon.predictions) {
+        for (const auto& p : horizon->predictions) {
             if (p.left_s.has_value() != left) continue;
-            count += left;
-            auto& curve = plot.curves.emplace_back(Curve{.x = p.time_s, .hue = left ? 1 : 0, .quiet = !left});
+            auto& curve = plot.curves.emplace_back(Curve{.x = p.time_s, .hue = left, .quiet = !left});
             double largest = 0;
             for (const double error : p.error) curve.y.push_back(largest = std::max(largest, error));
             plot.x.high = std::max(*plot.x.high, p.time_s.back());
         }
-    plot.note = fmt::format("{} of {} left, in colour", count, horizon.predictions.size());
-    plot.rules.push_back({Rule::Orientation::horizontal, horizon.limit, fmt::format("{:.2g} rad", horizon.limit)});
-    if (const auto& median = horizon.median_s)
+    plot.note = fmt::format("{} of {} left, in colour", horizon->left(), horizon->predictions.size());
+    plot.rules.push_back({Rule::Orientation::horizontal, horizon->limit, fmt::format("{:.2g} rad", horizon->limit)});
+    if (const auto& median = horizon->median_s)
         plot.rules.push_back({Rule::Orientation::vertical, *median, fmt::format("median {:.1f} s", *median)});
     return plot;
 }
@@ -125,14 +117,14 @@ Figure fit_page(const FitResult& result, const std::string& name) {
     const auto& track = result.track;
     std::vector<std::string> models, numbers;
     for (const auto& other : result.ladder.rungs) models.push_back(fmt::format("{} {}", models.size() + 1, other.name));
-    for (const auto parameter : rung.fit.model.fitted)
+    for (const auto parameter : rung.fit.model.list())
         numbers.push_back(parameter_text(rung.fit, result.uncertainty, parameter));
     return {
         .title = fmt::format("{}: {}", name, rung.name),
         .subtitle =
             fmt::format("{} samples in {:.1f} s of {} piece{}; {} parameters", track.samples(), track.duration(),
                         track.pieces.size(), track.pieces.size() == 1 ? "" : "s", rung.fit.free_count()),
-        .panels = {track_plot(result), residual_plot(result), ladder_plot(result), horizon_plot(result)},
+        .panels = {track_plot(result), residual_plot(result), ladder_plot(result), horizon_plot(result.horizon)},
         .columns = 2,
         .captions = {fmt::format("Models: {}.", fmt::join(models, "; ")), fmt::format("{}.", fmt::join(numbers, ",  ")),
                      residual_sentence(result) + " " + horizon_sentence(result)}};

@@ -1,7 +1,7 @@
 #include "fit/pendulum.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace doppel {
 namespace {
@@ -22,18 +22,12 @@ double most_held(const Arms<double>& arms, std::size_t joint) {
 }  // namespace
 
 ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
-    ModelSpec model{.point_masses = point, .drag = drag, .fitted = {inertia, coupling}};
-    const auto add = [&](bool is_fitted, std::initializer_list<FitParameter> parameters) {
-        if (is_fitted) model.fitted.insert(model.fitted.end(), parameters);
-    };
-    add(!point, {gravity_1});
-    add(true, {gravity_2});
-    add(friction > 0, {viscous_1, viscous_2});
-    add(friction > 1, {coulomb_1, coulomb_2});
-    add(friction > 2, {quadratic_1, quadratic_2});
-    add(true, {offset_1, offset_2});
-    add(reading > 0, {lag});
-    add(reading > 1, {scale_1, scale_2});
+    ModelSpec model{.point_masses = point, .drag = drag};
+    for (std::size_t k = 0; k < parameter_count; ++k)
+        model.fitted[k] = k < viscous_1  ? k != gravity_1 || !point
+                          : k < offset_1 ? k < viscous_1 + static_cast<std::size_t>(2 * friction)
+                          : k < lag      ? true
+                                         : reading > (k == lag ? 0 : 1);
     return model;
 }
 
@@ -42,10 +36,8 @@ double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
     return arms.modes[joint] * (joint == 0 ? y[2] : y[3] - y[2]);
 }
 
-std::array<int, 2> settled(Arms<double> arms, std::size_t joint, ArmState y) {
+std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState& y) {
     const bool was_held = std::exchange(arms.modes[joint], 0) == 0;
-    y[2 + static_cast<Eigen::Index>(joint)] = joint == 0 ? 0 : y[2];
-    if (arms.is_held(1)) y[3] = y[2];
     const double torque = holding(arms, joint, y);
     if (was_held || std::abs(torque) > most_held(arms, joint)) arms.modes[joint] = torque < 0 ? -1 : 1;
     return arms.modes;
@@ -62,21 +54,21 @@ FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, cons
     // the first: J = I1 + m1 a1² and m1 a1 are left
     const double second = a * b - m2 * l1 * l1, moment = d1 * b / g - m2 * l1;
     const double a1 = model.point_masses ? l1 : second / ((1 + of_rod) * moment), m1 = moment / a1;
-    PhysicalPendulum<double> body;
-    body.chain = {.mass = {m1, m2}, .length = {l1, (model.point_masses ? 1 : 2) * a2}, .gravity = g};
-    body.center = {a1, a2};
-    body.inertia = {model.point_masses ? 0 : of_rod * m1 * a1 * a1, i2};
-    const auto friction = [&](FitParameter first, FitParameter other) {
-        return std::vector{b * p[first], b * p[other]};
-    };
-    body.friction.viscous = friction(viscous_1, viscous_2);
-    body.friction.coulomb = friction(coulomb_1, coulomb_2);
-    (model.drag == Drag::own ? body.friction.arm_quadratic : body.friction.air_quadratic) =
-        friction(quadratic_1, quadratic_2);
-    return {body, b,
-            model.point_masses ? "points at the ends of massless rods"
-            : share == of_rod  ? "each arm a uniform rod about its own centre of mass"
-                               : "the second arm more compact than a rod, as the first leaves it no more inertia"};
+    const auto friction = [&](std::size_t first) { return std::array{b * p[first], b * p[first + 1]}; };
+    return {.arms = {{"mass_kg", {m1, m2}},
+                     {"length_m", {l1, (model.point_masses ? 1 : 2) * a2}},
+                     {"center_m", {a1, a2}},
+                     {"inertia_kg_m2", {model.point_masses ? 0 : of_rod * m1 * a1 * a1, i2}},
+                     {"joint_viscous_N_m_s", friction(viscous_1)},
+                     {"joint_coulomb_N_m", friction(coulomb_1)},
+                     {model.drag == Drag::own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2",
+                      friction(quadratic_1)}},
+            .gravity = g,
+            .second_inertia = b,
+            .rule = model.point_masses ? "points at the ends of massless rods"
+                    : share == of_rod
+                        ? "each arm a uniform rod about its own centre of mass"
+                        : "the second arm more compact than a rod, as the first leaves it no more inertia"};
 }
 
 }  // namespace doppel

@@ -2,14 +2,14 @@
 
 #include "numeric/dual.hpp"
 #include "numeric/sin_cos.hpp"
-#include "physics/physical_pendulum.hpp"
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <array>
+#include <bitset>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -37,12 +37,9 @@ enum FitParameter : std::size_t {
     parameter_count,
     dynamic_count = offset_1  // so many move the arms, the others read them
 };
-using Parameters = std::array<double, parameter_count>;
+using Parameters = Eigen::Matrix<double, parameter_count, 1>;
 
-constexpr bool is_dynamic(FitParameter parameter) {
-    return parameter < dynamic_count;
-}
-constexpr bool is_friction(FitParameter parameter) {
+constexpr bool is_friction(std::size_t parameter) {
     return parameter >= viscous_1 && parameter <= quadratic_2;
 }
 
@@ -77,14 +74,16 @@ enum class Drag {
 struct ModelSpec {
     bool point_masses = false;  // then D1 = A D2/C, and gravity_1 is not among `fitted`
     Drag drag = Drag::own;
-    std::vector<FitParameter> fitted;  // those that move the arms first
-    bool may_gain = false;             // friction may be negative
+    std::bitset<parameter_count> fitted;
+    bool may_gain = false;  // friction may be negative
 
-    bool fits(FitParameter parameter) const {
-        return std::find(fitted.begin(), fitted.end(), parameter) != fitted.end();
+    /// Those that are fitted, in their order.
+    std::vector<std::size_t> list() const {
+        std::vector<std::size_t> all;
+        for (std::size_t k = 0; k < parameter_count; ++k)
+            if (fitted[k]) all.push_back(k);
+        return all;
     }
-    /// How many of them move the arms.
-    Eigen::Index moving() const { return std::count_if(fitted.begin(), fitted.end(), is_dynamic); }
 };
 
 /// The model with friction: 0 none, 1 viscous, 2 and Coulomb, 3 and drag; and with a reading: 0 offsets, 1 and a lag, 2 and
@@ -92,15 +91,6 @@ struct ModelSpec {
 ModelSpec model_of(bool point, int friction, Drag drag = Drag::own, int reading = 0);
 
 using ArmState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; ω1, ω2, rad/s
-
-/// The value alone of a number that may carry derivatives.
-template <class Scalar>
-double value_of(const Scalar& x) {
-    if constexpr (requires { x.tangent; })
-        return x.value;
-    else
-        return x;
-}
 
 /// Two rigid bodies on joints with friction, in a vertical plane, divided by B.
 ///
@@ -117,7 +107,7 @@ template <class Scalar>
 struct Arms {
     std::array<Scalar, dynamic_count> p;
     Drag drag = Drag::own;
-    bool has_friction = false, has_coulomb = false;
+    bool has_coulomb = false;
     std::array<int, 2> modes{1, 1};
 
     /// Both right sides, and the factor of the other arm's acceleration on both left.
@@ -129,7 +119,6 @@ struct Arms {
         const SinCos<Scalar> between(Scalar(angle_1 - angle_2)), first(angle_1), second(angle_2);
         const Scalar cosine = p[coupling] * between.cos, sine = p[coupling] * between.sin;
         Sides to{-sine * (w2 * w2) - p[gravity_1] * first.sin, sine * (w1 * w1) - p[gravity_2] * second.sin, cosine};
-        if (!has_friction) return to;
         using std::abs;
         const Scalar relative = w2 - w1;
         Scalar pivot = p[viscous_1] * w1, middle = p[viscous_2] * relative;
@@ -156,20 +145,19 @@ struct Arms {
     bool is_held(std::size_t joint) const { return has_coulomb && modes[joint] == 0; }
 };
 
-/// The arms of a model, with the derivatives by its fitted parameters from direction 4 on, as far as there are directions.
+/// The arms of a model. Derivatives by fitted parameters are along direction 4 + their number, where there is one.
 template <class Scalar>
 Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
     Arms<Scalar> arms{.p = {}, .drag = model.drag};
     for (std::size_t k = 0; k < dynamic_count; ++k) {
-        const auto parameter = static_cast<FitParameter>(k);
         arms.p[k] = Scalar(parameters[k]);
-        const bool acts = is_friction(parameter) && (parameters[k] != 0 || model.fits(parameter));
-        arms.has_friction |= acts;
-        arms.has_coulomb |= acts && (parameter == coulomb_1 || parameter == coulomb_2);
+        arms.has_coulomb |= (k == coulomb_1 || k == coulomb_2) && (parameters[k] != 0 || model.fitted[k]);
+        if constexpr (requires {
+                          requires Scalar::Tangent::SizeAtCompileTime >
+                          4;
+                      })
+            if (model.fitted[k]) arms.p[k].tangent[4 + k] = 1;
     }
-    if constexpr (requires { arms.p[0].tangent; })
-        for (Eigen::Index k = 0; k < std::min(model.moving(), arms.p[0].tangent.size() - 4); ++k)
-            arms.p[model.fitted[static_cast<std::size_t>(k)]].tangent[4 + k] = 1;
     if (model.point_masses) arms.p[gravity_1] = arms.p[inertia] * arms.p[gravity_2] / arms.p[coupling];
     return arms;
 }
@@ -182,8 +170,8 @@ inline std::array<int, 2> turning(const ArmState& y) {
 }
 /// 0 or more while the joint keeps to its mode.
 double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y);
-/// The modes in which the joints go on after an event of this joint: whether it was held before matters.
-std::array<int, 2> settled(Arms<double> arms, std::size_t joint, ArmState y);
+/// The modes in which the joints go on after an event of this joint, now at rest: whether it was held before matters.
+std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState& y);
 
 /// What angles do not tell, and so has to be given.
 struct Convention {
@@ -196,9 +184,9 @@ struct Convention {
 /// mass), or, where point masses were fitted, points at their ends (I = 0). A second arm too light in its first for that
 /// is given less inertia.
 struct FittedPendulum {
-    PhysicalPendulum<double> body;
-    double second_inertia = 0;  // B, kg m², by which ratios become these
-    std::string rule;           // the sentence above, as it applied
+    std::vector<std::pair<std::string, std::array<double, 2>>> arms;  // what presets say of both, by key
+    double gravity = 0, second_inertia = 0;                           // m/s²; B, kg m², by which ratios become these
+    std::string rule;                                                 // the sentence above, as it applied
 };
 FittedPendulum fitted_pendulum(const Parameters& parameters, const ModelSpec& model, const Convention& convention);
 

@@ -35,52 +35,36 @@ Json or_null(const std::optional<double>& value) {
 }
 
 Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
+    const auto parameters = rung.fit.model.list();
     Json ratios = Json::object();
-    for (const auto parameter : rung.fit.model.fitted) {
+    for (const auto parameter : parameters) {
         auto& ratio = ratios[std::string(parameter_words[parameter].key)];
-        ratio = {{"value", rung.fit.of(parameter)}, {"standard_error", uncertainty.standard_error_of(parameter)}};
+        ratio = {{"value", rung.fit.parameters[parameter]}, {"standard_error", uncertainty.standard_error(parameter)}};
         if (rung.fit.is_at_bound(parameter)) ratio["at_bound"] = true;
     }
-    const Eigen::VectorXd errors = uncertainty.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-    const Eigen::ArrayXXd products = errors * errors.transpose();
-    const Eigen::ArrayXXd correlations = (products > 0).select(uncertainty.covariance.array() / products, 0.0);
+    const auto correlations = [&](auto one) {
+        return list_of(parameters, [&](auto other) {
+            const double product = uncertainty.standard_error(one) * uncertainty.standard_error(other);
+            return product > 0 ? uncertainty.covariance(one, other) / product : 0;
+        });
+    };
     return {{"name", rung.name},
             {"ratios_to_B", ratios},
             {"correlations",
-             {{"parameters", list_of(uncertainty.parameters, [](auto p) { return parameter_words[p].key; })},
-              {"matrix", list_of(correlations.rowwise(),
-                                 [](const auto& row) { return std::vector<double>(row.begin(), row.end()); })}}},
+             {{"parameters", list_of(parameters, [](auto p) { return parameter_words[p].key; })},
+              {"matrix", list_of(parameters, correlations)}}},
             {"rms_rad", rung.fit.rms},
             {"left_out_rms_rad", rung.left_out_rms}};
-}
-
-/// What a pendulum has of each arm, as presets name it.
-std::vector<std::pair<std::string, std::vector<double>>> lists_of(const PhysicalPendulum<double>& body) {
-    const bool own = body.friction.air_quadratic.empty();
-    return {{"mass_kg", body.chain.mass},
-            {"length_m", body.chain.length},
-            {"center_m", body.center},
-            {"inertia_kg_m2", body.inertia},
-            {"joint_viscous_N_m_s", body.friction.viscous},
-            {"joint_coulomb_N_m", body.friction.coulomb},
-            {own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2",
-             own ? body.friction.arm_quadratic : body.friction.air_quadratic}};
-}
-
-Json pendulum_json(const FittedPendulum& p) {
-    Json json = {{"convention", p.rule}, {"gravity_m_per_s2", p.body.chain.gravity}, {"B_kg_m2", p.second_inertia}};
-    for (const auto& [key, values] : lists_of(p.body)) json[key] = values;
-    return json;
 }
 
 Json horizon_json(const FitResult& result) {
     if (!result.horizon) return {{"sentence", horizon_sentence(result)}};
     const auto& horizon = *result.horizon;
-    const auto& [model, start, parameters] = horizon.left_by;
+    const auto& by = horizon.left_by;
     return {{"limit_rad", horizon.limit},
             {"median_s", or_null(horizon.median_s)},
             {"longest_s", horizon.longest_s},
-            {"left_by", {{"model", model}, {"start", start}, {"parameters", parameters}}},
+            {"left_by", {{"model", by[0]}, {"start", by[1]}, {"parameters", by[2]}}},
             {"sentence", horizon_sentence(result)},
             {"predictions", list_of(horizon.predictions, [](const Prediction& p) {
                  return Json{{"start_s", p.start_s},
@@ -119,12 +103,10 @@ std::string horizon_sentence(const FitResult& result) {
                    ? "No horizon: it is not known when each piece began; --every SECONDS tells."
                    : "No horizon: stretches are too short to predict from.";
     const auto& h = *result.horizon;
-    const auto left = h.left_by[0] + h.left_by[1] + h.left_by[2];
+    const int left = h.left();
     const auto span = [&](auto member) {
-        const auto [least, most] =
-            std::minmax_element(h.predictions.begin(), h.predictions.end(),
-                                [&](const Prediction& a, const Prediction& b) { return a.*member < b.*member; });
-        const auto from = fmt::format("{:.1f}", (*least).*member), to = fmt::format("{:.1f}", (*most).*member);
+        const auto [least, most] = std::ranges::minmax(h.predictions, {}, member);
+        const auto from = fmt::format("{:.1f}", least.*member), to = fmt::format("{:.1f}", most.*member);
         return from == to ? from : from + " to " + to;
     };
     auto sentence =
@@ -150,11 +132,11 @@ std::string horizon_sentence(const FitResult& result) {
     return sentence + fmt::format("; of {} predictions {} left, limited by: {}.", h.predictions.size(), left, because);
 }
 
-std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, FitParameter parameter) {
+std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter) {
     const auto& words = parameter_words[parameter];
-    const double error = uncertainty.standard_error_of(parameter);
+    const double error = uncertainty.standard_error(parameter);
     const int decimals = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
-    return fmt::format("{} = {:.{}f} ± {:.{}f}{}", words.symbol, fit.of(parameter), decimals, error, decimals,
+    return fmt::format("{} = {:.{}f} ± {:.{}f}{}", words.symbol, fit.parameters[parameter], decimals, error, decimals,
                        words.unit);
 }
 
@@ -164,7 +146,7 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto files = files_of(result.track);
     const auto& shot = rung.fit.shots.front();
     // what the start is known to by itself; what it shares with the parameters would add little
-    const Eigen::MatrixXd covariance = inverse_of(shot.sums.matrix.topLeftCorner(4, 4));
+    const Eigen::Matrix4d covariance = shot.sums.inverse_of_start();
     const ArmState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
     auto text = fmt::format(
         "# Fitted by doppel fit to {}{}: {}.\n"
@@ -177,10 +159,10 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto add = [&](const std::string& key, double first, double second) {
         text += fmt::format("{} = [{:.10g}, {:.10g}]\n", key, first, second);
     };
-    for (const auto& [key, values] : lists_of(p.body))
+    for (const auto& [key, values] : p.arms)
         if ((values[0] != 0 || values[1] != 0) && !(rung.fit.model.point_masses && key == "center_m"))
             add(key, values[0], values[1]);
-    text += fmt::format("gravity_m_per_s2 = {}\n", p.body.chain.gravity);
+    text += fmt::format("gravity_m_per_s2 = {}\n", p.gravity);
     const ArmState start = degrees * shot.start, further = degrees * (shot.start + errors);
     add("angle_deg", start[0], start[1]);
     add("omega_deg_per_s", start[2], start[3]);
@@ -192,6 +174,9 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
 Json fit_json(const FitResult& result) {
     const auto& track = result.track;
     const auto& uncertainty = result.uncertainty;
+    const auto& [arms, gravity, second_inertia, rule] = result.pendulum;
+    Json pendulum = {{"convention", rule}, {"gravity_m_per_s2", gravity}, {"B_kg_m2", second_inertia}};
+    for (const auto& [key, values] : arms) pendulum[key] = values;
     const auto file_name = [](const std::string& file) {
         std::error_code ignored;  // of a folder that is gone: the path is empty
         return on_one_line(std::filesystem::proximate(file, ignored).string());
@@ -227,7 +212,7 @@ Json fit_json(const FitResult& result) {
                    {"inflation", uncertainty.inflation},
                    {"sentence", residual_sentence(result)}}},
                  {"horizon", horizon_json(result)},
-                 {"pendulum", pendulum_json(result.pendulum)}};
+                 {"pendulum", pendulum}};
     if (const auto& period = result.period)
         json["track"]["period"] = {{"seconds", period->seconds}, {"standard_error", period->standard_error}};
     return json;

@@ -1,7 +1,7 @@
 #include "fit/result.hpp"
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
+#include "base/machine.hpp"
 #include "fit/flow.hpp"
 
 #include <fmt/format.h>
@@ -14,16 +14,13 @@ namespace {
 
 /// How far the angles are spread about their mean, rms of both arms, rad.
 double spread_of(const Track& track) {
-    double squares = 0, count = 0;
-    for (std::size_t arm = 0; arm < 2; ++arm)
-        for (const auto& piece : track.pieces) {
-            double sum = 0;
-            for (const double angle : piece.angle[arm]) sum += angle;
-            const double mean = sum / static_cast<double>(piece.size());
-            for (const double angle : piece.angle[arm]) squares += (angle - mean) * (angle - mean);
-            count += static_cast<double>(piece.size());
+    double squares = 0;
+    for (const auto& piece : track.pieces)
+        for (const auto& angles : piece.angle) {
+            const Eigen::Map<const Eigen::ArrayXd> all(angles.data(), angles.size());
+            squares += (all - all.mean()).square().sum();
         }
-    return std::sqrt(squares / count);
+    return std::sqrt(squares / static_cast<double>(2 * track.samples()));
 }
 
 /// How much a model may leave, rms, rad.
@@ -36,23 +33,17 @@ double most_left(const Track& track) {
 void demand_loss(const FitJob& job, const ModelLadder& ladder) {
     constexpr double sure = 5;  // standard errors
     const auto viscous = std::find_if(ladder.rungs.rbegin(), ladder.rungs.rend(), [](const FittedModel& rung) {
-        return rung.fit.model.fits(viscous_1) && !rung.fit.model.fits(coulomb_1);
+        return rung.fit.model.fitted[viscous_1] && !rung.fit.model.fitted[coulomb_1];
     });
     if (viscous == ladder.rungs.rend()) return;
     if (!viscous->fit.is_at_bound(viscous_1) && !viscous->fit.is_at_bound(viscous_2)) return;
-    EnergyLoss loss;
-    try {
-        loss = energy_loss(job, viscous->fit);
-    } catch (const Error& error) {  // no such fit, so no such gain
-        if (error.code() != ExitCode::method_failed) throw;
-        return;
-    }
-    const bool is_sure = loss.share < -sure * loss.standard_error;  // not where the error is not a number
-    if (!is_sure || loss.rms > most_left(job.track)) return;
+    const auto loss = energy_loss(job, viscous->fit);
+    const bool is_sure = loss && loss->share < -sure * loss->standard_error;  // not where the error is not a number
+    if (!is_sure || loss->rms > most_left(job.track)) return;
     throw method_failed(
         "{}: the swing gains energy, {:.2g} ± {:.1g} % of its energy of motion a second, and a pendulum that swings "
         "freely loses it: time_s must grow as time did, and nothing may drive the pendulum",
-        job.track.pieces.front().name, -100 * loss.share, 100 * loss.standard_error);
+        job.track.pieces.front().name, -100 * loss->share, 100 * loss->standard_error);
 }
 
 /// Throws where even the best model leaves too much for its numbers to mean anything.
@@ -70,7 +61,7 @@ void demand_description(const Track& track, const ModelLadder& ladder) {
 void demand_order(const Track& track, const ModelLadder& ladder) {
     constexpr double least = 1.01;
     const auto& fit = ladder.rungs[ladder.best].fit;
-    const double moment = fit.of(gravity_1) / (fit.of(coupling) * fit.of(gravity_2));
+    const double moment = fit.parameters[gravity_1] / (fit.parameters[coupling] * fit.parameters[gravity_2]);
     if (moment >= least) return;
     throw bad_input(
         "{}: theta1_rad and theta2_rad seem to be swapped: as they are, the first arm has no weight of its own "
@@ -82,22 +73,22 @@ void demand_order(const Track& track, const ModelLadder& ladder) {
 /// times a piece stands out.
 std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
     constexpr double longest = 4, apart_s = 0.15, close = 0.05, times = 3, diverged = 0.25;
-    const auto pieces = job.track.pieces.size();
-    if (pieces < 3) return std::nullopt;
-    double shortest = job.track.pieces[0].duration();
-    for (const auto& piece : job.track.pieces) shortest = std::min(shortest, piece.duration());
-    // the state at the start of each piece, and the motion of each far beyond its end: rates in units of the pendulums' own
-    const double step = fit.step_s, rate = std::sqrt(fit.of(gravity_2)), leads = static_cast<double>(pieces - 1);
+    const auto& pieces = job.track.pieces;
+    if (pieces.size() < 3) return std::nullopt;
+    const double shortest = std::ranges::min_element(pieces, {}, &TrackPiece::duration)->duration(), step = fit.step_s;
+    // the state at the start of each piece, and how far the motion of each is from it, far beyond its end: rates in units of
+    // the pendulums' own
+    const double rate = std::sqrt(fit.parameters[gravity_2]), leads = static_cast<double>(pieces.size() - 1);
     const ArmState unit(1, 1, rate, rate);
-    std::vector<ArmState> starts(pieces);
+    std::vector<ArmState> starts(pieces.size());
     for (std::size_t k = fit.shots.size(); k-- > 0;) starts[fit.shots[k].piece] = fit.shots[k].start;
     const auto count = static_cast<std::size_t>(longest * shortest / step);
     const auto from = static_cast<std::size_t>(0.95 * shortest / step);
-    std::vector<std::vector<ArmState>> motions(pieces - 1);
+    std::vector<std::vector<ArmState>> motions(pieces.size() - 1);
     std::vector<double> distance(count, 0);  // of the ends, mean square, for each interval
-    for (std::size_t k = 0; k + 1 < pieces; ++k) {
+    for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
         throw_if_set(job.stop);
-        Flow<0> flow(fit.model, fit.parameters, starts[k], step);
+        Flow<> flow(fit.model, fit.parameters, starts[k], step);
         for (std::size_t i = 0; i < count; ++i) {
             const double t = static_cast<double>(i) * step;
             flow.reach(t);
@@ -107,11 +98,11 @@ std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
     }
     const auto least = std::min_element(distance.begin() + static_cast<std::ptrdiff_t>(from), distance.end() - 1);
     const auto best = static_cast<std::size_t>(least - distance.begin());
-    double rival = 1;
-    for (std::size_t i = from; i < count; ++i)
-        if (std::abs(static_cast<double>(i) - static_cast<double>(best)) * step > apart_s)
-            rival = std::min(rival, distance[i]);
-    if (distance[best] > close || rival < times * distance[best]) return std::nullopt;
+    const double found_s = static_cast<double>(best) * step;
+    for (std::size_t i = from; i < count; ++i)  // rivals
+        if (std::abs(static_cast<double>(i) * step - found_s) > apart_s && distance[i] < times * *least)
+            return std::nullopt;
+    if (*least > close) return std::nullopt;
     // between the steps: the shift along each motion that brings the ends together, without those that have diverged
     double along = 0, speed = 0, rest = 0, used = 0;
     for (const auto& off : motions) {
@@ -120,36 +111,34 @@ std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
         along += off[best].dot(slope), speed += slope.squaredNorm(), rest += off[best].squaredNorm(), used += 4;
     }
     const double shift = along / speed;
-    rest -= shift * along;
-    return Period{static_cast<double>(best) * step + shift, std::sqrt(rest / std::max(used - 1, 1.0) / speed)};
+    return Period{found_s + shift, std::sqrt((rest - shift * along) / std::max(used - 1, 1.0) / speed)};
 }
 
-void put_on_one_clock(FitResult& result, const FitQuestion& question, const std::atomic<bool>& stop) {
+void put_on_one_clock(FitResult& result, std::optional<double> every_s, const std::atomic<bool>& stop) {
     auto& track = result.track;
-    if (!track.start_s.empty() && !question.every_s) return;
-    auto every = question.every_s;
-    if (!every) {
+    if (!track.start_s.empty() && !every_s) return;
+    if (!every_s) {
         result.period = find_period({track, stop}, result.chosen().fit);
         if (!result.period) return;
-        every = result.period->seconds;
+        every_s = result.period->seconds;
     }
     track.start_s.clear();
     for (std::size_t k = 0; k < track.pieces.size(); ++k) {
-        track.start_s.push_back(static_cast<double>(k) * *every);
-        if (k + 1 < track.pieces.size() && track.pieces[k].duration() > *every)
-            throw bad_input("--every {}: {} lasts {:.4g} s, and the next piece cannot begin before its end", *every,
+        track.start_s.push_back(static_cast<double>(k) * *every_s);
+        if (k + 1 < track.pieces.size() && track.pieces[k].duration() > *every_s)
+            throw bad_input("--every {}: {} lasts {:.4g} s, and the next piece cannot begin before its end", *every_s,
                             track.pieces[k].name, track.pieces[k].duration());
     }
 }
 
 }  // namespace
 
-FitResult answer(Track track, const FitQuestion& question, int jobs, const std::atomic<bool>& stop,
-                 const std::function<void(std::size_t done, std::size_t of)>& report) {
+FitResult answer(Track track, const FitOptions& options, const std::atomic<bool>& stop,
+                 const std::function<void(const Progress&)>& report) {
     const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     FitResult result{.track = std::move(track)};
-    const FitJob job{result.track, stop, jobs};
-    auto& ladder = result.ladder = climb(job, question.bodies, report);
+    const FitJob job{result.track, stop, options.jobs > 0 ? options.jobs : cores()};
+    auto& ladder = result.ladder = climb(job, options.bodies, report);
     result.models_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     demand_order(result.track, ladder);
     demand_loss(job, ladder);
@@ -157,16 +146,18 @@ FitResult answer(Track track, const FitQuestion& question, int jobs, const std::
     auto& fit = ladder.rungs[ladder.chosen].fit;
     constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer
     for (const double share : {of_errors, FitEffort{}.step_share}) {
-        fit = fit_model(job, fit, {.step_share = share});
+        const auto finer = fit_model(job, fit, {.step_share = share});
+        if (!finer) throw no_motion(result.track);
+        fit = *finer;
         result.uncertainty = uncertainty_of(job, fit);
         if (!result.uncertainty.is_white) break;
     }
-    put_on_one_clock(result, question, stop);
+    put_on_one_clock(result, options.every_s, stop);
     if (!result.track.start_s.empty()) {
         auto horizon = measure_horizon(job, fit, result.uncertainty);
         if (!horizon.predictions.empty()) result.horizon = std::move(horizon);
     }
-    result.pendulum = fitted_pendulum(fit.parameters, fit.model, question.convention);
+    result.pendulum = fitted_pendulum(fit.parameters, fit.model, options.convention);
     result.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     return result;
 }

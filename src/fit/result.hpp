@@ -1,12 +1,22 @@
 #pragma once
 
+#include "film/run.hpp"
 #include "fit/horizon.hpp"
 #include "fit/ladder.hpp"
 
-#include <functional>
-#include <optional>
-
 namespace doppel {
+
+/// What to fit, what is known besides, and where results go.
+struct FitOptions {
+    Bodies bodies = Bodies::automatic;
+    Convention convention;
+    std::optional<double> every_s;      // between the beginnings of pieces; found where not given
+    std::filesystem::path out = "out";  // the files go to OUT/NAME/
+    std::string name;                   // of the result; that of the first file where it is empty
+    int jobs = 0;                       // threads that compute; 0 = one a core
+    Gl gl = Gl::automatic;              // what draws
+    bool force = false;                 // as Replacing has it
+};
 
 /// Pieces that follow one another at even intervals on a clock that each begins anew.
 struct Period {
@@ -27,16 +37,25 @@ struct FitResult {
     const FittedModel& chosen() const { return ladder.rungs[ladder.chosen]; }
 };
 
-/// What to fit, and what is known besides.
-struct FitQuestion {
-    Bodies bodies = Bodies::automatic;
-    Convention convention;
-    std::optional<double> every_s;  // between the beginnings of pieces; found where not given
-};
-
 /// Fits all models, chooses one, and measures it. `report` hears how many models are done. Throws Error: exit 3 where no
 /// model describes the track or the swing gains energy, 130.
-FitResult answer(Track track, const FitQuestion& question, int jobs, const std::atomic<bool>& stop,
-                 const std::function<void(std::size_t done, std::size_t of)>& report);
+FitResult answer(Track track, const FitOptions& options, const std::atomic<bool>& stop,
+                 const std::function<void(const Progress&)>& report);
+
+// run.cpp
+
+/// What came of a run, and sentences for the person.
+struct FitRun {
+    RunResult run;
+    std::vector<std::string> sentences;
+};
+
+/// Reads the tracks, fits, and writes NAME.toml, NAME.residuals.csv, NAME.png and NAME.fit.json, all or none. Table and preset are the
+/// same to the byte for any number of threads. Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.
+FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions& options,
+               const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
+
+/// Of the results of files.
+std::string fit_name(const std::vector<std::filesystem::path>& files, const FitOptions& options);
 
 }  // namespace doppel

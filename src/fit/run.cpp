@@ -1,9 +1,5 @@
-#include "fit/run.hpp"
-
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/machine.hpp"
-#include "fit/page.hpp"
 #include "fit/report.hpp"
 #include "output/png.hpp"
 
@@ -15,49 +11,40 @@ namespace {
 constexpr Size page_size{1600, 1300};
 constexpr const auto& light = themes[1];
 
-void write_text(const FilePlace& place, const std::string& text) {
-    OutputFile file(place);
-    file.write(text);
-    file.close();
-}
-
 std::vector<std::string> sentences_of(const FitResult& result) {
-    const auto& rung = result.chosen();
-    std::vector<std::string> all;
-    all.push_back(fmt::format("{}, {} parameters: rms {:.2g} rad, {:.2g} on pieces left out.", rung.name,
-                              rung.fit.free_count(), rung.fit.rms, rung.left_out_rms));
-    if (result.period)
-        all.push_back(fmt::format("Pieces begin every {:.4f} ± {:.4f} s, by the fit.", result.period->seconds,
-                                  result.period->standard_error));
-    all.push_back(residual_sentence(result));
-    all.push_back(horizon_sentence(result));
+    const auto& [name, fit, left_out_rms, left_out] = result.chosen();
+    std::vector all{fmt::format("{}, {} parameters: rms {:.2g} rad, {:.2g} on pieces left out.", name, fit.free_count(),
+                                fit.rms, left_out_rms)};
+    if (const auto& period = result.period)
+        all.push_back(
+            fmt::format("Pieces begin every {:.4f} ± {:.4f} s, by the fit.", period->seconds, period->standard_error));
+    all.insert(all.end(), {residual_sentence(result), horizon_sentence(result)});
     return all;
 }
 
 }  // namespace
 
-std::string fit_name(const std::filesystem::path& file) {
-    return file.stem().string();
+std::string fit_name(const std::vector<std::filesystem::path>& files, const FitOptions& options) {
+    return options.name.empty() ? files.front().stem().string() : options.name;
 }
 
 FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions& options,
                const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
-    const auto name = options.name.empty() ? fit_name(files.front()) : options.name;
+    const auto name = fit_name(files, options);
     if (name.empty() || name.find('/') != std::string::npos)
         throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
     check_preset_name(options.name.empty() ? files.front().string() : "--name", name);
-    const int jobs = options.jobs > 0 ? options.jobs : cores();
     const double start = seconds_of(CLOCK_MONOTONIC);
     auto track = read_tracks(files, stop);
     Transaction parts(options.out / name, name, "fit", {files, options.force});
     parts.demand(name + ".fit.json");
     const auto place = [&](const char* ending) { return parts.file(name + ending); };
     const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
-    const auto result = answer(std::move(track), options.question, jobs, stop, [&](std::size_t done, std::size_t of) {
-        report({static_cast<long>(done), static_cast<long>(of)});
-    });
+    const auto result = answer(std::move(track), options, stop, report);
     const auto finish = [&] {
-        write_text(preset, fitted_preset(result, name));
+        OutputFile text(preset);
+        text.write(fitted_preset(result, name));
+        text.close();
         parts.finished(name + ".toml");
         write_residuals(result, table);
         parts.finished(name + ".residuals.csv");
@@ -70,7 +57,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
                   {.metadata = metadata_of(name, name, fmt::format("how it was made is in {}.fit.json", name))}, stop);
         parts.finished(name + ".png");
         auto manifest = fit_json(result);
-        manifest["threads"] = jobs;
+        manifest["threads"] = options.jobs > 0 ? options.jobs : cores();
         manifest["time"] = {{"models_cpu_s", result.models_cpu_s}, {"fit_cpu_s", result.cpu_s}};
         manifest["libraries"] = {{"gl", renderer.description()}, {"compiler", __VERSION__}};
         write_manifest(parts, name + ".fit.json", std::move(manifest));

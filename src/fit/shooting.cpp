@@ -1,7 +1,7 @@
 #include "fit/shooting.hpp"
 
-#include "base/error.hpp"
 #include "base/threads.hpp"
+#include "fit/flow.hpp"
 #include "numeric/portable_math.hpp"
 #include "track/regression.hpp"
 
@@ -14,63 +14,87 @@
 namespace doppel {
 namespace {
 
-constexpr std::size_t no_unit = std::numeric_limits<std::size_t>::max();
+/// The sums of a shot, by N directions: those of its start, or of all parameters, too.
+template <int N>
+ShotSums evaluate(const Track& track, const Fit& fit, const Shot& shot, double block_s) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    constexpr int size = N == start_directions ? 5 : ShotSums::Row::SizeAtCompileTime;
+    const auto& piece = track.pieces[shot.piece];
+    const auto& p = fit.parameters;
+    const auto& fitted = fit.model.fitted;
+    Flow<N> flow(fit.model, p, shot.start, fit.step_s);
+    ShotSums sums;
+    sums.residuals.assign(shot.size(), {none, none});
+    Eigen::Matrix<double, size, Eigen::Dynamic> rows(size, 2 * shot.size());
+    ShotSums::Row row = ShotSums::Row::Zero();
+    const auto read = [&](std::size_t sample, std::size_t arm, double t) {
+        const auto angle = flow.angle(arm, t);
+        const double scale = p[scale_1 + arm];
+        const double residual = piece.angle[arm][sample] - (p[offset_1 + arm] + scale * angle[0]);
+        row.template head<4>() = scale * angle.template segment<4>(1);
+        row[4] = residual;
+        if constexpr (size > 5) {
+            row.template segment<dynamic_count>(5) = scale * angle.template tail<dynamic_count>();
+            row.template tail<parameter_count - dynamic_count>().setZero();
+            row[5 + offset_1 + arm] = fitted[offset_1 + arm];
+            if (fitted[scale_1 + arm]) row[5 + scale_1 + arm] = angle[0];
+            if (fitted[lag] && arm == 1) row[5 + lag] = scale * flow.rate(1, t);
+        }
+        const double unit = fit.scale[arm], off = std::abs(residual / unit), bend = Fit::bend;
+        const bool beyond = off > bend;
+        sums.cost += beyond ? bend * off - 0.5 * bend * bend : 0.5 * off * off;
+        sums.bounded += beyond ? bend * bend : off * off;
+        sums.squares += residual * residual;
+        sums.beyond += beyond;
+        sums.residuals[sample - shot.first][arm] = residual;
+        row *= std::sqrt(beyond ? bend / off : 1) / unit;
+        rows.col(sums.count++) = row.template head<size>();
+        if (block_s > 0) sums.blocks.back() += row[4] * row;
+    };
+    for (std::size_t sample = shot.first; sample < shot.last; ++sample) {
+        const double t = piece.time_s[sample] - piece.time_s[shot.first];
+        while (block_s > 0 && static_cast<double>(sums.blocks.size()) * block_s <= t)
+            sums.blocks.emplace_back(ShotSums::Row::Zero());
+        for (std::size_t arm = 0; arm < 2 && std::isfinite(sums.cost); ++arm) {
+            const double at = arm == 1 ? t + p[lag] : t;
+            if (piece.is_outlier[arm][sample]) continue;
+            if (flow.reach(at))
+                read(sample, arm, at);
+            else
+                sums.cost = std::numeric_limits<double>::infinity();
+        }
+    }
+    if (!std::isfinite(sums.cost)) sums.cost = sums.squares = std::numeric_limits<double>::infinity();
+    Eigen::Matrix<double, size, size> lower = decltype(lower)::Zero();
+    lower.template selfadjointView<Eigen::Lower>().rankUpdate(rows.leftCols(sums.count));
+    sums.normal.template topLeftCorner<size, size>() = lower.template selfadjointView<Eigen::Lower>();
+    return sums;
+}
 
 /// The minimum of the model that a matrix and a slope make of the cost, where friction that would be less than 0 is 0.
-Eigen::VectorXd bounded_change(const Fit& fit, Eigen::MatrixXd matrix, Eigen::VectorXd slope) {
-    const auto& fitted = fit.model.fitted;
-    std::vector<bool> held(fitted.size(), false);  // each once: what is not finite would ask for it for ever
+Parameters bounded_change(const Fit& fit, ParameterMatrix matrix, Parameters slope) {
+    std::bitset<parameter_count> held;  // each once: what is not finite would ask for it for ever
     for (;;) {
-        Eigen::VectorXd change = matrix.ldlt().solve(slope);
+        Parameters change = matrix.ldlt().solve(slope);
         bool again = false;
-        for (std::size_t k = 0; k < held.size(); ++k) {
-            const auto place = static_cast<Eigen::Index>(k);
-            const double value = fit.of(fitted[k]);
-            if (held[k]) change[place] = -value;
-            if (held[k] || !fit.is_bounded(fitted[k]) || value + change[place] >= 0) continue;
-            slope += matrix.col(place) * value;
-            matrix.row(place).setZero(), matrix.col(place).setZero();
-            matrix(place, place) = 1;
-            slope[place] = -value;
+        for (std::size_t k = 0; k < parameter_count; ++k) {
+            const double value = fit.parameters[k];
+            if (held[k]) change[k] = -value;
+            if (held[k] || !fit.is_bounded(k) || value + change[k] >= 0) continue;
+            slope += matrix.col(k) * value;
+            matrix.row(k).setZero(), matrix.col(k).setZero();
+            matrix(k, k) = 1;
+            slope[k] = -value;
             held[k] = again = true;
         }
         if (!again) return change;
     }
 }
 
-/// One damped step of all unknowns by the normal equations of the shots outside two units; `expected` receives by how much the
-/// cost should fall.
-Fit stepped(const Fit& fit, double damping, double& expected, std::size_t unit, std::size_t other) {
-    const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(count);
-    std::vector<Eigen::MatrixXd> of_starts;
-    for (const auto& shot : fit.shots) {
-        auto part = reduced(shot.sums, damping);
-        of_starts.push_back(std::move(part.of_start));
-        if (shot.unit == unit || shot.unit == other) continue;
-        matrix += part.matrix;
-        slope += part.slope;
-    }
-    const auto change = bounded_change(fit, matrix, slope);
-    expected = change.dot(slope) - 0.5 * change.dot(matrix * change);
-    Fit next = fit;
-    next.is_evaluated = false;
-    for (Eigen::Index k = 0; k < count; ++k)
-        next.parameters[fit.model.fitted[static_cast<std::size_t>(k)]] += change[k];
-    for (std::size_t k = 0; k < fit.shots.size(); ++k) {
-        const auto& sums = fit.shots[k].sums;
-        const ArmState own = sums.slope.head<4>();
-        next.shots[k].start += of_starts[k] * (own - sums.matrix.topRightCorner(4, count) * change);
-        expected += 0.5 * own.dot(of_starts[k] * own);
-    }
-    return next;
-}
-
 /// Whether such arms exist: their energy of motion is positive, they hang down, and the clock's lag is small.
-bool is_possible(const Fit& fit) {
-    return fit.of(inertia) > fit.of(coupling) * fit.of(coupling) && fit.of(coupling) > 0 && fit.of(gravity_1) > 0 &&
-           fit.of(gravity_2) > 0 && std::abs(fit.of(lag)) < 0.05 && fit.of(scale_1) > 0.5 && fit.of(scale_2) > 0.5;
+bool is_possible(const Parameters& p) {
+    return p[inertia] > p[coupling] * p[coupling] && p[coupling] > 0 && p[gravity_1] > 0 && p[gravity_2] > 0 &&
+           std::abs(p[lag]) < 0.05 && p[scale_1] > 0.5 && p[scale_2] > 0.5;
 }
 
 /// Of each arm: 1.48 times the median size of its residuals, which a few wild ones do not move; no less than `least`.
@@ -94,11 +118,10 @@ void descend(const FitJob& job, Fit& fit, double relative, int most) {
     double damping = 1e-8;
     for (int start = fit.passes; fit.passes - start < most;) {
         throw_if_set(job.stop);
-        double expected = 0;
-        auto next = stepped(fit, damping, expected, no_unit, no_unit);
-        if (expected < enough + relative * fit.cost) return;
+        auto next = stepped(fit, damping, no_unit, no_unit);
+        if (fit.cost - next.cost < enough + relative * fit.cost) return;
         next.cost = std::numeric_limits<double>::infinity();
-        if (is_possible(next)) evaluate_fit(job, next);
+        if (is_possible(next.parameters)) evaluate_fit(job, next);
         fit.passes = next.passes;
         if (next.cost < fit.cost) {
             fit = std::move(next);
@@ -114,24 +137,24 @@ void descend(const FitJob& job, Fit& fit, double relative, int most) {
 /// The largest change of a residual, rad, when the integrator's step is halved.
 double step_error(const FitJob& job, const Fit& fit) {
     auto fine = fit;
-    fine.model.fitted.clear();
+    fine.model.fitted.reset();
     fine.step_s /= 2;
     evaluate_fit(job, fine);
     double largest = 0;
     for (std::size_t k = 0; k < fit.shots.size(); ++k)
         for (std::size_t i = 0; i < fit.shots[k].size(); ++i)
-            for (std::size_t arm = 0; arm < 2; ++arm) {
-                const double change = fine.shots[k].sums.residuals[i][arm] - fit.shots[k].sums.residuals[i][arm];
-                if (std::abs(change) > largest) largest = std::abs(change);  // not where it is no number
-            }
+            for (std::size_t arm = 0; arm < 2; ++arm)  // what is no number is not larger
+                largest = std::max(
+                    largest, std::abs(fine.shots[k].sums.residuals[i][arm] - fit.shots[k].sums.residuals[i][arm]));
     return largest;
 }
 
 }  // namespace
 
 std::size_t Fit::free_count() const {
-    return static_cast<std::size_t>(std::count_if(model.fitted.begin(), model.fitted.end(),
-                                                  [&](FitParameter parameter) { return !is_at_bound(parameter); }));
+    std::size_t count = 0;
+    for (const auto k : model.list()) count += !is_at_bound(k);
+    return count;
 }
 
 long Fit::residual_count() const {
@@ -151,9 +174,10 @@ void evaluate_fit(const FitJob& job, Fit& fit, double block_s) {
     fit.is_evaluated = true;
     auto& p = fit.parameters;
     if (fit.model.point_masses) p[gravity_1] = p[inertia] * p[gravity_2] / p[coupling];
+    const auto sums_of = fit.model.fitted.none() ? evaluate<start_directions> : evaluate<all_directions>;
     parallel_for(fit.shots.size(), job.threads, [&](std::size_t k) {
         throw_if_set(job.stop);
-        fit.shots[k].sums = evaluate_shot(job.track, fit, fit.shots[k], block_s);
+        fit.shots[k].sums = sums_of(job.track, fit, fit.shots[k], block_s);
     });
     double squares = 0;
     fit.cost = 0;
@@ -164,73 +188,86 @@ void evaluate_fit(const FitJob& job, Fit& fit, double block_s) {
     fit.rms = std::sqrt(squares / static_cast<double>(std::max(fit.residual_count(), 1L)));
 }
 
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
-    return matrix.ldlt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
+ParameterMatrix inverse_of(const ParameterMatrix& matrix) {
+    return matrix.ldlt().solve(ParameterMatrix::Identity());
 }
 
-Reduced reduced(const ShotSums& sums, double damping) {
-    const auto count = sums.matrix.rows() - 4;
-    Eigen::MatrixXd matrix = sums.matrix;
+Eigen::Matrix4d ShotSums::inverse_of_start(double damping) const {
+    Eigen::Matrix4d matrix = normal.topLeftCorner<4, 4>();
     matrix.diagonal() *= 1 + damping;
-    Reduced result{.of_start = inverse_of(matrix.topLeftCorner(4, 4)), .matrix = {}, .slope = {}};
-    const Eigen::MatrixXd mixed = matrix.topRightCorner(4, count);
-    const Eigen::MatrixXd through = mixed.transpose().lazyProduct(result.of_start);
-    result.matrix = matrix.bottomRightCorner(count, count) - through.lazyProduct(mixed);
-    result.slope = sums.slope.tail(count) - through.lazyProduct(sums.slope.head<4>());
-    return result;
+    return matrix.ldlt().solve(Eigen::Matrix4d::Identity());
 }
 
-Fit fit_without(const Fit& fit, std::size_t unit, std::size_t other) {
-    double expected = 0;
-    return stepped(fit, 0, expected, unit, other);
+Eigen::Matrix<double, 1 + parameter_count, 1 + parameter_count> ShotSums::reduced(double damping) const {
+    auto all = normal;
+    all.diagonal() *= 1 + damping;
+    const auto below = all.bottomLeftCorner<1 + parameter_count, 4>();
+    return all.bottomRightCorner<1 + parameter_count, 1 + parameter_count>() -
+           (below * inverse_of_start(damping)).eval().lazyProduct(below.transpose());
+}
+
+Fit stepped(const Fit& fit, double damping, std::size_t without, std::size_t other) {
+    Eigen::Matrix<double, 1 + parameter_count, 1 + parameter_count> sum = decltype(sum)::Zero();
+    for (const auto& shot : fit.shots)
+        if (shot.unit != without && shot.unit != other) sum += shot.sums.reduced(damping);
+    const ParameterMatrix matrix = sum.bottomRightCorner<parameter_count, parameter_count>();
+    const Parameters slope = sum.col(0).tail<parameter_count>();
+    const auto change = bounded_change(fit, matrix, slope);
+    Fit next = fit;
+    next.is_evaluated = false;
+    next.parameters += change;
+    next.cost -= change.dot(slope) - 0.5 * change.dot(matrix.lazyProduct(change));
+    for (auto& shot : next.shots) {
+        const auto of_start = shot.sums.inverse_of_start(damping);
+        const ArmState own = shot.sums.normal.col(4).head<4>();
+        shot.start += of_start * (own - shot.sums.normal.topRightCorner<4, parameter_count>() * change);
+        next.cost -= 0.5 * own.dot(of_start * own);
+    }
+    return next;
 }
 
 ArmState guessed_start(const Track& track, std::size_t piece, std::size_t sample) {
-    const auto seen = glimpse_at(track, track.pieces[piece], track.pieces[piece].time_s[sample]);
-    return {seen.angle[0], seen.angle[1], seen.rate[0], seen.rate[1]};
+    const auto [one, two] = glimpse_at(track, track.pieces[piece], track.pieces[piece].time_s[sample]);
+    return {one.angle, two.angle, one.rate, two.rate};
 }
 
 std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int most_passes,
                               double relative) {
     auto alone = fit;
     alone.is_evaluated = false;
-    alone.model.fitted.clear();
+    alone.model.fitted.reset();
     alone.shots.assign(shots.begin(), shots.end());
-    try {
-        return fit_model(job, std::move(alone),
-                         {.most_passes = most_passes, .finds_scale = false, .step_share = 0, .relative = relative});
-    } catch (const Error& error) {  // of these alone
-        if (error.code() != ExitCode::method_failed) throw;
-        return std::nullopt;
-    }
+    return fit_model(job, std::move(alone),
+                     {.most_passes = most_passes, .finds_scale = false, .step_share = 0, .relative = relative});
 }
 
-Fit fit_model(const FitJob& job, Fit fit, const FitEffort& effort) {
+Error no_motion(const Track& track) {
+    return method_failed(
+        "{}: no double pendulum moves like this: from its own angles and rates the motion does not stay finite",
+        track.pieces.front().name);
+}
+
+std::optional<Fit> fit_model(const FitJob& job, Fit fit, const FitEffort& effort) {
     fit.passes = 0;
     constexpr int rounds = 20, some = 3;
     constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
+    // a start from which the motion ran away is guessed anew from the samples, and steps are finer
     const auto evaluate = [&] {
-        evaluate_fit(job, fit);
-        // a start from which the motion ran away is guessed anew from the samples, and steps are finer
-        while (!std::isfinite(fit.cost) && fit.step_s > least_step) {
+        for (evaluate_fit(job, fit); !std::isfinite(fit.cost) && fit.step_s > least_step; evaluate_fit(job, fit)) {
             for (auto& shot : fit.shots)
                 if (!std::isfinite(shot.sums.cost)) shot.start = guessed_start(job.track, shot.piece, shot.first);
             fit.step_s /= 2;
-            evaluate_fit(job, fit);
         }
-        if (!std::isfinite(fit.cost))
-            throw method_failed(
-                "{}: no double pendulum moves like this: from its own angles and rates the motion does not stay finite",
-                job.track.pieces.front().name);
+        return std::isfinite(fit.cost);
     };
-    if (!fit.is_evaluated) evaluate();
+    if (!fit.is_evaluated && !evaluate()) return std::nullopt;
     bool is_settled = !effort.finds_scale;
     if (effort.finds_scale) {  // too small a scale is slow
-        const auto scale = scale_of(fit), before = fit.scale;
-        if (std::max(scale[0] / before[0], scale[1] / before[1]) > 2) {
-            fit.scale = scale;
-            evaluate();
-        }
+        const auto before = std::exchange(fit.scale, scale_of(fit));
+        if (std::max(fit.scale[0] / before[0], fit.scale[1] / before[1]) <= 2)
+            fit.scale = before;
+        else if (!evaluate())
+            return std::nullopt;
     }
     for (int round = 0; round < rounds; ++round) {
         descend(job, fit, is_settled ? effort.relative : std::max(effort.relative, roughly),
@@ -247,7 +284,7 @@ Fit fit_model(const FitJob& job, Fit fit, const FitEffort& effort) {
                 std::abs(portable_log(fit.scale[0] / before[0])) + std::abs(portable_log(fit.scale[1] / before[1])) <
                 settled;
         }
-        evaluate();
+        if (!evaluate()) return std::nullopt;
     }
     return fit;
 }

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "fit/pendulum.hpp"
 #include "track/track.hpp"
 
-#include <atomic>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,16 +17,25 @@ struct FitJob {
     int threads = 1;
 };
 
-/// What a shot adds to the normal equations of its start (four numbers, first) and the fitted parameters.
+/// Of all parameters; 0 for those that are not fitted.
+using ParameterMatrix = Eigen::Matrix<double, parameter_count, parameter_count>;
+
+/// What a shot adds to the normal equations: Σ rows rowsᵀ, of each residual the derivatives of what is shown by the start (four
+/// numbers), itself, and the derivatives by the parameters (0 where not fitted), by the root of its weight.
 struct ShotSums {
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd slope;
+    using Row = Eigen::Matrix<double, 5 + parameter_count, 1>;
+    Eigen::Matrix<double, Row::SizeAtCompileTime, Row::SizeAtCompileTime> normal = decltype(normal)::Zero();
     double cost = 0;                               // Huber's, in squared scales; infinite where the motion ran away
     double bounded = 0;                            // Σ (residual/scale)², each at most bend²
     double squares = 0;                            // Σ residual², rad²
     long count = 0, beyond = 0;                    // of residuals, and of those beyond the bend
     std::vector<std::array<double, 2>> residuals;  // measured − model of each sample's angles, rad; NaN of outliers
-    std::vector<Eigen::VectorXd> blocks;           // where asked for: slopes of successive stretches
+    std::vector<Row> blocks;                       // where asked for: Σ residual · row of successive stretches
+
+    /// The inverse of the start's own matrix, its diagonal damped; 0 for what nothing depends on.
+    Eigen::Matrix4d inverse_of_start(double damping = 0) const;
+    /// The rest of the equations, the start eliminated: of the residual, then of the parameters.
+    Eigen::Matrix<double, 1 + parameter_count, 1 + parameter_count> reduced(double damping = 0) const;
 };
 
 /// Samples first … last − 1 of a piece, which one motion follows from a start of its own.
@@ -43,7 +52,7 @@ struct Shot {
 /// A model fitted to a track by multiple shooting: every shot has a start of its own, all share the parameters.
 struct Fit {
     ModelSpec model;
-    Parameters parameters{};
+    Parameters parameters = Parameters::Zero();
     std::vector<Shot> shots;                  // in the order of the track
     double step_s = 0.016;                    // of the integrator, to begin with
     std::array<double, 2> scale{1e-3, 1e-3};  // of each arm's residuals, rad
@@ -55,10 +64,9 @@ struct Fit {
     /// of what it tells.
     static constexpr double bend = 3;
 
-    double of(FitParameter parameter) const { return parameters[parameter]; }
+    bool is_bounded(std::size_t k) const { return model.fitted[k] && is_friction(k) && !model.may_gain; }
     /// Friction that would be negative, and is 0.
-    bool is_at_bound(FitParameter parameter) const { return is_bounded(parameter) && of(parameter) <= 0; }
-    bool is_bounded(FitParameter parameter) const { return is_friction(parameter) && !model.may_gain; }
+    bool is_at_bound(std::size_t k) const { return is_bounded(k) && parameters[k] <= 0; }
     /// How many parameters are fitted, without those at a bound.
     std::size_t free_count() const;
     long residual_count() const;
@@ -75,38 +83,32 @@ struct FitEffort {
 };
 
 /// Minimises Huber's loss of all residuals over starts and parameters: Gauss–Newton steps damped as Levenberg and
-/// Marquardt do, the starts eliminated shot by shot, friction kept ≥ 0.
+/// Marquardt do, the starts eliminated shot by shot, friction kept ≥ 0. Nothing where no motion stays finite.
 /// Ends after at most most_passes + 60 passes (two in each of 20 rounds, and what finds a scale and steps). The result is
-/// the same bits for any number of threads. Throws Error: exit 3 where no motion stays finite, 130.
+/// the same bits for any number of threads. Throws Error (exit 130).
 ///
 /// Source  Bock 1983 (multiple shooting); Nocedal & Wright, Numerical Optimization, §10.3.
-Fit fit_model(const FitJob& job, Fit start, const FitEffort& effort);
+std::optional<Fit> fit_model(const FitJob& job, Fit start, const FitEffort& effort);
 
-/// The same of some shots of a fit with its parameters, of which the starts alone are fitted. Nothing where no motion stays
-/// finite.
+/// The same of some shots of a fit with its parameters, of which the starts alone are fitted.
 std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int most_passes,
                               double relative);
 
-/// Sums, cost and rms where `fit` stands.
+/// What to throw where no motion stays finite (exit 3).
+Error no_motion(const Track& track);
+
+/// Sums, cost and rms where `fit` stands: exact derivatives of the computed motion, carried along. `block_s`: of the
+/// stretches; 0 = none.
 void evaluate_fit(const FitJob& job, Fit& fit, double block_s = 0);
 
-/// The sums of a shot: exact derivatives of the computed motion, carried along. `block_s`: of the stretches; 0 = none.
-ShotSums evaluate_shot(const Track& track, const Fit& fit, const Shot& shot, double block_s = 0);
-
 /// The inverse of a positive semidefinite matrix; 0 for what nothing depends on.
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
+ParameterMatrix inverse_of(const ParameterMatrix& matrix);
 
-/// The normal matrix of the fitted parameters and the slope, the start eliminated, of one shot.
-struct Reduced {
-    Eigen::MatrixXd of_start;  // the inverse of the start's own matrix, damped
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd slope;
-};
-Reduced reduced(const ShotSums& sums, double damping = 0);
+constexpr auto no_unit = static_cast<std::size_t>(-1);
 
-/// The fit of the whole track without two of its units, which may be the same, to first order: one Gauss–Newton step with the
-/// normal equations of the others. Starts move along.
-Fit fit_without(const Fit& fit, std::size_t unit, std::size_t other);
+/// A fit after one Gauss–Newton step, damped, by the normal equations of all units but two, which may be the same: to first
+/// order, the fit of a track without them. Starts move along. Its cost is the one that is expected.
+Fit stepped(const Fit& fit, double damping, std::size_t without, std::size_t other);
 
 /// Angles and rates at a sample of a piece, from the samples around it.
 ArmState guessed_start(const Track& track, std::size_t piece, std::size_t sample);

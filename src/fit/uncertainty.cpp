@@ -45,95 +45,75 @@ void look_at_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
     }
 }
 
-/// Σ g gᵀ over stretches of the slope g of the fitted parameters, starts eliminated.
-Eigen::MatrixXd scatter_of(const Fit& fit) {
-    const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
-    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(count, count);
+/// Σ g gᵀ over stretches of the slope g of the parameters, starts eliminated.
+ParameterMatrix scatter_of(const Fit& fit) {
+    ParameterMatrix scatter = ParameterMatrix::Zero();
     double stretches = 0;
     for (const auto& shot : fit.shots) {
-        const auto& matrix = shot.sums.matrix;
-        const Eigen::MatrixXd through =
-            matrix.bottomLeftCorner(count, 4).lazyProduct(inverse_of(matrix.topLeftCorner(4, 4)));
+        const Eigen::Matrix<double, parameter_count, 4> through =
+            shot.sums.normal.bottomLeftCorner<parameter_count, 4>() * shot.sums.inverse_of_start();
         for (const auto& block : shot.sums.blocks) {
-            const Eigen::VectorXd slope = block.tail(count) - through * block.head<4>();
+            const Parameters slope = block.tail<parameter_count>() - through * block.head<4>();
             scatter += slope * slope.transpose();
             ++stretches;
         }
     }
-    return scatter * (stretches / std::max(stretches - static_cast<double>(count), 1.0));
+    return scatter * (stretches / std::max(stretches - static_cast<double>(fit.model.fitted.count()), 1.0));
 }
 
 }  // namespace
 
-double Uncertainty::standard_error(std::size_t k) const {
-    const auto i = static_cast<Eigen::Index>(k);
-    return std::sqrt(std::max(covariance(i, i), 0.0));
-}
-
-double Uncertainty::standard_error_of(FitParameter parameter) const {
-    const auto found = std::find(parameters.begin(), parameters.end(), parameter);
-    return found == parameters.end() ? 0 : standard_error(static_cast<std::size_t>(found - parameters.begin()));
-}
-
 Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
-    // those at a bound, too: that they could be more makes the others less certain
-    Uncertainty result{.parameters = fit.model.fitted, .covariance = {}};
+    Uncertainty result;
     look_at_residuals(job, fit, result);
-    // of white residuals
-    const auto count = static_cast<Eigen::Index>(fit.model.fitted.size());
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
+    // of white residuals; of parameters at a bound, too: that they could be more makes the others less certain
+    ParameterMatrix matrix = ParameterMatrix::Zero();
     double bounded = 0, beyond = 0;
     for (const auto& shot : fit.shots) {
-        matrix += reduced(shot.sums).matrix;
+        matrix += shot.sums.reduced().bottomRightCorner<parameter_count, parameter_count>();
         bounded += shot.sums.bounded;
         beyond += static_cast<double>(shot.sums.beyond);
     }
-    const double n = static_cast<double>(fit.residual_count());
-    const double spent = static_cast<double>(count) + 4 * static_cast<double>(fit.shots.size());
+    const double n = static_cast<double>(fit.residual_count()), count = static_cast<double>(fit.model.fitted.count());
     const double slope = 1 - beyond / n;  // mean of Huber's ψ′
-    const Eigen::MatrixXd inverse = inverse_of(matrix);
-    result.covariance = inverse * (bounded / (n - spent) / (slope * slope));
+    const ParameterMatrix inverse = inverse_of(matrix);
+    result.covariance =
+        inverse * (bounded / (n - (count + 4 * static_cast<double>(fit.shots.size()))) / (slope * slope));
     if (result.is_white) return result;
     // of others
     constexpr double shortest_s = 0.3, memories = 4;
     evaluate_fit(job, fit, std::max(shortest_s, memories * std::max(result.memory_s[0], result.memory_s[1])));
-    const Eigen::MatrixXd sandwich = inverse.lazyProduct(scatter_of(fit)).eval().lazyProduct(inverse) / (slope * slope);
-    const Eigen::ArrayXd white = result.covariance.diagonal();
-    const Eigen::VectorXd wider = (white / sandwich.diagonal().array()).max(1).sqrt();
-    result.covariance = wider.asDiagonal() * sandwich * wider.asDiagonal();
-    const Eigen::ArrayXd ratio = (result.covariance.diagonal().array() / white).sqrt();
+    const ParameterMatrix sandwich = inverse.lazyProduct(scatter_of(fit)).eval().lazyProduct(inverse) / (slope * slope);
+    Parameters wider = Parameters::Ones();
     double logarithms = 0;
-    for (const double wider_by : ratio) logarithms += portable_log(wider_by);
-    result.inflation = portable_exp(logarithms / static_cast<double>(count));
+    for (const auto k : fit.model.list()) {
+        const double ratio = sandwich(k, k) / result.covariance(k, k);
+        wider[k] = std::sqrt(std::max(1 / ratio, 1.0));
+        logarithms += 0.5 * portable_log(std::max(ratio, 1.0));
+    }
+    result.covariance = wider.asDiagonal() * sandwich * wider.asDiagonal();
+    result.inflation = portable_exp(logarithms / count);
     return result;
 }
 
-EnergyLoss energy_loss(const FitJob& job, const Fit& start) {
-    Fit fit = start;
-    fit.model = model_of(start.model.point_masses, 1, start.model.drag, 2);
-    fit.model.may_gain = true;
-    fit.is_evaluated = false;  // of fewer parameters
-    fit = fit_model(job, std::move(fit), {.step_share = 0.2, .relative = 1e-4});
-    const auto uncertainty = uncertainty_of(job, fit);
-    // means over the motion, over B: what the friction of both joints takes per unit of b1 and b2, and the energy of motion
-    std::array<double, 2> taken{};
+std::optional<EnergyLoss> energy_loss(const FitJob& job, Fit start) {
+    start.model = model_of(start.model.point_masses, 1, start.model.drag, 2);
+    start.model.may_gain = true;
+    start.is_evaluated = false;  // of fewer parameters
+    const auto fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = 1e-4});
+    if (!fit) return std::nullopt;
+    // over the motion, over B: what the friction of both joints takes per unit of b1 and b2, and the energy of motion
+    const auto& p = fit->parameters;
+    Parameters taken = Parameters::Zero();
     double energy = 0;
-    for (const auto& [angle, rate, acceleration] : glimpses_of(job.track, job.stop)) {
-        const auto [w1, w2] = rate;
-        taken[0] += w1 * w1, taken[1] += (w2 - w1) * (w2 - w1);
-        energy +=
-            0.5 * (fit.of(inertia) * w1 * w1 + w2 * w2) + fit.of(coupling) * std::cos(angle[0] - angle[1]) * w1 * w2;
+    for (const auto& [one, two] : glimpses_of(job.track, job.stop)) {
+        const double w1 = one.rate, w2 = two.rate;
+        taken[viscous_1] += w1 * w1, taken[viscous_2] += (w2 - w1) * (w2 - w1);
+        energy += 0.5 * (p[inertia] * w1 * w1 + w2 * w2) + p[coupling] * std::cos(one.angle - two.angle) * w1 * w2;
     }
-    EnergyLoss loss{.rms = fit.rms};
-    Eigen::VectorXd weights = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
-    for (std::size_t k = 0; k < fit.model.fitted.size(); ++k)
-        for (std::size_t joint = 0; joint < 2; ++joint)
-            if (fit.model.fitted[k] == viscous_1 + joint) {
-                weights[static_cast<Eigen::Index>(k)] = taken[joint] / energy;
-                loss.share += taken[joint] / energy * fit.of(fit.model.fitted[k]);
-            }
-    loss.standard_error = std::sqrt(weights.dot(uncertainty.covariance * weights));
-    return loss;
+    taken /= energy;
+    const auto covariance = uncertainty_of(job, *fit).covariance;
+    return EnergyLoss{taken.dot(p), std::sqrt(taken.dot(covariance.lazyProduct(taken))), fit->rms};
 }
 
 }  // namespace doppel

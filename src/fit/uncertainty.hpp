@@ -2,22 +2,21 @@
 
 #include "fit/shooting.hpp"
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 
 namespace doppel {
 
 /// How well the fitted parameters are told, and what its residuals look like.
 struct Uncertainty {
-    std::vector<FitParameter> parameters;  // the fitted ones, those at a bound, too
-    Eigen::MatrixXd covariance;            // of these
-    bool is_white = true;                  // residuals like noise: each independent of those before
-    std::array<double, 2> neighbour{};     // correlation of successive residuals, by arm
-    std::array<double, 2> memory_s{};      // after which the correlation has fallen below 1/e
-    double inflation = 1;                  // of standard errors against white residuals; 1 where they are
+    ParameterMatrix covariance = ParameterMatrix::Zero();
+    bool is_white = true;               // residuals like noise: each independent of those before
+    std::array<double, 2> neighbour{};  // correlation of successive residuals, by arm
+    std::array<double, 2> memory_s{};   // after which the correlation has fallen below 1/e
+    double inflation = 1;               // of standard errors against white residuals; 1 where they are
 
-    double standard_error(std::size_t k) const;
     /// Of a parameter; 0 where it is not fitted.
-    double standard_error_of(FitParameter parameter) const;
+    double standard_error(std::size_t k) const { return std::sqrt(std::max(covariance(k, k), 0.0)); }
 };
 
 /// From the curvature of the loss where the residuals are white (Ljung & Box over ten lags, at 99.9 %); else from how
@@ -35,8 +34,8 @@ struct EnergyLoss {
 };
 
 /// From a fit of viscous friction that may be negative, of a lag and scales, which could look like it. `start` is a fit
-/// of the track with viscous friction. The standard error allows for residuals that are not noise. Throws Error: 130,
-/// exit 3 where no motion stays finite.
-EnergyLoss energy_loss(const FitJob& job, const Fit& start);
+/// of the track with viscous friction. The standard error allows for residuals that are not noise. Nothing where no motion
+/// stays finite. Throws Error (exit 130).
+std::optional<EnergyLoss> energy_loss(const FitJob& job, Fit start);
 
 }  // namespace doppel

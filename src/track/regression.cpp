@@ -53,12 +53,8 @@ struct Equations {
     }
 };
 
-/// What a polynomial through samples says of one arm at a moment, and how far the samples are from it, rms.
-struct LocalFit {
-    double angle = 0, rate = 0, acceleration = 0, rms = 0;
-};
-
-LocalFit local_fit(const TrackPiece& piece, std::size_t arm, const std::vector<std::size_t>& samples, double center) {
+ArmGlimpse glimpse_of(const TrackPiece& piece, std::size_t arm, const std::vector<std::size_t>& samples,
+                      double center) {
     const auto count = samples.size();
     if (count < degree + 2) return {piece.angle[arm].front()};
     const double span = std::max(center - piece.time_s[samples.front()], piece.time_s[samples.back()] - center);
@@ -94,15 +90,12 @@ Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s, d
     // encoders err alike for some samples in a row, which the noise from sample to sample does not tell
     constexpr double noises = 3, shortest_s = 1e-6;
     Glimpse glimpse{};
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-        LocalFit fit;
+    for (std::size_t arm = 0; arm < 2; ++arm)
         for (double window = longer * window_of(track); window > shortest_s; window /= 2) {
             const auto samples = samples_around(piece, arm, time_s, window);
-            fit = local_fit(piece, arm, samples, time_s);
-            if (fit.rms <= noises * track.noise[arm] || samples.size() <= least_points) break;
+            glimpse[arm] = glimpse_of(piece, arm, samples, time_s);
+            if (glimpse[arm].rms <= noises * track.noise[arm] || samples.size() <= least_points) break;
         }
-        glimpse.angle[arm] = fit.angle, glimpse.rate[arm] = fit.rate, glimpse.acceleration[arm] = fit.acceleration;
-    }
     return glimpse;
 }
 
@@ -122,12 +115,12 @@ Regression regress(const std::vector<Glimpse>& glimpses) {
     if (glimpses.size() < 8) return result;
     // the second arm, whose own term has no unknown: −θ2″ = C (cosδ θ1″ − sinδ ω1²) + D2 sinθ2 + friction
     Equations<3> second, first;
-    for (const auto& [angle, rate, acceleration] : glimpses) {
-        const SinCos<double> between(angle[0] - angle[1]), turn1(angle[0]), turn2(angle[1]);
-        second.add({between.cos * acceleration[0] - between.sin * rate[0] * rate[0], turn2.sin, rate[1] - rate[0]},
-                   -acceleration[1]);
-        first.add({acceleration[0], turn1.sin, rate[0]},
-                  -(between.cos * acceleration[1] + between.sin * rate[1] * rate[1]));
+    for (const auto& [one, two] : glimpses) {
+        const SinCos<double> between(one.angle - two.angle), turn1(one.angle), turn2(two.angle);
+        second.add({between.cos * one.acceleration - between.sin * one.rate * one.rate, turn2.sin, two.rate - one.rate},
+                   -two.acceleration);
+        first.add({one.acceleration, turn1.sin, one.rate},
+                  -(between.cos * two.acceleration + between.sin * two.rate * two.rate));
     }
     const auto of_second = second.solution();
     const Eigen::Vector3d of_first = of_second[0] * first.solution();  // over C, so far
@@ -136,10 +129,8 @@ Regression regress(const std::vector<Glimpse>& glimpses) {
         return explained > 0 ? std::max(1 - explained / equations.squares, 0.0) : 1;  // also where it is no number
     };
     result.unexplained = std::max(share(second), share(first));
-    result.inertia = of_first[0], result.coupling = of_second[0];
-    result.gravity = {of_first[1], of_second[1]};
-    result.is_physical = std::isfinite(of_first.sum() + of_second.sum()) && of_second[0] > 0 && of_first[0] > 0 &&
-                         of_first[1] > 0 && of_second[1] > 0;
+    result.ratios = {of_first[0], of_second[0], of_first[1], of_second[1]};
+    result.is_physical = std::isfinite(of_first.sum() + of_second.sum()) && std::ranges::min(result.ratios) > 0;
     return result;
 }
 

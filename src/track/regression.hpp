@@ -6,10 +6,12 @@
 
 namespace doppel {
 
-/// Angle, rate and acceleration of both arms at one moment, from a polynomial through the samples around it.
-struct Glimpse {
-    std::array<double, 2> angle, rate, acceleration;
+/// Angle, rate and acceleration of an arm at one moment, from a polynomial through the samples around it.
+struct ArmGlimpse {
+    double angle = 0, rate = 0, acceleration = 0;
+    double rms = 0;  // of how far the samples are from it, rad
 };
+using Glimpse = std::array<ArmGlimpse, 2>;
 
 /// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone; the longest of all is as long
 /// as the noise asks for, or `longer` times that.
@@ -22,10 +24,8 @@ std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& st
 /// are noisy and so the result is biased. What is unexplained says how well angles taken this way obey any double
 /// pendulum at all.
 struct Regression {
-    double inertia = 0, coupling = 0;  // A/B, C/B
-    std::array<double, 2> gravity{};   // D1/B, D2/B, 1/s²
-    double unexplained =
-        1;  // share of the squared forces, of both equations: 0 for noiseless angles, near 1 for others
+    std::array<double, 4> ratios{};  // A/B, C/B; D1/B, D2/B, 1/s²
+    double unexplained = 1;          // share of the squared forces, of both equations: 0 for noiseless angles
     bool is_physical = false;
 };
 Regression regress(const std::vector<Glimpse>& glimpses);

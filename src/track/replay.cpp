@@ -17,23 +17,18 @@ public:
     ReplayedMotion(const MotionSpec& spec, const Replay& replay)
         : pendulum_((spec.physical ? *spec.physical : physical(*spec.chain)).cast<double>()),
           replay_(replay),
-          interval_(spec.sample_interval) {}
+          interval_s_(spec.sample_interval.value()) {}
 
     void advance(const std::atomic<bool>&) override {
         ++count_;
         if (time() > replay_.length() + whole_sample)
-            throw Error(ExitCode::method_failed,
-                        fmt::format("the track ends {:.6g} s after its start", replay_.length()));
+            throw method_failed("the track ends {:.6g} s after its start", replay_.length());
     }
 
     Observation observe() const override {
-        const auto seen = glimpse_at(*replay_.track, replay_.samples(), replay_.start_s + time());
+        const auto [one, two] = glimpse_at(*replay_.track, replay_.samples(), replay_.start_s + time());
         State<double, Eigen::Dynamic> y(4);
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            const auto i = static_cast<Eigen::Index>(arm);
-            y[i] = seen.angle[arm] - replay_.offset[arm];
-            y[i + 2] = seen.rate[arm];
-        }
+        y << one.angle - replay_.offset[0], two.angle - replay_.offset[1], one.rate, two.rate;
         const PivotPlace<double> at(pendulum_.pivot, time());
         Observation now{.bobs = bobs_of_angles(pendulum_.chain, y),
                         .exact = {},
@@ -49,11 +44,11 @@ public:
     Effort effort() const override { return {}; }
 
 private:
-    double time() const { return static_cast<double>(count_) * interval_.value(); }
+    double time() const { return static_cast<double>(count_) * interval_s_; }
 
     PhysicalPendulum<double> pendulum_;
     Replay replay_;
-    Rational interval_;
+    double interval_s_;
     long count_ = 0;
 };
 

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -38,8 +40,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 /// Where the columns stand in a file.
 struct Heading {
     std::vector<std::string_view> names;
-    std::size_t time = 0;
-    std::vector<std::size_t> values;  // two angles, or six pixel places
+    std::vector<std::size_t> values;  // the time, then two angles or six pixel places
     std::optional<std::size_t> piece;
 };
 
@@ -52,10 +53,10 @@ Heading heading_of(const std::string& file, std::string_view line) {
                 found.push_back(static_cast<std::size_t>(at - heading.names.begin()));
         return found;
     };
-    if (!places({"theta1_deg", "theta2_deg"}).empty())
+    for (const auto at : places({"theta1_deg", "theta2_deg"}))
         throw bad_input(
             "{}:1: \"{}\" is in degrees; angles are wanted in radians, theta1_rad and theta2_rad (degrees × π/180)",
-            file, heading.names[places({"theta1_deg", "theta2_deg"})[0]]);
+            file, heading.names[at]);
     const auto time = places({"time_s"}), piece = places({"piece"}), angles = places({"theta1_rad", "theta2_rad"});
     const auto pixels = places({"x0_px", "y0_px", "x1_px", "y1_px", "x2_px", "y2_px"});
     if (time.empty()) throw bad_input("{}:1: there is no column time_s", file);
@@ -72,8 +73,8 @@ Heading heading_of(const std::string& file, std::string_view line) {
             "{}:1: of x0_px, y0_px (pivot), x1_px, y1_px (joint), x2_px, y2_px (end) there are {} columns; all six are "
             "needed",
             file, pixels.size());
-    heading.time = time[0];
-    heading.values = angles.empty() ? pixels : angles;
+    heading.values = time;
+    std::ranges::copy(angles.empty() ? pixels : angles, std::back_inserter(heading.values));
     if (!piece.empty()) heading.piece = piece[0];
     return heading;
 }
@@ -89,20 +90,18 @@ double number_of(const std::string& place, std::string_view column, std::string_
 }
 
 /// Of both arms, given themselves or by the places of pivot, joint and end, y down.
-std::array<double, 2> angles_of(const std::string& place, const std::vector<double>& values) {
+std::array<double, 2> angles_of(const std::string& place, std::span<const double> values) {
     constexpr double most = 1e6;  // rad: 160 000 turns
-    std::array<double, 2> angles{};
+    std::array<double, 2> angles{values[0], values[1]};
+    for (std::size_t arm = 0; arm < 2 && values.size() > 2; ++arm) {
+        const double dx = values[2 * arm + 2] - values[2 * arm], dy = values[2 * arm + 3] - values[2 * arm + 1];
+        if (dx == 0 && dy == 0)
+            throw bad_input("{}: two of pivot, joint and end are at the same place; an arm needs a length", place);
+        angles[arm] = portable_atan2(dx, dy);
+    }
     for (std::size_t arm = 0; arm < 2; ++arm)
-        if (values.size() == 2) {
-            angles[arm] = values[arm];
-            if (std::abs(angles[arm]) > most)
-                throw bad_input("{}: theta{}_rad is beyond {} rad, which is no swing", place, arm + 1, most);
-        } else {
-            const double dx = values[2 * arm + 2] - values[2 * arm], dy = values[2 * arm + 3] - values[2 * arm + 1];
-            if (dx == 0 && dy == 0)
-                throw bad_input("{}: two of pivot, joint and end are at the same place; an arm needs a length", place);
-            angles[arm] = portable_atan2(dx, dy);
-        }
+        if (std::abs(angles[arm]) > most)
+            throw bad_input("{}: theta{}_rad is beyond {} rad, which is no swing", place, arm + 1, most);
     return angles;
 }
 
@@ -137,10 +136,11 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
         const auto cells = cells_of(line);
         if (cells.size() != heading->names.size())
             throw bad_input("{}: there are {} cells, and {} columns", place, cells.size(), heading->names.size());
-        const auto value = [&](std::size_t column) { return number_of(place, heading->names[column], cells[column]); };
-        const double time = value(heading->time);
-        if (heading->piece && piece_number != cells[*heading->piece])
-            starts = true, piece_number = cells[*heading->piece];
+        std::vector<double> values;  // the time first
+        for (const auto column : heading->values)
+            values.push_back(number_of(place, heading->names[column], cells[column]));
+        const double time = values[0];
+        if (heading->piece) starts |= std::exchange(piece_number, cells[*heading->piece]) != cells[*heading->piece];
         if (!starts) {
             const auto& before = track.pieces.back().time_s;
             if (time <= before.back())
@@ -151,11 +151,10 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
             starts = time - before.back() > long_gap_s && before.size() > 1;
         }
         if (std::exchange(starts, false)) track.pieces.push_back({.name = name});
-        std::vector<double> values;
-        for (const auto column : heading->values) values.push_back(value(column));
-        const auto angles = angles_of(place, values);
-        track.pieces.back().time_s.push_back(time);
-        for (std::size_t arm = 0; arm < 2; ++arm) track.pieces.back().angle[arm].push_back(angles[arm]);
+        const auto angles = angles_of(place, std::span(values).subspan(1));
+        auto& piece = track.pieces.back();
+        piece.time_s.push_back(time);
+        for (std::size_t arm = 0; arm < 2; ++arm) piece.angle[arm].push_back(angles[arm]);
         if (++rows > most_rows)
             throw bad_input("{}: there are more than {} rows; a minute of a track at 1000 Hz is plenty", name,
                             most_rows);
@@ -204,10 +203,7 @@ std::string text_of_track(const std::filesystem::path& file) {
 
 Track read_tracks(const std::vector<std::filesystem::path>& files, const std::atomic<bool>& stop) {
     std::vector<std::string> names, texts;
-    for (const auto& path : files) {
-        texts.push_back(text_of_track(path));
-        names.push_back(path.string());
-    }
+    for (const auto& path : files) names.push_back(path.string()), texts.push_back(text_of_track(path));
     return tracks_of_texts(names, texts, stop);
 }
 

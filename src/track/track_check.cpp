@@ -2,6 +2,8 @@
 #include "track/regression.hpp"
 #include "track/track.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -45,7 +47,7 @@ void find_noise(Track& track, const std::atomic<bool>& stop) {
         for (std::size_t k = 0; k < track.pieces.size(); ++k)
             for (std::size_t i = 2; i + 2 < of_pieces[k].size(); ++i) {
                 const double before = of_pieces[k][i - 1], r = of_pieces[k][i], after = of_pieces[k][i + 1];
-                const bool is_peak = std::abs(r) > std::abs(before) && std::abs(r) > std::abs(after);
+                const bool is_peak = std::abs(r) > std::max(std::abs(before), std::abs(after));
                 if (std::abs(r) > far * size && size > 0 && is_peak && r * before <= 0 && r * after <= 0)
                     track.pieces[k].is_outlier[arm][i] = 1;
             }
@@ -94,13 +96,11 @@ void demand_length(const Track& track) {
 void demand_motion(const Track& track) {
     constexpr double least = 0.05;  // rad
     const auto& name = track.pieces.front().name;
-    bool same = true;
     for (std::size_t arm = 0; arm < 2; ++arm) {
         double most = 0;
         for (const auto& piece : track.pieces) {
             const auto [low, high] = std::ranges::minmax(piece.angle[arm]);
             most = std::max(most, high - low);
-            same &= piece.angle[0] == piece.angle[1];
         }
         if (most < std::max(least, 20 * track.noise[arm]))
             throw bad_input(
@@ -108,7 +108,8 @@ void demand_motion(const Track& track) {
                 "at least {} rad and 20 times the noise are wanted",
                 name, arm + 1, most < least ? "is flat" : "is mostly noise", most, track.noise[arm], least);
     }
-    if (same) throw bad_input("{}: theta1_rad and theta2_rad are the same numbers: one arm only", name);
+    if (std::ranges::all_of(track.pieces, [](const auto& piece) { return piece.angle[0] == piece.angle[1]; }))
+        throw bad_input("{}: theta1_rad and theta2_rad are the same numbers: one arm only", name);
 }
 
 /// Another way to take the columns.
@@ -117,43 +118,38 @@ struct Reading {
     bool relative = false, mirrored = false;
     std::array<int, 2> quarters{};  // of a turn to subtract
 
-    std::array<double, 2> rates(double first, double second) const {
+    /// Takes both arms' angles so; or what they change by, which does not begin anywhere.
+    void take(double& first, double& second, bool are_angles) const {
+        const double quarter = are_angles ? std::numbers::pi / 2 : 0, shift = quarters[0] * quarter;
         first *= unit, second *= mirrored ? -unit : unit;
-        return {first, relative ? second + first : second};
-    }
-    std::array<double, 2> angles(double first, double second) const {
-        constexpr double quarter = std::numbers::pi / 2;
-        const auto [one, other] = rates(first, second);
-        const double shift = quarters[0] * quarter, shift_2 = quarters[1] * quarter;
-        return {one - shift, other - shift_2 - (relative ? shift : 0)};
+        if (relative) second += first;
+        first -= shift, second -= quarters[1] * quarter;
+        if (relative) second -= shift;
     }
 };
 
 double unexplained(std::vector<Glimpse> glimpses, const Reading& reading) {
-    for (auto& g : glimpses) {
-        g.angle = reading.angles(g.angle[0], g.angle[1]);
-        g.rate = reading.rates(g.rate[0], g.rate[1]);
-        g.acceleration = reading.rates(g.acceleration[0], g.acceleration[1]);
+    for (auto& [one, two] : glimpses) {
+        reading.take(one.angle, two.angle, true);
+        reading.take(one.rate, two.rate, false);
+        reading.take(one.acceleration, two.acceleration, false);
     }
     const auto result = regress(glimpses);
     return result.is_physical ? result.unexplained : 1;
 }
 
 void convert(Track& track, const Reading& reading) {
-    std::string words;
-    if (reading.mirrored) words += " theta2 counted the other way round;";
-    if (reading.relative) words += " theta2 counted from the first arm;";
+    std::vector<std::string> words;
+    if (reading.mirrored) words.push_back("theta2 counted the other way round");
+    if (reading.relative) words.push_back("theta2 counted from the first arm");
     for (std::size_t arm = 0; arm < 2; ++arm)
-        if (reading.quarters[arm] != 0)
-            words += fmt::format(" theta{} counted from {}° off the downward vertical;", arm + 1,
-                                 90 * reading.quarters[arm]);
-    words.pop_back();
-    track.notes.push_back("only so do the angles obey a double pendulum's equations, and so they were taken:" + words);
+        if (const int degrees = 90 * reading.quarters[arm]; degrees != 0)
+            words.push_back(fmt::format("theta{} counted from {}° off the downward vertical", arm + 1, degrees));
+    track.notes.push_back(
+        fmt::format("only so do the angles obey a double pendulum's equations, and so they were taken: {}",
+                    fmt::join(words, "; ")));
     for (auto& piece : track.pieces)
-        for (std::size_t i = 0; i < piece.size(); ++i) {
-            const auto taken = reading.angles(piece.angle[0][i], piece.angle[1][i]);
-            piece.angle[0][i] = taken[0], piece.angle[1][i] = taken[1];
-        }
+        for (std::size_t i = 0; i < piece.size(); ++i) reading.take(piece.angle[0][i], piece.angle[1][i], true);
 }
 
 /// Where the angles taken as they are obey no double pendulum's equations, but do when taken in another way: refuses
@@ -163,15 +159,12 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
     const auto glimpses = glimpses_of(track, stop);
     const double as_it_is = unexplained(glimpses, {});
     if (as_it_is < well) return;
-    std::array<double, 2> low, high, spread;
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-        low[arm] = high[arm] = track.pieces[0].angle[arm][0];
-        for (const auto& piece : track.pieces)
+    std::array<double, 2> low{track.pieces[0].angle[0][0], track.pieces[0].angle[1][0]}, high = low;
+    for (const auto& piece : track.pieces)
+        for (std::size_t arm = 0; arm < 2; ++arm)
             for (const double angle : piece.angle[arm])
                 low[arm] = std::min(low[arm], angle), high[arm] = std::max(high[arm], angle);
-        spread[arm] = high[arm] - low[arm];
-    }
-    const double widest = std::max(spread[0], spread[1]);
+    const double widest = std::max(high[0] - low[0], high[1] - low[1]);
     Reading best;
     double least = as_it_is;
     const auto consider = [&](const Reading& reading) {
@@ -180,18 +173,16 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
     };
     constexpr double small = 4;  // rad: of degrees, a motion so small is linear, and any such fits
     if (widest > small) consider({.unit = degree});
-    for (const bool relative : {false, true})
-        for (const bool mirrored : {false, true})
-            for (int first = -1; first <= 2; ++first)
-                for (int second = -1; second <= 2; ++second)
-                    consider({.relative = relative, .mirrored = mirrored, .quarters = {first, second}});
+    for (int way = 0; way < 64; ++way)
+        consider({.relative = way >= 32, .mirrored = way / 16 % 2 == 1, .quarters = {way / 4 % 4 - 1, way % 4 - 1}});
     const auto& name = track.pieces.front().name;
     const bool is_better = least <= std::min(obeys, much_better * as_it_is);
     if (is_better && best.unit == 1) return convert(track, best);
-    const auto evidence =
-        fmt::format("taken so, {:.0f} % of the forces are unexplained, else {:.0f} %", 100 * least, 100 * as_it_is);
     if (is_better)
-        throw bad_input("{}: the angles are in degrees; radians are wanted (degrees × π/180): {}", name, evidence);
+        throw bad_input(
+            "{}: the angles are in degrees; radians are wanted (degrees × π/180): taken so, {:.0f} % of the forces are "
+            "unexplained, else {:.0f} %",
+            name, 100 * least, 100 * as_it_is);
     constexpr double most_turns = 60;             // rad: ten turns and a half
     if (as_it_is > obeys && widest > most_turns)  // else the fit will tell
         throw bad_input(
@@ -215,13 +206,11 @@ void check_track(Track& track, const std::atomic<bool>& stop) {
     demand_length(track);
     find_noise(track, stop);
     demand_motion(track);
-    constexpr double most_outliers = 0.1;
-    if (static_cast<double>(track.outliers()) > most_outliers * 2 * static_cast<double>(track.samples()))
-        throw bad_input("{}: {} of {} angles are far off their neighbours; a track is wanted",
-                        track.pieces.front().name, track.outliers(), 2 * track.samples());
-    if (track.outliers() > 0)
-        track.notes.push_back(fmt::format("{} of {} angles are far off their neighbours, and were left out",
-                                          track.outliers(), 2 * track.samples()));
+    if (const auto outliers = track.outliers(), all = 2 * track.samples(); outliers > 0) {
+        const auto words = fmt::format("{} of {} angles are far off their neighbours", outliers, all);
+        if (10 * outliers > all) throw bad_input("{}: {}; a track is wanted", track.pieces.front().name, words);
+        track.notes.push_back(words + ", and were left out");
+    }
     check_convention(track, stop);
 }
 

@@ -1,5 +1,4 @@
 #include "fit/support.hpp"
-#include "physics/angle_chain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,144 +7,93 @@ namespace model_test {
 
 using namespace test;
 
-/// Energy over B of the frictionless arms.
-double energy(const Parameters& p, const ArmState& y) {
-    return 0.5 * p[inertia] * y[2] * y[2] + 0.5 * y[3] * y[3] + p[coupling] * std::cos(y[0] - y[1]) * y[2] * y[3] -
-           p[gravity_1] * std::cos(y[0]) - p[gravity_2] * std::cos(y[1]);
-}
-
-/// dE/dt by the chain rule, of slopes that the model gives.
-double power(const Parameters& p, const ArmState& y, const ArmState& slope) {
-    double sum = 0;
-    for (int q = 0; q < 4; ++q) {
-        constexpr double h = 2e-5;
-        auto above = y, below = y;
-        above[q] += h, below[q] -= h;
-        sum += (energy(p, above) - energy(p, below)) / (2 * h) * slope[q];
-    }
-    return sum;
-}
-
 const ArmState somewhere{0.7, -1.1, 2.3, -3.1};
 
-/// How a state changes, by the law of joints that turn as in it.
-ArmState slope_at(const ArmState& y, const Parameters& p, Drag drag) {
-    auto arms = arms_of<double>({.drag = drag}, p);
-    arms.modes = turning(y);
-    const auto alpha = arms.accelerations(arms.sides(y[0], y[1], y[2], y[3]));
-    return {y[2], y[3], alpha[0], alpha[1]};
-}
-
-TEST(FitModel, PointMassesMoveAsThePhysicsRoomHasIt) {
-    const auto points = point_masses(1.3, 0.7, 0.4, 0.6);
-    const auto p = ratios_of(points);
-    AngleChain<double, 2> chain(points.chain);
-    State<double, 4> y, expected;
-    y = somewhere;
-    chain.rate(y, expected);
-    const auto rate = slope_at(somewhere, p, Drag::own);
-    for (int q = 0; q < 4; ++q) EXPECT_NEAR(rate[q], expected[q], 1e-12);  // measured 2e-14
-}
-
-TEST(FitModel, FrictionTakesTheEnergyThatItShould) {
-    for (const auto drag : {Drag::own, Drag::carried}) {
-        const auto p = lab_arms();
-        const double angle1 = somewhere[0], angle2 = somewhere[1], w1 = somewhere[2], w2 = somewhere[3];
-        const double relative = w2 - w1;
-        const double u = drag == Drag::own ? w2 : w2 + p[coupling] * std::cos(angle1 - angle2) * w1;
-        const double lost = p[viscous_1] * w1 * w1 + p[viscous_2] * relative * relative + p[coulomb_1] * std::abs(w1) +
-                            p[coulomb_2] * std::abs(relative) + p[quadratic_1] * std::pow(std::abs(w1), 3) +
-                            p[quadratic_2] * std::pow(std::abs(u), 3);
-        EXPECT_NEAR(power(p, somewhere, slope_at(somewhere, p, drag)), -lost,
-                    1e-6);  // measured 4e-8, of the differences
-    }
-    const auto p = lab_arms(false);
-    EXPECT_NEAR(power(p, somewhere, slope_at(somewhere, p, Drag::own)), 0, 1e-6);
-}
-
-/// A mirrored track is as good: counter-clockwise may be either way.
-TEST(FitModel, IsTheSameSeenFromBehind) {
-    const auto forwards = slope_at(somewhere, lab_arms(), Drag::carried);
-    EXPECT_EQ(slope_at(-somewhere, lab_arms(), Drag::carried), -forwards);
-}
-
-/// Joints that turn over, stick and slip: a swing of much dry friction until it rests.
-TEST(FitFlow, CoulombFrictionMovesAsThePhysicsRoomHasIt) {
-    auto p = lab_arms();
-    p[coulomb_1] = 4, p[coulomb_2] = 3;
-    constexpr std::size_t samples = 501;
-    constexpr long hz = 100;
-    const auto expected = simulated_angles(fitted_pendulum(p, {}, {}).body, {1.5, -0.8, 1, -2}, hz, samples);
-    Flow<0> flow({}, p, {1.5, -0.8, 1, -2}, 1.0 / 512);
-    double worst = 0;
+/// The angles, rad, at samples of a motion from somewhere.
+std::vector<std::array<double, 2>> angles_of(const Parameters& p, Drag drag, const ArmState& start, double step,
+                                             std::size_t samples, double interval) {
+    Flow<> flow({.drag = drag}, p, start, step);
+    std::vector<std::array<double, 2>> angles;
     for (std::size_t i = 0; i < samples; ++i) {
-        const double t = static_cast<double>(i) / hz;
-        ASSERT_TRUE(flow.reach(t));
-        for (int arm = 0; arm < 2; ++arm)
-            worst = std::max(worst, std::abs(flow.angle(arm, t)[0] - expected[i][static_cast<std::size_t>(arm)]));
+        const double t = static_cast<double>(i) * interval;
+        EXPECT_TRUE(flow.reach(t));
+        angles.push_back({flow.angle(0, t)[0], flow.angle(1, t)[0]});
     }
-    EXPECT_LT(worst, 1e-8);         // measured 1.3e-9
+    return angles;
+}
+
+double worst_of(const std::vector<std::array<double, 2>>& one, const std::vector<std::array<double, 2>>& other) {
+    double worst = 0;
+    for (std::size_t i = 0; i < one.size(); ++i)
+        for (std::size_t arm = 0; arm < 2; ++arm) worst = std::max(worst, std::abs(one[i][arm] - other[i][arm]));
+    return worst;
+}
+
+/// Points, bodies, drag of either law; and joints that turn over, stick and slip: a swing of much dry friction until it rests.
+TEST(FitFlow, MovesAsPhysicsHasIt) {
+    auto dry = lab_arms();
+    dry[coulomb_1] = 4, dry[coulomb_2] = 3;
+    const auto points = ratios_of(point_masses(1.3, 0.7, 0.4, 0.6));
+    for (const auto& [p, drag] : {std::pair(points, Drag::own), std::pair(lab_arms(), Drag::own),
+                                  std::pair(lab_arms(), Drag::carried), std::pair(dry, Drag::own)}) {
+        const auto body = pendulum_of(fitted_pendulum(p, {.drag = drag}, {}));
+        for (const auto& start : {ArmState(1.5, -0.8, 1, -2), somewhere})
+            EXPECT_LT(worst_of(angles_of(p, drag, start, 1.0 / 512, 251, 0.02), simulated_angles(body, start, 50, 251)),
+                      1e-8);  // measured 1.3e-9
+    }
+    Flow<> flow({}, dry, {1.5, -0.8, 1, -2}, 1.0 / 512);
+    EXPECT_TRUE(flow.reach(5));
     EXPECT_EQ(flow.rate(0, 5), 0);  // it has come to rest
     EXPECT_EQ(flow.rate(1, 5), 0);
 }
 
+/// A mirrored track is as good: counter-clockwise may be either way.
+TEST(FitFlow, IsTheSameSeenFromBehind) {
+    auto behind = angles_of(lab_arms(), Drag::carried, -somewhere, 0.01, 200, 0.01);
+    for (auto& [one, two] : behind) one = -one, two = -two;
+    EXPECT_EQ(angles_of(lab_arms(), Drag::carried, somewhere, 0.01, 200, 0.01), behind);
+}
+
 TEST(FitFlow, IsOfOrderFive) {
-    const auto end = [&](double step) {
-        Flow<0> flow({}, lab_arms(false), somewhere, step);
-        flow.reach(1);
-        return flow.angle(1, 1)[0];
-    };
+    const auto end = [&](double step) { return angles_of(lab_arms(false), Drag::own, somewhere, step, 2, 1)[1][1]; };
     const double truth = end(1.0 / 8192), coarse = end(1.0 / 256) - truth, fine = end(1.0 / 512) - truth;
     EXPECT_NEAR(std::log2(std::abs(coarse / fine)), 5, 0.4);  // measured 5.0
 }
 
 TEST(FitFlow, InterpolatesAsWellAsItSteps) {
-    const auto p = lab_arms(false);
-    Flow<0> coarse({}, p, somewhere, 1.0 / 128), fine({}, p, somewhere, 1.0 / 4096);
-    double worst = 0;
-    for (int i = 1; i < 200; ++i) {
-        const double t = i * 0.00137;
-        coarse.reach(t), fine.reach(t);
-        for (int arm = 0; arm < 2; ++arm)
-            worst = std::max(worst, std::abs(coarse.angle(arm, t)[0] - fine.angle(arm, t)[0]));
-    }
-    EXPECT_LT(worst, 2e-6);  // measured 3e-7
+    const auto at = [](double step) { return angles_of(lab_arms(false), Drag::own, somewhere, step, 200, 0.00137); };
+    EXPECT_LT(worst_of(at(1.0 / 128), at(1.0 / 4096)), 2e-6);  // measured 3e-7
+}
+
+void expect_there_and_back(const Parameters& p, const PhysicalPendulum<double>& pendulum) {
+    for (const auto& parts : {pendulum.chain.mass, pendulum.inertia}) EXPECT_GT(parts[0], 0);
+    const auto back = ratios_of(pendulum);
+    for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
 }
 
 TEST(FitPhysical, RatiosGoThereAndBack) {
     for (const double mass : {1.0, 0.138})
         for (const double gravity : {9.8, 1.62}) {
-            const auto p = lab_arms();
-            const auto pendulum = fitted_pendulum(p, {}, {gravity, mass});
-            const auto back = ratios_of(pendulum.body);
-            for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
-            EXPECT_EQ(pendulum.body.chain.mass[1], mass);
-            EXPECT_NEAR(pendulum.body.chain.length[0], gravity * 0.88 / 50, 1e-15);  // g C/D2
-            EXPECT_NEAR(pendulum.body.inertia[1], mass * std::pow(pendulum.body.center[1], 2) / 3, 1e-15);
-            EXPECT_GT(pendulum.body.chain.mass[0], 0);
-            EXPECT_GT(pendulum.body.inertia[0], 0);
+            const auto pendulum = pendulum_of(fitted_pendulum(lab_arms(), {}, {gravity, mass}));
+            expect_there_and_back(lab_arms(), pendulum);
+            EXPECT_EQ(pendulum.chain.mass[1], mass);
+            EXPECT_NEAR(pendulum.chain.length[0], gravity * 0.88 / 50, 1e-15);  // g C/D2
+            EXPECT_NEAR(pendulum.inertia[1], mass * std::pow(pendulum.center[1], 2) / 3, 1e-15);
         }
+    // a second arm that takes most of the first one's inertia for its own joint is more compact
+    auto p = lab_arms(false);
+    p[inertia] = 1.2 * 0.88 * 0.88;
+    expect_there_and_back(p, pendulum_of(fitted_pendulum(p, {}, {})));
 }
 
 TEST(FitPhysical, PointMassesStayPoints) {
     const auto points = point_masses(1.3, 1, 0.4, 0.6);
-    const auto back = fitted_pendulum(ratios_of(points), {.point_masses = true}, {}).body;
+    const auto back = pendulum_of(fitted_pendulum(ratios_of(points), {.point_masses = true}, {}));
     for (std::size_t k = 0; k < 2; ++k) {
         EXPECT_NEAR(back.chain.mass[k], points.chain.mass[k], 1e-12);
         EXPECT_NEAR(back.chain.length[k], points.chain.length[k], 1e-12);
         EXPECT_EQ(back.inertia[k], 0);
     }
-}
-
-/// A second arm that takes most of the first one's inertia for its own joint.
-TEST(FitPhysical, MakesTheSecondArmCompactWhereItMust) {
-    auto p = lab_arms(false);
-    p[inertia] = 1.2 * 0.88 * 0.88;
-    const auto pendulum = fitted_pendulum(p, {}, {});
-    EXPECT_GT(pendulum.body.inertia[0], 0);
-    EXPECT_GT(pendulum.body.chain.mass[0], 0);
-    const auto back = ratios_of(pendulum.body);
-    for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
 }
 
 }  // namespace model_test

@@ -1,8 +1,6 @@
-#include "base/error.hpp"
 #include "fit/report.hpp"
 #include "fit/support.hpp"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,8 +23,8 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
         fit.shots = {{.last = track.samples(), .start = fit.shots[0].start + ArmState(0.01, 0, 1, -1)}};
         auto& p = fit.parameters;
         const auto sums_here = [&] {
-            if (point) p[gravity_1] = p[inertia] * p[gravity_2] / p[coupling];
-            return evaluate_shot(track, fit, fit.shots[0]);
+            evaluate_fit({track, no_stop}, fit);
+            return fit.shots[0].sums;
         };
         const auto sums = sums_here();
         const auto check = [&](double& value, double slope, std::string_view what) {
@@ -39,24 +37,9 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
             cost_at(0);
             EXPECT_NEAR(-difference, slope, 1e-6 * std::abs(slope) + 1e-15) << what;  // measured 1e-7
         };
-        for (Eigen::Index q = 0; q < 4; ++q) check(fit.shots[0].start[q], sums.slope[q], "start");
-        for (Eigen::Index k = 0; const auto parameter : fit.model.fitted)
-            check(p[parameter], sums.slope[4 + k++], parameter_words[parameter].key);
+        for (Eigen::Index q = 0; q < 4; ++q) check(fit.shots[0].start[q], sums.normal(4, q), "start");
+        for (const auto k : fit.model.list()) check(p[k], sums.normal(4, 5 + k), parameter_words[k].key);
     }
-}
-
-/// Starts eliminated or not, the solution of the normal equations is the same.
-TEST(FitShooting, EliminatesStartsExactly) {
-    const auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .noise = 1e-3});
-    const auto model = model_of(false, 1);
-    auto fit = fit_at(model, lab_arms(), track);
-    evaluate_fit({track, no_stop}, fit);
-    const auto& sums = fit.shots[0].sums;
-    const auto count = static_cast<Eigen::Index>(model.fitted.size());
-    const Eigen::VectorXd expected = sums.matrix.fullPivLu().solve(sums.slope).tail(count);
-    const auto part = reduced(sums);
-    const Eigen::VectorXd change = part.matrix.fullPivLu().solve(part.slope);
-    EXPECT_LT((change - expected).norm(), 1e-6 * expected.norm());  // measured 2e-9
 }
 
 TEST(FitShooting, FindsANoiselessTruth) {
@@ -65,24 +48,19 @@ TEST(FitShooting, FindsANoiselessTruth) {
     truth[offset_1] = 0.003, truth[offset_2] = -0.002;
     const auto track = simulated(truth, Drag::carried, {.hz = 200});
     auto model = model_of(false, 1, Drag::carried);
-    model.fitted = {inertia,   coupling,    gravity_1,   gravity_2, viscous_1,
-                    viscous_2, quadratic_1, quadratic_2, offset_1,  offset_2};
+    model.fitted[quadratic_1] = model.fitted[quadratic_2] = true;
     auto wrong = truth;
-    for (const auto parameter : model.fitted) wrong[parameter] *= 1.05;
-    const auto fit = fit_model({track, no_stop}, fit_at(model, wrong, track), {.most_passes = 60, .relative = 1e-12});
-    for (const auto parameter : model.fitted) {
-        const double expected = truth[parameter];
-        EXPECT_NEAR(fit.parameters[parameter], expected, 1e-6 * std::max(std::abs(expected), 0.1))
-            << parameter_words[parameter].key;  // measured 3e-8
-    }
+    for (const auto k : model.list()) wrong[k] *= 1.05;
+    const auto fit = fitted(model, wrong, track, {.most_passes = 60, .relative = 1e-12});
+    for (const auto k : model.list())  // measured 3e-8
+        EXPECT_NEAR(fit.parameters[k], truth[k], 1e-6 * std::max(std::abs(truth[k]), 0.1)) << parameter_words[k].key;
     EXPECT_LT(fit.rms, 1e-8);
 }
 
 TEST(FitShooting, KeepsFrictionFromBeingNegative) {
     auto truth = lab_arms(false);
     truth[viscous_1] = -0.05, truth[viscous_2] = 0.02;
-    const auto track = simulated(truth, Drag::own, {.noise = 1e-3});
-    const auto fit = fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(false), track), {});
+    const auto fit = fitted(model_of(false, 1), lab_arms(false), simulated(truth, Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(fit.parameters[viscous_1], 0);
     EXPECT_TRUE(fit.is_at_bound(viscous_1));
     EXPECT_FALSE(fit.is_at_bound(viscous_2));
@@ -93,7 +71,7 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
     auto track = simulated(lab_arms(false), Drag::own, {.noise = 1e-3});
     for (auto& piece : track.pieces)
         for (std::size_t i = 7; i < piece.size(); i += 100) piece.angle[i % 2][i] += 0.5;
-    const auto fit = fit_model({track, no_stop}, fit_at(model_of(false, 0), lab_arms(false), track), {});
+    const auto fit = fitted(model_of(false, 0), lab_arms(false), track);
     EXPECT_NEAR(fit.parameters[inertia], 1.8, 0.004);  // measured 0.0009; least squares: 0.08
     EXPECT_NEAR(fit.parameters[gravity_2], 50, 0.05);  // measured 0.01
 }
@@ -102,9 +80,8 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
 TEST(FitShooting, OneBadStartEndsItselfNotTheFit) {
     const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
     auto start = fit_at(model_of(false, 0), lab_arms(false), track);
-    start.shots[1].start[2] = 2e4;  // rad/s
-    const auto fit = fit_model({track, no_stop}, start, {});
-    EXPECT_NEAR(fit.rms, 1e-3, 5e-5);  // measured 1.00e-3: the noise
+    start.shots[1].start[2] = 2e4;                                         // rad/s
+    EXPECT_NEAR(fit_model({track, no_stop}, start, {})->rms, 1e-3, 5e-5);  // measured 1.00e-3: the noise
 }
 
 TEST(FitShooting, EndsSoonAfterItIsStopped) {
@@ -121,60 +98,53 @@ TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     auto fit = fit_at(model_of(false, 2), lab_arms(), track);
     evaluate_fit({track, no_stop}, fit);
-    fit.shots[0].sums.matrix(4, 4) = -std::numeric_limits<double>::infinity();
-    const auto without = fit_without(fit, 2, 2);
+    fit.shots[0].sums.normal(5, 5) = -std::numeric_limits<double>::infinity();
+    const auto without = stepped(fit, 0, 2, 2);
     EXPECT_FALSE(std::isfinite(without.parameters[inertia]));
 }
 
 /// What is left out by one step is near what a fit without it finds.
 TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
-    const auto all = fit_model({track, no_stop}, fit_at(model_of(false, 1), lab_arms(), track), {});
-    const auto quick = fit_without(all, 2, 2);
+    const auto all = fitted(model_of(false, 1), lab_arms(), track);
+    const auto quick = stepped(all, 0, 2, 2);
     auto rest = all;
     rest.is_evaluated = false;
     std::erase_if(rest.shots, [](const Shot& shot) { return shot.unit == 2; });
-    const auto exact = fit_model({track, no_stop}, rest, {.finds_scale = false, .step_share = 0});
-    for (const auto parameter : all.model.fitted) {
-        const auto k = parameter;
+    const auto exact = *fit_model({track, no_stop}, rest, {.finds_scale = false, .step_share = 0});
+    for (const auto k : all.model.list()) {
         const double moved = std::abs(exact.parameters[k] - all.parameters[k]);
-        EXPECT_NEAR(quick.parameters[k], exact.parameters[k], 0.1 * moved + 1e-6) << parameter_words[parameter].key;
+        EXPECT_NEAR(quick.parameters[k], exact.parameters[k], 0.1 * moved + 1e-6) << parameter_words[k].key;
     }
-}
-
-FitResult answered(const Track& track, Bodies bodies = Bodies::automatic) {
-    return answer(track, {.bodies = bodies}, 2, no_stop, [](std::size_t, std::size_t) {});
 }
 
 TEST(FitLadder, ChoosesWhatMadeTheTrack) {
     auto compound = lab_arms(false);
     compound[viscous_1] = 0.1, compound[viscous_2] = 0.05;
-    auto track = simulated(compound, Drag::own, {.noise = 1e-3});
-    auto result = answered(track);
+    auto result = answered(simulated(compound, Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(result.chosen().name, "compound, viscous friction");
     EXPECT_TRUE(result.uncertainty.is_white);
     EXPECT_NEAR(result.chosen().left_out_rms, 1e-3, 5e-5);  // measured 1.02e-3
 
-    track = simulated(ratios_of(point_masses(1.3, 1, 0.2, 0.25)), Drag::own, {.noise = 1e-3});
-    result = answered(track);
+    result = answered(simulated(ratios_of(point_masses(1.3, 1, 0.2, 0.25)), Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(result.chosen().name, "point masses, no friction");
-    EXPECT_NEAR(result.pendulum.body.chain.length[0], 0.2, 1e-3);
-    EXPECT_NEAR(result.pendulum.body.chain.length[1], 0.25, 1e-3);
-    EXPECT_NEAR(result.pendulum.body.chain.mass[0], 1.3, 1e-2);
+    const auto chain = pendulum_of(result.pendulum).chain;
+    EXPECT_NEAR(chain.length[0], 0.2, 1e-3);
+    EXPECT_NEAR(chain.length[1], 0.25, 1e-3);
+    EXPECT_NEAR(chain.mass[0], 1.3, 1e-2);
 }
 
 /// Over the top again and again: stretches of three seconds have more than one minimum, short ones do not.
 TEST(FitLadder, FollowsAnEnergeticSwing) {
-    auto truth = lab_arms();
+    const auto truth = lab_arms();
     const auto track =
         simulated(truth, Drag::own, {.pieces = 4, .piece_s = 3, .hz = 240, .noise = 2e-3, .amplitude = 3.1, .seed = 8});
     const auto result = answered(track, Bodies::compound);
     EXPECT_TRUE(result.uncertainty.is_white);
     EXPECT_NEAR(result.chosen().fit.rms, 2e-3, 1e-4);  // its noise
-    for (const auto parameter : {inertia, coupling, gravity_1, gravity_2})
-        EXPECT_NEAR(result.chosen().fit.parameters[parameter], truth[parameter],
-                    4 * result.uncertainty.standard_error_of(parameter))
-            << parameter_words[parameter].key;
+    for (const auto k : {inertia, coupling, gravity_1, gravity_2})
+        EXPECT_NEAR(result.chosen().fit.parameters[k], truth[k], 4 * result.uncertainty.standard_error(k))
+            << parameter_words[k].key;
 }
 
 /// Where the model is the right one, the start's error alone ends predictions; and the pieces' interval is found.

@@ -10,30 +10,25 @@ namespace start_test {
 
 using namespace test;
 
-FittedStart start_of(const MotionSpec& twin, const std::string& text) {
+/// The start of a twin beside the rods' swing, which is expected within so much.
+FittedStart start_of(const MotionSpec& twin, double angle, double rate, double noise = 0, double offset = 0) {
+    const auto text = csv_of_motion(swinging_rods(), 1002, noise, offset);
     const auto track = std::make_shared<const Track>(tracks_of_texts({"swing.csv"}, {text}));
-    return fit_start(twin, replay_from(track, std::nullopt, {}), never_stop);
-}
-
-void expect_start(const FittedStart& start, double angle, double rate) {
+    const auto start = fit_start(twin, replay_from(track, std::nullopt, {}), never_stop);
     EXPECT_NEAR(start.angle[0], 1, angle);
     EXPECT_NEAR(start.angle[1], -2, angle);
     EXPECT_NEAR(start.rate[0], 3, rate);
     EXPECT_NEAR(start.rate[1], 5, rate);
+    return start;
 }
 
 TEST(FitStart, FindsStartAndOffsets) {
-    const auto start = start_of(swinging_rods(), csv_of_motion(swinging_rods(), 1002, 0, 0.01));
-    expect_start(start, 1e-6, 1e-5);
+    const auto start = start_of(swinging_rods(), 1e-6, 1e-5, 0, 0.01);
     EXPECT_NEAR(start.offset[0], 0.01, 1e-6);
     EXPECT_NEAR(start.offset[1], -0.01, 1e-6);
     EXPECT_NEAR(start.seconds, 2, 1e-9);
     EXPECT_LT(start.rms, 1e-6);
-}
-
-TEST(FitStart, NoiseShiftsItLittle) {
-    expect_start(start_of(swinging_rods(), csv_of_motion(swinging_rods(), 1002, 1e-3)), 2e-4,
-                 3e-3);  // measured 5e-5, 6e-4
+    start_of(swinging_rods(), 2e-4, 3e-3, 1e-3);  // measured 5e-5, 6e-4
 }
 
 /// Whatever steps the twin: the start is that of its own motion.
@@ -41,18 +36,17 @@ TEST(FitStart, OfAnyMethod) {
     auto twin = swinging_rods();
     twin.method = "rk4";
     twin.steps_per_sample = 20;
-    expect_start(start_of(twin, csv_of_motion(swinging_rods(), 1002)), 1e-6, 1e-5);
+    start_of(twin, 1e-6, 1e-5);
 }
 
 /// Point masses do not swing so: as much as they can follow is fitted, and it is said how much.
 TEST(FitStart, OfAModelThatCannotFollow) {
     auto twin = swinging_rods();
     twin.physical = physical(*twin.chain);
-    const auto start = start_of(twin, csv_of_motion(swinging_rods(), 1002));
+    const auto start = start_of(twin, 0.3, 3);
     EXPECT_GT(start.seconds, 0);
     EXPECT_LT(start.seconds, 2);
     EXPECT_LT(start.rms, 0.1);
-    expect_start(start, 0.3, 3);
 }
 
 }  // namespace start_test

@@ -2,22 +2,20 @@
 
 #include "fit/beginning.hpp"
 #include "fit/flow.hpp"
-#include "integrate/motion.hpp"
-#include "physics/physical_pendulum.hpp"
+#include "fit/result.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
-#include <string>
-#include <vector>
 
 namespace doppel::test {
 
 /// A laboratory's arms, some 17 cm and 29 cm long; with friction of all kinds.
 inline Parameters lab_arms(bool with_friction = true) {
-    Parameters p{};
+    Parameters p = Parameters::Zero();
     p[inertia] = 1.8, p[coupling] = 0.88, p[gravity_1] = 106, p[gravity_2] = 50;
     p[scale_1] = p[scale_2] = 1;
     if (!with_friction) return p;
@@ -37,34 +35,33 @@ struct Measuring {
 /// A simulated track: steps of a millisecond, whose own error is some 1e-11 rad without dry friction.
 inline Track simulated(const Parameters& truth, Drag drag, const Measuring& measuring) {
     constexpr double step = 0.001;
-    std::mt19937_64 random(measuring.seed);
+    const auto& [pieces, piece_s, hz, noise, amplitude, seed, every_s] = measuring;
+    std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> even(-1, 1);
-    Track track;
+    Track track{.noise = {noise, noise}};
     ArmState start;
-    for (std::size_t k = 0; k < measuring.pieces; ++k) {
-        if (k == 0 || measuring.every_s == 0)
-            start = {measuring.amplitude * even(random), measuring.amplitude * even(random), 4 * even(random),
-                     4 * even(random)};
-        TrackPiece piece{.name = "simulated.csv", .time_s = {}, .angle = {}, .is_outlier = {}};
-        Flow<0> flow({.drag = drag}, truth, start, step);
-        const auto samples = static_cast<std::size_t>(std::lround(measuring.piece_s * measuring.hz)) + 1;
+    for (std::size_t k = 0; k < pieces; ++k) {
+        if (k == 0 || every_s == 0)
+            start = {amplitude * even(random), amplitude * even(random), 4 * even(random), 4 * even(random)};
+        auto& piece = track.pieces.emplace_back(TrackPiece{.name = "simulated.csv"});
+        std::array flows{Flow<>({.drag = drag}, truth, start, step), Flow<>({.drag = drag}, truth, start, step)};
+        const auto samples = static_cast<std::size_t>(std::lround(piece_s * hz)) + 1;
         for (std::size_t i = 0; i < samples; ++i) {
-            const double t = static_cast<double>(i) / measuring.hz;
-            flow.reach(t);
-            piece.time_s.push_back(t);
-            for (std::size_t arm = 0; arm < 2; ++arm)
-                piece.angle[arm].push_back(truth[offset_1 + arm] + flow.angle(static_cast<Eigen::Index>(arm), t)[0] +
-                                           measuring.noise * normal(random));
+            piece.time_s.push_back(static_cast<double>(i) / hz);
+            for (std::size_t arm = 0; arm < 2; ++arm) {
+                const double t = piece.time_s[i] + static_cast<double>(arm) * truth[lag];
+                flows[arm].reach(t);
+                piece.angle[arm].push_back(truth[offset_1 + arm] + flows[arm].angle(arm, t)[0] +
+                                           noise * normal(random));
+                piece.is_outlier[arm].push_back(0);
+            }
         }
-        for (auto& outliers : piece.is_outlier) outliers.assign(samples, 0);
-        track.pieces.push_back(std::move(piece));
-        if (measuring.every_s > 0) {
-            flow.reach(measuring.every_s);
-            start = flow.values_at(measuring.every_s);
+        if (every_s > 0) {
+            flows[0].reach(every_s);
+            start = flows[0].values_at(every_s);
         }
     }
-    track.noise = {measuring.noise, measuring.noise};
     return track;
 }
 
@@ -72,8 +69,9 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
 inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
     const auto &m = pendulum.chain.mass, &a = pendulum.center, &i = pendulum.inertia;
     const double l1 = pendulum.chain.length[0], g = pendulum.chain.gravity, b = i[1] + m[1] * a[1] * a[1];
-    Parameters p{(i[0] + m[0] * a[0] * a[0] + m[1] * l1 * l1) / b, m[1] * l1 * a[1] / b,
-                 (m[0] * a[0] + m[1] * l1) * g / b, m[1] * a[1] * g / b};
+    Parameters p = Parameters::Zero();
+    p.head<4>() << (i[0] + m[0] * a[0] * a[0] + m[1] * l1 * l1) / b, m[1] * l1 * a[1] / b,
+        (m[0] * a[0] + m[1] * l1) * g / b, m[1] * a[1] * g / b;
     const auto take = [&](FitParameter first, const std::vector<double>& list) {
         for (std::size_t k = 0; k < list.size(); ++k) p[first + k] = list[k] / b;
     };
@@ -83,6 +81,17 @@ inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
     take(quadratic_1, friction.arm_quadratic.empty() ? friction.air_quadratic : friction.arm_quadratic);
     p[scale_1] = p[scale_2] = 1;
     return p;
+}
+inline PhysicalPendulum<double> pendulum_of(const FittedPendulum& fitted) {
+    std::map<std::string, std::vector<double>> lists;
+    for (const auto& [key, both] : fitted.arms) lists[key] = {both[0], both[1]};
+    return {.chain = {.mass = lists["mass_kg"], .length = lists["length_m"], .gravity = fitted.gravity},
+            .center = lists["center_m"],
+            .inertia = lists["inertia_kg_m2"],
+            .friction = {.viscous = lists["joint_viscous_N_m_s"],
+                         .coulomb = lists["joint_coulomb_N_m"],
+                         .arm_quadratic = lists["arm_drag_quadratic_N_m_s2"],
+                         .air_quadratic = lists["air_drag_quadratic_N_m_s2"]}};
 }
 inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, double l2) {
     return physical(Pendulum<double>{.mass = {m1, m2}, .length = {l1, l2}, .angle = {}, .rate = {}, .gravity = 9.8});
@@ -132,11 +141,29 @@ inline std::string csv_of(const TrackPiece& piece) {
     return text;
 }
 
-/// A fit that stands at the truth, its starts guessed from the samples.
+inline const std::atomic<bool> no_stop = false;
+
+/// A fit that stands at the truth, its starts guessed from the samples; and the fit that is found from there.
 inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track) {
     return {.model = model, .parameters = parameters, .shots = divide(track)};
 }
+inline Fit fitted(const ModelSpec& model, const Parameters& parameters, const Track& track, FitEffort effort = {}) {
+    return fit_model({track, no_stop, 2}, fit_at(model, parameters, track), effort).value();
+}
 
-inline const std::atomic<bool> no_stop = false;
+inline FitResult answered(const Track& track, Bodies bodies = Bodies::automatic) {
+    return answer(track, {.bodies = bodies, .jobs = 2}, no_stop, [](const Progress&) {});
+}
+
+/// The exit code and the message that a fit ends with, of a track that work() returns; 0 where it is taken.
+template <class Work>
+std::pair<int, std::string> ending(const Work& work, Bodies bodies = Bodies::automatic) {
+    try {
+        answered(work(), bodies);
+    } catch (const Error& error) {
+        return {static_cast<int>(error.code()), error.what()};
+    }
+    return {0, ""};
+}
 
 }  // namespace doppel::test

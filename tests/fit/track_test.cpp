@@ -1,6 +1,4 @@
 #include "base/clock.hpp"
-#include "base/error.hpp"
-#include "fit/result.hpp"
 #include "fit/support.hpp"
 
 #include <gtest/gtest.h>
@@ -16,18 +14,8 @@ Track read(const std::vector<std::string>& texts) {
     return tracks_of_texts(names, texts);
 }
 
-/// The exit code and the words with which a text is refused, by the reader or by the fit.
-std::pair<int, std::string> refusal(const std::vector<std::string>& texts) {
-    try {
-        answer(read(texts), {}, 2, no_stop, [](std::size_t, std::size_t) {});
-        return {0, "it was fitted"};
-    } catch (const Error& fault) {
-        return {static_cast<int>(fault.code()), fault.what()};
-    }
-}
-
 void expect_refused(const std::vector<std::string>& texts, int code, const std::string& words) {
-    const auto [seen, message] = refusal(texts);
+    const auto [seen, message] = ending([&] { return read(texts); });
     EXPECT_EQ(seen, code) << message;
     EXPECT_NE(message.find(words), std::string::npos) << message;
 }
@@ -46,22 +34,23 @@ std::string swing() {
 }
 
 TEST(FitTrack, RefusesWhatIsNoTable) {
-    expect_refused({""}, 2, "a.csv: the file is empty");
-    expect_refused({"time_s,theta1_rad,theta2_rad\n"}, 2, "a.csv: there are no rows");
-    expect_refused({"t,theta1_rad,theta2_rad\n"}, 2, "a.csv:1: there is no column time_s");
-    expect_refused({"time_s,a,b\n"}, 2, "there are no angles; theta1_rad and theta2_rad are wanted, or x0_px");
-    expect_refused({"time_s,theta1_rad\n"}, 2, "a.csv:1: there is one arm only, theta1_rad");
-    expect_refused({"time_s,x0_px,y0_px,x1_px,y1_px\n"}, 2, "x2_px, y2_px (end) there are 4 columns");
-    expect_refused({"time_s,theta1_deg,theta2_deg\n"}, 2, "\"theta1_deg\" is in degrees");
-    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1\n"}, 2, "a.csv:2: there are 2 cells, and 3 columns");
-    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n1,x,2\n"}, 2, "a.csv:3: theta1_rad is no number");
-    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,nan\n"}, 2,
-                   "a.csv:2: theta2_rad is nan; leave out rows without a measurement");
-    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n0.1,1e300,2\n"}, 2,
-                   "a.csv:3: theta1_rad is beyond 1000000 rad, which is no swing");
-    expect_refused({"time_s,theta1_rad,theta2_rad\n0,1,2\n0.1,1,2\n0.05,1,2\n"}, 2,
-                   "a.csv:4: time_s goes from 0.1 to 0.05; rows are wanted in the order of time");
-    expect_refused({"time_s,x0_px,y0_px,x1_px,y1_px,x2_px,y2_px\n0,5,5,5,5,9,9\n"}, 2, "a.csv:2: two of pivot, joint");
+    const std::string head = "time_s,theta1_rad,theta2_rad\n";
+    const std::pair<std::string, const char*> cases[]{
+        {"", "a.csv: the file is empty"},
+        {head, "a.csv: there are no rows"},
+        {"t,theta1_rad,theta2_rad\n", "a.csv:1: there is no column time_s"},
+        {"time_s,a,b\n", "there are no angles; theta1_rad and theta2_rad are wanted, or x0_px"},
+        {"time_s,theta1_rad\n", "a.csv:1: there is one arm only, theta1_rad"},
+        {"time_s,x0_px,y0_px,x1_px,y1_px\n", "x2_px, y2_px (end) there are 4 columns"},
+        {"time_s,theta1_deg,theta2_deg\n", "\"theta1_deg\" is in degrees"},
+        {head + "0,1\n", "a.csv:2: there are 2 cells, and 3 columns"},
+        {head + "0,1,2\n1,x,2\n", "a.csv:3: theta1_rad is no number"},
+        {head + "0,1,nan\n", "a.csv:2: theta2_rad is nan; leave out rows without a measurement"},
+        {head + "0,1,2\n0.1,1e300,2\n", "a.csv:3: theta1_rad is beyond 1000000 rad, which is no swing"},
+        {head + "0,1,2\n0.1,1,2\n0.05,1,2\n",
+         "a.csv:4: time_s goes from 0.1 to 0.05; rows are wanted in the order of time"},
+        {"time_s,x0_px,y0_px,x1_px,y1_px,x2_px,y2_px\n0,5,5,5,5,9,9\n", "a.csv:2: two of pivot, joint"}};
+    for (const auto& [text, words] : cases) expect_refused({text}, 2, words);
 }
 
 TEST(FitTrack, RefusesWhatTellsNoModel) {
@@ -92,40 +81,37 @@ TEST(FitTrack, RefusesMistakesOfUnitAndOrder) {
 }
 
 TEST(FitTrack, RefusesWhatNoDoublePendulumDoes) {
-    const auto refused = [](const auto& change) {
-        const auto [code, words] = refusal({changed(change)});
-        EXPECT_TRUE(code == 2 || code == 3) << words;
-        return words;
-    };
-    // two oscillators that know nothing of each other
-    refused([](double t, double, double) { return std::pair(std::sin(7.3 * t), 0.8 * std::cos(4.1 * t)); });
-    // a motion that is driven
-    refused([](double t, double a, double b) { return std::pair(a + 0.5 * std::sin(11 * t), b); });
-    const auto as_it_is = refusal({swing()});
-    EXPECT_EQ(as_it_is.first, 0) << as_it_is.second;
+    EXPECT_EQ(ending([] { return read({swing()}); }), std::pair(0, std::string()));
     std::mt19937_64 random(1);
     std::normal_distribution<double> step(0, 0.02);
     double a = 0, b = 0;
-    refused([&](double, double, double) { return std::pair(a += step(random), b += step(random)); });
+    for (const auto& text :
+         {// two oscillators that know nothing of each other
+          changed([](double t, double, double) { return std::pair(std::sin(7.3 * t), 0.8 * std::cos(4.1 * t)); }),
+          // a motion that is driven
+          changed([](double t, double one, double two) { return std::pair(one + 0.5 * std::sin(11 * t), two); }),
+          // no motion
+          changed([&](double, double, double) { return std::pair(a += step(random), b += step(random)); })}) {
+        const auto [code, words] = ending([&] { return read({text}); });
+        EXPECT_TRUE(code == 2 || code == 3) << words;
+    }
 }
 
 TEST(FitTrack, TakesOtherConventionsAndSaysSo) {
-    const auto found = [](const auto& change) {
-        const auto track = read({changed(change)});
-        EXPECT_EQ(track.notes.size(), 1u);
-        return track;
-    };
     const auto straight = read({swing()});
     EXPECT_TRUE(straight.notes.empty());
     constexpr double half = std::numbers::pi / 2;
-    for (const auto& track : {found([](double, double a, double b) { return std::pair(a + half, b + half); }),
-                              found([](double, double a, double b) { return std::pair(a - 2 * half, b - 2 * half); }),
-                              found([](double, double a, double b) { return std::pair(a, b - a); }),
-                              found([](double, double a, double b) { return std::pair(a, -b); })})
+    for (const auto& text : {changed([](double, double a, double b) { return std::pair(a + half, b + half); }),
+                             changed([](double, double a, double b) { return std::pair(a - 2 * half, b - 2 * half); }),
+                             changed([](double, double a, double b) { return std::pair(a, b - a); }),
+                             changed([](double, double a, double b) { return std::pair(a, -b); })}) {
+        const auto track = read({text});
+        EXPECT_EQ(track.notes.size(), 1u);
         for (std::size_t arm = 0; arm < 2; ++arm)
             for (std::size_t i = 0; i < track.samples(); i += 50)
                 EXPECT_NEAR(std::remainder(track.pieces[0].angle[arm][i] - straight.pieces[0].angle[arm][i], 4 * half),
                             0, 1e-8);
+    }
     // both mirrored is as good, and no news
     EXPECT_TRUE(read({changed([](double, double a, double b) { return std::pair(-a, -b); })}).notes.empty());
 }
@@ -147,34 +133,25 @@ TEST(FitTrack, ReadsPlacesInAPicture) {
 }
 
 TEST(FitTrack, CutsAtGapsAndNumbersAndJoinsTurns) {
-    auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6});
-    auto& piece = track.pieces[0];
-    std::string gap = "time_s,theta1_rad,theta2_rad,piece\n", wrapped = "time_s,theta1_rad,theta2_rad\n";
+    const auto piece = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 8}).pieces[0];
+    std::string gap = "time_s,theta1_rad,theta2_rad,piece\n", wrapped = "time_s,theta1_rad,theta2_rad\n",
+                fragment = wrapped;
     for (std::size_t i = 0; i < piece.size(); ++i) {
-        const double a = piece.angle[0][i], b = piece.angle[1][i];
-        if (i < 200 || i > 240)
-            gap += fmt::format("{},{},{},{}\n", i < 400 ? piece.time_s[i] : piece.time_s[i] - 4, a, b, i < 400 ? 1 : 2);
-        wrapped += fmt::format("{},{},{}\n", piece.time_s[i], std::remainder(a + 2.5, 2 * std::numbers::pi) - 2.5, b);
+        const double t = piece.time_s[i], a = piece.angle[0][i], b = piece.angle[1][i];
+        if (i < 200 || i > 240) gap += fmt::format("{},{},{},{}\n", i < 400 ? t : t - 4, a, b, i < 400 ? 1 : 2);
+        wrapped += fmt::format("{},{},{}\n", t, std::remainder(a + 2.5, 2 * std::numbers::pi) - 2.5, b);
+        if (i < 400 || (i > 440 && i < 446) || i > 480) fragment += fmt::format("{},{},{}\n", t, a, b);
     }
     const auto cut = read({gap});
     ASSERT_EQ(cut.pieces.size(), 3u);  // a gap of 0.42 s, and the number
     EXPECT_TRUE(cut.start_s.empty());  // the last begins anew
-    EXPECT_EQ(read({swing()}).start_s, std::vector<double>{0});
     const auto joined = read({wrapped});
+    EXPECT_EQ(joined.start_s, std::vector<double>{0});
     for (std::size_t i = 1; i < joined.samples(); ++i)
         EXPECT_LT(std::abs(joined.pieces[0].angle[0][i] - joined.pieces[0].angle[0][i - 1]), 1);
-}
-
-TEST(FitTrack, LeavesCrumbsBetweenGapsOut) {
-    const auto piece = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 8}).pieces[0];
-    std::string text = "time_s,theta1_rad,theta2_rad\n";
-    for (std::size_t i = 0; i < piece.size(); ++i)
-        if (i < 400 || (i > 440 && i < 446) || i > 480)
-            text += fmt::format("{},{},{}\n", piece.time_s[i], piece.angle[0][i], piece.angle[1][i]);
-    const auto track = read({text});
-    ASSERT_EQ(track.pieces.size(), 2u);
-    EXPECT_EQ(track.start_s, (std::vector{0, 4.81}));
-    EXPECT_EQ(track.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
+    const auto without = read({fragment});
+    EXPECT_EQ(without.start_s, (std::vector{0, 4.81}));
+    EXPECT_EQ(without.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
 }
 
 /// 100 000 pieces of one row each.
