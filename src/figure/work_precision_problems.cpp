@@ -2,7 +2,6 @@
 #include "figure/system_words.hpp"
 #include "figure/work_precision.hpp"
 #include "scene/captions.hpp"
-#include "scene/method_choice.hpp"
 
 #include <fmt/ranges.h>
 
