@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
+#include "scene/numeric_key.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>
@@ -10,11 +11,6 @@
 #include <numeric>
 
 namespace doppel {
-
-double Scene::time(long sample) const {
-    return static_cast<double>(sample) * static_cast<double>(preset.sample_hz.denominator) /
-           static_cast<double>(preset.sample_hz.numerator);
-}
 
 double Scene::time_of_tick(long tick) const {
     return static_cast<double>(tick) * static_cast<double>(preset.sample_hz.denominator) /
@@ -65,16 +61,8 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     std::vector<MotionSpec> members;
     const auto& asked = scene.preset.video.members;
     for (std::size_t k = 0; k < asked.size(); ++k) {
-        const Quad share = Quad(k) / Quad(asked.size() - 1);
-        const auto between = [&](const Quad& from, const Quad& to) { return Quad(from + share * (to - from)); };
-        SideSpec member = first;
-        for (const auto numbers :
-             {&SideSpec::mass_kg, &SideSpec::length_m, &SideSpec::angle_deg, &SideSpec::omega_deg_per_s})
-            std::transform((first.*numbers).begin(), (first.*numbers).end(), (last.*numbers).begin(),
-                           (member.*numbers).begin(), between);
+        auto member = between(first, last, Quad(k) / Quad(asked.size() - 1));
         if (!asked.angles_deg.empty()) member.angle_deg = asked.angles_deg[k];
-        member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
-        member.physical = doppel::between(first.physical, last.physical, share);
         members.push_back(in_ticks(scene.a.motion, scene.frames.ticks_per_sample));
         members.back().chain = chain_of(member);
         if (!member.physical.is_none()) members.back().physical = physical_of(member);

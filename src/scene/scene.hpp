@@ -132,8 +132,8 @@ struct Scene {
     FrameTimes frames;                       // which moments they show
     std::shared_ptr<MethodChooser> chooser;  // where a side requires an accuracy
 
-    double time(long sample) const;        // s
     double time_of_tick(long tick) const;  // s
+    double time(long sample) const { return time_of_tick(sample * frames.ticks_per_sample); }
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
     std::optional<double> horizon() const;
     /// By which pictures and manifest measure errors of the energy, J: the larger side's potential range.
