@@ -67,7 +67,8 @@ int level_of_steps(double least) {
 
 /// Whether two sides differ in no more than what moves.
 bool choose_together(const SideSpec& a, const SideSpec& b) {
-    return a.accuracy == b.accuracy && a.model == b.model && a.precision == b.precision && a.stabilise == b.stabilise;
+    return a.accuracy == b.accuracy && a.model == b.model && a.precision == b.precision && a.stabilise == b.stabilise &&
+           a.stabilise_rate_per_s == b.stabilise_rate_per_s;
 }
 
 }  // namespace

@@ -245,6 +245,27 @@ TEST(Choice, IsOneForSidesThatDifferInWhatMovesAlone) {
     EXPECT_LT(two.a.motion.tolerance, two.b.motion.tolerance);
 }
 
+TEST(Choice, IsOneForAllPairsOfASweep) {
+    const auto alike = [](const std::string& system) {
+        auto pair = preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-6\n" + system);
+        step_all_alike(pair, pair);
+        EXPECT_FALSE(pair.a.accuracy || pair.b.accuracy) << system;
+        EXPECT_EQ(pair.a.tolerance, pair.b.tolerance) << system;
+        return fmt::format("{} {}", pair.a.integrator, text_of(*pair.a.tolerance));
+    };
+    EXPECT_EQ(alike(""), "taylor " + text_of(parse_quad("1e-15")));
+    EXPECT_EQ(alike("links = 4\nangle_deg = 60"), "taylor " + text_of(parse_quad("1e-15")));
+    EXPECT_EQ(alike("rod_mass_kg = 1"), "dop853 " + text_of(parse_quad("1e-14")));
+    EXPECT_EQ(alike("precision = \"quad\""), "taylor " + text_of(parse_quad("1e-30")));
+    auto far = preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-15");
+    EXPECT_THROW(step_all_alike(far, far), Error);
+    // a side with a method of its own keeps it
+    auto mixed = preset_from("[system]\naccuracy = 1e-6\n[b]\nintegrator = \"rk4\"");
+    step_all_alike(mixed, mixed);
+    EXPECT_EQ(mixed.a.integrator, "taylor");
+    EXPECT_EQ(mixed.b.integrator, "rk4");
+}
+
 TEST(Choice, TakesAsFineStepsAsItNeedsHoweverFewTheSamples) {
     const auto scene = make_scene(
         preset_from("[scene]\nduration_s = 3\nsample_hz = 1\n[video]\nfps = 1\n[system]\naccuracy = 1e-10\nmodel = "
