@@ -142,15 +142,15 @@ std::optional<int> loosest(const StepLevels& method, const Does& does, const IsW
 
 MethodChooser::MethodChooser(const Preset& preset, const std::atomic<bool>& stop)
     : preset_(preset), samples_(product(preset.duration_s, preset.sample_hz)->numerator) {
-    for (const auto& [name, spec] : {std::pair('a', &preset_.a), {'b', &preset_.b}}) {
-        if (!spec->accuracy || !spec->track.is_none()) continue;
-        if (groups_.empty() || !choose_together(groups_.front().sides.front().spec, *spec)) groups_.emplace_back();
-        auto& [sides, methods] = groups_.back();
-        if (!sides.empty() && differing_keys(sides.front().spec, *spec).empty()) {
-            sides.front().names += name;
-            continue;
-        }
-        sides.push_back(for_side(preset_, name, [&] { return asking(name, *spec, methods, stop); }));
+    for (const char name : {'a', 'b'}) {
+        const auto& spec = name == 'a' ? preset_.a : preset_.b;
+        if (!spec.accuracy || !spec.track.is_none()) continue;
+        if (groups_.empty() || !choose_together(groups_.front().sides.front().spec, spec)) groups_.emplace_back();
+        auto& group = groups_.back();
+        if (!group.sides.empty() && differing_keys(group.sides.front().spec, spec).empty())
+            group.sides.front().names += name;
+        else
+            group.sides.push_back(for_side(preset_, name, [&] { return asking(name, spec, group.methods, stop); }));
     }
 }
 
@@ -220,7 +220,9 @@ double MethodChooser::work(Asking& side, const StepLevels& method, int level, co
 
 std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const std::atomic<bool>& stop) {
     std::array<std::optional<Side>, 2> chosen;
-    for (auto& [sides, methods] : groups_) {
+    for (auto& group : groups_) {
+        auto& sides = group.sides;
+        const auto& methods = group.methods;
         const auto horizon = [&](Asking& side, const StepLevels& method, int level) {
             return tried(side, method, level, stop).last_within(margin * factor * side.accuracy);
         };
