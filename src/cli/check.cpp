@@ -6,6 +6,7 @@
 #include "figure/computation.hpp"
 #include "film/film.hpp"
 #include "scene/captions.hpp"
+#include "scene/forecast.hpp"
 #include "scene/method_choice.hpp"
 
 #include <fmt/format.h>
@@ -130,7 +131,7 @@ void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool
                         scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon), precision));
     else if (side.choice)
         say(fmt::format("errs by {} {} at most, to the end; verified by {}", scientific(side.choice->estimated_error),
-                        unit, side.choice->verified_by));
+                        unit, side.choice->reference->description()));
     else if (seen.error_s < scene.time(scene.samples))
         say(fmt::format("off by half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", seen.error_s));
     else
@@ -161,20 +162,19 @@ void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool
 }
 
 /// What half or ten times the accuracy would take, against what is asked.
-void print_rivals(const Scene& scene, const SideSpec& spec, const Side& side, const std::atomic<bool>& stop) {
-    const MethodChooser chooser(spec, scene.preset.duration_s, scene.preset.sample_hz, stop);
+void print_rivals(const Scene& scene, Side Scene::*which, const std::atomic<bool>& stop) {
+    const auto& choice = *(scene.*which).choice;
     for (const auto& [factor, title] : {std::pair(2.0, "half"), {0.1, "ten times"}}) {
-        const double accuracy = factor * side.choice->accuracy;
-        if (accuracy > 1) continue;
+        if (factor * choice.accuracy > 1) continue;
         std::string words = "is out of reach";
         try {
-            const auto rival = chooser.choose(accuracy);
+            const auto rivals = scene.chooser->choose(factor, stop);
+            const auto& rival = *rivals[which == &Scene::a ? 0 : 1];
             // where rounding decides how far it holds, it decides the work too
             words = rival.choice->horizon < scene.samples
                         ? fmt::format("holds up to {:.3g} s", scene.time(rival.choice->horizon))
-                        : fmt::format("takes {:.2f} times the work ({}, {})",
-                                      rival.choice->evaluations / side.choice->evaluations, rival.method.name,
-                                      step_control_text(rival));
+                        : fmt::format("takes {:.2f} times the work ({}, {})", rival.choice->work / choice.work,
+                                      rival.method.name, step_control_text(rival));
         } catch (const Error& fault) {
             if (fault.code() != ExitCode::bad_input) throw;
         }
@@ -187,12 +187,12 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     print_line("{}: {}", scene.preset.name, scene.preset.title);
     const auto estimate = estimated_simulation(scene, stop);
     constexpr double patience = 2;  // s, for runs that only inform
-    for (const auto* side : {&scene.a, &scene.b}) {
-        const bool is_a = side == &scene.a;
-        print_side(is_a ? "a" : "b", *side);
-        if (side->replay) continue;
-        if (!estimate.at_least && estimate.seconds < patience) print_forecast(scene, *side, stop);
-        if (side->choice) print_rivals(scene, is_a ? scene.preset.a : scene.preset.b, *side, stop);
+    for (const auto which : {&Scene::a, &Scene::b}) {
+        const auto& side = scene.*which;
+        print_side(which == &Scene::a ? "a" : "b", side);
+        if (side.replay) continue;
+        if (!estimate.at_least && estimate.seconds < patience) print_forecast(scene, side, stop);
+        if (side.choice) print_rivals(scene, which, stop);
     }
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
     print_line("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all", scene.preset.duration_s.value(),

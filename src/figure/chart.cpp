@@ -60,7 +60,7 @@ void check_chart(const TomlReader& table, const ChartSpec& chart) {
 
 void read_chart(TomlReader& table, ChartSpec& chart) {
     // which keys count depends on this one
-    table.read({.key = "width_cm"}, chart.width_cm.emplace(0));
+    table({.key = "width_cm"}, chart.width_cm.emplace(0));
     if (!table.has("width_cm")) chart.width_cm.reset();
     chart_fields(table, chart);
     table.finish();

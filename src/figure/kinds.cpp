@@ -92,7 +92,7 @@ std::string degrees(const Quad& angle) {
     return angle == 0 ? "0" : text_of(angle) + "°";
 }
 
-std::string system_words(const Scene& scene) {
+std::string model_words(const Scene& scene) {
     const auto model = scene.a.motion.model;
     const auto count = scene.preset.a.particles.empty() ? scene.preset.a.links() : scene.preset.a.particles.size();
     const bool particles = !scene.preset.a.particles.empty() || model == Model::constraints;
@@ -125,8 +125,7 @@ std::string release_words(const Scene& scene, const std::vector<std::size_t>& va
 std::string rate_words(const SideSpec& a, const SideSpec& b) {
     const auto& rates = a.omega_deg_per_s;
     constexpr std::size_t most = 3;
-    const bool at_rest = std::all_of(rates.begin(), rates.end(), [](const Quad& rate) { return rate == 0; });
-    if (!a.particles.empty() || at_rest || rates != b.omega_deg_per_s || rates.size() > most) return "";
+    if (!a.particles.empty() || is_zero(rates) || rates != b.omega_deg_per_s || rates.size() > most) return "";
     std::vector<std::string> texts;
     for (const auto& rate : rates) texts.push_back(text_of(rate));
     return fmt::format("ω = {} °/s", fmt::join(texts, "/"));
@@ -167,7 +166,7 @@ bool are_one(const Scene& scene) {
 }
 
 std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::string& apart) {
-    std::vector<std::string> parts{system_words(scene)};
+    std::vector<std::string> parts{model_words(scene)};
     const auto add = [&](std::string words) {
         if (!words.empty()) parts.push_back(std::move(words));
     };

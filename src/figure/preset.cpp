@@ -67,19 +67,15 @@ void top_fields(Visit& visit, FigurePreset& figure) {
 FieldTable release_table(FigureKind::System system) {
     const SideSpec side;
     FieldTable release{"[system]"};
-    chain_fields(release, side);
-    if (system == FigureKind::System::physical_release) {
-        FieldTable with_rods{"[system]"};
-        chain_fields(with_rods, side, not_negative);
-        release.widen(with_rods);
-        physical_fields(release, side.physical);
-    }
+    const bool is_physical = system == FigureKind::System::physical_release;
+    chain_fields(release, side, is_physical ? not_negative : positive);
+    if (is_physical) physical_fields(release, side.physical);
     gravity_field(release, side);
     return release;
 }
 
 /// What moves, in docs/presets.md.
-std::string system_words(FigureKind::System system) {
+std::string what_moves(FigureKind::System system) {
     using System = FigureKind::System;
     if (system == System::none) return "";
     if (system == System::pair)
@@ -166,7 +162,7 @@ std::vector<FieldTable> figure_tables() {
     for (const auto& kind : figure_kinds())
         for (auto& table : kind.tables()) {
             if (table.text.empty())
-                table.text = fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, system_words(kind.system));
+                table.text = fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, what_moves(kind.system));
             all.push_back(std::move(table));
         }
     return all;

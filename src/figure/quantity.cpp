@@ -146,22 +146,6 @@ std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords&
                        quantity == Quantity::parting_time ? ", or apart from the start" : "");
 }
 
-void step_by_series(Preset& pair) {
-    constexpr double most_exact = 1e-13;  // rad, that a swing in double keeps
-    const auto serves = [&](const SideSpec& side) {
-        return side.physical.is_none() && side.accuracy && *side.accuracy >= Quad(most_exact) && !side.is_mechanism() &&
-               (side.model == ModelChoice::automatic || side.model == ModelChoice::angles) &&
-               side.precision == Precision::in_double && (side.links() == 2 || side.links() == 3);
-    };
-    if (!serves(pair.a) || !serves(pair.b)) return;
-    for (auto* side : {&pair.a, &pair.b}) {
-        side->accuracy.reset();
-        side->step_s.reset();
-        side->integrator = "taylor";
-        side->tolerance = parse_quad("1e-15");  // to all digits of double
-    }
-}
-
 Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
                          bool alike, double exponent_duration_s)
     : quantity_(quantity),

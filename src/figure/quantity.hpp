@@ -55,10 +55,6 @@ struct Drawn {
 std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
                                          const std::string& pairs, const std::string& seconds);
 
-/// Where both sides ask for an accuracy and are chains of two or three links in angles: steps them by Taylor series, as
-/// exactly as double does, in place of a choice of the method for every pair.
-void step_by_series(Preset& pair);
-
 /// Finds one quantity of pairs. Where all can be stepped side by side, in lanes: the mean, distances and energies of chains
 /// of two or three links in double by Euler or RK4; flips of two links by Taylor series whatever the integrator. The rest one
 /// by one.

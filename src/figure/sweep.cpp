@@ -1,6 +1,7 @@
 #include "figure/parameter.hpp"
 #include "figure/quantity.hpp"
 #include "figure/spacing.hpp"
+#include "scene/method_choice.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +21,7 @@ public:
         parameter_ = parameter_of(reader, table, "parameter", parameter_name_, pair_);
         check_range(table);
         settings_ = resolved_pair(pair_) + table.finish();
-        if (parameter_.keeps_method) step_by_series(pair_);
+        if (!parameter_.is_of_method) step_all_alike(pair_, twins(0));
         const auto first = twins(0);
         measurements_.emplace_back(table, "quantity", quantity_, first, parameter_.keeps_method, exponent_duration_s_);
         if (exponent_ && quantity_ != Quantity::exponent)

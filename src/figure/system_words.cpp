@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 namespace doppel {
 namespace {
@@ -29,8 +28,7 @@ std::vector<double> doubles(const std::vector<Quad>& numbers) {
 }  // namespace
 
 std::string pendulum_words(std::size_t links) {
-    constexpr std::array words{"a pendulum", "a double pendulum", "a triple pendulum"};
-    return links <= words.size() ? words[links - 1] : fmt::format("a chain of {} links", links);
+    return "a " + chain_words(links);
 }
 
 std::string released_words(const SideSpec& side, std::optional<std::size_t> swept) {
@@ -46,8 +44,7 @@ std::string released_words(const SideSpec& side, std::optional<std::size_t> swep
         return texts.size() <= most_named;
     };
     std::string words = "released";
-    const bool rests = std::all_of(side.omega_deg_per_s.begin(), side.omega_deg_per_s.end(),
-                                   [](const Quad& rate) { return rate == 0; });
+    const bool rests = is_zero(side.omega_deg_per_s);
     if (rests) words += " at rest";
     if (named(angles)) words += fmt::format(" from {}", fmt::join(angles, "/"));
     if (!rests && named(rates)) words += fmt::format(" at {} °/s", fmt::join(rates, "/"));

@@ -2,7 +2,6 @@
 #include "figure/system_words.hpp"
 #include "figure/work_precision.hpp"
 #include "scene/captions.hpp"
-#include "scene/method_choice.hpp"
 
 #include <fmt/ranges.h>
 
@@ -69,7 +68,7 @@ WorkProblem standard_problem(const std::string& name, const StandardProblem& sta
 }
 
 /// What moves, in the words of a subtitle.
-std::string system_words(const WorkProblem& problem, const SideSpec& side) {
+std::string problem_words(const WorkProblem& problem, const SideSpec& side) {
     constexpr std::string_view computed = "double precision, one core";
     if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
     const auto chain = problem.motion.chain->cast<double>();
@@ -118,7 +117,7 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
 WorkProblems problem_of(Preset film) {
     WorkProblems problems;
     problems.all.push_back(make_problem(film.name, film.a, film.duration_s));
-    problems.subtitle = system_words(problems.all.back(), film.a);
+    problems.subtitle = problem_words(problems.all.back(), film.a);
     film.b = film.a;
     problems.comment = commented(resolved_sides(film));
     return problems;

@@ -36,7 +36,7 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
                             {"estimated_error_rad", side.choice->estimated_error},
                             {"horizon_s", scene.time(side.choice->horizon)},
                             {"holds_to_the_end", side.choice->horizon == scene.samples},
-                            {"verified_by", side.choice->verified_by}};
+                            {"verified_by", side.choice->reference->description()}};
     json["steps"] = record.effort.steps;
     json["evaluations"] = record.effort.evaluations;
     json["smallest_step_s"] = record.effort.smallest_step;

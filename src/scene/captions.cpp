@@ -154,18 +154,10 @@ std::string track_words(const Side& side, const TrackSpec& spec) {
     return fmt::format("{}, {} Hz", std::filesystem::path(spec.file).filename().string(), roughly(rate));
 }
 
-/// Of a measured pendulum and its computed twin.
-std::array<SideCaptions, 2> captions_of_tracks(const Scene& scene) {
-    std::array<SideCaptions, 2> words;
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto& side = i == 0 ? scene.a : scene.b;
-        const auto& spec = i == 0 ? scene.preset.a : scene.preset.b;
-        words[i] = side.replay
-                       ? SideCaptions{"measured", track_words(side, spec.track)}
-                       : SideCaptions{"computed", fmt::format("{}, {}", side.method.title, control_words(side))};
-        words[i] = {spec.label.value_or(words[i].heading), spec.note.value_or(words[i].note)};
-    }
-    return words;
+/// Of a measured pendulum or its computed twin.
+SideCaptions captions_of_track(const Side& side, const TrackSpec& track) {
+    if (side.replay) return {"measured", track_words(side, track)};
+    return {"computed", fmt::format("{}, {}", side.method.title, control_words(side))};
 }
 
 /// Of several, or of one.
@@ -174,36 +166,57 @@ std::string system_words(const SideSpec& side, std::string_view plural = "s") {
         const auto masses = side.particles.size();
         return fmt::format("mechanism{} of {}", plural, masses == 1 ? "one mass" : fmt::format("{} masses", masses));
     }
-    switch (side.links()) {
-        case 1:
-            return fmt::format("pendulum{}", plural);
-        case 2:
-            return fmt::format("double pendulum{}", plural);
-        case 3:
-            return fmt::format("triple pendulum{}", plural);
-        default:
-            return fmt::format("chain{} of {} links", plural, side.links());
-    }
+    return chain_words(side.links(), plural);
 }
 
 std::string joined(const std::vector<std::string>& parts) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// Of sides that differ in kind: what each is, and how it starts.
-std::array<SideCaptions, 2> captions_of_kinds(const Scene& scene, const std::array<std::vector<Statement>, 2>& all) {
-    std::array<SideCaptions, 2> words;
-    for (std::size_t side = 0; side < 2; ++side) {
-        const auto& spec = side == 0 ? scene.preset.a : scene.preset.b;
-        std::vector<std::string> start;
-        for (const auto& statement : all[side])
-            if (statement.is_start_angle) start.push_back(statement.text);
-        words[side] = {spec.label.value_or(system_words(spec, "")), spec.note.value_or(joined(start))};
+/// Of a side that differs in kind: what it is, and how it starts.
+SideCaptions captions_of_kind(const SideSpec& spec, const std::vector<Statement>& all) {
+    std::vector<std::string> start;
+    for (const auto& statement : all)
+        if (statement.is_start_angle) start.push_back(statement.text);
+    return {system_words(spec, ""), joined(start)};
+}
+
+/// Of side b, or of side a: what sets it apart.
+SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
+                            const std::vector<KeyDifference>& differences, bool of_b, bool has_label, Wording wording) {
+    std::vector<std::string> differs, start;
+    const auto &own = all[of_b ? 1 : 0], &others = all[of_b ? 0 : 1];
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        if (i >= others.size() || own[i].text != others[i].text)
+            differs.push_back(wording == Wording::plain ? own[i].plain : own[i].text);
+        else if (own[i].is_start_angle && wording == Wording::exact)
+            start.push_back(own[i].text);
     }
-    return words;
+    // what no statement is about
+    if (differs.empty())
+        for (const auto& difference : differences) differs.push_back(difference.words(of_b));
+    const bool says_nothing = differs.empty();
+    if (says_nothing) differs.push_back(of_b ? "b, the same" : "a");
+    // a heading holds two statements; more go to the note
+    constexpr std::size_t most = 2, most_noted = 4;
+    start.insert(start.begin(), differs.begin() + static_cast<long>(std::min(most, differs.size())), differs.end());
+    if (start.size() > most_noted) {
+        start.resize(most_noted);
+        start.back() = "…";
+    }
+    differs.resize(std::min(most, differs.size()));
+    // under a label of its own the note says what sets it apart, too
+    if (has_label && !says_nothing) start.insert(start.begin(), differs.begin(), differs.end());
+    return {joined(differs), joined(start)};
 }
 
 }  // namespace
+
+std::string chain_words(std::size_t links, std::string_view plural) {
+    constexpr std::array<std::string_view, 3> words{"", "double ", "triple "};
+    if (links > words.size()) return fmt::format("chain{} of {} links", plural, links);
+    return fmt::format("{}pendulum{}", words[links - 1], plural);
+}
 
 std::string subscript(std::size_t number) {
     constexpr std::array<std::string_view, 10> digits{"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
@@ -229,39 +242,21 @@ std::string roughly(double value) {
 }
 
 std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
-    if (scene.a.replay || scene.b.replay) return captions_of_tracks(scene);
-    const auto differences = differing_keys(scene.preset.a, scene.preset.b);
-    const std::array all{statements(scene, differences, false), statements(scene, differences, true)};
+    const std::array specs{&scene.preset.a, &scene.preset.b};
+    const bool has_track = scene.a.replay || scene.b.replay, differ = differ_in_kind(*specs[0], *specs[1]);
+    std::vector<KeyDifference> differences;
+    std::array<std::vector<Statement>, 2> all;
+    if (!has_track) {
+        differences = differing_keys(*specs[0], *specs[1]);
+        all = {statements(scene, differences, false), statements(scene, differences, true)};
+    }
     std::array<SideCaptions, 2> words;
-    if (differ_in_kind(scene.preset.a, scene.preset.b)) return captions_of_kinds(scene, all);
-    for (std::size_t side = 0; side < 2; ++side) {
-        std::vector<std::string> differs, start;
-        for (std::size_t i = 0; i < all[side].size(); ++i) {
-            const auto& statement = all[side][i];
-            const auto& text = wording == Wording::plain ? statement.plain : statement.text;
-            if (i >= all[1 - side].size() || all[0][i].text != all[1][i].text)
-                differs.push_back(text);
-            else if (statement.is_start_angle && wording == Wording::exact)
-                start.push_back(text);
-        }
-        // what no statement is about
-        for (std::size_t i = 0, said = differs.size(); said == 0 && i < differences.size(); ++i)
-            differs.push_back(differences[i].words(side == 1));
-        const bool says_nothing = differs.empty();
-        if (says_nothing) differs.push_back(side == 0 ? "a" : "b, the same");
-        // a heading holds two statements; more go to the note
-        constexpr std::size_t most = 2;
-        constexpr std::size_t most_noted = 4;
-        start.insert(start.begin(), differs.begin() + static_cast<long>(std::min(most, differs.size())), differs.end());
-        if (start.size() > most_noted) {
-            start.resize(most_noted);
-            start.back() = "…";
-        }
-        differs.resize(std::min(most, differs.size()));
-        const auto& spec = side == 0 ? scene.preset.a : scene.preset.b;
-        // under a label of its own the note says what sets it apart, too
-        if (spec.label && !says_nothing) start.insert(start.begin(), differs.begin(), differs.end());
-        words[side] = {spec.label.value_or(joined(differs)), spec.note.value_or(joined(start))};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto& spec = *specs[i];
+        words[i] = has_track ? captions_of_track(i == 0 ? scene.a : scene.b, spec.track)
+                   : differ  ? captions_of_kind(spec, all[i])
+                             : captions_apart(all, differences, i == 1, spec.label.has_value(), wording);
+        words[i] = {spec.label.value_or(words[i].heading), spec.note.value_or(words[i].note)};
     }
     return words;
 }
@@ -275,8 +270,7 @@ std::string scene_caption(const Scene& scene, Wording wording) {
             return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;
         };
         if (!side.particles.empty()) return std::all_of(side.particles.begin(), side.particles.end(), rests);
-        return std::all_of(side.omega_deg_per_s.begin(), side.omega_deg_per_s.end(),
-                           [](const Quad& rate) { return rate == 0; });
+        return is_zero(side.omega_deg_per_s);
     };
     std::vector<std::string> common;
     if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));

@@ -7,6 +7,8 @@
 
 namespace doppel {
 
+/// "double pendulum", "chain of 4 links"; of several "double pendulums".
+std::string chain_words(std::size_t links, std::string_view plural = "");
 /// What a chain has besides point masses: "heavy links, friction"; empty where it has nothing.
 std::string physical_words(const PhysicalSpec& physical);
 /// What `one` has where it differs from `other`, in the same order for both: "no viscous friction", "pivot ±0.1 m at 3 Hz".

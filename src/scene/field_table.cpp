@@ -73,16 +73,6 @@ void FieldTable::append(const FieldTable& other) {
     tables.insert(tables.end(), other.tables.begin(), other.tables.end());
 }
 
-void FieldTable::widen(const FieldTable& other) {
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-        auto& bounds = fields[i].bounds;
-        const auto& more = other.fields[i].bounds;
-        if (more.low < bounds.low || (more.low == bounds.low && !more.is_open))
-            bounds.low = more.low, bounds.is_open = more.is_open;
-        bounds.high = std::max(bounds.high, more.high);
-    }
-}
-
 std::string_view FieldTable::key() const {
     const std::string_view inside = std::string_view(name).substr(0, name.find(']'));
     return inside.substr(inside.find_last_of("[.") + 1);
@@ -113,10 +103,6 @@ std::vector<FieldTable> film_tables() {
     const Preset preset;
     const SideSpec& side = preset.a;
     const ParticleSpec released;
-    SideSpec mechanism;
-    mechanism.particles.resize(1);
-    VideoSpec webm;
-    webm.format = FilmFormat::webm;
     FieldTable top{"title, subtitle"}, scene{"[scene]"}, system{"[system], [a], [b]"}, video{"[video]"};
     FieldTable torque{std::string(torque_table),
                       "A motor at a joint of a chain: amplitude · cos(2π · frequency · t + phase).\n"};
@@ -124,25 +110,13 @@ std::vector<FieldTable> film_tables() {
         "[[system.particle]]",
         "In place of a chain, a system may have particles; constraints and forces may stand on top of a chain, too, "
         "whose\nbobs are called `bob1`, `bob2` …\n"};
+    system.is_widest = video.is_widest = true;
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
     scene(kind_field, std::string(pair_kind));
     clock_fields(scene, preset);
     column_fields(scene, preset);
-    FieldTable with_rods{"[system]"};
-    chain_fields(system, side);
-    chain_fields(with_rods, side, not_negative);
-    system.widen(with_rods);
-    physical_fields(system, side.physical);
-    FieldTable gravity{"[system]"}, other_gravity = gravity;
-    gravity_field(gravity, side);
-    gravity_field(other_gravity, static_cast<const SideSpec&>(mechanism));
-    gravity.widen(other_gravity);
-    system.fields.push_back(gravity.fields[0]);
-    system(model_field, side.model);
-    system(accuracy_field, side.accuracy);
-    method_fields(system, side);
-    precision_fields(system, side);
+    side_fields(system, side);
     particle.fields.push_back(
         {"name", "text", "", "by which constraints and forces call it", std::string(must_be_given)});
     particle.fields.back().is_drawn = true;
@@ -151,11 +125,7 @@ std::vector<FieldTable> film_tables() {
     part_fields(torque, static_cast<const TorqueSpec&>(TorqueSpec()));
     video(size_field, preset.video.size);
     video(preview_field, false);
-    FieldTable format{"[video]"}, other_format = format;
-    format_fields(format, preset.video);
-    format_fields(other_format, webm);
-    format.widen(other_format);
-    video.fields.insert(video.fields.end(), format.fields.begin(), format.fields.end());
+    format_fields(video, preset.video);
     time_fields(video, preset.video);
     layout_fields(video, preset.video);
     style_fields(video, preset.video);

@@ -64,6 +64,7 @@ struct FieldTable {
     std::string name, text = {};  // `text` stands above the keys in docs/presets.md
     std::vector<ListedField> fields = {};
     std::vector<FieldTable> tables = {};  // inside this one
+    bool is_widest = false;               // with all numbers that keys take, whatever others say
 
     template <class T>
     void operator()(const Field& field, const T& by_default) {
@@ -75,7 +76,8 @@ struct FieldTable {
             choices.insert(choices.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
         }
         fields.push_back({field.key, type_words<T>(), field.unit, field.help, default_text(field, by_default),
-                          std::move(choices), field.bounds, field.most, field.pattern, field.is_drawn});
+                          std::move(choices), is_widest ? field.otherwise.value_or(field.bounds) : field.bounds,
+                          field.most, field.pattern, field.is_drawn});
     }
     template <class Visit>
     void table(std::string_view key, const Visit& visit) {
@@ -86,8 +88,6 @@ struct FieldTable {
 
     /// Takes the keys and tables of `other`, too.
     void append(const FieldTable& other);
-    /// Takes the numbers that `other`, the same list beside other values, takes too.
-    void widen(const FieldTable& other);
 
     /// "system" of "[system]", "colors" of "[video.colors]".
     std::string_view key() const;

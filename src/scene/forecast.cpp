@@ -1,5 +1,6 @@
+#include "scene/forecast.hpp"
+
 #include "analysis/reference.hpp"
-#include "scene/method_choice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +72,8 @@ std::optional<Forecast::Limit> limit_of(const Ends& ends, const Scene& scene, co
 }  // namespace
 
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
-    const auto reference = reference_trajectory(side.motion, scene.samples, side.reach, off, stop);
+    const auto known = side.choice ? side.choice->reference : nullptr;
+    const auto& reference = known ? *known : reference_trajectory(side.motion, scene.samples, side.reach, off, stop);
     const auto history = error_history(side.motion, reference, off, stop);
     if (history.error.empty()) throw method_failed("the method breaks down at once");
     Forecast seen{.error = history.error.back(),

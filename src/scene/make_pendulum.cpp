@@ -28,10 +28,7 @@ PhysicalPendulum<Quad> physical_of(const SideSpec& spec) {
         made.inertia[i] = from.inertia_kg_m2[i] + body * (at - center) * (at - center) + rod * length * length / 12 +
                           rod * (middle - center) * (middle - center);
     }
-    const auto given = [](const std::vector<Quad>& list) {
-        const bool is_none = std::all_of(list.begin(), list.end(), [](const Quad& value) { return value == 0; });
-        return is_none ? std::vector<Quad>() : list;
-    };
+    const auto given = [](const std::vector<Quad>& list) { return is_zero(list) ? std::vector<Quad>() : list; };
     made.friction = {given(from.joint_viscous_N_m_s),       given(from.joint_coulomb_N_m),
                      given(from.arm_drag_linear_N_m_s),     given(from.arm_drag_quadratic_N_m_s2),
                      given(from.air_drag_quadratic_N_m_s2), given(from.drag_linear_N_s_per_m),
@@ -51,26 +48,6 @@ bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other) {
     const auto same_joint = [](const TorqueSpec& a, const TorqueSpec& b) { return a.joint == b.joint; };
     return one.center_m.empty() == other.center_m.empty() &&
            std::equal(one.torques.begin(), one.torques.end(), other.torques.begin(), other.torques.end(), same_joint);
-}
-
-PhysicalSpec between(const PhysicalSpec& from, const PhysicalSpec& to, const Quad& share) {
-    auto made = from;
-    const auto move = [&](Quad& number, const Quad& last) { number += share * (last - number); };
-    const auto move_all = [&](std::vector<Quad>& numbers, const std::vector<Quad>& last) {
-        for (std::size_t i = 0; i < numbers.size(); ++i) move(numbers[i], last[i]);
-    };
-    const auto lists = made.lists();
-    const auto last = to.lists();
-    for (std::size_t k = 0; k < lists.size(); ++k) move_all(*lists[k], *last[k]);
-    move_all(made.center_m, to.center_m);
-    move(made.joint_coulomb_width_deg_per_s, to.joint_coulomb_width_deg_per_s);
-    for (const auto number :
-         {&PivotSpec::direction_deg, &PivotSpec::amplitude_m, &PivotSpec::frequency_hz, &PivotSpec::phase_deg})
-        move(made.pivot.*number, to.pivot.*number);
-    for (std::size_t k = 0; k < made.torques.size(); ++k)
-        for (const auto number : {&TorqueSpec::amplitude_N_m, &TorqueSpec::frequency_hz, &TorqueSpec::phase_deg})
-            move(made.torques[k].*number, to.torques[k].*number);
-    return made;
 }
 
 }  // namespace doppel

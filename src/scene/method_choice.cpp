@@ -1,89 +1,24 @@
 #include "scene/method_choice.hpp"
 
-#include "analysis/reference.hpp"
+#include "integrate/turns.hpp"
 #include "scene/captions.hpp"
-#include "scene/scene.hpp"
+#include "scene/side_keys.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <optional>
+#include <numeric>
 
 namespace doppel {
 namespace {
 
-constexpr double margin = 0.8;   // of what is asked: what an error may come to, at the samples
+constexpr double margin = 0.8;   // of an accuracy: the greatest error at the samples
 constexpr double enough = 0.5;   // rad, of an error: nothing is known beyond
-constexpr double nearly = 0.97;  // as far as the finest setting gets, where rounding keeps all from the end
+constexpr double nearly = 0.97;  // of the horizon of the finest setting, where rounding ends all of them early
 
-/// A setting, tried.
-struct Trial {
-    int level;
-    ErrorHistory history;
-    long horizon;  // the last sample to which the accuracy holds; −1 = none
-
-    /// Evaluations of the right-hand side a sample.
-    double work() const {
-        return static_cast<double>(history.effort.evaluations) /
-               static_cast<double>(std::max(history.effort_samples, 1L));
-    }
-};
-
-/// The loosest setting of one method that does.
-class Search {
-public:
-    Search(const StepSettings& control, double accuracy, const ReferenceTrajectory& reference,
-           const std::atomic<bool>& stop)
-        : control_(control), allowed_(margin * accuracy), reference_(reference), stop_(stop) {}
-
-    /// To the last of `samples`, or close to where the finest gets; which is taken if it does not get to `least`.
-    Trial best(long samples, long least) {
-        long goal = samples;
-        if (tried(control_.start()).horizon < goal) {
-            const auto& finest = tried(control_.finest());
-            if (finest.horizon < least) return finest;
-            if (finest.horizon < goal)
-                goal = std::max(least, std::lround(nearly * static_cast<double>(finest.horizon)));
-        }
-        const auto does = [&](int level) { return tried(level).horizon >= goal; };
-        // by growing strides from what the table suggests, then by halves
-        int fine = control_.start(), loose = fine, stride = 1;
-        if (does(fine)) {
-            do {
-                fine = loose;
-                loose = std::max(fine - stride, -1);
-                stride *= 2;
-            } while (loose >= 0 && does(loose));
-        } else {
-            do {
-                loose = fine;
-                fine = std::min(loose + stride, control_.finest());
-                stride *= 2;
-            } while (!does(fine));
-        }
-        while (fine - loose > 1) {
-            const int middle = (fine + loose) / 2;
-            (does(middle) ? fine : loose) = middle;
-        }
-        return tried(fine);
-    }
-
-private:
-    const Trial& tried(int level) {
-        const auto known = trials_.find(level);
-        if (known != trials_.end()) return known->second;
-        auto history = error_history(control_.side(level).motion, reference_, enough, stop_);
-        const long horizon = history.last_within(allowed_);
-        return trials_.emplace(level, Trial{level, std::move(history), horizon}).first->second;
-    }
-
-    const StepSettings& control_;
-    double allowed_;
-    const ReferenceTrajectory& reference_;
-    const std::atomic<bool>& stop_;
-    std::map<int, Trial> trials_;
-};
+bool in_quad(const SideSpec& spec) {
+    return spec.precision == Precision::in_quad;
+}
 
 /// √(l/g) of the mean link, s; of what knows no gravity, a sixtieth of the run.
 double time_unit_of(const SideSpec& spec, double duration) {
@@ -96,132 +31,284 @@ double time_unit_of(const SideSpec& spec, double duration) {
     return std::sqrt(length / static_cast<double>(spec.gravity_m_per_s2));
 }
 
-/// Below it no number of the table can be known, rad.
-double least_error(Precision precision) {
+/// Below it no error can be known, rad.
+double least_error(const SideSpec& spec) {
     return 2 * pi *
-           (precision == Precision::in_quad ? static_cast<double>(std::numeric_limits<Quad>::epsilon())
-                                            : std::numeric_limits<double>::epsilon());
+           (in_quad(spec) ? static_cast<double>(std::numeric_limits<Quad>::epsilon())
+                          : std::numeric_limits<double>::epsilon());
 }
 
-/// What would be within reach, for whoever asked for more.
-Error out_of_reach(double accuracy, const Trial& trial, const SideSpec& spec, double swing, const Rational& sample_hz,
-                   long samples) {
-    const bool quad = spec.precision == Precision::in_quad;
-    const auto within = [&](double seconds) {
-        return trial.history.at(static_cast<std::size_t>(std::lround(seconds * sample_hz.value()))) / margin;
-    };
-    const double to_end = within(static_cast<double>(samples) / sample_hz.value());
-    const auto up = [](double value) {
-        const double digit = std::pow(10, std::floor(std::log10(value)));
-        return fmt::format("{:.0e}", std::ceil(value / digit) * digit);
-    };
-    return bad_input(
-        "accuracy = {:.3g} rad is beyond {} here: it would hold for {:.2g} s; within reach are {} for {:.2g} s{}{}",
-        accuracy, quad ? "quad" : "double", std::max(0.0, static_cast<double>(trial.horizon) / sample_hz.value()),
-        std::isfinite(within(swing)) ? up(within(swing)) : "none", swing,
-        to_end < enough ? fmt::format(" and {} to the end", up(to_end)) : "",
-        quad ? "" : "; precision = \"quad\" reaches further");
+/// 1e-2, 3e-3, 1e-3 …
+std::string tolerance_at(int level) {
+    constexpr int first_decade = -2;
+    return fmt::format("{}e{}", level % 2 == 0 ? 1 : 3, first_decade - (level + 1) / 2);
 }
 
-/// The methods that are the table's cheapest for this accuracy or a finer one: of these nothing finer is left out, so that
-/// less accuracy never takes more work.
-std::vector<MeasuredMethod> cheapest_methods(const SideSpec& spec, double accuracy) {
-    std::vector<MeasuredMethod> all;
-    const auto is_new = [&](const MeasuredMethod& measured) {
-        return std::none_of(all.begin(), all.end(), [&](const MeasuredMethod& known) {
-            return known.model == measured.model && known.method == measured.method;
-        });
-    };
-    constexpr int finest = 22;  // the table has an accuracy each half decade
-    for (int half_decades = 0; half_decades <= finest; ++half_decades) {
-        const double of_table = std::pow(10, -0.5 * half_decades);
-        if (of_table > accuracy * 1.0001 && half_decades < finest) continue;
-        const auto measured =
-            measured_methods(spec, half_decades < finest ? of_table : std::min(accuracy, finest_in_table));
-        if (!measured.empty() && is_new(measured.front())) all.push_back(measured.front());
-    }
-    if (all.empty()) throw bad_input("no method that serves this system was measured to reach accuracy = {}", accuracy);
-    return all;
+/// The loosest that is `most` or less.
+int level_of_tolerance(double most) {
+    int level = 0;
+    while (static_cast<double>(parse_quad(tolerance_at(level))) > most * (1 + 1e-9)) ++level;
+    return level;
 }
 
-/// A method, and the trial of it that did best.
-struct Found {
-    StepSettings control;
-    Trial trial;
+/// 1, 2, 3, 4, 6, 8, 12 …
+long steps_at(int level) {
+    return level == 0 ? 1 : level % 2 == 1 ? 1L << (level + 1) / 2 : 3L << (level / 2 - 1);
+}
 
-    /// Further; or as far, or short of the end nearly so, with less work.
-    bool beats(const Found& other, long end) const {
-        const auto reaches = [&](const Found& one, const Found& two) {
-            const long goal = two.trial.horizon;
-            return static_cast<double>(one.trial.horizon) >= (goal == end ? 1 : nearly) * static_cast<double>(goal);
-        };
-        if (reaches(*this, other) && reaches(other, *this)) return trial.work() < other.trial.work();
-        return trial.horizon > other.trial.horizon;
-    }
-};
+/// The fewest that are `least` or more. Throws Error (exit 2) where those are too many to count.
+int level_of_steps(double least) {
+    constexpr double most = 0x1p40;
+    if (!(least <= most)) throw bad_input("accuracy would take {:.2g} steps a sample: no run of these ends", least);
+    int level = 0;
+    while (static_cast<double>(steps_at(level)) < least) ++level;
+    return level;
+}
 
-std::string why_words(const SideSpec& spec, const StepSettings& chosen, double accuracy) {
-    const auto all = measured_methods(spec, accuracy);
-    const auto of_method = [&](bool same) {
-        return std::find_if(all.begin(), all.end(),
-                            [&](const auto& one) { return (one.method == chosen.method().name) == same; });
-    };
-    const auto taken = of_method(true), rival = of_method(false);
-    const bool cheapest = taken == all.begin();
-    auto words = cheapest ? fmt::format("the cheapest way to {} rad that was measured", scientific(accuracy))
-                          : fmt::format("takes less work here than {}, the cheapest way to {} rad that was measured",
-                                        all.front().method, scientific(accuracy));
-    if (cheapest && rival != all.end() && rival->cost > taken->cost)
-        words += fmt::format("; {} would take {:.1f} times as long", rival->method, rival->cost / taken->cost);
-    return words;
+/// Whether two sides differ in no more than what moves.
+bool choose_together(const SideSpec& a, const SideSpec& b) {
+    return a.accuracy == b.accuracy && a.model == b.model && a.precision == b.precision && a.stabilise == b.stabilise &&
+           a.stabilise_rate_per_s == b.stabilise_rate_per_s;
 }
 
 }  // namespace
 
-MethodChooser::MethodChooser(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
-                             const std::atomic<bool>& stop)
-    : spec_(spec),
-      duration_(duration),
-      sample_hz_(sample_hz),
-      stop_(stop),
-      time_unit_(time_unit_of(spec, duration.value())),
-      samples_(product(duration, sample_hz)->numerator) {
-    const StepSettings any(spec, sample_hz, cheapest_methods(spec, finest_in_table).front(), time_unit_);
-    const auto side = any.side(any.finest());
-    reference_ = reference_trajectory(side.motion, samples_, side.reach, enough, stop);
+// The rule, and the few costs that it takes; tests/scene/choice_study_test.cpp measures what it is worth.
+
+std::span<const std::string_view> methods_for(const MotionSpec& motion) {
+    static constexpr std::array<std::string_view, 1> series{"taylor"};
+    static constexpr std::array<std::string_view, 4> all{"dop853", "dopri5", "adams", "taylor"};
+    const bool is_ideal = motion.model == Model::angles && !motion.physical;
+    if (is_ideal || motion.precision == Precision::in_quad) return series;
+    const bool has_events = motion.physical && !motion.physical->friction.coulomb.empty();
+    // steps of adams miss events; series by a tape are worth it where the right-hand side solves for constraints
+    return std::span(all).first(has_events ? 2 : motion.model == Model::mechanism ? 4 : 3);
 }
 
-Side MethodChooser::choose(double accuracy) const {
-    const double swing = std::min(duration_.value(), 2 * pi * time_unit_);
-    const long swing_samples = std::min(samples_, std::lround(std::ceil(swing * sample_hz_.value() * (1 - 1e-9))));
-    std::optional<Found> best;
-    for (const auto& measured : cheapest_methods(spec_, accuracy)) {
-        const StepSettings control(spec_, sample_hz_, measured, time_unit_);
-        Found found{control, Search(control, accuracy, reference_, stop_).best(samples_, swing_samples)};
-        if (!best || found.beats(*best, samples_)) best.emplace(std::move(found));
+double work_of(const MotionSpec& motion, const Effort& effort, long samples) {
+    // of two and three masses, on one core of an AMD EPYC: an evaluation 95 to 180 ns
+    constexpr double on_rods = 0.35, of_order = 4.5;  // 45 ns, and 365 to 960 for an order of a series by a tape
+    const double interpolation = motion.method == "dop853"   ? 1.3  // 190 ns; 75; 300
+                                 : motion.method == "dopri5" ? 0.5
+                                 : motion.method == "taylor" ? 2
+                                                             : 0;
+    const bool by_tape = motion.method == "taylor" && motion.model != Model::angles;
+    const bool follows_turns = motion.chain && motion.model != Model::angles;
+    const double portions = follows_turns ? std::ceil(motion.sample_interval.value() / Turns::longest) : 1;
+    return static_cast<double>(effort.evaluations) * (by_tape ? of_order : 1) *
+               (motion.model == Model::constraints ? on_rods : 1) +
+           static_cast<double>(samples) * portions * interpolation;
+}
+
+StepLevels::StepLevels(std::string_view method_name, const SideSpec& spec, const Rational& sample_hz, double time_unit)
+    : method(method_name) {
+    const auto accuracy = static_cast<double>(*spec.accuracy);
+    if (find_method(method)->adaptive) {
+        finest = level_of_tolerance(in_quad(spec) ? 1e-30 : 1e-14);
+        start = std::min(level_of_tolerance(accuracy / 1000), finest);
+    } else {
+        const double step = 0.08 * std::pow(accuracy, 0.14) * time_unit;  // of adams
+        start = level_of_steps(1 / (sample_hz.value() * step));
+        finest = start + 12;  // 64 times as many
     }
-    const auto& [control, trial] = *best;
-    const auto& history = trial.history;
-    if (trial.horizon < swing_samples)
-        throw history.failure.empty()
-            ? out_of_reach(accuracy, trial, spec_, swing, sample_hz_, samples_)
-            : method_failed("the motion breaks down within {:.2g} s: {}",
-                            static_cast<double>(history.error.size()) / sample_hz_.value(), history.failure);
-
-    auto side = control.side(trial.level);
-    side.choice = MethodChoice{
-        .accuracy = accuracy,
-        .estimated_error = std::max(history.at(static_cast<std::size_t>(trial.horizon)), least_error(spec_.precision)),
-        .horizon = trial.horizon,
-        .verified_by = reference_.description(),
-        .evaluations = trial.work() * static_cast<double>(samples_)};
-    side.why = why_words(spec_, control, accuracy);
-    return side;
 }
 
-Side choose_side(const SideSpec& spec, const Rational& duration, const Rational& sample_hz,
-                 const std::atomic<bool>& stop) {
-    return MethodChooser(spec, duration, sample_hz, stop).choose(static_cast<double>(*spec.accuracy));
+Side StepLevels::side(SideSpec spec, const Rational& sample_hz, int level) const {
+    spec.accuracy.reset();
+    spec.integrator = method;
+    if (find_method(method)->adaptive)
+        spec.tolerance = parse_quad(tolerance_at(level));
+    else
+        spec.step_s = quotient({1, steps_at(level)}, sample_hz);
+    return make_side(spec, sample_hz);
+}
+
+namespace {
+
+/// The loosest level that does, level by level from the start; a finer one only while those before are worth their work.
+template <class Does, class IsWorth>
+std::optional<int> loosest(const StepLevels& method, const Does& does, const IsWorth& is_worth) {
+    int level = method.start;
+    if (does(level)) {
+        while (level > 0 && does(level - 1)) --level;
+        return level;
+    }
+    while (level < method.finest && is_worth(level))
+        if (does(++level)) return level;
+    return std::nullopt;
+}
+
+}  // namespace
+
+MethodChooser::MethodChooser(const Preset& preset, const std::atomic<bool>& stop)
+    : preset_(preset), samples_(product(preset.duration_s, preset.sample_hz)->numerator) {
+    for (const char name : {'a', 'b'}) {
+        const auto& spec = name == 'a' ? preset_.a : preset_.b;
+        if (!spec.accuracy || !spec.track.is_none()) continue;
+        if (groups_.empty() || !choose_together(groups_.front().sides.front().spec, spec)) groups_.emplace_back();
+        auto& group = groups_.back();
+        if (!group.sides.empty() && differing_keys(group.sides.front().spec, spec).empty())
+            group.sides.front().names += name;
+        else
+            group.sides.push_back(for_side(preset_, name, [&] { return asking(name, spec, group.methods, stop); }));
+    }
+}
+
+MethodChooser::Asking MethodChooser::asking(char name, const SideSpec& spec, std::vector<StepLevels>& methods,
+                                            const std::atomic<bool>& stop) const {
+    const double time_unit = time_unit_of(spec, preset_.duration_s.value());
+    const double swing = std::ceil(2 * pi * time_unit * preset_.sample_hz.value() * (1 - 1e-9));
+    const auto levels = [&](std::string_view method) { return StepLevels(method, spec, preset_.sample_hz, time_unit); };
+    const auto any = levels("taylor").side(spec, preset_.sample_hz, 0);
+    std::vector<StepLevels> own;
+    for (const auto& method : methods_for(any.motion)) own.push_back(levels(method));
+    if (methods.empty()) {
+        methods = std::move(own);
+    } else {  // those that both sides have
+        std::erase_if(methods, [&](StepLevels& method) {
+            const auto same = std::ranges::find(own, method.method, &StepLevels::method);
+            if (same != own.end()) method.finest = std::max(method.finest, same->finest);
+            return same == own.end();
+        });
+        if (methods.empty()) methods = {levels("dop853")};  // which steps every model
+    }
+    return {.names = std::string(1, name),
+            .spec = spec,
+            .accuracy = static_cast<double>(*spec.accuracy),
+            .swing_samples = std::lround(std::min(swing, static_cast<double>(samples_))),
+            .reference = std::make_shared<const ReferenceTrajectory>(
+                reference_trajectory(any.motion, samples_, any.reach, enough, stop)),
+            .tried = {}};
+}
+
+const ErrorHistory& MethodChooser::tried(Asking& side, const StepLevels& method, int level,
+                                         const std::atomic<bool>& stop) const {
+    const std::pair setting(method.method, level);
+    const auto known = side.tried.find(setting);
+    if (known != side.tried.end()) return known->second;
+    const auto motion = method.side(side.spec, preset_.sample_hz, level).motion;
+    return side.tried.emplace(setting, error_history(motion, *side.reference, enough, stop)).first->second;
+}
+
+Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, long horizon,
+                                  const Asking& side) const {
+    const auto seconds = [&](long sample) { return static_cast<double>(sample) / preset_.sample_hz.value(); };
+    if (!history.failure.empty())
+        return method_failed("the motion breaks down within {:.2g} s: {}",
+                             seconds(static_cast<long>(history.error.size())), history.failure);
+    const auto within = [&](long sample) { return history.at(static_cast<std::size_t>(sample)) / margin; };
+    const double for_swing = within(side.swing_samples), to_end = within(samples_);
+    const auto up = [](double value) {
+        const double digit = std::pow(10, std::floor(std::log10(value)));
+        return fmt::format("{:.0e}", std::ceil(value / digit) * digit);
+    };
+    const bool quad = in_quad(side.spec);
+    return bad_input(
+        "accuracy = {:.3g} rad is beyond {} here: it would hold for {:.2g} s; within reach are {} for {:.2g} s{}{}",
+        accuracy, quad ? "quad" : "double", std::max(0.0, seconds(horizon)),
+        std::isfinite(for_swing) ? up(for_swing) : "none", seconds(side.swing_samples),
+        to_end < enough ? fmt::format(" and {} to the end", up(to_end)) : "",
+        quad ? "" : "; precision = \"quad\" reaches further");
+}
+
+double MethodChooser::work(Asking& side, const StepLevels& method, int level, const std::atomic<bool>& stop) const {
+    const auto& history = tried(side, method, level, stop);
+    const long samples = std::max(history.effort_samples, 1L);
+    return work_of(method.side(side.spec, preset_.sample_hz, level).motion, history.effort, samples) *
+           static_cast<double>(samples_) / static_cast<double>(samples);
+}
+
+std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const std::atomic<bool>& stop) {
+    std::array<std::optional<Side>, 2> chosen;
+    for (auto& group : groups_) {
+        auto& sides = group.sides;
+        const auto& methods = group.methods;
+        const auto horizon = [&](Asking& side, const StepLevels& method, int level) {
+            return tried(side, method, level, stop).last_within(margin * factor * side.accuracy);
+        };
+        std::vector<long> goals(sides.size(), samples_);
+        const auto does = [&](const StepLevels& method, int level) {
+            return std::equal(sides.begin(), sides.end(), goals.begin(),
+                              [&](Asking& side, long goal) { return horizon(side, method, level) >= goal; });
+        };
+        if (std::ranges::none_of(methods, [&](const auto& method) { return does(method, method.start); })) {
+            // nearly as far as the method that gets furthest
+            const auto& best = *std::ranges::max_element(methods, {}, [&](const StepLevels& method) {
+                return std::accumulate(sides.begin(), sides.end(), 0L, [&](long sum, Asking& side) {
+                    return sum + horizon(side, method, method.finest);
+                });
+            });
+            for (std::size_t i = 0; i < sides.size(); ++i) {
+                const long furthest = horizon(sides[i], best, best.finest);
+                if (furthest < sides[i].swing_samples)
+                    for_side(preset_, sides[i].names[0], [&] {
+                        throw out_of_reach(factor * sides[i].accuracy, tried(sides[i], best, best.finest, stop),
+                                           furthest, sides[i]);
+                    });
+                if (furthest < samples_)
+                    goals[i] = std::max(sides[i].swing_samples, std::lround(nearly * static_cast<double>(furthest)));
+            }
+        }
+        const auto work_at = [&](const StepLevels& method, int level) {
+            return std::accumulate(sides.begin(), sides.end(), 0.0,
+                                   [&](double sum, Asking& side) { return sum + work(side, method, level, stop); });
+        };
+        struct Found {
+            const StepLevels* method;
+            int level;
+            double work;
+        };
+        std::vector<Found> found;  // the least work first
+        for (const auto& method : methods) {
+            const auto level = loosest(
+                method, [&](int at) { return does(method, at); },
+                [&](int at) { return found.empty() || work_at(method, at) < found.front().work; });
+            if (level) found.push_back({&method, *level, work_at(method, *level)});
+            std::ranges::stable_sort(found, {}, &Found::work);
+        }
+        const auto& [method, level, least] = found.front();
+        auto why = fmt::format("; fastest method: {}", method->method);
+        if (found.size() > 1)
+            why += fmt::format(", {:.2g} times the work of {}", least / found[1].work, found[1].method->method);
+        for (auto& asking : sides) {
+            auto side = method->side(asking.spec, preset_.sample_hz, level);
+            const auto& history = tried(asking, *method, level, stop);
+            const long last = horizon(asking, *method, level);
+            side.why += why;
+            side.choice = MethodChoice{
+                .accuracy = factor * asking.accuracy,
+                .estimated_error = std::max(history.at(static_cast<std::size_t>(last)), least_error(asking.spec)),
+                .horizon = last,
+                .reference = asking.reference,
+                .work = work(asking, *method, level, stop)};
+            for (const char name : asking.names) chosen[name == 'a' ? 0 : 1] = side;
+        }
+    }
+    return chosen;
+}
+
+void step_all_alike(Preset& pair, const Preset& first) {
+    const std::array sides{&pair.a, &pair.b};
+    const auto asks = [](const SideSpec* side) { return side->accuracy && side->track.is_none(); };
+    if (std::ranges::none_of(sides, asks)) return;
+    // ideal chains of two or three links in angles keep that for a swing in double
+    const auto surely_keeps = [&](const SideSpec* side) {
+        return !asks(side) || (*side->accuracy >= Quad(1e-13) && side->physical.is_none() && !side->is_mechanism() &&
+                               side->stabilise == Stabilise::none && side->links() <= 3 &&
+                               (side->model == ModelChoice::automatic || side->model == ModelChoice::angles));
+    };
+    const std::atomic<bool> never = false;
+    std::array<std::optional<Side>, 2> chosen;
+    if (!std::ranges::all_of(sides, surely_keeps)) chosen = MethodChooser(first, never).choose(1, never);
+    for (std::size_t i = 0; i < 2; ++i) {
+        auto& side = *sides[i];
+        if (!asks(&side)) continue;
+        const bool by_series = !chosen[i] || chosen[i]->method.name == "taylor";
+        side.accuracy.reset();
+        side.step_s.reset();
+        side.integrator = by_series ? "taylor" : "dop853";
+        side.tolerance = parse_quad(in_quad(side) ? "1e-30" : by_series ? "1e-15" : "1e-14");
+    }
 }
 
 }  // namespace doppel

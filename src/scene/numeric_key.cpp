@@ -14,59 +14,75 @@
 namespace doppel {
 namespace {
 
-/// Visits lists of fields, and hands the number of one key to `use`.
-template <class Use>
-class NumberVisitor {
-public:
-    NumberVisitor(std::string_view key, const Use& use) : key_(key), use_(use) {}
+template <class T>
+constexpr bool holds_numbers =
+    std::is_same_v<T, Quad> || std::is_same_v<T, QuadPair> || std::is_same_v<T, std::vector<Quad>>;
+template <class T>
+constexpr bool holds_numbers<std::optional<T>> = holds_numbers<T>;
+
+template <class T>
+std::span<Quad> numbers_in(T& member) {
+    if constexpr (is_optional<T>) {
+        if (!member) member.emplace();
+        return numbers_in(*member);
+    } else if constexpr (std::is_same_v<T, Quad>) {
+        return {&member, 1};
+    } else {
+        return member;
+    }
+}
+
+/// Finds the number of one key in lists of fields: real ones, of an array or a single one; a whole one; or a step.
+struct NumberVisitor {
+    std::string_view key;
+    std::optional<int> put_whole = {};  // in place of a whole one: lists of fields go on by it
+    std::optional<Field> field = {};
+    std::span<Quad> values = {};
+    bool is_whole = false;
+    std::optional<Rational>* step = nullptr;
+    std::vector<std::string_view> names = {};  // of all numbers
 
     template <class T>
-    void operator()(const Field& field, T& member) {
-        if constexpr (std::is_invocable_v<const Use&, const Field&, T&>) {
-            names_.push_back(field.key);
-            if (field.key != key_) return;
-            found_ = true;
-            use_(field, member);
+    void operator()(const Field& of, T& member) {
+        constexpr bool is_int = std::is_same_v<T, int>, is_step = std::is_same_v<T, std::optional<Rational>>;
+        if constexpr (is_int || is_step || holds_numbers<T>) {
+            if constexpr (is_optional<T> && !is_step)
+                if (!member && of.absent.empty()) return;  // no number holds in its place
+            names.push_back(of.key);
+            if (of.key != key) return;
+            field = of;
+            is_whole = is_int;
+            if constexpr (is_int)
+                member = put_whole.value_or(member);
+            else if constexpr (is_step)
+                step = &member;
+            else
+                values = numbers_in(member);
         }
     }
     static bool from_command_line(std::string_view) { return false; }
     template <class Visit>
     static void table(std::string_view, const Visit&) {}  // visit_side() goes there itself
-
-    bool found() const { return found_; }
-    const std::vector<std::string_view>& names() const { return names_; }
-
-private:
-    std::string_view key_;
-    const Use& use_;
-    bool found_ = false;
-    std::vector<std::string_view> names_;
 };
 
-/// What numbers are made of: use(field, value) for one that is there, or may be.
-template <class UseReal, class UseWhole, class UseStep>
-struct NumberUse {
-    std::optional<std::size_t> element;
-    UseReal real;
-    UseWhole whole;
-    UseStep step;
+/// All numbers of a chain and of what it has besides, an array as one.
+struct AllNumbers {
+    std::vector<std::span<Quad>> all = {};
 
-    void operator()(const Field& field, Quad& x) const { real(field, std::span(&x, 1)); }
-    void operator()(const Field& field, std::optional<Quad>& x) const {
-        if (!x) x.emplace(0);
-        real(field, std::span(&*x, 1));
+    explicit AllNumbers(SideSpec& side) {
+        side_fields(*this, side);
+        for_each_entry(side, [&](auto, auto, const auto&, const auto& fields) { fields(*this); });
     }
-    void operator()(const Field& field, std::vector<Quad>& x) const { real(field, std::span(x)); }
-    void operator()(const Field& field, QuadPair& x) const { real(field, std::span(x)); }
-    void operator()(const Field& field, std::optional<QuadPair>& x) const {
-        if (!x) x.emplace();
-        real(field, std::span(*x));
+    template <class T>
+    void operator()(const Field&, T& member) {
+        if constexpr (holds_numbers<T> && !is_optional<T>) all.push_back(numbers_in(member));
     }
-    void operator()(const Field& field, int& x) const { whole(field, x); }
-    void operator()(const Field& field, std::optional<Rational>& x) const { step(field, x); }
+    static bool from_command_line(std::string_view) { return false; }
+    template <class Visit>
+    void table(std::string_view, const Visit& visit) {
+        visit(*this);
+    }
 };
-template <class R, class W, class S>
-NumberUse(std::optional<std::size_t>, R, W, S) -> NumberUse<R, W, S>;
 
 /// "force.spring.stiffness_N_per_m": the table's key, the entry's name and the entry's key; or the last alone.
 struct Place {
@@ -81,45 +97,24 @@ struct Place {
     }
 };
 
-/// The entry of that name, or the only one of that kind; null where there is none.
-template <class Spec>
-Spec* entry_named(std::vector<Spec>& entries, std::string_view name) {
-    const auto named = std::find_if(entries.begin(), entries.end(), [&](const Spec& e) { return e.name == name; });
-    if (named != entries.end()) return &*named;
-    if constexpr (requires { Spec::kinds; }) {
-        const auto is_kind = [&](const Spec& entry) { return kind_name(entry) == name; };
-        const auto first = std::find_if(entries.begin(), entries.end(), is_kind);
-        if (first != entries.end() && std::none_of(first + 1, entries.end(), is_kind)) return &*first;
-    }
-    return nullptr;
-}
-
-template <class Visitor>
-void visit_side(SideSpec& side, const Place& place, Visitor& visit) {
-    if (place.table.empty()) {
-        if (side.particles.empty()) {
-            chain_fields(visit, side);
-            physical_fields(visit, side.physical);
-        }
-        gravity_field(visit, side);
-        if (side.accuracy)
-            visit(accuracy_field, side.accuracy);
-        else
-            method_fields(visit, side);
-        precision_fields(visit, side);
-        return;
-    }
-    const auto visit_part = [&](auto& entries) {
-        if (auto* entry = entry_named(entries, place.entry))
-            std::visit([&](auto& part) { part_fields(visit, part, kind_name(*entry)); }, entry->part);
+/// The keys of the side itself; or of the entry of that name, or else of the only one of that kind.
+void visit_side(SideSpec& side, const Place& place, NumberVisitor& visit) {
+    if (place.table.empty()) return side_fields(visit, side);
+    if (place.table == "pivot") return pivot_fields(visit, side.physical.pivot);
+    int named = 0, of_kind = 0;
+    const auto count = [&](std::string_view table, std::string_view kind, std::string_view name, const auto&) {
+        if (table != place.table) return;
+        named += name == place.entry;
+        of_kind += kind == place.entry && kind != table;
     };
-    if (place.table == "constraint") visit_part(side.constraints);
-    if (place.table == "force") visit_part(side.forces);
-    if (place.table == "pivot") pivot_fields(visit, side.physical.pivot);
-    if (place.table == "torque")
-        if (auto* torque = entry_named(side.physical.torques, place.entry)) part_fields(visit, *torque);
-    if (place.table == "particle")
-        if (auto* particle = entry_named(side.particles, place.entry)) part_fields(visit, *particle);
+    for_each_entry(side, count);
+    bool is_done = false;
+    for_each_entry(side, [&](std::string_view table, std::string_view kind, std::string_view name, const auto& fields) {
+        const bool is_meant = named > 0 ? name == place.entry : of_kind == 1 && kind == place.entry;
+        if (table != place.table || !is_meant || is_done) return;
+        is_done = true;
+        fields(visit);
+    });
 }
 
 std::string label_of(const NumericKey& key, const Field& field) {
@@ -170,81 +165,62 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
 /// Checks the number against one side, and takes what its field says.
 void find_in(SideSpec side, const TomlReader& table, std::string_view key, NumericKey& number) {
     const Place place(number.inside);
-    const auto demand_counting = [&](const Field& field) {
+    NumberVisitor found{place.key};
+    visit_side(side, place, found);
+    if (!found.field) {
+        if (place.key == "accuracy")
+            throw table.fault(key, "\"{}\" is varied where the preset gives an accuracy", number.path);
+        if (found.names.empty() && !place.table.empty())
+            throw table.fault(key, "\"{}\" is of no particle, constraint or force of the preset", number.path);
+        throw table.fault(key, "\"{}\" is no number of the preset; there are {}", number.path,
+                          fmt::join(found.names, ", "));
+    }
+    const auto& field = *found.field;
+    const auto& values = found.values;
+    number.is_whole = found.is_whole;
+    number.is_step = found.step != nullptr;
+    const bool is_real = !found.is_whole && !found.step,
+               is_array = is_real && (!field.each.empty() || values.size() > 1);
+    const auto demand_counting = [&] {
         if (!field.only.holds && !field.only.fault.empty())
             throw table.fault(key, "\"{}\" {}", number.path, field.only.fault);
-        number.bounds = field.bounds;
-        number.label = label_of(number, field);
     };
-    const auto demand_single = [&] {
-        if (number.element) throw table.fault(key, "\"{}\" is a number, not an array", number.path);
-    };
-    const NumberUse use{number.element,
-                        [&](const Field& field, std::span<Quad> values) {
-                            demand_counting(field);
-                            const bool is_array = !field.each.empty() || values.size() > 1;
-                            if (!is_array) demand_single();
-                            if (number.element && *number.element >= values.size())
-                                throw table.fault(key, "\"{}\" is beyond the array, whose last is [{}]", number.path,
-                                                  values.size() - 1);
-                            if (!number.element && field.each.empty() && values.size() > 1)
-                                throw table.fault(key, "\"{}\" has two numbers; give {}[0] or {}[1]", number.path,
-                                                  number.path, number.path);
-                        },
-                        [&](const Field& field, int&) {
-                            demand_single();
-                            demand_counting(field);
-                            number.is_whole = true;
-                        },
-                        [&](const Field& field, std::optional<Rational>&) {
-                            demand_single();
-                            demand_counting(field);
-                            number.is_step = true;
-                        }};
-    NumberVisitor visit(place.key, use);
-    visit_side(side, place, visit);
-    if (visit.found()) return;
-    if (place.key == "accuracy")
-        throw table.fault(key, "\"{}\" is varied where the preset gives an accuracy", number.path);
-    if (visit.names().empty() && !place.table.empty())
-        throw table.fault(key, "\"{}\" is of no particle, constraint or force of the preset", number.path);
-    throw table.fault(key, "\"{}\" is no number of the preset; there are {}", number.path,
-                      fmt::join(visit.names(), ", "));
+    if (is_real) demand_counting();
+    if (!is_array && number.element) throw table.fault(key, "\"{}\" is a number, not an array", number.path);
+    demand_counting();
+    number.bounds = field.bounds;
+    number.label = label_of(number, field);
+    if (number.element && *number.element >= values.size())
+        throw table.fault(key, "\"{}\" is beyond the array, whose last is [{}]", number.path, values.size() - 1);
+    if (!number.element && field.each.empty() && values.size() > 1)
+        throw table.fault(key, "\"{}\" has two numbers; give {}[0] or {}[1]", number.path, number.path, number.path);
 }
 
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {
     const Place place(number.inside);
-    const NumberUse use{
-        number.element,
-        [&](const Field&, std::span<Quad> values) {
-            if (number.element)
-                values[*number.element] = value;
-            else
-                std::fill(values.begin(), values.end(), value);
-        },
-        [&](const Field&, int& whole) { whole = static_cast<int>(std::lround(static_cast<double>(value))); },
-        [&](const Field&, std::optional<Rational>& step) {
-            const auto interval = quotient({1, 1}, sample_hz);
-            const auto steps = std::lround(static_cast<double>(Quad(interval->as<Quad>() / value)));
-            step = interval ? quotient(*interval, {steps, 1}) : std::nullopt;
-        }};
-    NumberVisitor visit(place.key, use);
-    if (!number.is_whole) return visit_side(side, place, visit);
+    auto old = side;
+    NumberVisitor found{place.key};
+    if (number.is_whole) found.put_whole = static_cast<int>(std::lround(static_cast<double>(value)));
+    visit_side(side, place, found);
+    if (found.step) {
+        const auto interval = quotient({1, 1}, sample_hz);
+        const auto steps = std::lround(static_cast<double>(Quad(interval->as<Quad>() / value)));
+        *found.step = interval ? quotient(*interval, {steps, 1}) : std::nullopt;
+    } else if (number.element) {
+        found.values[*number.element] = value;
+    } else {
+        std::fill(found.values.begin(), found.values.end(), value);
+    }
+    if (!number.is_whole) return;
     // links of one kind stay so
-    const auto old = side;
-    visit_side(side, place, visit);
-    const auto spread = [](const std::vector<Quad>& before, std::vector<Quad>& now) {
-        if (std::all_of(before.begin(), before.end(), [&](const Quad& x) { return x == before.front(); }))
-            std::fill(now.begin(), now.end(), before.front());
+    const auto are_one = [](std::span<const Quad> all) {
+        return !all.empty() && std::ranges::all_of(all, [&](const Quad& x) { return x == all[0]; });
     };
-    spread(old.mass_kg, side.mass_kg);
-    spread(old.length_m, side.length_m);
-    spread(old.angle_deg, side.angle_deg);
-    spread(old.omega_deg_per_s, side.omega_deg_per_s);
-    const auto old_lists = old.physical.lists();
-    const auto lists = side.physical.lists();
-    for (std::size_t i = 0; i < lists.size(); ++i) spread(*old_lists[i], *lists[i]);
-    if (!old.physical.center_m.empty()) spread(old.physical.center_m, side.physical.center_m = side.length_m);
+    const auto numbers = AllNumbers(side).all, were = AllNumbers(old).all;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (are_one(were[i])) std::ranges::fill(numbers[i], were[i][0]);
+    if (const auto& centers = old.physical.center_m; !centers.empty())
+        side.physical.center_m = are_one(centers) ? std::vector<Quad>(side.links(), centers[0]) : side.length_m;
 }
 
 }  // namespace
@@ -269,6 +245,14 @@ void NumericKey::set(Preset& preset, const Quad& value, const Quad& difference) 
     if (sides != Sides::b) put(preset.a, *this, value, preset.sample_hz);
     if (sides != Sides::a)
         put(preset.b, *this, sides == Sides::both ? Quad(value + difference) : value, preset.sample_hz);
+}
+
+SideSpec between(SideSpec from, SideSpec to, const Quad& share) {
+    const auto numbers = AllNumbers(from).all, ends = AllNumbers(to).all;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        for (std::size_t k = 0; k < numbers[i].size(); ++k)
+            numbers[i][k] = Quad(numbers[i][k] + share * (ends[i][k] - numbers[i][k]));
+    return from;
 }
 
 }  // namespace doppel

@@ -33,4 +33,7 @@ struct NumericKey {
     void set(Preset& preset, const Quad& value, const Quad& difference) const;
 };
 
+/// Of chains that differ in numbers alone: each number that share of the way from one to the other.
+SideSpec between(SideSpec from, SideSpec to, const Quad& share);
+
 }  // namespace doppel

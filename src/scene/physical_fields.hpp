@@ -36,9 +36,7 @@ void part_fields(Visit& visit, Torque& torque) requires std::is_same_v<std::remo
 template <class Visit, class Physical>
 void physical_fields(Visit& visit, Physical& physical) {
     const auto list = [&](std::string_view key, std::string_view help, std::string_view unit, auto& values) {
-        const Only where_not_zero{.holds =
-                                      std::any_of(values.begin(), values.end(), [](const auto& x) { return x != 0; })};
-        visit({key, help, unit, not_negative, "", where_not_zero, "one a link"}, values);
+        visit({key, help, unit, not_negative, "", {.holds = !is_zero(values)}, "one a link"}, values);
     };
     list("rod_mass_kg", "mass of each rod, evenly along it, besides mass_kg", "kg", physical.rod_mass_kg);
     visit({"center_m",

@@ -11,9 +11,7 @@ namespace doppel {
 
 std::string physical_words(const PhysicalSpec& physical) {
     std::vector<std::string> words;
-    const auto has = [](const std::vector<Quad>& list) {
-        return std::any_of(list.begin(), list.end(), [](const Quad& value) { return value != 0; });
-    };
+    const auto has = [](const std::vector<Quad>& list) { return !is_zero(list); };
     if (has(physical.rod_mass_kg) || has(physical.inertia_kg_m2) || !physical.center_m.empty())
         words.push_back("heavy links");
     if (has(physical.joint_viscous_N_m_s) || has(physical.joint_coulomb_N_m)) words.push_back("friction");
@@ -31,8 +29,7 @@ std::vector<std::string> physical_differences(const PhysicalSpec& one, const Phy
     const auto say = [&](std::string_view name, const std::vector<Quad>& values, const std::vector<Quad>& others,
                          std::string_view unit) {
         if (values == others) return;
-        const bool is_none = std::all_of(values.begin(), values.end(), [](const Quad& value) { return value == 0; });
-        if (is_none) return all.push_back(fmt::format("no {}", name));
+        if (is_zero(values)) return all.push_back(fmt::format("no {}", name));
         constexpr std::size_t most_listed = 3;
         if (values.size() > most_listed && values.size() == others.size()) {
             const auto first = std::mismatch(values.begin(), values.end(), others.begin()).first;

@@ -115,6 +115,8 @@ struct TorqueSpec {
     friend bool operator==(const TorqueSpec&, const TorqueSpec&) = default;
 };
 
+bool is_zero(const std::vector<Quad>& numbers);
+
 /// What a real chain has that an ideal one lacks: links with mass, friction, a drive. One number a link.
 struct PhysicalSpec {
     std::vector<Quad> rod_mass_kg{0, 0}, inertia_kg_m2{0, 0};
@@ -150,8 +152,6 @@ struct PhysicalSpec {
 
 /// Whether such chains differ in numbers alone.
 bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other);
-/// Of chains that are alike: every number is that share of the way from one to the other.
-PhysicalSpec between(const PhysicalSpec& from, const PhysicalSpec& to, const Quad& share);
 
 /// [a.track]: a measured swing, which the side shows in place of a simulation.
 struct TrackSpec {

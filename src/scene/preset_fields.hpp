@@ -159,6 +159,39 @@ void part_fields(Visit& visit, Part& part, std::string_view kind) {
               part.constant_m3_per_kg_s2);
 }
 
+/// [system], [a] and [b], without texts and entries; `is_physical` = with what a real chain has besides.
+template <class Visit, class Side>
+void side_fields(Visit& visit, Side& side, bool is_physical = true) {
+    if (side.particles.empty()) {
+        chain_fields(visit, side);
+        if (is_physical) physical_fields(visit, side.physical);
+    }
+    gravity_field(visit, side);
+    visit(model_field, side.model);
+    visit(accuracy_field, side.accuracy);
+    if (!side.accuracy) method_fields(visit, side);
+    precision_fields(visit, side);
+}
+
+/// use(table, kind, name, fields) for each entry of [[system.TABLE]]; fields(visit) visits its keys, without `name` and
+/// `kind`.
+template <class Side, class Use>
+void for_each_entry(Side& side, const Use& use) {
+    const auto plain = [&](std::string_view table, auto& entries) {
+        for (auto& entry : entries) use(table, table, entry.name, [&](auto& visit) { part_fields(visit, entry); });
+    };
+    const auto of_kinds = [&](std::string_view table, auto& entries) {
+        for (auto& entry : entries)
+            use(table, kind_name(entry), entry.name, [&](auto& visit) {
+                std::visit([&](auto& part) { part_fields(visit, part, kind_name(entry)); }, entry.part);
+            });
+    };
+    plain("torque", side.physical.torques);
+    plain("particle", side.particles);
+    of_kinds("constraint", side.constraints);
+    of_kinds("force", side.forces);
+}
+
 inline constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL takes, which says so itself
 inline const Field size_field{"size", "width and height", "px", picture_sizes, "", {}, "width and height"};
 

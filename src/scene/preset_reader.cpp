@@ -78,7 +78,7 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
         std::string name;
-        entry.read({.key = "name"}, name);
+        entry({.key = "name"}, name);
         if (std::find(others.begin(), others.end(), name) != others.end()) continue;
         const auto meant = nearest(name, others);
         throw entry.fault("name", "must be that of a particle on both sides; \"{}\" is on this one only{}", name,
@@ -165,7 +165,7 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     auto fonts = table.inner(table.read_table("fonts"), "[video.fonts]");
     constexpr std::string_view key = "text";
     std::string given;
-    fonts.read({.key = key}, given);
+    fonts({.key = key}, given);
     if (given.empty()) return !fonts.has(key);
     video.text_font = path_beside(document.path, given, fonts.from_command_line(key));
     try {
@@ -205,7 +205,7 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
 
 std::string read_kind(TomlReader& scene) {
     std::string kind(pair_kind);
-    scene.read(kind_field, kind);
+    scene(kind_field, kind);
     return kind;
 }
 

@@ -67,13 +67,16 @@ std::string table_text(const std::string& name, const Fields& fields) {
     return fmt::format("\n{}\n{}", name, writer.text());
 }
 
-std::string torques_toml(const std::string& name, const SideSpec& side) {
+std::string entries_toml(const std::string& name, const SideSpec& side) {
     std::string text;
-    for (const auto& torque : side.physical.torques)
-        text += table_text(fmt::format("[[{}.torque]]", name), [&](TomlWriter& writer) {
-            writer({.key = "name"}, torque.name);
-            part_fields(writer, torque);
-        });
+    for_each_entry(side,
+                   [&](std::string_view table, std::string_view kind, const std::string& entry, const auto& fields) {
+                       text += table_text(fmt::format("[[{}.{}]]", name, table), [&](TomlWriter& writer) {
+                           if (kind != table) writer.add("kind", toml_text(std::string(kind)));
+                           writer({.key = "name"}, entry);
+                           fields(writer);
+                       });
+                   });
     return text;
 }
 
@@ -84,35 +87,13 @@ std::string side_toml(const std::string& name, const SideSpec& side) {
         complete.tolerance = side.allowed_error();
     else
         complete.step_s = side.step();
-    auto text = table_text(fmt::format("[{}]", name), [&](TomlWriter& writer) {
-        const auto& all = complete;
-        side_text_fields(writer, all);
-        if (all.particles.empty()) chain_fields(writer, all);
-        if (!all.physical.is_none()) physical_fields(writer, all.physical);
-        gravity_field(writer, all);
-        writer(model_field, all.model);
-        writer(accuracy_field, all.accuracy);
-        if (!all.accuracy) method_fields(writer, all);
-        precision_fields(writer, all);
-    });
-    text += torques_toml(name, side);
-    for (const auto& particle : side.particles)
-        text += table_text(fmt::format("[[{}.particle]]", name), [&](TomlWriter& writer) {
-            writer.add("name", toml_text(particle.name));
-            part_fields(writer, particle);
-        });
-    const auto add_parts = [&](const char* key, const auto& parts) {
-        for (const auto& spec : parts)
-            text += table_text(fmt::format("[[{}.{}]]", name, key), [&](TomlWriter& writer) {
-                const std::string kind(kind_name(spec));
-                writer.add("kind", toml_text(kind));
-                writer({.key = "name"}, spec.name);
-                std::visit([&](const auto& part) { part_fields(writer, part, kind); }, spec.part);
-            });
-    };
-    add_parts("constraint", side.constraints);
-    add_parts("force", side.forces);
-    return text;
+    return table_text(fmt::format("[{}]", name),
+                      [&](TomlWriter& writer) {
+                          const auto& all = complete;
+                          side_text_fields(writer, all);
+                          side_fields(writer, all, !all.physical.is_none());
+                      }) +
+           entries_toml(name, side);
 }
 
 }  // namespace
@@ -135,7 +116,7 @@ std::string resolved_release(const SideSpec& side) {
                           gravity_field(writer, side);
                           if (!side.physical.is_none()) physical_fields(writer, side.physical);
                       }) +
-           torques_toml("system", side);
+           entries_toml("system", side);
 }
 
 std::string resolved_chain(const SideSpec& side) {
@@ -159,14 +140,6 @@ std::string resolved_toml(const Preset& preset) {
                style_fields(writer, video);
            });
 }
-
-namespace {
-
-Json file_json(std::uintmax_t bytes, const std::string& sha256) {
-    return {{"bytes", bytes}, {"sha256", sha256}};
-}
-
-}  // namespace
 
 namespace {
 
@@ -215,6 +188,9 @@ Metadata metadata_of(const std::string& title, const std::string& name, const st
 void write_manifest(Transaction& parts, const std::string& name, Json manifest) {
     const auto place = parts.file(name);
     auto& files = manifest["files"] = Json::object();
+    const auto file_json = [](std::uintmax_t bytes, const std::string& sha256) {
+        return Json{{"bytes", bytes}, {"sha256", sha256}};
+    };
     for (const auto& [file, where] : parts.finished_files())
         files[file] = file_json(where.folder->entry(where.name).bytes, sha256_of_file(where));
     for (const auto& [file, about] : parts.earlier_files())

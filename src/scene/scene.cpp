@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
+#include "scene/numeric_key.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>
@@ -10,11 +11,6 @@
 #include <numeric>
 
 namespace doppel {
-
-double Scene::time(long sample) const {
-    return static_cast<double>(sample) * static_cast<double>(preset.sample_hz.denominator) /
-           static_cast<double>(preset.sample_hz.numerator);
-}
 
 double Scene::time_of_tick(long tick) const {
     return static_cast<double>(tick) * static_cast<double>(preset.sample_hz.denominator) /
@@ -30,16 +26,6 @@ std::optional<double> Scene::horizon() const {
 }
 
 namespace {
-
-/// Errors say whose they are.
-Side side_of(const Preset& preset, const SideSpec& spec, char name, const std::atomic<bool>& stop) {
-    try {
-        if (spec.accuracy && spec.track.is_none()) return choose_side(spec, preset.duration_s, preset.sample_hz, stop);
-        return make_side(spec, preset.sample_hz);
-    } catch (const Error& fault) {
-        throw Error(fault.code(), fmt::format("{}: side {}: {}", preset.name, name, fault.what()));
-    }
-}
 
 /// Throws Error (exit 2) where a side would run for longer than its track.
 void check_tracks(const Scene& scene) {
@@ -75,16 +61,8 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     std::vector<MotionSpec> members;
     const auto& asked = scene.preset.video.members;
     for (std::size_t k = 0; k < asked.size(); ++k) {
-        const Quad share = Quad(k) / Quad(asked.size() - 1);
-        const auto between = [&](const Quad& from, const Quad& to) { return Quad(from + share * (to - from)); };
-        SideSpec member = first;
-        for (const auto numbers :
-             {&SideSpec::mass_kg, &SideSpec::length_m, &SideSpec::angle_deg, &SideSpec::omega_deg_per_s})
-            std::transform((first.*numbers).begin(), (first.*numbers).end(), (last.*numbers).begin(),
-                           (member.*numbers).begin(), between);
+        auto member = between(first, last, Quad(k) / Quad(asked.size() - 1));
         if (!asked.angles_deg.empty()) member.angle_deg = asked.angles_deg[k];
-        member.gravity_m_per_s2 = between(first.gravity_m_per_s2, last.gravity_m_per_s2);
-        member.physical = doppel::between(first.physical, last.physical, share);
         members.push_back(in_ticks(scene.a.motion, scene.frames.ticks_per_sample));
         members.back().chain = chain_of(member);
         if (!member.physical.is_none()) members.back().physical = physical_of(member);
@@ -96,13 +74,21 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
 }  // namespace
 
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
+    const auto asks = [](const SideSpec& side) { return side.accuracy && side.track.is_none(); };
+    const auto chooser = asks(preset.a) || asks(preset.b) ? std::make_shared<MethodChooser>(preset, stop) : nullptr;
+    auto chosen = chooser ? chooser->choose(1, stop) : std::array<std::optional<Side>, 2>{};
+    const auto side_of = [&](const SideSpec& spec, std::size_t place) {
+        return chosen[place] ? std::move(*chosen[place])
+                             : for_side(preset, "ab"[place], [&] { return make_side(spec, preset.sample_hz); });
+    };
     Scene scene{.preset = preset,
-                .a = side_of(preset, preset.a, 'a', stop),
-                .b = side_of(preset, preset.b, 'b', stop),
+                .a = side_of(preset.a, 0),
+                .b = side_of(preset.b, 1),
                 .samples = product(preset.duration_s, preset.sample_hz)->numerator,
                 .members = {},
                 .fps = {},
-                .frames = {}};
+                .frames = {},
+                .chooser = chooser};
     scene.fps = preset.video.fps ? *preset.video.fps : *product(preset.sample_hz, preset.video.speed.constant);
     scene.frames = frame_times(preset, scene.fps, scene.samples, common_steps(scene));
     const auto wanted = [&](StripKind kind) {
@@ -145,14 +131,11 @@ std::optional<std::string> not_finite(const Observation& seen, bool has_angles) 
     return std::nullopt;
 }
 
-/// Errors say whose they are.
 std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
-    try {
+    return for_side(scene.preset, name, [&] {
         const auto motion = in_ticks(side.motion, scene.frames.ticks_per_sample);
         return side.replay ? make_replay(motion, *side.replay) : make_motion(motion);
-    } catch (const Error& fault) {
-        throw Error(fault.code(), fmt::format("{}: side {}: {}", scene.preset.name, name, fault.what()));
-    }
+    });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/breakdown.hpp"
+#include "analysis/reference.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
@@ -46,11 +47,11 @@ Rational speed_at(const VideoSpec& video, double time);
 /// What an accuracy that was asked for came to. Errors are in rad, the largest of all angles; of what hangs in no
 /// chain, those of places in units of its size.
 struct MethodChoice {
-    double accuracy;          // asked for
-    double estimated_error;   // up to the horizon
-    long horizon;             // the sample up to which the run is that accurate; the last where it is to the end
-    std::string verified_by;  // the finer run: "tolerance 1e-12"
-    double evaluations;       // of the right-hand side, up to the end
+    double accuracy;         // asked for
+    double estimated_error;  // up to the horizon
+    long horizon;            // the sample up to which the run is that accurate; the last where it is to the end
+    std::shared_ptr<const ReferenceTrajectory> reference;  // by which this is known
+    double work;                                           // to the end, method_choice.hpp
 };
 
 /// One thing to draw. A rod and a spring go from end to end; an anchor is at `from`; a straight slot goes from `from`
@@ -109,17 +110,30 @@ Assembly<Quad> assembly_of(const SideSpec& spec);
 /// the system is faulty.
 Side make_side(const SideSpec& spec, const Rational& sample_hz);
 
+/// `make()`, whose errors say whose they are: "NAME: side a: …".
+template <class Make>
+auto for_side(const Preset& preset, char name, const Make& make) {
+    try {
+        return make();
+    } catch (const Error& fault) {
+        throw Error(fault.code(), fmt::format("{}: side {}: {}", preset.name, name, fault.what()));
+    }
+}
+
+class MethodChooser;
+
 /// What a preset comes to: the models chosen, the clock in whole numbers.
 struct Scene {
     Preset preset;
     Side a, b;
-    long samples;                     // of the run: 0 … samples, both ends included
-    std::vector<MotionSpec> members;  // of an ensemble: from a to b in equal steps of all numbers, both included
-    Rational fps;                     // frames/s of the video
-    FrameTimes frames;                // which moments they show
+    long samples;                            // of the run: 0 … samples, both ends included
+    std::vector<MotionSpec> members;         // of an ensemble: from a to b in equal steps of all numbers, both included
+    Rational fps;                            // frames/s of the video
+    FrameTimes frames;                       // which moments they show
+    std::shared_ptr<MethodChooser> chooser;  // where a side requires an accuracy
 
-    double time(long sample) const;        // s
     double time_of_tick(long tick) const;  // s
+    double time(long sample) const { return time_of_tick(sample * frames.ticks_per_sample); }
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
     std::optional<double> horizon() const;
     /// By which pictures and manifest measure errors of the energy, J: the larger side's potential range.

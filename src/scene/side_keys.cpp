@@ -81,27 +81,12 @@ std::vector<SideKey> keys_of(const SideSpec& side) {
     complete.step_s = side.step();
     complete.tolerance = side.allowed_error();
     const auto& spec = complete;
-    if (spec.particles.empty()) chain_fields(collect, spec);
-    physical_fields(collect, spec.physical);
-    gravity_field(collect, spec);
-    collect(model_field, spec.model);
-    collect(accuracy_field, spec.accuracy);
-    if (!spec.accuracy) method_fields(collect, spec);
-    precision_fields(collect, spec);
-    for (const auto& torque : spec.physical.torques)
-        collect.entry(names.next("torque", torque.name), false, [&](auto& visit) { part_fields(visit, torque); });
-    for (const auto& particle : spec.particles)
-        collect.entry(names.next("particle", particle.name), false, [&](auto& visit) { part_fields(visit, particle); });
-    const auto add_parts = [&](const auto& parts) {
-        for (const auto& spec_of_part : parts) {
-            const auto kind = kind_name(spec_of_part);
-            collect.entry(names.next(kind, spec_of_part.name), kind != "droplet", [&](auto& visit) {
-                std::visit([&](const auto& part) { part_fields(visit, part, kind); }, spec_of_part.part);
-            });
-        }
-    };
-    add_parts(spec.constraints);
-    add_parts(spec.forces);
+    side_fields(collect, spec);
+    for_each_entry(spec,
+                   [&](std::string_view table, std::string_view kind, const std::string& name, const auto& fields) {
+                       const bool is_part = (table == "constraint" || table == "force") && kind != "droplet";
+                       collect.entry(names.next(kind, name), is_part, fields);
+                   });
     return all;
 }
 

@@ -57,7 +57,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.{}]] {}", table.bare_name(), key, i + 1));
         std::string name;
-        entry.read({.key = "name"}, name);
+        entry({.key = "name"}, name);
         if (!name.empty() && !given.insert(name).second)
             entry.refuse(entry.fault("name", "must differ from those before it; \"{}\" is there already", name),
                          "name");
@@ -106,7 +106,7 @@ bool read_part(TomlReader& entry, Spec& spec, bool is_new) {
         return false;
     }
     std::string kind(has_kind ? "" : kind_name(spec));
-    entry.read({.key = "kind", .names = Spec::kinds}, kind);
+    entry({.key = "kind", .names = Spec::kinds}, kind);
     if (kind.empty()) return false;
     if (kind != kind_name(spec))
         change_kind(spec.part, static_cast<std::size_t>(std::find(Spec::kinds.begin(), Spec::kinds.end(), kind) -
@@ -219,13 +219,9 @@ void SideSpec::set_links(std::size_t links) {
     physical.center_m.clear();
 }
 
-namespace {
-
-bool is_zero(const std::vector<Quad>& list) {
-    return std::all_of(list.begin(), list.end(), [](const Quad& value) { return value == 0; });
+bool is_zero(const std::vector<Quad>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](const Quad& value) { return value == 0; });
 }
-
-}  // namespace
 
 bool PhysicalSpec::has_coulomb() const {
     return !is_zero(joint_coulomb_N_m);

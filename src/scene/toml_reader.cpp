@@ -62,41 +62,38 @@ TomlReader::TomlReader(const toml::table* table, std::string name, std::string p
       typeface_(typeface),
       faults_(faults) {}
 
-std::string TomlReader::place(std::string_view key) const {
-    if (!table_) return path_;
+/// Of the key's name, with the option of the command line that gave it; nothing where the key is absent.
+std::optional<toml::source_region> TomlReader::source_of(std::string_view key) const {
+    if (!table_) return std::nullopt;
     for (auto&& [name, node] : *table_) {
         if (name.str() != key) continue;
         const auto& origin = node.source().path;
-        if (origin && origin->starts_with(command_line)) return *origin;
-        return fmt::format("{}:{}:{}", path_, name.source().begin.line, name.source().begin.column);
+        return origin && origin->starts_with(command_line) ? node.source() : name.source();
     }
-    return path_;
+    return std::nullopt;
+}
+
+std::string TomlReader::place(std::string_view key) const {
+    const auto source = source_of(key);
+    if (!source) return path_;
+    if (source->path && source->path->starts_with(command_line)) return *source->path;
+    return fmt::format("{}:{}:{}", path_, source->begin.line, source->begin.column);
 }
 
 FaultPlace TomlReader::fault_place(std::string_view key) const {
-    const auto line_of = [](const toml::source_region& source) {
-        const auto& at = source.begin;
-        return at.line > 0 ? FaultPlace{at.line, at.column} : FaultPlace{};
-    };
-    if (!table_) return {};
-    for (auto&& [name, node] : *table_) {
-        if (name.str() != key) continue;
-        const auto& origin = node.source().path;
-        const bool is_option = origin && origin->starts_with(command_line);
-        if (is_option && faults_) return faults_->of_option(*origin);
-        return is_option ? FaultPlace{} : line_of(name.source());
-    }
-    return name_.empty() ? FaultPlace{} : line_of(table_->source());
+    const auto source = source_of(key);
+    if (source && source->path && source->path->starts_with(command_line))
+        return faults_ ? faults_->of_option(*source->path) : FaultPlace{};
+    if (!table_ || (!source && name_.empty())) return {};
+    const auto& at = (source ? *source : table_->source()).begin;
+    return at.line > 0 ? FaultPlace{at.line, at.column} : FaultPlace{};
 }
 
 void TomlReader::note(std::string_view key, const Error& fault) const {
     const auto* known = dynamic_cast<const TomlFault*>(&fault);
     // a title says nothing of the tables
-    faults_->add({.message = fault.what(),
-                  .place = fault_place(key),
-                  .group = name_.empty() ? std::string(key) : group_,
-                  .key = std::string(key),
-                  .beside = known ? known->beside() : std::nullopt});
+    faults_->add({fault.what(), fault_place(key), name_.empty() ? std::string(key) : group_, std::string(key),
+                  known ? known->beside() : std::nullopt});
 }
 
 void TomlReader::refuse(const TomlFault& fault, std::string_view key) const {

@@ -88,13 +88,6 @@ public:
         inside.finish();
     }
 
-    template <class T>
-    void read(const Field& field, T& into) {
-        attempt(field.key, into, [&](T& value) {
-            if (const auto* node = find(field.key)) read(field, *node, value);
-        });
-    }
-
     /// Runs what looks at several keys and throws a TomlFault: a fault of several keys. Where these tables have
     /// faults already, nothing is checked.
     template <class Check>
@@ -145,6 +138,7 @@ public:
 
 private:
     const toml::node* find(std::string_view key);
+    std::optional<toml::source_region> source_of(std::string_view key) const;
     FaultPlace fault_place(std::string_view key) const;
     void note(std::string_view key, const Error& fault) const;
 

@@ -1,4 +1,5 @@
 #include "base/text.hpp"
+#include "scene/resolved.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <fmt/ranges.h>
@@ -20,14 +21,6 @@ std::string index_text(std::initializer_list<std::size_t> element) {
     std::string text;
     for (const auto index : element) text += fmt::format("[{}]", index);
     return text;
-}
-
-std::string written(double value) {
-    return fmt::format("{}", value);
-}
-
-std::string written(const Quad& value) {
-    return text_of(value);
 }
 
 }  // namespace
@@ -70,7 +63,7 @@ void TomlReader::check(const Field& field, Element element, const Number& value)
     const auto refuse = [&](const std::string& what) {
         const auto message =
             fmt::format("{}: {}{} must be {}; {} is {}", place(field.key), subject(field.key),
-                        why.empty() ? index_text(element) : "", what, why.empty() ? "it" : "one", written(value));
+                        why.empty() ? index_text(element) : "", what, why.empty() ? "it" : "one", toml_value(value));
         return faulty_number(field, static_cast<double>(value), {message, fault_place(field.key)});
     };
     // keys mostly name the unit

@@ -76,7 +76,7 @@ TEST(Program, AnAccuracyIsChosenByExplainedAndRecorded) {
     const auto check = doppel(folder, arguments);
     EXPECT_EQ(check.code, 0) << check.err;
     for (const char* words :
-         {"Taylor series, tolerance ", "the cheapest way to 1.0 × 10⁻⁶ rad that was measured; ",
+         {"Taylor series, tolerance ", "smallest model that serves; fastest method: taylor",
           "rad at most, to the end; verified by Taylor series in quad", "regular: no Lyapunov exponent to be seen",
           "half the accuracy takes ", "ten times the accuracy takes 1."})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;

@@ -1,5 +1,6 @@
+#include "scene/forecast.hpp"
+
 #include "analysis/reference.hpp"
-#include "scene/method_choice.hpp"
 #include "scene/support.hpp"
 
 #include <gtest/gtest.h>

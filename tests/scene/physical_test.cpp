@@ -1,7 +1,6 @@
 // Links with mass, friction and drives, from a preset to a scene.
 #include "base/text.hpp"
 #include "scene/captions.hpp"
-#include "scene/method_choice.hpp"
 #include "scene/refused_presets.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
@@ -146,18 +145,6 @@ TEST(Physical, AnAccuracyKeepsItsWord) {
         const auto preset = preset_from(text);
         EXPECT_LE(error_at_end(preset), static_cast<double>(*preset.a.accuracy)) << text;
     }
-}
-
-/// Their right-hand side costs more by series than by steps: two even bars for 2 s at 1e-6 rad 9.2 µs a unit of time by dop853,
-/// 83 µs by Taylor series. Joints that stick are for series alone, whose steps end where one begins to slip.
-TEST(Physical, AnAccuracyTakesWhatIsCheapForBodies) {
-    const auto first = [](const std::string& system) {
-        return measured_methods(preset_from("[system]\n" + system).a, 1e-6).front().method;
-    };
-    EXPECT_EQ(first(""), "taylor");
-    EXPECT_EQ(first("rod_mass_kg = 1"), "adams");
-    EXPECT_EQ(first("joint_viscous_N_m_s = 0.1"), "adams");
-    EXPECT_EQ(first("joint_coulomb_N_m = 0.1"), "dop853");
 }
 
 }  // namespace physical_test
