@@ -4,6 +4,8 @@
 #include <sched.h>
 
 #include <fstream>
+#include <utility>
+#include <vector>
 
 namespace doppel {
 namespace machine_test {
@@ -12,59 +14,52 @@ namespace fs = std::filesystem;
 
 constexpr Machine bare{64, std::uintmax_t{256} << 30};
 
-/// A system's files in a folder of the test's own.
-class ControlGroups : public testing::Test {
-protected:
-    void SetUp() override {
-        fs::remove_all(root_);
-        fs::create_directories(root_);
-    }
-    void put(const fs::path& file, const std::string& text) {
-        fs::create_directories((root_ / file).parent_path());
-        std::ofstream(root_ / file) << text << "\n";
-    }
-    void expect(int cores, std::uintmax_t memory) {
-        const auto found = within_control_groups(bare, root_);
-        EXPECT_EQ(found.cores, cores);
-        EXPECT_EQ(found.memory, memory);
-    }
-    const fs::path root_ =
-        fs::path(DOPPEL_TEST_OUTPUT) / "ControlGroups" / testing::UnitTest::GetInstance()->current_test_info()->name();
+struct System {
+    const char* name;
+    std::vector<std::pair<const char*, const char*>> files;  // below /, and what they hold
+    int cores;
+    std::uintmax_t memory;
 };
 
-TEST_F(ControlGroups, WithoutAnyThereIsAllOfTheMachine) {
-    expect(bare.cores, bare.memory);
-}
-
-TEST_F(ControlGroups, OfVersion2LimitCoresAndMemory) {
-    put("proc/self/cgroup", "0::/user.slice/job");
-    put("sys/fs/cgroup/user.slice/job/cpu.max", "250000 100000");
-    put("sys/fs/cgroup/user.slice/job/memory.max", "1073741824");
-    expect(3, std::uintmax_t{1} << 30);  // two and a half cores
-    put("sys/fs/cgroup/user.slice/job/cpu.max", "max 100000");
-    put("sys/fs/cgroup/user.slice/job/memory.max", "max");
-    expect(bare.cores, bare.memory);
-}
-
-TEST_F(ControlGroups, OutsideLimitToo) {
-    put("proc/self/cgroup", "0::/user.slice/job");
-    put("sys/fs/cgroup/user.slice/job/cpu.max", "800000 100000");
-    put("sys/fs/cgroup/user.slice/cpu.max", "50000 100000");
-    put("sys/fs/cgroup/user.slice/memory.max", "4096");
-    expect(1, 4096);
-}
-
-TEST_F(ControlGroups, OutOfSightLeaveWhatIsAroundThem) {
-    put("proc/self/cgroup", "0::/../elsewhere");
-    put("sys/fs/cgroup/cpu.max", "400000 100000");
-    expect(4, bare.memory);
-}
-
-TEST_F(ControlGroups, ThatMakeNoSenseLimitNothing) {
-    put("proc/self/cgroup", "nonsense\n0:\n0::");
-    put("sys/fs/cgroup/cpu.max", "0 0");
-    put("sys/fs/cgroup/memory.max", "x");
-    expect(bare.cores, bare.memory);
+TEST(Machine, KeepsWithinItsControlGroups) {
+    constexpr const char *self = "proc/self/cgroup", *job = "0::/user.slice/job";
+    const auto folder = fs::path(DOPPEL_TEST_OUTPUT) / "ControlGroups";
+    for (const auto& [name, files, cores, memory] : std::vector<System>{
+             {"none", {}, bare.cores, bare.memory},
+             {"two and a half cores, 1 GiB",
+              {{self, job},
+               {"sys/fs/cgroup/user.slice/job/cpu.max", "250000 100000"},
+               {"sys/fs/cgroup/user.slice/job/memory.max", "1073741824"}},
+              3,
+              std::uintmax_t{1} << 30},
+             {"no limit",
+              {{self, job},
+               {"sys/fs/cgroup/user.slice/job/cpu.max", "max 100000"},
+               {"sys/fs/cgroup/user.slice/job/memory.max", "max"}},
+              bare.cores,
+              bare.memory},
+             {"the group around it is narrower",
+              {{self, job},
+               {"sys/fs/cgroup/user.slice/job/cpu.max", "800000 100000"},
+               {"sys/fs/cgroup/user.slice/cpu.max", "50000 100000"},
+               {"sys/fs/cgroup/user.slice/memory.max", "4096"}},
+              1,
+              4096},
+             {"out of sight", {{self, "0::/../elsewhere"}, {"sys/fs/cgroup/cpu.max", "400000 100000"}}, 4, bare.memory},
+             {"nonsense",
+              {{self, "nonsense\n0:\n0::"}, {"sys/fs/cgroup/cpu.max", "0 0"}, {"sys/fs/cgroup/memory.max", "x"}},
+              bare.cores,
+              bare.memory}}) {
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+        for (const auto& [file, text] : files) {
+            fs::create_directories((folder / file).parent_path());
+            std::ofstream(folder / file) << text << "\n";
+        }
+        const auto found = within_control_groups(bare, folder);
+        EXPECT_EQ(found.cores, cores) << name;
+        EXPECT_EQ(found.memory, memory) << name;
+    }
 }
 
 TEST(Machine, HasWhatTheAffinityMaskLeaves) {

@@ -1,6 +1,6 @@
 #include "bench/kept/performance.hpp"
 
-#include "base/error.hpp"
+#include "errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,18 +34,11 @@ TEST(Performance, TablesFollowTheNumbersAndNothingElseChanges) {
 
 TEST(Performance, SaysWhichMarkOrBenchmarkIsMissing) {
     auto all = read_performance(docs / "performance.json");
-    const auto fault = [&](const std::string& page) {
-        try {
-            with_tables(page, all);
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::bad_input);
-            return std::string(error.what());
-        }
-        return std::string("none");
-    };
-    EXPECT_NE(fault("# Performance\n").find("<!-- measured: machine -->"), std::string::npos);
+    EXPECT_NE(test::thrown_by([&] { with_tables("# Performance\n", all); }).second.find("<!-- measured: machine -->"),
+              std::string::npos);
     all.benchmarks.erase("figure/fig8");
-    EXPECT_EQ(fault(read_page(docs / "performance.md")), "docs/performance.json has no figure/fig8");
+    EXPECT_EQ(test::thrown_by([&] { with_tables(read_page(docs / "performance.md"), all); }),
+              (test::Thrown{ExitCode::bad_input, "docs/performance.json has no figure/fig8"}));
 }
 
 TEST(Performance, OfRoundsIsTheMedianAndTheirMiddleHalf) {

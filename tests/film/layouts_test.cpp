@@ -269,28 +269,6 @@ TEST(Layouts, ColoursWidthsAndSizesAreThePresets) {
     EXPECT_EQ(layout.style.font.title, 80);
 }
 
-/// WCAG 2.1: the contrast between two colours.
-double contrast(Color a, Color b) {
-    const auto luminance = [](Color c) {
-        const auto linear = [](float v) { return v <= 0.04045f ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
-        return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
-    };
-    const double x = luminance(a) + 0.05, y = luminance(b) + 0.05;
-    return std::max(x, y) / std::min(x, y);
-}
-
-TEST(Layouts, ThemesCanBeRead) {
-    // WCAG 2.1 §1.4.3: 4.5 for text; 7 is its enhanced level
-    for (const auto& theme : themes) {
-        const double least = theme.name == "high-contrast" ? 7 : 4.5;
-        for (const auto ground : {theme.background, theme.panel}) {
-            for (const auto color : {theme.text, theme.quiet_text, theme.sides[0], theme.sides[1]})
-                EXPECT_GE(contrast(color, ground), theme.name == "light" ? 4.0 : least) << theme.name;
-            EXPECT_GE(contrast(theme.text, ground), 7) << theme.name;
-        }
-    }
-}
-
 TEST(Layouts, TransparentFilmsHaveNoPage) {
     const auto out = test::fresh_folder();
     const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.25", "video.format=\"png\"",

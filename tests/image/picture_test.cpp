@@ -17,12 +17,5 @@ TEST(Rect, CommonIsWhatBothCover) {
     EXPECT_TRUE(intersection({0, 0, 1, 1}, {3, 3, 4, 4}).empty());
 }
 
-TEST(Picture, KeepsItsRowsFromTheTopDown) {
-    Picture picture(Size{3, 2});
-    picture.at(2, 1)[3] = 9;
-    EXPECT_EQ(picture.rgba.size(), 24u);
-    EXPECT_EQ(picture.rgba.back(), 9);
-}
-
 }  // namespace picture_test
 }  // namespace doppel

@@ -1,4 +1,4 @@
-#include "base/error.hpp"
+#include "errors.hpp"
 #include "image/picture.hpp"
 
 #include <gtest/gtest.h>
@@ -84,13 +84,9 @@ TEST(Reduce, WhatIsTransparentHasNoColour) {
 
 TEST(Reduce, NeverEnlarges) {
     for (const Size size : {Size{3, 2}, Size{2, 3}, Size{0, 1}, Size{1, -1}}) {
-        try {
-            downscaled(filled({2, 2}, white), size);
-            ADD_FAILURE() << size.width << "x" << size.height;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::bad_input);
-            EXPECT_NE(std::string(error.what()).find("1x1 … 2x2 would do"), std::string::npos) << error.what();
-        }
+        const auto [code, message] = test::thrown_by([&] { downscaled(filled({2, 2}, white), size); });
+        EXPECT_EQ(code, ExitCode::bad_input) << size.width << "x" << size.height;
+        EXPECT_NE(message.find("1x1 … 2x2 would do"), std::string::npos) << message;
     }
 }
 

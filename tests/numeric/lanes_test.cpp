@@ -2,22 +2,17 @@
 
 #include "integrate/euler.hpp"
 #include "integrate/runge_kutta.hpp"
+#include "numeric/support.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cstdint>
 #include <limits>
 #include <random>
 
 namespace doppel {
 namespace lanes_test {
-
-std::uint64_t bits(double x) {
-    return std::bit_cast<std::uint64_t>(x);
-}
 
 /// A different pendulum for every lane.
 Pendulum<double> trial(int number, std::size_t links) {
@@ -78,20 +73,12 @@ using RodChain3 = RodChain<Scalar, 3>;
 template <class Scalar>
 using LongRodChain = RodChain<Scalar, Eigen::Dynamic>;
 
-template <class Which, int width>
-void expect_all_models_agree() {
-    expect_the_bits_of_double<Which, DoublePendulum, width>(2);
-    expect_the_bits_of_double<Which, AngleChain3, width>(3);
-    expect_the_bits_of_double<Which, RodChain2, width>(2);
-    expect_the_bits_of_double<Which, RodChain3, width>(3);
-}
-
 TEST(Lanes, StepToTheBitsOfDouble) {
-    expect_all_models_agree<Euler, 2>();
-    expect_all_models_agree<Euler, 4>();
-    expect_all_models_agree<Euler, 8>();
-    expect_all_models_agree<Rk4, 2>();
-    expect_all_models_agree<Rk4, 8>();
+    expect_the_bits_of_double<Euler, DoublePendulum, 2>(2);
+    expect_the_bits_of_double<Rk4, DoublePendulum, 8>(2);
+    expect_the_bits_of_double<Rk4, AngleChain3, 4>(3);
+    expect_the_bits_of_double<Rk4, RodChain2, 8>(2);
+    expect_the_bits_of_double<Euler, RodChain3, 8>(3);
     expect_the_bits_of_double<Rk4, LongRodChain, 2>(6);
 }
 
@@ -104,7 +91,6 @@ TEST(Lanes, RoundLikeDouble) {
     for (int i = 0; i < 20'000; ++i) {
         Side a, b;
         for (int lane = 0; lane < 4; ++lane) a.set(lane, any()), b.set(lane, any());
-        const SinCos<Side> turn(a);
         for (int lane = 0; lane < 4; ++lane) {
             const double x = a[lane], y = b[lane];
             ASSERT_EQ(bits((a + b)[lane]), bits(x + y));
@@ -113,9 +99,6 @@ TEST(Lanes, RoundLikeDouble) {
             ASSERT_EQ(bits((a / b)[lane]), bits(x / y));
             ASSERT_EQ(bits(sqrt(abs(a))[lane]), bits(std::sqrt(std::abs(x))));
             ASSERT_EQ(bits((-a)[lane]), bits(-x));
-            const SinCos<double> alone(x);
-            ASSERT_EQ(bits(turn.sin[lane]), bits(alone.sin));
-            ASSERT_EQ(bits(turn.cos[lane]), bits(alone.cos));
         }
     }
 }

@@ -1,6 +1,6 @@
 #include "numeric/portable_math.hpp"
 
-#include "numeric/quad.hpp"
+#include "numeric/support.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,38 +14,37 @@ namespace portable_math_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The error in units of the last place of the exact value.
-double ulps(double value, const Quad& exact) {
-    const double near = std::abs(static_cast<double>(exact));
-    const double unit = std::nextafter(near, infinity) - near;
-    return std::abs(static_cast<double>(Quad(Quad(value) - exact))) / unit;
-}
-
-TEST(PortableMath, LogarithmIsRightToAnUlp) {
-    using std::log;
+/// The largest error of a function of one argument over so many of two ranges, in units of the last place.
+template <class Function, class Exact, class First, class Second>
+double worst_ulps(const Function& function, const Exact& exact, const First& first, const Second& second) {
     std::mt19937_64 random(5);
-    std::uniform_real_distribution<double> exponents(-1070, 1023), near_one(0.5, 2);
     double worst = 0;
     for (int i = 0; i < 40'000; ++i)
-        for (const double x : {std::exp2(exponents(random)), near_one(random)})
-            worst = std::max(worst, ulps(portable_log(x), Quad(log(Quad(x)))));
-    EXPECT_LT(worst, 1);
+        for (const double x : {first(random), second(random)})
+            worst = std::max(worst, ulps(function(x), exact(Quad(x))));
+    return worst;
+}
+
+using Range = std::uniform_real_distribution<double>;
+
+TEST(PortableMath, LogarithmIsRightToAnUlp) {
+    const auto exponents = [](auto& random) { return std::exp2(Range(-1070, 1023)(random)); };
+    const auto near_one = [](auto& random) { return Range(0.5, 2)(random); };
+    EXPECT_LT(worst_ulps(
+                  portable_log, [](const Quad& x) { return Quad(log(x)); }, exponents, near_one),
+              1);
     EXPECT_EQ(portable_log(1), 0);
     EXPECT_EQ(portable_log(0), -infinity);
     EXPECT_EQ(portable_log(infinity), infinity);
-    EXPECT_TRUE(std::isnan(portable_log(-1)));
-    EXPECT_TRUE(std::isnan(portable_log(std::nan(""))));
+    for (const double x : {-1.0, std::nan("")}) EXPECT_TRUE(std::isnan(portable_log(x))) << x;
 }
 
 TEST(PortableMath, ExponentialIsRightToAnUlp) {
-    using std::exp;
-    std::mt19937_64 random(6);
-    std::uniform_real_distribution<double> wide(-705, 709), narrow(-1, 1);
-    double worst = 0;
-    for (int i = 0; i < 40'000; ++i)
-        for (const double x : {wide(random), narrow(random)})
-            worst = std::max(worst, ulps(portable_exp(x), Quad(exp(Quad(x)))));
-    EXPECT_LT(worst, 1);
+    const auto wide = [](auto& random) { return Range(-705, 709)(random); };
+    const auto narrow = [](auto& random) { return Range(-1, 1)(random); };
+    EXPECT_LT(worst_ulps(
+                  portable_exp, [](const Quad& x) { return Quad(exp(x)); }, wide, narrow),
+              1);
     EXPECT_EQ(portable_exp(0), 1);
     EXPECT_EQ(portable_exp(-infinity), 0);
     EXPECT_EQ(portable_exp(infinity), infinity);

@@ -1,50 +1,62 @@
 #include "physics/canonical.hpp"
 
+#include "allocations.hpp"
+#include "errors.hpp"
 #include "numeric/quad.hpp"
-#include "physics/bob.hpp"
+#include "physics/oracles.hpp"
+#include "physics/pendulums.hpp"
+#include "physics/physical_canonical.hpp"
+#include "physics/physical_pendulums.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 namespace doppel {
 namespace canonical_test {
 
-/// A pendulum with everything unequal, in motion, drawn from a seed.
-Pendulum<Quad> random_pendulum(int links, unsigned seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> size(0.3, 3), angle(-3, 3), rate(-5, 5);
-    Pendulum<Quad> p{{}, {}, {}, {}, Quad(9.8)};
-    for (int i = 0; i < links; ++i) {
-        p.mass.push_back(Quad(size(random)));
-        p.length.push_back(Quad(size(random)));
-        p.angle.push_back(Quad(angle(random)));
-        p.rate.push_back(Quad(rate(random)));
-    }
-    return p;
+using Angles = AngleChain<Quad, Eigen::Dynamic>;
+using Bodies = PhysicalChain<Quad>;
+
+/// The first rate's index in a state, and the number of rates.
+template <class Model>
+std::pair<Eigen::Index, Eigen::Index> rates_of(const Model&, const typename Model::State& y) {
+    return {y.size() / 2, y.size() / 2};
+}
+std::pair<Eigen::Index, Eigen::Index> rates_of(const Bodies& model, const Bodies::State&) {
+    return {model.layout.half, model.layout.coordinates};
 }
 
-/// A model with its Hamilton's form, and what is asked of both.
 template <class Model>
-struct Forms {
+Quad energy_of(const Pendulum<Quad>& p, const Model&, const typename Model::State& y) {
+    return energy(bobs_of_angles<Quad>(p, y), p.gravity);
+}
+Quad energy_of(const PhysicalPendulum<Quad>& p, const Bodies& model, const Bodies::State& y) {
+    const auto moved = energies_at(p, model, y);
+    return moved.kinetic + moved.potential;
+}
+
+/// A model, its Hamilton's form and its start.
+template <class Model, class Description>
+struct Form {
     using State = typename Model::State;
 
-    Pendulum<Quad> p;
+    Description p;
     Model model{p};
     Canonical<Model> form{model};
+    State y = Model::start(p);
 
-    explicit Forms(const Pendulum<Quad>& pendulum) : p(pendulum) {}
+    explicit Form(const Description& description) : p(description) {}
 
-    State momenta(const State& y) {
-        State z = y;
-        form.momenta(y, z);
+    State momenta(const State& at) {
+        State z = at;
+        form.momenta(at, z);
         return z;
     }
     State velocities(const State& z) {
-        State y = z;
-        form.velocities(z, y);
-        return y;
+        State at = z;
+        form.velocities(z, at);
+        return at;
     }
     State hamilton(const State& z) {
         typename Canonical<Model>::Angles angles;
@@ -52,87 +64,97 @@ struct Forms {
         form.rate(z, angles, dzdt);
         return dzdt;
     }
-    State rate(const State& y) {
-        State dydt = y;
-        model.rate(y, dydt);
+    State rate(const State& at) {
+        State dydt = at;
+        model.rate(at, dydt);
         return dydt;
     }
-    Quad energy(const State& y) const { return doppel::energy(bobs_of_angles<Quad>(p, y), p.gravity); }
 };
+
+Pendulum<Quad> unequal(std::size_t links) {
+    std::mt19937 random(4);
+    return random_pendulum(random, links).cast<Quad>();
+}
+
+/// Calls check(form) for each model that has Hamilton's form: chains of points, and bodies, at rest in the room or driven.
+template <class Check>
+void for_each_form(const Check& check) {
+    const auto named = [&](const char* name, auto form) {
+        SCOPED_TRACE(name);
+        check(form);
+    };
+    named("double pendulum", Form<DoublePendulum<Quad>, Pendulum<Quad>>(unequal(2)));
+    named("five links", Form<Angles, Pendulum<Quad>>(unequal(5)));
+    for (const std::size_t links : {1u, 4u}) {
+        named("bodies", Form<Bodies, PhysicalPendulum<Quad>>(bodies<Quad>(links)));
+        named("driven bodies", Form<Bodies, PhysicalPendulum<Quad>>(driven_bodies<Quad>(links)));
+    }
+}
 
 template <class State>
 double largest(const State& y) {
     return static_cast<double>(Quad(y.cwiseAbs().maxCoeff()));
 }
 
-template <class Model>
-class CanonicalForm : public testing::Test {};
-using Models =
-    testing::Types<DoublePendulum<Quad>, AngleChain<Quad, 2>, AngleChain<Quad, 3>, AngleChain<Quad, Eigen::Dynamic>>;
-TYPED_TEST_SUITE(CanonicalForm, Models);
-
-template <class Model>
-Forms<Model> forms(unsigned seed) {
-    constexpr int size = std::is_same_v<Model, DoublePendulum<Quad>> ? 4 : Model::State::RowsAtCompileTime;
-    return Forms<Model>(random_pendulum(size == Eigen::Dynamic ? 5 : size / 2, seed));
-}
-
-TYPED_TEST(CanonicalForm, MomentaAreTheSlopesOfKineticEnergy) {
+TEST(Canonical, MomentaAreTheSlopesOfKineticEnergyAndVelocitiesComeBack) {
     // T is a square in ω, so central differences are exact
-    auto f = forms<TypeParam>(1);
-    const auto y = TypeParam::start(f.p);
-    const auto z = f.momenta(y);
-    const auto n = y.size() / 2;
-    for (Eigen::Index i = 0; i < n; ++i) {
-        auto less = y, more = y;
-        less[n + i] -= Quad(1);
-        more[n + i] += Quad(1);
-        const Quad slope = (f.energy(more) - f.energy(less)) / Quad(2);
-        EXPECT_LT(static_cast<double>(abs(slope - z[n + i])), 5e-31);  // measured 1e-31
-        EXPECT_EQ(z[i], y[i]);
-    }
+    for_each_form([](auto& f) {
+        const auto z = f.momenta(f.y);
+        const auto [first, count] = rates_of(f.model, f.y);
+        for (Eigen::Index i = first; i < first + count; ++i) {
+            auto less = f.y, more = f.y;
+            less[i] -= Quad(1);
+            more[i] += Quad(1);
+            const Quad slope = (energy_of(f.p, f.model, more) - energy_of(f.p, f.model, less)) / Quad(2);
+            EXPECT_LT(static_cast<double>(abs(Quad(slope - z[i]))), 1e-31) << i;  // measured 2.4e-32
+            EXPECT_EQ(z[i - first], f.y[i - first]);
+        }
+        EXPECT_LT(largest((f.velocities(z) - f.y).eval()), 5e-32);  // measured 1e-32
+    });
 }
 
-TYPED_TEST(CanonicalForm, VelocitiesComeBack) {
-    auto f = forms<TypeParam>(2);
-    const auto y = TypeParam::start(f.p);
-    EXPECT_LT(largest((f.velocities(f.momenta(y)) - y).eval()), 3e-32);  // measured 3e-33
+TEST(Canonical, IsTheModelsMotion) {
+    // dz/dt along the motion of the model in (θ, ω), by differences; of bodies time and work too
+    for_each_form([](auto& f) {
+        const Quad step(1e-11);
+        const auto move = (step * f.rate(f.y)).eval();
+        const auto along = ((f.momenta(f.y + move) - f.momenta(f.y - move)) / (Quad(2) * step)).eval();
+        EXPECT_LT(largest((along - f.hamilton(f.momenta(f.y))).eval()), 1e-18);  // measured 2.4e-19
+    });
 }
 
-TYPED_TEST(CanonicalForm, IsHamiltonsEquations) {
-    // θ′ = ∂H/∂p, p′ = −∂H/∂θ with H(z) = the energy of the bobs
-    auto f = forms<TypeParam>(3);
-    const auto z = f.momenta(TypeParam::start(f.p));
-    const auto rate = f.hamilton(z);
-    const auto n = z.size() / 2;
-    const Quad step(1e-11);
-    for (Eigen::Index i = 0; i < 2 * n; ++i) {
-        auto less = z, more = z;
-        less[i] -= step;
-        more[i] += step;
-        const Quad slope = (f.energy(f.velocities(more)) - f.energy(f.velocities(less))) / (Quad(2) * step);
-        const Quad expected = i < n ? Quad(-rate[n + i]) : Quad(rate[i - n]);
-        EXPECT_LT(static_cast<double>(abs(slope - expected)), 3e-19) << i;  // measured 6e-20
-    }
+TEST(Canonical, OfTheDoublePendulumAndOfPointMassesIsThatOfTheChain) {
+    const auto expect_same = [](auto& f, const Pendulum<Quad>& p) {
+        Form<Angles, Pendulum<Quad>> chain(p);
+        EXPECT_LT(largest((f.momenta(f.y) - chain.momenta(f.y)).eval()), 8e-33);    // measured 1.5e-33
+        EXPECT_LT(largest((f.hamilton(f.y) - chain.hamilton(f.y)).eval()), 8e-33);  // measured 1.5e-33
+    };
+    Form<DoublePendulum<Quad>, Pendulum<Quad>> two(unequal(2));
+    expect_same(two, two.p);
+    const auto chain = bodies<Quad>(3).chain;
+    Form<Bodies, PhysicalPendulum<Quad>> points(physical(chain));
+    expect_same(points, chain);
 }
 
-TYPED_TEST(CanonicalForm, IsTheModelsMotion) {
-    // dz/dt along the motion of the model in (θ, ω), by differences
-    auto f = forms<TypeParam>(4);
-    const auto y = TypeParam::start(f.p);
-    const Quad step(1e-11);
-    const auto move = (step * f.rate(y)).eval();
-    const auto along = ((f.momenta(y + move) - f.momenta(y - move)) / (Quad(2) * step)).eval();
-    EXPECT_LT(largest((along - f.hamilton(f.momenta(y))).eval()), 3e-20);  // measured 5e-21
+TEST(Canonical, RefusesJointsThatStick) {
+    auto p = bodies<Quad>(2);
+    p.friction.coulomb = {Quad(0.1), Quad(0)};
+    const auto [code, message] = test::thrown_by([&] { Form<Bodies, PhysicalPendulum<Quad>>{p}; });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("Coulomb"), std::string::npos) << message;
 }
 
-TEST(Canonical, ClosedFormOfTwoLinksIsTheChain) {
-    const auto p = random_pendulum(2, 5);
-    Forms<DoublePendulum<Quad>> closed(p);
-    Forms<AngleChain<Quad, 2>> chain(p);
-    const auto y = released_in_angles<Quad, 2>(p);
-    EXPECT_LT(largest((closed.momenta(y) - chain.momenta(y)).eval()), 5e-33);    // measured 0
-    EXPECT_LT(largest((closed.hamilton(y) - chain.hamilton(y)).eval()), 5e-33);  // measured 8e-34
+TEST(Canonical, AsksForNoMemory) {
+    using Plain = PhysicalChain<double>;
+    const auto p = driven_bodies<double>(4);
+    Plain model(p);
+    Canonical<Plain> form(model);
+    Canonical<Plain>::Angles angles;
+    Plain::State z = Plain::start(p), dzdt = z;
+    form.rate(z, angles, dzdt);
+    const long before = allocations();
+    for (int i = 0; i < 10; ++i) form.rate(z, angles, dzdt);
+    EXPECT_EQ(allocations() - before, 0);
 }
 
 /// The largest error of a turning angle on a walk whose steps are `step`, in units of ε.
@@ -156,12 +178,9 @@ TEST(NearbyAngle, IsSineAndCosineToRounding) {
         EXPECT_LT(error_of_turning<double>(step), 1.0) << step;       // measured 0.84
         EXPECT_LT(error_of_turning<Quad>(step * 1e-3), 1.6) << step;  // measured 0.75, against sines as rounded
     }
-}
-
-TEST(NearbyAngle, StaysExactlyDown) {
-    NearbyAngle<double> turning;
-    EXPECT_EQ(turning.at(0.0).sin, 0.0);
-    EXPECT_EQ(turning.at(0.0).cos, 1.0);
+    NearbyAngle<double> down;
+    EXPECT_EQ(down.at(0.0).sin, 0.0);
+    EXPECT_EQ(down.at(0.0).cos, 1.0);
 }
 
 }  // namespace canonical_test

@@ -28,14 +28,6 @@ State<S, Eigen::Dynamic> rate_at_start(const Assembly<S>& assembly) {
     return dydt;
 }
 
-/// The same chain out of parts.
-Assembly<double> parts_of(const Pendulum<double>& p) {
-    const auto y = released_as_particles<double, 2>(p);
-    return {.particles = {{p.mass[0], y.segment<2>(0), y.segment<2>(4)}, {p.mass[1], y.segment<2>(2), y.segment<2>(6)}},
-            .constraints = {Rod<double>{one, P(0, 0), p.length[0]}, Rod<double>{two, one, p.length[1]}},
-            .forces = {Gravity<double>{p.gravity}}};
-}
-
 TEST(Mechanism, RodsInAChainMoveAsTheChainDoes) {
     std::mt19937 random(1);
     for (int i = 0; i < 200; ++i) {
@@ -49,54 +41,30 @@ TEST(Mechanism, RodsInAChainMoveAsTheChainDoes) {
     }
 }
 
-TEST(Mechanism, RodAndAnchorMakeTheSimplePendulum) {
-    // θ″ = −(g/l) sinθ: at rest, a = l θ″ (cosθ, sinθ); the anchored particle stays
-    Assembly<double> parts{.particles = {{3, P(1, 2)}, {2, P(1 + 1.2, 2 - 1.6)}},
-                           .constraints = {Anchor<double>{one, P(1, 2)}, Rod<double>{two, one, 2}},
-                           .forces = {Gravity<double>{}}};
-    check(parts);
-    const auto dydt = rate_at_start(parts);
-    EXPECT_NEAR(dydt[4], 0, 1e-15);
-    EXPECT_NEAR(dydt[5], 0, 1e-15);
-    EXPECT_NEAR(dydt[6], -9.8 * 0.6 * 0.8, 2e-15);  // measured 0
-    EXPECT_NEAR(dydt[7], -9.8 * 0.6 * 0.6, 1e-14);
-    EXPECT_EQ(Mechanism<double>(parts).length_error(Mechanism<double>::start(parts)), 0);
-}
-
-TEST(Mechanism, BeadOnACircularSlotIsAPendulum) {
-    Assembly<double> rod{.particles = {{2, P(0.6, -0.8), P(1.6, 1.2)}},
-                         .constraints = {Rod<double>{one, P(0, 0), 1}},
-                         .forces = {Gravity<double>{}}};
-    auto slot = rod;
-    slot.constraints = {SlotCircle<double>{one, P(0, 0), 1}};
-    check(slot);
-    EXPECT_EQ(rate_at_start(slot), rate_at_start(rod));
-}
-
-TEST(Mechanism, BeadOnAnInclinedSlotFallsWithGSinAlpha) {
+TEST(Mechanism, ConstraintsMakePendulumsAndSlopesOfClosedForm) {
+    const auto expect_acceleration = [](const Assembly<double>& parts, const P& expected) {
+        check(parts);
+        const auto dydt = rate_at_start(parts);
+        EXPECT_LT((dydt.tail<2>() - expected).norm(), 1e-14) << parts.particles.size();  // measured 1.6e-15
+        if (parts.particles.size() == 2) {
+            EXPECT_LT(dydt.segment<2>(4).norm(), 1e-15);  // the anchored one stays
+        }
+    };
+    // θ″ = −(g/l) sinθ: at rest, a = l θ″ (cosθ, sinθ)
+    expect_acceleration({.particles = {{3, P(1, 2)}, {2, P(1 + 1.2, 2 - 1.6)}},
+                         .constraints = {Anchor<double>{one, P(1, 2)}, Rod<double>{two, one, 2}},
+                         .forces = {Gravity<double>{}}},
+                        P(-9.8 * 0.6 * 0.8, -9.8 * 0.6 * 0.6));
+    // in a circular slot, at v = 2 m/s: v²/r to the centre besides
+    expect_acceleration({.particles = {{2, P(0.6, -0.8), P(1.6, 1.2)}},
+                         .constraints = {SlotCircle<double>{one, P(0, 0), 1}},
+                         .forces = {Gravity<double>{}}},
+                        P(-9.8 * 0.6 * 0.8 - 4 * 0.6, -9.8 * 0.6 * 0.6 + 4 * 0.8));
     // down a slope of 3 : 4, sin α = 3/5
-    Assembly<double> parts{.particles = {{2, P(1, 1)}},
-                           .constraints = {SlotLine<double>{one, P(1, 1), P(4, -3)}},
-                           .forces = {Gravity<double>{10}}};
-    check(parts);
-    const auto dydt = rate_at_start(parts);
-    EXPECT_NEAR(dydt[2], 6 * 0.8, 2e-15);  // measured 0
-    EXPECT_NEAR(dydt[3], -6 * 0.6, 2e-15);
-}
-
-TEST(Mechanism, SpringSwingsAsTheCosine) {
-    // on a slot along x, x″ = −(k/m) (x − l): x = l + A cos(√(k/m) t)
-    Assembly<double> parts{.particles = {{2, P(1.25, 0)}},
-                           .constraints = {SlotLine<double>{one, P(0, 0), P(1, 0)}},
-                           .forces = {Spring<double>{one, P(0, 0), 8, 1}, Gravity<double>{}}};
-    check(parts);
-    Mechanism<double> model(parts);
-    const auto y = after(model, parts, 3000, 1e-3);
-    EXPECT_NEAR(y[0], 1 + 0.25 * std::cos(2 * 3.0), 3e-13);      // measured 5.5e-14
-    EXPECT_NEAR(y[2], -0.5 * std::sin(2 * 3.0), 2e-12);          // measured 3.8e-13
-    EXPECT_NEAR(model.energy(y), 0.5 * 8 * 0.25 * 0.25, 5e-15);  // measured 1e-15
-    EXPECT_TRUE(parts.conserves_energy());
-    EXPECT_FALSE(model.feels_velocity());
+    expect_acceleration({.particles = {{2, P(1, 1)}},
+                         .constraints = {SlotLine<double>{one, P(1, 1), P(4, -3)}},
+                         .forces = {Gravity<double>{10}}},
+                        P(6 * 0.8, -6 * 0.6));
 }
 
 TEST(Mechanism, DampedSpringDecaysAsItShould) {
@@ -114,6 +82,9 @@ TEST(Mechanism, DampedSpringDecaysAsItShould) {
     EXPECT_NEAR((y.segment<2>(4) + 3 * y.segment<2>(6)).norm(), 0, 3e-15);     // momentum; measured 4.2e-16
     EXPECT_FALSE(parts.conserves_energy());
     EXPECT_TRUE(model.feels_velocity());
+    parts.forces = {Spring<double>{one, two, 8, 1.25}};
+    EXPECT_TRUE(parts.conserves_energy());
+    EXPECT_FALSE(Mechanism<double>(parts).feels_velocity());
 }
 
 TEST(Mechanism, AttractionKeepsACircularOrbit) {
@@ -155,8 +126,6 @@ TEST(Mechanism, DropletIsFeltInQuadAndOnlyThere) {
     std::get<Droplet<Quad>>(above.forces[1]).place = At<Quad>(Quad(0), Quad(1609));
     EXPECT_NE(rate_at_start(above)[3], Quad(-98) / Quad(10));
     EXPECT_EQ(rate_at_start(above.cast<double>())[3], -9.8);
-    EXPECT_EQ(newton_constant<double>(), 6.674e-11);
-    EXPECT_EQ(newton_constant<Quad>(), parse_quad("6.674e-11"));
 }
 
 TEST(Mechanism, ForceIsTheSlopeOfTheEnergy) {
@@ -284,7 +253,7 @@ TEST(Mechanism, OfAChainTakesMemoryThatGrowsWithItsLinks) {
         p.length.assign(links, 0.1);
         p.angle.assign(links, 0.5);
         p.rate.assign(links, 0);
-        const auto parts = doppel::parts_of(p);
+        const auto parts = parts_of(p);
         const auto before = bytes_in_use();
         const Mechanism<double> model(parts);
         return bytes_in_use() - before;

@@ -1,6 +1,6 @@
 #include "image/color.hpp"
 #include "plot/chart_parts.hpp"
-#include "plot/plot.hpp"
+#include "plot/plot_figures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -82,13 +82,10 @@ TEST(HeatMap, SharesItsBar) {
         map.none_label = "blow-up";
         map.shares_bar = shared;
         figure.panels.assign(4, {.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map});
-        long words = 0, labels = 0, bars = 0;
+        int bars = 0;
         float right = 0, panels_right = 0, bar_left = 1e9f;
-        for (const auto& item : compose(figure, {1600, 900}, themes[1])) {
-            if (const auto* label = std::get_if<Label>(&item)) {
-                words += label->text == "blow-up";
-                labels += label->text == "an error";
-            }
+        const auto list = compose(figure, {1600, 900}, themes[1]);
+        for (const auto& item : list) {
             const auto* image = std::get_if<Image>(&item);
             if (!image) continue;
             right = std::max(right, image->right);
@@ -99,7 +96,8 @@ TEST(HeatMap, SharesItsBar) {
                 panels_right = std::max(panels_right, image->right);
             }
         }
-        for (const long count : {words, labels, bars}) EXPECT_EQ(count, shared ? 1 : 4) << shared;
+        auto words = words_in(list);
+        for (const int count : {words["blow-up"], words["an error"], bars}) EXPECT_EQ(count, shared ? 1 : 4) << shared;
         EXPECT_LT(right, 1600);
         EXPECT_EQ(bar_left > panels_right, shared);
     }

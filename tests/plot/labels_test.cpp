@@ -80,22 +80,6 @@ TEST_F(LabelTest, IsTransparentAsItsColour) {
     EXPECT_NEAR(ink(drawn(words)).area / all, 0.5, 0.01);  // measured 0.502
 }
 
-TEST(Text, IsReadAsUtf8) {
-    EXPECT_EQ(Typeface().lay_out("aΔ—", 10, Weight::regular).glyphs.size(), 3u);
-    const int box = Typeface().lay_out("\xf0\x9f\xa6\x9c\xef\xbf\xbd", 10, Weight::regular).glyphs.back().number;
-    // a byte that stands alone, too long a form, half a pair, beyond Unicode, cut short: a sign for each bad byte
-    for (const auto& [text, count] : {std::pair{"\x80", 1},
-                                      {"\xc0\xaf", 2},
-                                      {"\xed\xa0\x80", 3},
-                                      {"\xf4\x90\x80\x80", 4},
-                                      {"\xe2\x82", 2},
-                                      {"\xff", 1}}) {
-        const TextLine line = Typeface().lay_out(text, 10, Weight::regular);
-        EXPECT_EQ(line.glyphs.size(), static_cast<std::size_t>(count));
-        for (const TextLine::Glyph& glyph : line.glyphs) EXPECT_EQ(glyph.number, box);
-    }
-}
-
 TEST(Text, MovesThePenByTheAdvancesOfItsLetters) {
     EXPECT_EQ(text_width("", 20), 0);
     EXPECT_NEAR(text_width("H", 2048), 1540, 0.01);  // as the font has it, of 2048 units

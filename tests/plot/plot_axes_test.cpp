@@ -1,11 +1,10 @@
 #include "plot/labels.hpp"
-#include "plot/plot.hpp"
+#include "plot/plot_figures.hpp"
 #include "render/typeface.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 namespace doppel {
@@ -37,13 +36,6 @@ Figure four_maps(bool shares_axes, bool split) {
         figure.panels.push_back(plot);
     }
     return figure;
-}
-
-std::map<std::string, int> words_in(const DisplayList& list) {
-    std::map<std::string, int> counts;
-    for (const Item& item : list)
-        if (const auto* label = std::get_if<Label>(&item)) ++counts[label->text];
-    return counts;
 }
 
 /// Of the four maps, px².

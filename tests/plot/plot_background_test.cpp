@@ -1,11 +1,10 @@
-#include "plot/plot.hpp"
+#include "plot/plot_figures.hpp"
 #include "render/renderer.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 
 namespace doppel {
 namespace plot_background_test {
@@ -14,13 +13,6 @@ namespace plot_background_test {
 
 constexpr const Theme& light = themes[1];
 constexpr Size size{800, 500};
-
-std::set<std::string> words_in(const DisplayList& list) {
-    std::set<std::string> words;
-    for (const Item& item : list)
-        if (const auto* label = std::get_if<Label>(&item)) words.insert(label->text);
-    return words;
-}
 
 /// The share of the pixels of that colour.
 double share_of(const Picture& picture, Color color) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -125,6 +126,14 @@ inline Figure extremes() {
 inline std::vector<Figure> all_figures() {
     return {sweep(),     convergence(), map(false), map(true), sections(1), sections(3),
             sections(5), sections(6),   crowded(),  twins(),   extremes(),  {}};
+}
+
+/// How often each text stands in a list.
+inline std::map<std::string, int> words_in(const DisplayList& list) {
+    std::map<std::string, int> counts;
+    for (const Item& item : list)
+        if (const auto* label = std::get_if<Label>(&item)) ++counts[label->text];
+    return counts;
 }
 
 }  // namespace doppel

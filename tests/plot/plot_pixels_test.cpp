@@ -13,25 +13,27 @@ namespace plot_pixels_test {
 
 constexpr const Theme &dark = themes[0], &light = themes[1];
 
-/// A bare panel: x from 0 to 10, y from 0 to 1, and where it lies, from its first image.
-struct Bare {
-    Figure figure;
-    Size size{400, 300};
-    Image area(const DisplayList& list) const {
-        for (const Item& item : list)
-            if (const auto* image = std::get_if<Image>(&item)) return *image;
-        return {};
-    }
-};
+constexpr Size size{400, 300};
 
-Bare bare_map(std::size_t columns, std::size_t rows, bool blank = false) {
+/// A bare panel with a map: x from 0 to 10, y from 0 to 1.
+Figure bare_map(std::size_t columns, std::size_t rows, bool blank = false) {
     HeatMap map{
         .columns = columns, .rows = rows, .x_low = 0, .x_high = 10, .y_low = 0, .y_high = 1, .low = 0.0, .high = 1.0};
     for (std::size_t i = 0; i < columns * rows; ++i)
         map.values.push_back(blank ? std::nanf("") : static_cast<float>(i % 11) / 10);
-    Bare bare;
-    bare.figure.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .map = map}};
-    return bare;
+    return {.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .map = map}}};
+}
+
+/// A panel without a map of that range.
+Figure with_curves(std::vector<Curve> curves) {
+    return {.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .curves = std::move(curves)}}};
+}
+
+/// Where the panel lies: its first image.
+Image area_of(const DisplayList& list) {
+    for (const Item& item : list)
+        if (const auto* image = std::get_if<Image>(&item)) return *image;
+    return {};
 }
 
 void expect_color(const Picture& picture, float x, float y, Color color, int tolerance = 1) {
@@ -42,30 +44,28 @@ void expect_color(const Picture& picture, float x, float y, Color color, int tol
 }
 
 TEST(Plot, MapCellsHaveTheirColours) {
-    const Bare bare = bare_map(7, 5);
-    const DisplayList list = compose(bare.figure, bare.size, light);
-    Renderer renderer(bare.size);
+    const DisplayList list = compose(bare_map(7, 5), size, light);
+    Renderer renderer(size);
     const Picture& picture = renderer.draw(list);
-    const Image area = bare.area(list);
+    const Image area = area_of(list);
     ASSERT_GT(area.right - area.left, 200);
     for (int row = 0; row < 5; ++row)
         for (int column = 0; column < 7; ++column)
-            expect_color(picture, area.left + (static_cast<float>(column) + 0.5f) / 7 * (area.right - area.left),
-                         area.bottom - (static_cast<float>(row) + 0.5f) / 5 * (area.bottom - area.top),
+            expect_color(picture, std::lerp(area.left, area.right, (static_cast<float>(column) + 0.5f) / 7),
+                         std::lerp(area.bottom, area.top, (static_cast<float>(row) + 0.5f) / 5),
                          map_color((row * 7 + column) % 11 / 10.0));
     // and what has no value the colour for that
-    const Bare blank = bare_map(3, 3, true);
-    const DisplayList none = compose(blank.figure, blank.size, dark);
-    const Image where = blank.area(none);
+    const DisplayList none = compose(bare_map(3, 3, true), size, dark);
+    const Image where = area_of(none);
     expect_color(renderer.draw(none), where.left + 50, where.top + 50, dark.none);
 }
 
 TEST(Plot, SmallMapCellsAreAveraged) {
-    Bare bare = bare_map(4000, 3);
-    for (std::size_t i = 0; i < bare.figure.panels[0].map->values.size(); ++i)
-        bare.figure.panels[0].map->values[i] = i % 2 ? 1.0f : 0.2f;
-    const DisplayList list = compose(bare.figure, bare.size, light);
-    const Image area = bare.area(list);
+    Figure figure = bare_map(4000, 3);
+    for (std::size_t i = 0; i < figure.panels[0].map->values.size(); ++i)
+        figure.panels[0].map->values[i] = i % 2 ? 1.0f : 0.2f;
+    const DisplayList list = compose(figure, size, light);
+    const Image area = area_of(list);
     const Picture& pixels = *area.pixels;
     EXPECT_EQ(pixels.size.width, static_cast<int>(area.right - area.left));
     EXPECT_EQ(pixels.size.height, 3);  // down, they are larger than pixels
@@ -78,19 +78,19 @@ TEST(Plot, SmallMapCellsAreAveraged) {
 
 TEST(Plot, ACurvePassesWhereItsValuesAre) {
     for (const bool logarithmic : {false, true}) {
-        Bare bare = bare_map(1, 1, true);
-        Plot& plot = bare.figure.panels[0];
+        Figure figure = bare_map(1, 1, true);
+        Plot& plot = figure.panels[0];
         if (logarithmic) plot.y = {.low = 1e-4, .high = 1, .logarithmic = true}, plot.map->y_low = 1e-4;
-        const Image area = bare.area(compose(bare.figure, bare.size, light));
+        const Image area = area_of(compose(figure, size, light));
         plot.curves = {
             {.x = {0, 10}, .y = logarithmic ? std::vector{1e-4, 1.0} : std::vector{0.0, 1.0}, .quiet = true}};
-        Renderer renderer(bare.size);
-        const Picture& picture = renderer.draw(compose(bare.figure, bare.size, light));
+        Renderer renderer(size);
+        const Picture& picture = renderer.draw(compose(figure, size, light));
         // on either axis a straight line from corner to corner; over a map quiet is white
         for (const float part : {0.1f, 0.35f, 0.5f, 0.81f})
-            expect_color(picture, area.left + part * (area.right - area.left),
-                         area.bottom - part * (area.bottom - area.top), rgb(0xffffff), 40);
-        expect_color(picture, area.left + 0.2f * (area.right - area.left), area.top + 0.2f * (area.bottom - area.top),
+            expect_color(picture, std::lerp(area.left, area.right, part), std::lerp(area.bottom, area.top, part),
+                         rgb(0xffffff), 40);
+        expect_color(picture, std::lerp(area.left, area.right, 0.2f), std::lerp(area.top, area.bottom, 0.2f),
                      light.none);
     }
 }
@@ -114,16 +114,16 @@ Reach reach(const DisplayList& list, Color color) {
 }
 
 TEST(Plot, CurvesAreCutAtThePanel) {
-    Bare bare = bare_map(1, 1, true);
-    const Image area = bare.area(compose(bare.figure, bare.size, light));
+    Figure figure = bare_map(1, 1, true);
+    const Image area = area_of(compose(figure, size, light));
     Curve wild{.hue = 3};
     std::mt19937 random(5);
     for (int i = 0; i < 2000; ++i) {
         wild.x.push_back(std::normal_distribution<double>(5, 9)(random));
         wild.y.push_back(std::pow(10, std::normal_distribution<double>(0, 60)(random)));
     }
-    bare.figure.panels[0].curves = {wild};
-    const Reach held = reach(compose(bare.figure, bare.size, light), dark.palette[3]);
+    figure.panels[0].curves = {wild};
+    const Reach held = reach(compose(figure, size, light), dark.palette[3]);
     EXPECT_GE(held.left, area.left - 0.01f);
     EXPECT_GE(held.top, area.top - 0.01f);
     EXPECT_LE(held.right, area.right + 0.01f);
@@ -131,14 +131,13 @@ TEST(Plot, CurvesAreCutAtThePanel) {
     EXPECT_GT(held.right - held.left, 0.99f * (area.right - area.left));
 
     // in by the bottom after a third of the way, out by the top after two
-    bare.figure.panels[0].curves = {{.x = {0, 10}, .y = {-1, 2}, .hue = 3}};
-    const Reach cut = reach(compose(bare.figure, bare.size, light), dark.palette[3]);
+    figure.panels[0].curves = {{.x = {0, 10}, .y = {-1, 2}, .hue = 3}};
+    const Reach cut = reach(compose(figure, size, light), dark.palette[3]);
     EXPECT_NEAR(cut.left, std::lerp(area.left, area.right, 1 / 3.0f), 0.01f);
     EXPECT_NEAR(cut.right, std::lerp(area.left, area.right, 2 / 3.0f), 0.01f);
 }
 
 TEST(Plot, ManyPointsAreThinnedWithoutATrace) {
-    const Size size{400, 300};
     Figure dense, sparse;
     dense.panels = {{.x = {.low = 0, .high = 1}, .y = {.low = -2, .high = 2}}};
     Curve wave{.hue = 1};
@@ -171,12 +170,10 @@ TEST(Plot, ManyPointsAreThinnedWithoutATrace) {
 }
 
 TEST(Plot, WhatIsNoNumberInterruptsTheLine) {
-    Figure figure;
-    Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 1e-3, .high = 1, .logarithmic = true}};
-    plot.curves = {{.x = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .y = {.1, .1, -1, .1, .1, std::nan(""), .1, 0, .1}}};
-    figure.panels = {plot};
+    auto figure = with_curves({{.x = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .y = {.1, .1, -1, .1, .1, std::nan(""), .1, 0, .1}}});
+    figure.panels[0].y = {.low = 1e-3, .high = 1, .logarithmic = true};
     int strokes_up = 0, dots = 0;
-    for (const Item& item : compose(figure, {400, 300}, light)) {
+    for (const Item& item : compose(figure, size, light)) {
         if (std::holds_alternative<Capsule>(item)) ++dots;
         const auto* stroke = std::get_if<Stroke>(&item);
         if (!stroke) continue;
@@ -188,15 +185,10 @@ TEST(Plot, WhatIsNoNumberInterruptsTheLine) {
 }
 
 TEST(Plot, ABandIsTintedBetweenItsEdges) {
-    Figure figure;
-    Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}};
-    plot.curves = {{.x = {0, 10}, .y = {0.5, 0.5}, .uncertainty = {0.25, 0.25}, .hue = 1}};
-    figure.panels = {plot};
-    const DisplayList list = compose(figure, {400, 300}, light);
-    const auto found =
-        std::find_if(list.begin(), list.end(), [](const Item& item) { return std::holds_alternative<Image>(item); });
-    ASSERT_NE(found, list.end());
-    const Picture& pixels = *std::get<Image>(*found).pixels;
+    const Image band = area_of(
+        compose(with_curves({{.x = {0, 10}, .y = {0.5, 0.5}, .uncertainty = {0.25, 0.25}, .hue = 1}}), size, light));
+    ASSERT_TRUE(band.pixels);
+    const Picture& pixels = *band.pixels;
     const int x = pixels.size.width / 2, h = pixels.size.height;
     EXPECT_NEAR(pixels.at(x, h / 2)[3], 51, 1);
     EXPECT_NEAR(pixels.at(x, h / 4 + 2)[3], 51, 1);

@@ -1,4 +1,4 @@
-#include "base/error.hpp"
+#include "errors.hpp"
 #include "render/gl_context.hpp"
 #include "render/gl_painter.hpp"
 #include "render/pixels.hpp"
@@ -49,20 +49,13 @@ GLenum out_of_memory() {
 }
 
 TEST(GlErrors, SayWhatThereIsNoMemoryFor) {
-    const auto fault = [](const auto& action) {
-        try {
-            action();
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::io_failed);
-            return std::string(error.what());
-        }
-        return std::string("none");
-    };
     const auto context = make_context(Gl::automatic);
     const auto forget = [](gl::Functions& functions) { functions.GetError = out_of_memory; };
     const auto broken = [&](const auto& action) {
         const Broken now(forget);
-        return fault(action);
+        const auto [code, message] = test::thrown_by(action);
+        EXPECT_EQ(code, ExitCode::io_failed);
+        return message;
     };
     EXPECT_EQ(broken([] { gl::Painter painter(size); }),
               "OpenGL has no memory for the shaders and the buffers of their input");
@@ -84,13 +77,9 @@ TEST(GlErrors, WhileDrawingLeaveNoPicture) {
         const Broken now([](gl::Functions& functions) {
             functions.BlendEquation = [](GLenum) { gl::Enable(GL_TRIANGLES); };  // which cannot be enabled
         });
-        try {
-            renderer.draw(strokes(1));
-            ADD_FAILURE() << "it drew";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::io_failed);
-            EXPECT_STREQ(error.what(), "OpenGL failed at drawing a picture of 480 × 270 px: GL_INVALID_ENUM");
-        }
+        EXPECT_EQ(
+            test::thrown_by([&] { renderer.draw(strokes(1)); }),
+            (test::Thrown{ExitCode::io_failed, "OpenGL failed at drawing a picture of 480 × 270 px: GL_INVALID_ENUM"}));
     }
     EXPECT_EQ(renderer.draw(list).rgba, whole) << "and the next is as it should be";
 }

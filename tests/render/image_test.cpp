@@ -24,24 +24,21 @@ protected:
     Renderer renderer{size, {filled(size, black)}};
 };
 
-TEST_F(ImageTest, IsDrawnTexelForTexel) {
-    const auto pixels = noise({70, 50}, 1);
-    const Picture& drawn = renderer.draw({Image{20, 30, 90, 80, pixels}});
-    for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) {
-            const bool inside = x >= 20 && x < 90 && y >= 30 && y < 80;
-            for (int c = 0; c < 3; ++c)
-                ASSERT_EQ(drawn.at(x, y)[c], inside ? pixels->at(x - 20, y - 30)[c] : 0) << x << " " << y;
-        }
+TEST_F(ImageTest, IsDrawnTexelForTexelAndStaysCrispWhereItIsEnlarged) {
+    for (const int scale : {1, 30}) {
+        const auto pixels = noise({scale == 1 ? 70 : 4, scale == 1 ? 50 : 3}, 1);
+        const Rect r{10, 20, 10 + scale * pixels->size.width, 20 + scale * pixels->size.height};
+        const Picture& drawn =
+            renderer.draw({Image{static_cast<float>(r.left), static_cast<float>(r.top), static_cast<float>(r.right),
+                                 static_cast<float>(r.bottom), pixels}});
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x) {
+                const bool inside = x >= r.left && x < r.right && y >= r.top && y < r.bottom;
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_EQ(drawn.at(x, y)[c], inside ? pixels->at((x - r.left) / scale, (y - r.top) / scale)[c] : 0)
+                        << x << " " << y << ", × " << scale;
+            }
     }
-}
-
-TEST_F(ImageTest, StaysCrispWhereItIsEnlarged) {
-    const auto pixels = noise({4, 3}, 2);
-    const Picture& drawn = renderer.draw({Image{10, 10, 130, 100, pixels}});
-    for (int y = 10; y < 100; ++y)
-        for (int x = 10; x < 130; ++x)
-            for (int c = 0; c < 3; ++c) ASSERT_EQ(drawn.at(x, y)[c], pixels->at((x - 10) / 30, (y - 10) / 30)[c]);
 }
 
 TEST_F(ImageTest, IsAsOpaqueAsItsTexels) {

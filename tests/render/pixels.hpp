@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "render/display_list.hpp"
+#include "render/renderer.hpp"
 
 #include <cmath>
 
@@ -13,6 +13,12 @@ constexpr Color black = rgb(0x000000), white = rgb(0xffffff);
 inline bool is_color(const std::uint8_t* pixel, Color color, int slack = 3) {
     const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
     return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
+}
+
+/// A list on black.
+inline Picture drawn(Size size, const DisplayList& list) {
+    Renderer renderer(size, {filled(size, black)});
+    return renderer.draw(list);
 }
 
 /// White ink on black: how much there is, px², and where its middle lies, px.

@@ -10,11 +10,6 @@ namespace shapes_test {
 
 constexpr Size size{96, 80};
 
-Picture drawn(const DisplayList& list) {
-    Renderer renderer(size, {filled(size, black)});
-    return renderer.draw(list);
-}
-
 TEST(Disc, LiesWhereItShouldAndIsAsLarge) {
     Renderer renderer(size, {filled(size, black)});
     for (const float radius : {7.3f, 11.0f, 21.5f}) {
@@ -30,7 +25,7 @@ TEST(Disc, LiesWhereItShouldAndIsAsLarge) {
 
 TEST(Disc, IsExactlyItsColourInside) {
     const Color color = rgb(0x4fb0ff);
-    const Picture picture = drawn({Capsule{{40, 30}, {40, 30}, 10, color}});
+    const Picture picture = drawn(size, {Capsule{{40, 30}, {40, 30}, 10, color}});
     for (const auto& [x, y] : {std::pair{40, 30}, {34, 30}, {40, 37}, {45, 35}}) {
         EXPECT_EQ(picture.at(x, y)[0], 0x4f);
         EXPECT_EQ(picture.at(x, y)[1], 0xb0);
@@ -39,41 +34,35 @@ TEST(Disc, IsExactlyItsColourInside) {
 }
 
 TEST(Box, OnWholePixelsHasNoFringe) {
-    for (const Rect r : {Rect{10, 20, 50, 60}, Rect{3, 4, 4, 70}, Rect{0, 0, 96, 1}}) {
-        const Box box{static_cast<float>(r.left),
-                      static_cast<float>(r.top),
-                      static_cast<float>(r.right),
-                      static_cast<float>(r.bottom),
-                      0,
-                      rgb(0xffffff)};
-        const Picture picture = drawn({box});
-        for (int y = 0; y < size.height; ++y) {
+    for (const Box box : {Box{10, 20, 50, 60, 0, white}, Box{3, 4, 4, 70, 0, white}, Box{0, 0, 96, 1, 0, white}}) {
+        const Picture picture = drawn(size, {box});
+        for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x) {
-                const bool inside = !intersection(r, {x, y, x + 1, y + 1}).empty();
+                const auto px = static_cast<float>(x), py = static_cast<float>(y);
+                const bool inside = px >= box.left && px < box.right && py >= box.top && py < box.bottom;
                 ASSERT_EQ(picture.at(x, y)[1], inside ? 255 : 0) << x << ' ' << y;
             }
-        }
     }
 }
 
 TEST(Box, CoversPartsOfPixelsAndRoundsItsCorners) {
-    const Picture halves = drawn({Box{10.5f, 10.25f, 20.5f, 20.25f, 0, white}});
+    const Picture halves = drawn(size, {Box{10.5f, 10.25f, 20.5f, 20.25f, 0, white}});
     EXPECT_NEAR(halves.at(10, 15)[0], 127.5, 1);
     EXPECT_NEAR(halves.at(20, 15)[0], 127.5, 1);
     EXPECT_NEAR(halves.at(15, 10)[0], 191.25, 1);
     // the area is that of the rectangle less what the corners lack
-    const Ink round = ink(drawn({Box{10, 10, 60, 50, 12, white}}));
+    const Ink round = ink(drawn(size, {Box{10, 10, 60, 50, 12, white}}));
     EXPECT_NEAR(round.area, 50 * 40 - (4 - std::numbers::pi) * 144, 1.5);  // measured 0.98
 }
 
 TEST(Box, ThinnerThanAPixelIsFainter) {
-    EXPECT_NEAR(ink(drawn({Box{10, 20.4f, 70, 20.6f, 0, white}})).area, 12, 0.1);             // measured 1e-14
-    EXPECT_NEAR(ink(drawn({Capsule{{10, 20.5f}, {70, 20.5f}, 0.1f, white}})).area, 12, 0.1);  // measured 0.04
+    EXPECT_NEAR(ink(drawn(size, {Box{10, 20.4f, 70, 20.6f, 0, white}})).area, 12, 0.1);             // measured 1e-14
+    EXPECT_NEAR(ink(drawn(size, {Capsule{{10, 20.5f}, {70, 20.5f}, 0.1f, white}})).area, 12, 0.1);  // measured 0.04
 }
 
 TEST(Capsule, IsSymmetric) {
     // in a point: the middle of the picture
-    const Picture picture = drawn({Capsule{{20, 25}, {76, 55}, 6.5f, white}});
+    const Picture picture = drawn(size, {Capsule{{20, 25}, {76, 55}, 6.5f, white}});
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
             // measured 0
@@ -85,7 +74,7 @@ TEST(Capsule, IsSymmetric) {
 }
 
 TEST(Ring, IsHollowAndItsPenIsAsWide) {
-    const Picture picture = drawn({Ring{{48, 40}, 25, 4, white}});
+    const Picture picture = drawn(size, {Ring{{48, 40}, 25, 4, white}});
     EXPECT_EQ(picture.at(48, 40)[0], 0);
     EXPECT_EQ(picture.at(48 + 25, 40)[0], 255);
     EXPECT_EQ(picture.at(48 + 21, 40)[0], 0);
@@ -94,7 +83,7 @@ TEST(Ring, IsHollowAndItsPenIsAsWide) {
 }
 
 TEST(Shapes, BlendInTheOrderOfTheList) {
-    const Picture picture = drawn({filled(size, rgb(0xff0000)), filled(size, rgb(0x0000ff).with_alpha(0.25f))});
+    const Picture picture = drawn(size, {filled(size, rgb(0xff0000)), filled(size, rgb(0x0000ff).with_alpha(0.25f))});
     EXPECT_NEAR(picture.at(5, 5)[0], 191, 1);
     EXPECT_NEAR(picture.at(5, 5)[2], 64, 1);
 }
@@ -102,8 +91,8 @@ TEST(Shapes, BlendInTheOrderOfTheList) {
 TEST(Shapes, WithoutInkDrawNothing) {
     const float none = std::nanf("");
     const Picture picture =
-        drawn({Box{10, 10, 10, 30, 0, white}, Box{30, 30, 20, 40, 0, white}, Capsule{{5, 5}, {9, 9}, 0, white},
-               Capsule{{none, 5}, {9, 9}, 3, white}, Ring{{20, 20}, 5, 0, white}, Stroke{}, Label{}});
+        drawn(size, {Box{10, 10, 10, 30, 0, white}, Box{30, 30, 20, 40, 0, white}, Capsule{{5, 5}, {9, 9}, 0, white},
+                     Capsule{{none, 5}, {9, 9}, 3, white}, Ring{{20, 20}, 5, 0, white}, Stroke{}, Label{}});
     EXPECT_EQ(ink(picture).area, 0);
 }
 

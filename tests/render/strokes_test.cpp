@@ -12,11 +12,6 @@ namespace strokes_test {
 
 constexpr Size size{160, 120};
 
-Picture drawn(const DisplayList& list) {
-    Renderer renderer(size, {filled(size, black)});
-    return renderer.draw(list);
-}
-
 Stroke stroke(std::vector<Point> points, float width, Color color = white) {
     Stroke made{.vertices = {}, .width = width, .color = color};
     for (const Point& p : points) made.vertices.push_back({p, 1});
@@ -30,7 +25,7 @@ TEST(Stroke, IsAsOpaqueAtItsJointsAndCrossingsAsElsewhere) {
         const float angle = static_cast<float>(i) * 0.1f;
         points.push_back({80 + 30 * std::sin(2 * angle), 60 + 30 * std::cos(3 * angle)});
     }
-    const Picture picture = drawn({stroke(points, 9, white.with_alpha(0.4f))});
+    const Picture picture = drawn(size, {stroke(points, 9, white.with_alpha(0.4f))});
     int most = 0;
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) most = std::max<int>(most, picture.at(x, y)[0]);
@@ -43,7 +38,7 @@ TEST(Stroke, IsAsOpaqueAtItsJointsAndCrossingsAsElsewhere) {
 
 TEST(Stroke, OfOneVertexIsADisc) {
     for (const auto& points : {std::vector<Point>{{40, 50}}, std::vector<Point>{{40, 50}, {40, 50}}}) {
-        const Ink seen = ink(drawn({stroke(points, 20)}));
+        const Ink seen = ink(drawn(size, {stroke(points, 20)}));
         EXPECT_NEAR(seen.area / (std::numbers::pi * 100), 1, 0.005);  // measured 0.0002
         EXPECT_NEAR(seen.x, 40, 0.05);                                // measured 1e-14
         EXPECT_NEAR(seen.y, 50, 0.05);
@@ -52,7 +47,7 @@ TEST(Stroke, OfOneVertexIsADisc) {
 
 TEST(Stroke, FadesAlongItself) {
     Stroke fading{.vertices = {{{10, 60}, 0}, {{150, 60}, 1}}, .width = 8, .color = white};
-    const Picture picture = drawn({fading});
+    const Picture picture = drawn(size, {fading});
     for (int x = 10; x < 150; ++x) {
         EXPECT_NEAR(picture.at(x, 60)[0], 255 * (x + 0.5 - 10) / 140, 1);  // measured 0.5
     }
@@ -65,7 +60,7 @@ TEST(Stroke, CoversWhatLiesWithinHalfItsWidth) {
         const float x = 10 + 0.028f * static_cast<float>(i);
         points.push_back({x, 60 + 40 * std::sin(x / 7)});
     }
-    const Picture picture = drawn({stroke(points, 3)});
+    const Picture picture = drawn(size, {stroke(points, 3)});
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
             double nearest = 1e9;
@@ -98,7 +93,7 @@ TEST(Stroke, FollowsACircleInFewPieces) {
         }
         const Stroke pieces = in_pieces(stroke(points, 4));
         EXPECT_LE(pieces.vertices.size(), 17u);  // measured 15; straight ones come to 64
-        const Picture bent = drawn({pieces}), round = drawn({Ring{{80, 60}, 50, 4, white}});
+        const Picture bent = drawn(size, {pieces}), round = drawn(size, {Ring{{80, 60}, 50, 4, white}});
         int most = 0;
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x) most = std::max(most, std::abs(bent.at(x, y)[0] - round.at(x, y)[0]));
@@ -109,7 +104,7 @@ TEST(Stroke, FollowsACircleInFewPieces) {
 TEST(Stroke, BendsToTheRightAsFarAsItSays) {
     Stroke arc{.vertices = {{{20, 60}}, {{140, 60}}}, .width = 4, .color = white};
     arc.vertices[0].bend = 7;
-    const Picture picture = drawn({arc});
+    const Picture picture = drawn(size, {arc});
     for (int x = 24; x < 136; ++x) {
         const double share = (x + 0.5 - 20) / 120, middle = 60 + 4 * 7 * share * (1 - share);
         double sum = 0, state = 0;
@@ -136,14 +131,14 @@ TEST(Stroke, ChangesItsLooksOnTheSpotAtTwoJoints) {
     Stroke step{.vertices = {{{20, 60}, 0.2f}, {{50, 60}, 0.2f}, {{80, 60}, 0.2f}}, .width = 20, .color = white};
     for (const float x : {80.f, 110.f, 140.f}) step.vertices.push_back({{x, 60}, 0.8f});
     for (auto& vertex : step.vertices) vertex.joint = true;
-    const Picture picture = drawn({step});
+    const Picture picture = drawn(size, {step});
     EXPECT_EQ(picture.at(77, 60)[0], 51);  // without a disc of the brighter half's
     EXPECT_EQ(picture.at(82, 60)[0], 204);
 }
 
 TEST(Stroke, TapersBetweenItsVertices) {
     const Picture picture =
-        drawn({Stroke{.vertices = {{{20, 60}, 1, 0.25f}, {{140, 60}, 1, 1}}, .width = 20, .color = white}});
+        drawn(size, {Stroke{.vertices = {{{20, 60}, 1, 0.25f}, {{140, 60}, 1, 1}}, .width = 20, .color = white}});
     for (int x = 20; x < 140; ++x) {
         double covered = 0;
         for (int y = 0; y < size.height; ++y) covered += picture.at(x, y)[0] / 255.0;
@@ -154,7 +149,7 @@ TEST(Stroke, TapersBetweenItsVertices) {
 TEST(Stroke, GlowsBeyondItsEdge) {
     const Stroke stroke{.vertices = {{{20, 60}, 0.8f}, {{140, 60}, 0.8f}}, .width = 6, .color = white, .glow = 12};
     const Capsule capsule{{20, 60}, {140, 60}, 3, white.with_alpha(0.8f), 12};
-    for (const Picture& picture : {drawn({stroke}), drawn({capsule})}) {
+    for (const Picture& picture : {drawn(size, {stroke}), drawn(size, {capsule})}) {
         EXPECT_EQ(picture.at(80, 60)[0], 204);
         for (int y = 63; y < 80; ++y) {
             const double beyond = y + 0.5 - 63, dim = std::max(0.0, 1 - beyond / 12);
@@ -168,7 +163,7 @@ TEST(Stroke, GlowsBeyondItsEdge) {
 TEST(Stroke, LeavesOthersAndTheBackdropAlone) {
     const Color color = rgb(0x4fb0ff);
     const Picture picture =
-        drawn({filled(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
+        drawn(size, {filled(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
     for (const int y : {10, 30, 50}) {
         EXPECT_EQ(picture.at(40, y)[0], 0x4f);
         EXPECT_EQ(picture.at(40, y)[2], 0xff);

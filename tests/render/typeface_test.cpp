@@ -1,6 +1,6 @@
 #include "render/typeface.hpp"
 
-#include "base/error.hpp"
+#include "errors.hpp"
 #include "render/font_files.hpp"
 
 #include <gtest/gtest.h>
@@ -25,16 +25,11 @@ Typeface with(const std::string& bytes) {
     return Typeface::with_system_fonts(Font::from_file(file_of(bytes)));
 }
 
-using Fault = std::pair<ExitCode, std::string>;
-Fault fault_of(const fs::path& path) {
-    try {
-        Font::from_file(path);
-    } catch (const Error& error) {
-        const std::string message = error.what();
-        EXPECT_TRUE(message.starts_with(path.string())) << message;
-        return {error.code(), message.substr(path.string().size())};
-    }
-    return {ExitCode::done, "is a font"};
+/// The error of a font's file, without the file's name before it.
+test::Thrown fault_of(const fs::path& path) {
+    auto [code, message] = test::thrown_by([&] { Font::from_file(path); });
+    if (message.starts_with(path.string())) message.erase(0, path.string().size());
+    return {code, message};
 }
 
 TEST(Typefaces, TheUsersFontComesFirst) {
@@ -77,13 +72,13 @@ TEST(Typefaces, SignsThatChooseALettersFormTakeNoRoom) {
 
 TEST(Typefaces, FilesThatAreNoFontAreRefused) {
     const auto font = test::embedded_font();
-    const Fault none{ExitCode::bad_input, ": is no TrueType or OpenType font, or is damaged"};
+    const test::Thrown none{ExitCode::bad_input, ": is no TrueType or OpenType font, or is damaged"};
     for (const auto* bytes : {"", "true", "A text of some length, and no font."})
         EXPECT_EQ(fault_of(file_of(bytes)), none) << bytes;
     for (const std::size_t bytes : {20u, 200u, 20000u})
         EXPECT_EQ(fault_of(file_of(font.substr(0, bytes))), none) << bytes;
     EXPECT_EQ(fault_of(file_of(test::font_without_table("glyf"))),
-              (Fault{ExitCode::bad_input, ": is a font without outlines"}));
+              (test::Thrown{ExitCode::bad_input, ": is a font without outlines"}));
     EXPECT_EQ(fault_of(file_of(font)).first, ExitCode::done);
     EXPECT_EQ(fault_of("/none.ttf").second, ": there is no such file");
     EXPECT_EQ(fault_of("/dev/zero").second, " is not a file; a font is a TrueType or OpenType file");
