@@ -15,12 +15,6 @@ namespace {
 constexpr Size page_size{1600, 1300};
 constexpr const auto& light = themes[1];
 
-void write_text(const FilePlace& place, const std::string& text) {
-    OutputFile file(place);
-    file.write(text);
-    file.close();
-}
-
 std::vector<std::string> sentences_of(const FitResult& result) {
     const auto& rung = result.chosen();
     std::vector<std::string> all;
@@ -57,7 +51,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
         report({static_cast<long>(done), static_cast<long>(of)});
     });
     const auto finish = [&] {
-        write_text(preset, fitted_preset(result, name));
+        write_file(preset, fitted_preset(result, name));
         parts.finished(name + ".toml");
         write_residuals(result, table);
         parts.finished(name + ".residuals.csv");

@@ -30,13 +30,13 @@ void add_block(std::string& url, const char* bytes, std::size_t count) {
 
 }  // namespace
 
-std::string data_url(const FilePlace& png) {
-    const Stream file = stream_of(open_file(png), "rb", png.path, "read");
+std::string data_url(const std::filesystem::path& png) {
+    const Stream file = open_file(png);
     auto url = start_of_url("image/png");
     std::array<char, block_bytes> block;
     while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get()))
         add_block(url, block.data(), count);
-    if (std::ferror(file.get())) throw cannot(png.path, "read");
+    if (std::ferror(file.get())) throw cannot(png, "read");
     return url;
 }
 

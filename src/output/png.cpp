@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/text.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "output/samples.hpp"
 #include "output/workers.hpp"
 
@@ -161,17 +161,17 @@ void encode_samples(const Write& write, const std::filesystem::path& path, Size 
     if (target.error) std::rethrow_exception(target.error);
 }
 
-void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
+void write_samples(const std::filesystem::path& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
                    const std::string& text_chunks, const std::atomic<bool>& stop) {
     throw_if_set(stop);
     OutputFile output(place);
-    encode_samples([&](std::string_view part) { output.write(part); }, place.path, size, bytes, options, text_chunks);
+    encode_samples([&](std::string_view part) { output.write(part); }, place, size, bytes, options, text_chunks);
     output.close();
 }
 
 class PngSink final : public Sink {
 public:
-    PngSink(std::function<FilePlace(long)> place_of, std::size_t threads, PngOptions options,
+    PngSink(std::function<std::filesystem::path(long)> place_of, std::size_t threads, PngOptions options,
             const std::atomic<bool>& stop)
         : place_of_(std::move(place_of)),
           options_(std::move(options)),
@@ -191,7 +191,7 @@ public:
 
 private:
     struct Job {
-        FilePlace place;
+        std::filesystem::path place;
         Size size;
         Buffer bytes;
     };
@@ -201,7 +201,7 @@ private:
         spare_.give_back(std::move(job.bytes));
     }
 
-    const std::function<FilePlace(long)> place_of_;
+    const std::function<std::filesystem::path(long)> place_of_;
     const PngOptions options_;
     const std::atomic<bool>& stop_;
     const std::string text_chunks_;
@@ -234,7 +234,7 @@ static std::string chunks_of(const PngOptions& options) {
     return chunks;
 }
 
-void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options,
+void write_png(const std::filesystem::path& place, const Picture& picture, const PngOptions& options,
                const std::atomic<bool>& stop) {
     const Rect all = all_of(picture.size);
     Buffer bytes;
@@ -254,8 +254,8 @@ std::string png_bytes(const Picture& picture, const PngOptions& options) {
     return png;
 }
 
-std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options,
-                                    const std::atomic<bool>& stop) {
+std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> place_of, int threads,
+                                    PngOptions options, const std::atomic<bool>& stop) {
     return std::make_unique<PngSink>(std::move(place_of), static_cast<std::size_t>(std::max(threads, 1)),
                                      std::move(options), stop);
 }
