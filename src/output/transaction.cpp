@@ -29,8 +29,16 @@ Error not_ours(const fs::path& path) {
                      path.string());
 }
 
-Error is_link(const fs::path& path) {
-    return io_failed("{} is a symbolic link; Doppel follows none there", path.string());
+/// Throws where something of another type has the name; no link is followed.
+void demand_type(const fs::path& path, bool is_folder) {
+    const auto type = type_of(path);
+    if (type == Type::not_found || type == (is_folder ? Type::directory : Type::regular)) return;
+    throw io_failed("{} is {}; Doppel would {} there", path.string(),
+                    type == Type::symlink     ? "a symbolic link"
+                    : type == Type::directory ? "a folder"
+                    : type == Type::regular   ? "a file"
+                                              : "neither a file nor a folder",
+                    is_folder ? "make a folder" : "write a file");
 }
 
 ino_t inode_of(const fs::path& path) {
@@ -87,7 +95,7 @@ Transaction::~Transaction() {
 }
 
 void Transaction::make_folders() {
-    if (type_of(folder_) == Type::symlink) throw is_link(folder_);
+    demand_type(folder_, true);
     fs::path way;
     for (const fs::path& step : folder_) {
         way /= step;
@@ -95,8 +103,7 @@ void Transaction::make_folders() {
         while (!fs::is_directory(way, ignored)) {  // again where another run removes it
             if (fs::create_directory(way, error)) made_.push_back(way);
             if (!error) continue;
-            if (type_of(way) != Type::not_found)
-                throw io_failed("{} is no folder; Doppel would write into a folder there", way.string());
+            demand_type(way, true);
             throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
         }
     }
@@ -106,9 +113,7 @@ void Transaction::make_folders() {
 bool Transaction::lock() {
     const bool is_new = mkdir(hidden_.c_str(), 0777) == 0;
     if (!is_new && errno != EEXIST) throw cannot(folder_, "written to");
-    if (type_of(hidden_) == Type::not_found) return false;
-    if (type_of(hidden_) != Type::directory)
-        throw io_failed("{} is no folder of Doppel's; remove it", hidden_.string());
+    demand_type(hidden_, true);
     const auto path = hidden(lock_name);
     auto file = open_stream(path, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK, "a+");
     if (!file && errno == ENOENT) return false;
@@ -176,15 +181,8 @@ void Transaction::begin() {
 /// Throws where the name is there, and what has it may not be replaced by a file or a folder.
 void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
     const auto path = folder_ / name;
-    const auto type = type_of(path);
-    if (type == Type::not_found) return;
-    if (type == Type::symlink) throw is_link(path);
-    if (type != Type::regular && type != Type::directory)
-        throw io_failed("{} is neither a file nor a folder; remove it", path.string());
-    if (type == Type::regular && is_folder)
-        throw io_failed("{} is a file; Doppel would make a folder there", path.string());
-    if (type == Type::directory && !is_folder)
-        throw io_failed("{} is a folder; Doppel would write a file there", path.string());
+    demand_type(path, is_folder);
+    if (type_of(path) == Type::not_found) return;
     if (!is_folder) return refuse_foreign_file(name);
     for (const auto& file : names_in(path)) {
         const bool is_numbered = file.ends_with(".png") && file.find_first_not_of("0123456789") == file.size() - 4;
@@ -240,11 +238,10 @@ void Transaction::finished(const std::string& name) {
 std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vector<fs::path>()>& last) {
     try {
         return last();
-    } catch (const Error& error) {
-        if (error.code() == ExitCode::interrupted) throw;
-        throw Error(error.code(), error.what() + keep());
     } catch (const std::exception& error) {
-        throw io_failed("{}{}", error.what(), keep());
+        const auto* ours = dynamic_cast<const Error*>(&error);
+        if (ours && ours->code() == ExitCode::interrupted) throw;
+        throw Error(ours ? ours->code() : ExitCode::io_failed, error.what() + keep());
     }
 }
 
@@ -267,15 +264,15 @@ void Transaction::keep_only(const std::string& name, const std::string& new_name
 }
 
 std::vector<std::pair<std::string, WrittenFile>> Transaction::finished_files() const {
-    std::vector<std::string> names;
-    for (const auto& [name, finished] : parts_) {
-        if (!finished) continue;
-        if (!fs::is_directory(hidden(name))) names.push_back(name);
-        for (const auto& file : fs::is_directory(hidden(name)) ? names_in(hidden(name)) : std::vector<std::string>())
-            names.push_back(name + "/" + file);
-    }
     std::vector<std::pair<std::string, WrittenFile>> files;
-    for (const auto& name : names) files.push_back({name, {fs::file_size(hidden(name)), sha256_of_file(hidden(name))}});
+    const auto add = [&](const std::string& name) {
+        files.push_back({name, {fs::file_size(hidden(name)), sha256_of_file(hidden(name))}});
+    };
+    for (const auto& [name, finished] : parts_) {
+        if (finished && !fs::is_directory(hidden(name))) add(name);
+        if (!finished || !fs::is_directory(hidden(name))) continue;
+        for (const auto& file : names_in(hidden(name))) add(name + "/" + file);
+    }
     return files;
 }
 

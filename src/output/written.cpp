@@ -13,6 +13,7 @@ extern "C" {
 #include <algorithm>
 #include <array>
 #include <new>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -20,27 +21,18 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// SHA-256, by libavutil.
-class Hash {
-public:
-    Hash() : sha_(av_sha_alloc()) {
-        if (!sha_) throw std::bad_alloc();
-        av_sha_init(sha_.get(), 256);
-    }
-
-    void add(const void* bytes, std::size_t count) {
-        av_sha_update(sha_.get(), static_cast<const std::uint8_t*>(bytes), count);
-    }
-
-    std::string digits() {
-        std::array<std::uint8_t, 32> digest;
-        av_sha_final(sha_.get(), digest.data());
-        return fmt::format("{:02x}", fmt::join(digest, ""));
-    }
-
-private:
-    Owned<AVSHA, av_free> sha_;
-};
+/// SHA-256, by libavutil, of the blocks that next() gives until one is empty.
+template <class Next>
+std::string sha256_of(const Next& next) {
+    const Owned<AVSHA, av_free> sha(av_sha_alloc());
+    if (!sha) throw std::bad_alloc();
+    av_sha_init(sha.get(), 256);
+    for (std::string_view block = next(); !block.empty(); block = next())
+        av_sha_update(sha.get(), reinterpret_cast<const std::uint8_t*>(block.data()), block.size());
+    std::array<std::uint8_t, 32> digest;
+    av_sha_final(sha.get(), digest.data());
+    return fmt::format("{:02x}", fmt::join(digest, ""));
+}
 
 /// A manifest of Doppel's; null where the file is none.
 Json manifest_of(const fs::path& path) {
@@ -116,17 +108,15 @@ bool made_by(const fs::path& path, std::string_view program) {
 
 std::string sha256_of_file(const fs::path& path) {
     const Stream file = open_file(path);
-    Hash hash;
-    std::array<std::uint8_t, std::size_t{1} << 16> block;
-    while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) hash.add(block.data(), n);
+    std::array<char, std::size_t{1} << 16> block;
+    auto sum = sha256_of(
+        [&] { return std::string_view(block.data(), std::fread(block.data(), 1, block.size(), file.get())); });
     if (std::ferror(file.get())) throw cannot(path, "read");
-    return hash.digits();
+    return sum;
 }
 
 std::string sha256_of_text(std::string_view text) {
-    Hash hash;
-    hash.add(text.data(), text.size());
-    return hash.digits();
+    return sha256_of([&] { return std::exchange(text, {}); });
 }
 
 }  // namespace doppel

@@ -193,8 +193,7 @@ TEST(Faults, WhatIsNotDoppelsIsLeftAloneBeforeWorkStarts) {
         std::string made, named, format;
     };
     const std::vector<Case> cases{
-        {"ln -s ../../elsewhere out/butterfly/.doppel-run", "out/butterfly/.doppel-run is no folder of Doppel's",
-         "mp4"},
+        {"ln -s ../../elsewhere out/butterfly/.doppel-run", "out/butterfly/.doppel-run is a symbolic link", "mp4"},
         {"ln -s ../../thesis out/butterfly/butterfly.mp4", "out/butterfly/butterfly.mp4 is a symbolic link", "mp4"},
         {"ln -s ../elsewhere out/butterfly/frames", "out/butterfly/frames is a symbolic link", "png"},
         {"mkdir out/butterfly/frames; cp thesis out/butterfly/frames/notes.txt", "out/butterfly/frames/notes.txt",

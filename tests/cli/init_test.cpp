@@ -172,8 +172,8 @@ TEST(Init, LeavesNothingElseThere) {
     fs::create_directory_symlink("elsewhere", folder / "link");
     for (const char* name : {"mine.toml", "link/mine.toml"}) EXPECT_EQ(doppel(folder, {"init", name}).code, 0) << name;
     EXPECT_EQ(bytes_of(folder / "mine.toml.part"), "mine");
-    EXPECT_EQ(listing(folder),
-              (std::set<std::string>{"mine.toml.part", "mine.toml", "elsewhere", "elsewhere/mine.toml", "link"}));
+    EXPECT_EQ(listing(folder), (std::set<std::string>{"elsewhere", "elsewhere/mine.toml", "link", "mine.toml",
+                                                      "mine.toml.part", "stderr", "stdout"}));
 }
 
 TEST(Init, NamesTheSchemaThatIsThere) {

@@ -175,7 +175,7 @@ TEST(Transaction, WhatIsInTheWayIsNamed) {
                  [&] { Transaction(out / "x").file("x.csv"); });
     expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"},
                  [&] { Transaction(out).directory("file"); });
-    expect_error(ExitCode::io_failed, {"file is no folder"}, [&] { Transaction(out / "file/x"); });
+    expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"}, [&] { Transaction(out / "file/x"); });
     expect_error(ExitCode::io_failed, {"/proc/doppel", "No such file"}, [] { Transaction("/proc/doppel/x"); });
     EXPECT_EQ(listing(out), (Names{"x", "x/x.csv", "file"}));
 }
