@@ -89,6 +89,7 @@ Origin origin_of(const fs::path& folder, const std::string& name, const WrittenF
 }
 
 bool made_by(const fs::path& path, std::string_view program) {
+    if (type_of(path) != fs::file_type::regular) return false;
     const auto head = start_of_file(path, std::size_t{1} << 12);
     if (head.starts_with("\x89PNG\r\n\x1a\n"))
         return head.find(fmt::format("tEXtSoftware{}{}", '\0', program)) != std::string::npos;
