@@ -308,6 +308,7 @@ std::vector<fs::path> Transaction::publish() {
     } catch (const Error&) {
         // all is in its place: the next run cleans up
     }
+    made_.clear();  // by "new/../there" the files are found only while there is "new"
     return files;
 }
 

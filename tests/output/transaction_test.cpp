@@ -103,6 +103,17 @@ TEST(Transaction, FoldersWithOtherThingsInThemStay) {
     EXPECT_EQ(listing(out), (Names{"a", "a/notes"}));
 }
 
+TEST(Transaction, TheWayToPublishedFilesStays) {
+    const auto out = fresh_folder();
+    fs::path file;
+    {
+        Transaction files(out / "new/../there");
+        write_part(files, "x.csv", "table");
+        file = files.publish().at(0);
+    }
+    EXPECT_EQ(bytes_of(file), "table");
+}
+
 TEST(Transaction, RunsThatStartTogetherShareTheFoldersTheyMake) {
     const auto out = fresh_folder();
     for (int round = 0; round < 50; ++round) {
@@ -175,7 +186,8 @@ TEST(Transaction, WhatIsInTheWayIsNamed) {
                  [&] { Transaction(out / "x").file("x.csv"); });
     expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"},
                  [&] { Transaction(out).directory("file"); });
-    expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"}, [&] { Transaction(out / "file/x"); });
+    expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"},
+                 [&] { Transaction(out / "file/x"); });
     expect_error(ExitCode::io_failed, {"/proc/doppel", "No such file"}, [] { Transaction("/proc/doppel/x"); });
     EXPECT_EQ(listing(out), (Names{"x", "x/x.csv", "file"}));
 }
