@@ -39,9 +39,7 @@ constexpr const char* maker = "Doppel compare";  // of every difference picture
 
 /// What an earlier comparison left, and it alone, is no news beside a picture that passes.
 void remove_difference(const fs::path& folder, const std::string& name) {
-    if (std::error_code unknown; !fs::is_directory(folder, unknown)) return;
-    const auto pictures = Folder::at(folder);
-    if (maker_of_picture(pictures, name) == maker) pictures.remove(name);
+    if (std::error_code ignored; made_by(folder / name, maker)) fs::remove(folder / name, ignored);
 }
 
 /// Compares one pair, and where it differs says why and writes the difference picture. Throws Error (exit 2, 4) where
@@ -62,9 +60,8 @@ void compare_pair(ComparedPicture& pair, const fs::path& out) {
     pair.match = Match::differs;
     Transaction parts(folder_in(out), name, {}, {.inputs = {pair.expected, pair.actual}});
     const auto place = parts.file(name);
-    if (parts.folder().entry(name).kind == Entry::Kind::file && maker_of_picture(parts.folder(), name) != maker)
-        throw io_failed("{} is no difference picture; move it, or give another folder with --out",
-                        (parts.folder().path() / name).string());
+    if (const auto older = parts.folder() / name; fs::exists(older) && !made_by(older, maker))
+        throw io_failed("{} is no difference picture; move it, or give another folder with --out", older.string());
     write_png(place, difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
     const auto files = parts.publish();
     pair.message = fmt::format("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path,
@@ -88,7 +85,7 @@ ComparedPicture compared(ComparedPicture pair, const fs::path& out, std::optiona
 
 std::set<std::string> png_names(const fs::path& folder) {
     std::set<std::string> names;
-    for (const auto& name : Folder::at(folder).names())
+    for (const auto& name : names_in(folder))
         if (fs::path(name).extension() == ".png") names.insert(name);
     return names;
 }
@@ -136,12 +133,11 @@ public:
                        std::string(), Replacing{.inputs = inputs});
         const auto name = path.filename().string();
         place_ = parts_->file(name);
-        const auto& folder = parts_->folder();
-        if (folder.entry(name).kind == Entry::Kind::file && !begins_with(folder, name, start))
+        if (fs::exists(path) && start_of_file(path, start.size()) != start)
             throw io_failed("{} is there already, and no such report; give the name of another file", file);
     }
 
-    void publish(void (*write)(const FilePlace&, const Comparison&), const Comparison& comparison) {
+    void publish(void (*write)(const fs::path&, const Comparison&), const Comparison& comparison) {
         if (!parts_) return;
         write(*place_, comparison);
         parts_->publish();
@@ -149,7 +145,7 @@ public:
 
 private:
     std::optional<Transaction> parts_;
-    std::optional<FilePlace> place_;
+    std::optional<fs::path> place_;
 };
 
 /// True if all pass. Throws Error where some could not be read, after the reports are written.

@@ -37,7 +37,7 @@ std::string fault(const ComparedPicture& picture) {
 
 }  // namespace
 
-void write_junit(const FilePlace& place, const Comparison& comparison) {
+void write_junit(const std::filesystem::path& place, const Comparison& comparison) {
     double seconds = 0;
     for (const auto& picture : comparison.pictures) seconds += picture.seconds;
     const auto suite = markup(comparison.expected);
@@ -179,7 +179,7 @@ std::string list(const Comparison& comparison, bool passing) {
 
 }  // namespace
 
-void write_compare_page(const FilePlace& place, const Comparison& comparison) {
+void write_compare_page(const std::filesystem::path& place, const Comparison& comparison) {
     const auto files = cli_files();
     const auto file = std::ranges::find(files, "cli/compare.html", &EmbeddedFile::name);
     if (file == files.end()) throw io_failed("the page of compare was not built in");

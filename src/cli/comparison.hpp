@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/golden.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 
 #include <filesystem>
 #include <string>
@@ -38,11 +38,11 @@ inline constexpr std::string_view compare_page_start = "<!DOCTYPE html>\n<!-- Do
 
 /// JUnit's XML, as test servers read it: a test case a picture; a picture that differs or is missing is a failure, one
 /// that cannot be read an error. Throws Error (exit 4) where it cannot be written.
-void write_junit(const FilePlace& place, const Comparison& comparison);
+void write_junit(const std::filesystem::path& place, const Comparison& comparison);
 
 /// One page of HTML that needs nothing else: the summary, and every picture that differs as expected, actual and
 /// difference × 16, with a slider between the first two. Of a page over 100 MB the rest is named, not shown. Reads the
 /// pictures that differ again, one at a time. Throws Error (exit 4).
-void write_compare_page(const FilePlace& place, const Comparison& comparison);
+void write_compare_page(const std::filesystem::path& place, const Comparison& comparison);
 
 }  // namespace doppel

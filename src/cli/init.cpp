@@ -4,7 +4,7 @@
 #include "cli/terminal.hpp"
 #include "figure/kinds.hpp"
 #include "figure/preset.hpp"
-#include "output/folder.hpp"
+#include "output/transaction.hpp"
 #include "scene/preset_fields.hpp"
 
 #include <CLI/CLI.hpp>
@@ -129,7 +129,11 @@ void write_preset(const fs::path& path, std::string_view kind) {
     if (fs::exists(fs::symlink_status(path, ignored)))
         throw bad_input("{}: is there already; give the name of a new file", path.string());
     outlive_readers();
-    write_file(path, preset.text);
+    const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, ignored)) throw cannot(folder, "opened", ENOENT);
+    Transaction files(folder / "", path.filename().string());
+    write_file(files.file(path.filename().string()), preset.text);
+    files.publish();
     tell_of_files(on_one_line(fmt::format("{0}: edit it, then: doppel check {0}", path.string())) + "\n");
 }
 

@@ -23,8 +23,8 @@ std::string duration_words(double seconds) {
 
 }  // namespace
 
-Computation::Computation(const FigurePreset& figure, const PartHeader& header, std::optional<FilePlace> record,
-                         int threads, ComputationReport report)
+Computation::Computation(const FigurePreset& figure, const PartHeader& header,
+                         std::optional<std::filesystem::path> record, int threads, ComputationReport report)
     : figure_(figure),
       header_(header),
       record_(std::move(record)),
@@ -39,18 +39,18 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header, s
 
 void Computation::take_record() {
     std::error_code ignored;
-    if (!record_ || !std::filesystem::exists(std::filesystem::symlink_status(record_->path, ignored))) return;
-    auto part = read_part_file(record_->path);
+    if (!record_ || !std::filesystem::exists(std::filesystem::symlink_status(*record_, ignored))) return;
+    auto part = read_part_file(*record_);
     if (part.header != header_)
         throw io_failed("{} belongs to another preset or version; remove it, or give another folder with --out",
-                        record_->path.string());
+                        record_->string());
     part.take(*figure_.experiment, known_);
     has_record_ = true;
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.experiment->units(trial);
     kept_units_ = done_units_;
     report_.note(fmt::format(
-        "goes on from {}: {:.0f} % is done{}", record_->path.string(), percent(done_units_),
+        "goes on from {}: {:.0f} % is done{}", record_->string(), percent(done_units_),
         part.damaged_line == 0
             ? ""
             : fmt::format("; line {} is damaged, and what follows it is computed anew", part.damaged_line)));
@@ -100,7 +100,7 @@ Error Computation::with_record(const Error& fault) {
     if (!has_record_) return fault;
     if (writer_) writer_->flush();
     return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command goes on from there",
-                                      fault.what(), percent(kept_units_), record_->path.string())};
+                                      fault.what(), percent(kept_units_), record_->string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {

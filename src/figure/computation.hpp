@@ -27,8 +27,8 @@ class Computation {
 public:
     /// `record` = the file; where it exists, its trials up to the first damaged one are known. `threads` is for
     /// messages. Throws Error (exit 4) where the record is another file, which is left alone.
-    Computation(const FigurePreset& figure, const PartHeader& header, std::optional<FilePlace> record, int threads,
-                ComputationReport report);
+    Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> record,
+                int threads, ComputationReport report);
 
     std::size_t groups() const { return groups_.size(); }
     /// Computes a group, each once, on any thread. True for the last one: then all trials are known. Throws Error: what
@@ -39,7 +39,7 @@ public:
     Error with_record(const Error& fault);
 
     const PartHeader& header() const { return header_; }
-    const std::optional<FilePlace>& record() const { return record_; }
+    const std::optional<std::filesystem::path>& record() const { return record_; }
     double computed_units() const { return computed_units_; }  // without those read
     double cpu_s() const { return cpu_s_; }                    // of the threads while they computed
     double start_s() const { return start_s_; }                // of the first group, by CLOCK_MONOTONIC
@@ -55,7 +55,7 @@ private:
 
     const FigurePreset& figure_;
     PartHeader header_;
-    std::optional<FilePlace> record_;
+    std::optional<std::filesystem::path> record_;
     int threads_;
     ComputationReport report_;
     std::vector<Group> groups_;

@@ -84,7 +84,7 @@ void MapFigure::draw(std::span<const TrialNumbers> numbers, Figure& figure) cons
     figure.panels.push_back(std::move(plot));
 }
 
-void demand_room(const FigurePreset& figure, const PartHeader& header, const Folder& folder) {
+void demand_room(const FigurePreset& figure, const PartHeader& header, const std::filesystem::path& folder) {
     const auto* map = figure.experiment->map();
     if (!map) return;
     const auto &x = map->frame().x, &y = map->frame().y;
@@ -99,7 +99,7 @@ void demand_room(const FigurePreset& figure, const PartHeader& header, const Fol
     const double memory = cells * (8 * numbers + 8), owned = static_cast<double>(this_machine().memory);
     if (memory > 0.8 * owned) throw refuse("memory", memory, owned);
     std::error_code unknown;
-    const auto space = std::filesystem::space(folder.path(), unknown);
+    const auto space = std::filesystem::space(folder, unknown);
     const double table = cells * (30 + 18 * numbers), free = static_cast<double>(space.available);
     if (!unknown && table > free) throw refuse("disk", table, free);
 }

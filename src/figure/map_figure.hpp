@@ -58,6 +58,6 @@ private:
 
 /// Throws Error (exit 2) where the trials of `header` are so many cells of a map that memory, or the disk of `folder`,
 /// does not hold them. Nothing of other figures.
-void demand_room(const FigurePreset& figure, const PartHeader& header, const Folder& folder);
+void demand_room(const FigurePreset& figure, const PartHeader& header, const std::filesystem::path& folder);
 
 }  // namespace doppel

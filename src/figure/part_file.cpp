@@ -28,15 +28,10 @@ constexpr std::size_t checksum_digits = 16, name_digits = 12;
 class LineReader {
 public:
     explicit LineReader(const fs::path& path) : path_(path) {
-        const auto folder = Folder::at(path.has_parent_path() ? path.parent_path() : ".");
-        const auto name = path.filename().string();
-        const auto kind = folder.entry(name).kind;
-        if (kind == Entry::Kind::link) throw fault("is a symbolic link");
-        if (kind != Entry::Kind::file && kind != Entry::Kind::none) throw fault("is no regular file");
-        auto file = open_file({folder, name});
-        file_.reset(fdopen(file.number(), "rb"));
-        if (!file_) throw cannot(path, "read");
-        file.release();
+        const auto type = type_of(path);
+        if (type == fs::file_type::symlink) throw fault("is a symbolic link");
+        if (type != fs::file_type::regular && type != fs::file_type::not_found) throw fault("is no regular file");
+        file_ = open_file(path);
     }
 
     /// The next line, without its end. False after the last; what has no end, because its writer was killed, or is
@@ -57,11 +52,8 @@ public:
     }
 
 private:
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
     fs::path path_;
-    std::unique_ptr<std::FILE, Close> file_;
+    Stream file_;
 };
 
 Json json_of(const PartHeader& header) {
@@ -171,6 +163,13 @@ void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) 
                     missing > most_named ? fmt::format(" … {} in all", missing) : "");
 }
 
+/// "PATH.part", and none there: one that is, is of a run that was killed.
+fs::path fresh_part(fs::path path) {
+    path += ".part";
+    fs::remove(path);
+    return path;
+}
+
 }  // namespace
 
 PartHeader header_of(const FigurePreset& figure, int shard, int of) {
@@ -236,13 +235,13 @@ PartFile read_part_file(const fs::path& path) {
     return part;
 }
 
-PartWriter::PartWriter(const FilePlace& place, const PartHeader& header, const KnownTrials& known)
-    : file_(part_of(place)), header_(json_of(header).dump()) {
+PartWriter::PartWriter(const fs::path& path, const PartHeader& header, const KnownTrials& known)
+    : file_(fresh_part(path)), header_(json_of(header).dump()) {
     file_.write(header_ + "\n");
     for (std::size_t trial = 0; trial < known.size(); ++trial)
         if (!known[trial].empty()) add(trial, known[trial]);
     flush();
-    rename_file(part_of(place), place);
+    rename_file(file_.path(), path);
 }
 
 void PartWriter::add(std::size_t trial, const TrialNumbers& numbers) {

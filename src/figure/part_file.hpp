@@ -1,7 +1,7 @@
 #pragma once
 
 #include "figure/preset.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -62,7 +62,7 @@ PartFile read_part_file(const std::filesystem::path& path);
 class PartWriter {
 public:
     /// Begins the file with what is known; one that is there is replaced when that is written.
-    PartWriter(const FilePlace& place, const PartHeader& header, const KnownTrials& known);
+    PartWriter(const std::filesystem::path& path, const PartHeader& header, const KnownTrials& known);
 
     void add(std::size_t trial, const TrialNumbers& numbers);
     /// All so far can be read by others.

@@ -190,14 +190,12 @@ public:
             const auto header = header_for(figure, options);
             const auto& folder = files[k]->folder();
             demand_room(figure, header, folder);
-            const auto name = resume_name(header);
-            if (const auto others = other_resumes(folder.path(), header);
-                !others.empty() && folder.entry(name).kind == Entry::Kind::none)
+            const auto record = folder / resume_name(header);
+            if (const auto others = other_resumes(folder, header);
+                !others.empty() && type_of(record) == fs::file_type::not_found)
                 report.note(k, fmt::format("leaves {}{} alone, of another preset or version", others.front().string(),
                                            others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-            files[k]->note_part(name);
-            computations_.push_back(
-                std::make_unique<Computation>(figure, header, FilePlace(folder, name), jobs, report_of(report, k)));
+            computations_.push_back(std::make_unique<Computation>(figure, header, record, jobs, report_of(report, k)));
             auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
@@ -290,7 +288,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         } catch (const Error& fault) {
             throw computation.with_record(fault);
         }
-        files[*k]->folder().remove(computation.record()->name);
+        fs::remove(*computation.record());
         result.samples = std::lround(computation.computed_units());
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         report.done(*k, result);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "scene/resolved.hpp"
 
 #include <atomic>
@@ -15,11 +15,11 @@ namespace doppel {
 /// files, PNGs of Pyramid::tile pixels a side; they appear whole, and none is replaced. May be used by several threads, and by several processes for tiles of their own.
 class TileFolder {
 public:
-    /// Makes the folder in `above`, or takes it where its pyramid.json is `owner`. Throws Error (exit 4) where it is
+    /// Makes the folder, or takes it where its pyramid.json is `owner`. Throws Error (exit 4) where it is
     /// another's, not Doppel's, or a link, or a tile in it is not as above.
-    TileFolder(const Folder& above, const std::string& name, const Json& owner);
+    TileFolder(const std::filesystem::path& folder, const Json& owner);
 
-    std::filesystem::path path() const { return folder_.path(); }
+    const std::filesystem::path& path() const { return folder_; }
     std::size_t count() const;
     bool has(const std::string& tile) const;
     Picture read(const std::string& tile) const;
@@ -27,7 +27,7 @@ public:
     void write(const std::string& tile, const Picture& picture, const std::atomic<bool>& stop);
 
 private:
-    Folder folder_;
+    std::filesystem::path folder_;
     mutable std::mutex mutex_;
     std::set<std::string> there_;
 };

@@ -35,7 +35,7 @@ Json scale_json(const HeatMap& look, const Theme& theme) {
 
 }  // namespace
 
-void write_tile_page(const FilePlace& place, const TilePage& page) {
+void write_tile_page(const std::filesystem::path& place, const TilePage& page) {
     const auto files = figure_files();
     const auto file = std::ranges::find(files, "figure/tiles.html", &EmbeddedFile::name);
     if (file == files.end()) throw io_failed("the page of tiles was not built in");

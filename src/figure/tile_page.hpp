@@ -16,6 +16,6 @@ struct TilePage {
 };
 
 /// A page that needs no network: to pan and zoom with a mouse, by touch or with keys. Throws Error (exit 4).
-void write_tile_page(const FilePlace& place, const TilePage& page);
+void write_tile_page(const std::filesystem::path& place, const TilePage& page);
 
 }  // namespace doppel

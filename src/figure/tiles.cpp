@@ -34,14 +34,14 @@ Json owner_of(const FigurePreset& figure, const MapFigure& map) {
 /// Makes the tiles of one figure.
 class TileMaker {
 public:
-    TileMaker(const FigurePreset& figure, const Folder& above, int jobs, const std::atomic<bool>& stop,
+    TileMaker(const FigurePreset& figure, const std::filesystem::path& above, int jobs, const std::atomic<bool>& stop,
               ComputationReport report)
         : figure_(figure),
           map_(*figure.experiment->map()),
           pyramid_(map_.frame().x.count, map_.frame().y.count),
           theme_(*std::find_if(themes.begin(), themes.end(),
                                [&](const Theme& theme) { return theme.name == figure.chart.theme; })),
-          folder_(above, figure.name + ".tiles", owner_of(figure, *figure.experiment->map())),
+          folder_(above / (figure.name + ".tiles"), owner_of(figure, *figure.experiment->map())),
           stop_(stop),
           report_(std::move(report)),
           jobs_(jobs) {

@@ -126,9 +126,8 @@ Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, Ru
     const auto& video = scene.preset.video;
     if (video.format == FilmFormat::png) {
         film_name_ = "frames";
-        const Folder& folder = parts.directory(film_name_);
-        const auto place_of = [this, &folder](long k) {
-            return FilePlace(folder, fmt::format("{:06}.png", first_number_ + k));
+        const auto place_of = [this, folder = parts.directory(film_name_)](long k) {
+            return folder / fmt::format("{:06}.png", first_number_ + k);
         };
         sink_ = make_png_sink(place_of, png_threads(options.jobs, video.size),
                               {.with_alpha = video.transparent, .metadata = film_metadata(scene.preset)}, stop);

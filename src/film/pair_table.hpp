@@ -19,7 +19,7 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
 class PairTable {
 public:
     /// `chosen` as in columns_of().
-    PairTable(const FilePlace& place, const Scene& scene, const std::vector<std::string>& chosen)
+    PairTable(const std::filesystem::path& place, const Scene& scene, const std::vector<std::string>& chosen)
         : scene_(scene), csv_(place, columns_of(scene), columns_of(scene, chosen)) {}
 
     /// `start_distance` = the pair's distance at sample 0, to which log_ratio refers. Throws Error (exit 3) where the

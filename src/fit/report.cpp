@@ -218,7 +218,7 @@ Json fit_json(const FitResult& result) {
     return json;
 }
 
-void write_residuals(const FitResult& result, const FilePlace& place) {
+void write_residuals(const FitResult& result, const std::filesystem::path& place) {
     Csv table(place, {"piece", "time_s", "theta1_rad", "theta2_rad", "residual1_rad", "residual2_rad"});
     for (const auto& shot : result.chosen().fit.shots) {
         const auto& piece = result.track.pieces[shot.piece];

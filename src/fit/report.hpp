@@ -17,7 +17,7 @@ Json fit_json(const FitResult& result);
 
 /// Columns and rows of the residuals: piece (from 0), time_s, both angles as they were taken, and measured − model of
 /// both, rad; empty where an angle was left out.
-void write_residuals(const FitResult& result, const FilePlace& place);
+void write_residuals(const FitResult& result, const std::filesystem::path& place);
 
 /// One sentence on the residuals: like noise, or not and why.
 std::string residual_sentence(const FitResult& result);

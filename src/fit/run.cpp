@@ -42,9 +42,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
     const auto result = answer(std::move(track), options, stop, report);
     const auto finish = [&] {
-        OutputFile text(preset);
-        text.write(fitted_preset(result, name));
-        text.close();
+        write_file(preset, fitted_preset(result, name));
         parts.finished(name + ".toml");
         write_residuals(result, table);
         parts.finished(name + ".residuals.csv");

@@ -12,7 +12,7 @@
 
 namespace doppel {
 
-Csv::Csv(const FilePlace& place, std::vector<std::string> columns, const std::vector<std::string>& written)
+Csv::Csv(const std::filesystem::path& place, std::vector<std::string> columns, const std::vector<std::string>& written)
     : file_(place), columns_(std::move(columns)) {
     const std::set<std::string_view> names(written.begin(), written.end());
     for (const auto& name : columns_) is_written_.push_back(names.contains(name));

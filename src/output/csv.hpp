@@ -1,6 +1,6 @@
 #pragma once
 
-#include "output/folder.hpp"
+#include "output/files.hpp"
 
 #include <optional>
 #include <string>
@@ -13,9 +13,9 @@ namespace doppel {
 class Csv {
 public:
     /// Opens the file and writes the header. Throws Error (exit 4), as do all that write.
-    Csv(const FilePlace& place, const std::vector<std::string>& columns) : Csv(place, columns, columns) {}
+    Csv(const std::filesystem::path& place, const std::vector<std::string>& columns) : Csv(place, columns, columns) {}
     /// Rows are added with all columns; the file has only those that are `written`.
-    Csv(const FilePlace& place, std::vector<std::string> columns, const std::vector<std::string>& written);
+    Csv(const std::filesystem::path& place, std::vector<std::string> columns, const std::vector<std::string>& written);
 
     void add(long value);
     /// Throws Error (exit 3) where the value is not finite.

@@ -7,37 +7,17 @@ extern "C" {
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <string_view>
 
 namespace doppel {
-namespace {
 
-constexpr std::size_t block_bytes = std::size_t{3} << 14;  // a multiple of three: padding only after the last block
-
-std::string start_of_url(std::string_view type) {
-    return fmt::format("data:{};base64,", type);
-}
-
-void add_block(std::string& url, const char* bytes, std::size_t count) {
-    std::array<char, AV_BASE64_SIZE(block_bytes)> digits;
-    url += av_base64_encode(digits.data(), static_cast<int>(digits.size()),
-                            reinterpret_cast<const std::uint8_t*>(bytes), static_cast<int>(count));
-}
-
-}  // namespace
-
-std::string data_url(const FilePlace& png) {
-    const Stream file = stream_of(open_file(png), "rb", png.path, "read");
-    auto url = start_of_url("image/png");
-    std::array<char, block_bytes> block;
-    while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get()))
-        add_block(url, block.data(), count);
-    if (std::ferror(file.get())) throw cannot(png.path, "read");
-    return url;
+std::string data_url(const std::filesystem::path& png) {
+    const Stream file = open_file(png);
+    std::string bytes(std::filesystem::file_size(png), '\0');
+    if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) throw cannot(png, "read");
+    return data_url("image/png", bytes);
 }
 
 std::string data_url(const Picture& picture, const PngOptions& options) {
@@ -45,9 +25,12 @@ std::string data_url(const Picture& picture, const PngOptions& options) {
 }
 
 std::string data_url(std::string_view type, std::string_view bytes) {
-    auto url = start_of_url(type);
-    for (std::size_t at = 0; at < bytes.size(); at += block_bytes)
-        add_block(url, &bytes[at], std::min(block_bytes, bytes.size() - at));
+    auto url = fmt::format("data:{};base64,", type);
+    const auto start = url.size();
+    url.resize(start + AV_BASE64_SIZE(bytes.size()));
+    av_base64_encode(&url[start], static_cast<int>(url.size() - start),
+                     reinterpret_cast<const std::uint8_t*>(bytes.data()), static_cast<int>(bytes.size()));
+    url.pop_back();  // the zero at its end
     return url;
 }
 

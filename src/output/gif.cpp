@@ -31,6 +31,13 @@ void check(liq_error error) {
 }
 
 /// What libimagequant allocates is null only where memory is out.
+/// Closing it frees it.
+Stream unnamed_file(const std::filesystem::path& path) {
+    auto file = create_file(path);
+    std::filesystem::remove(path);
+    return file;
+}
+
 template <class T>
 T* checked(T* thing) {
     if (!thing) throw std::bad_alloc();
@@ -115,7 +122,7 @@ std::string comment_and_end(const Metadata& metadata) {
 
 class GifSink final : public Sink {
 public:
-    GifSink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop)
+    GifSink(const std::filesystem::path& place, const VideoOptions& options, const std::atomic<bool>& stop)
         : options_(options),
           encoder_(place, encoding_of(options), stop),
           spool_(place),
@@ -195,12 +202,11 @@ private:
 
 }  // namespace
 
-Spool::Spool(const FilePlace& film)
-    : path_(film.path),
+Spool::Spool(const std::filesystem::path& film)
+    : path_(film),
+      file_(unnamed_file(film.string() + ".spool")),
       compressor_(checked(libdeflate_alloc_compressor(1))),
-      decompressor_(checked(libdeflate_alloc_decompressor())) {
-    file_ = stream_of(create_unnamed_file(film), "w+b", path_, "opened");
-}
+      decompressor_(checked(libdeflate_alloc_decompressor())) {}
 
 void Spool::write(const SampledAreas& frame) {
     const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas),
@@ -244,7 +250,7 @@ void Spool::fail(const char* what) const {
     throw io_failed("{}: its frames on the disk: {}: {}", path_.string(), what, std::generic_category().message(errno));
 }
 
-std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options,
+std::unique_ptr<Sink> make_gif_sink(const std::filesystem::path& place, const VideoOptions& options,
                                     const std::atomic<bool>& stop) {
     // libimagequant's OpenMP starts one thread a core for each caller, and ends the program where it cannot
     need_threads(2 * std::size_t{std::thread::hardware_concurrency()});

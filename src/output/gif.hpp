@@ -1,6 +1,6 @@
 #pragma once
 
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"
 
@@ -16,7 +16,7 @@ namespace doppel {
 class Spool {
 public:
     /// On the file system where the file `film` is.
-    explicit Spool(const FilePlace& film);
+    explicit Spool(const std::filesystem::path& film);
 
     void write(const SampledAreas& frame);
     /// No write follows; the next read gives the first frame.
@@ -40,6 +40,7 @@ private:
 };
 
 /// The sink of VideoFormat::gif, of checked options. See make_video_sink().
-std::unique_ptr<Sink> make_gif_sink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop);
+std::unique_ptr<Sink> make_gif_sink(const std::filesystem::path& place, const VideoOptions& options,
+                                    const std::atomic<bool>& stop);
 
 }  // namespace doppel

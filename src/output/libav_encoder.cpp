@@ -123,8 +123,8 @@ Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& 
     return codec;
 }
 
-Encoder::Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bool>& stop)
-    : path_(place.path.string()),
+Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const std::atomic<bool>& stop)
+    : path_(place.string()),
       encoding_(std::move(encoding)),
       stop_(stop),
       file_(place),

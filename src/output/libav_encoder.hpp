@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"
 
@@ -28,7 +28,7 @@ std::string take_libav_error();
 class LibavFile {
 public:
     /// Throws Error (exit 4).
-    explicit LibavFile(const FilePlace& place) : file_(create_file(place)) {}
+    explicit LibavFile(const std::filesystem::path& place) : file_(create_file(place)) {}
     ~LibavFile();
     LibavFile(const LibavFile&) = delete;
     LibavFile& operator=(const LibavFile&) = delete;
@@ -41,7 +41,7 @@ public:
     int close();
 
 private:
-    Descriptor file_;
+    Stream file_;
     AVIOContext* writer_ = nullptr;
 };
 
@@ -95,7 +95,7 @@ void put(const SampledAreas& changes, AVFrame& frame);
 class Encoder {
 public:
     /// Opens the file. The encoder is opened with the first frame: SVT-AV1 hangs if closed without one.
-    Encoder(const FilePlace& place, Encoding encoding, const std::atomic<bool>& stop);
+    Encoder(const std::filesystem::path& place, Encoding encoding, const std::atomic<bool>& stop);
 
     AVPixelFormat pixels() const { return encoding_.pixels; }
     /// The frame last sent, writable.

@@ -58,7 +58,7 @@ std::int64_t seek_stream(void* opaque, std::int64_t offset, int whence) {
     return at = offset + (whence == SEEK_CUR ? at : whence == SEEK_END ? status.st_size : 0);
 }
 
-AVIOContext* open_stream(int file, bool writes) {
+AVIOContext* avio_of(int file, bool writes) {
     constexpr int buffer_bytes = 1 << 16;
     auto stream = std::make_unique<StreamPosition>(StreamPosition{file});
     auto* buffer = static_cast<unsigned char*>(av_malloc(buffer_bytes));
@@ -87,13 +87,13 @@ LibavFile::~LibavFile() {
 }
 
 void LibavFile::attach(AVFormatContext& format) {
-    writer_ = format.pb = open_stream(file_.number(), true);
+    writer_ = format.pb = avio_of(fileno(file_.get()), true);
     format.flags |= AVFMT_FLAG_CUSTOM_IO;
     format.opaque = writer_->opaque;
     format.io_open = [](AVFormatContext* muxer, AVIOContext** context, const char*, int flags, AVDictionary**) {
         if (flags & AVIO_FLAG_WRITE) return AVERROR(EPERM);  // only reopened for reading
         try {
-            *context = open_stream(static_cast<StreamPosition*>(muxer->opaque)->file, false);
+            *context = avio_of(static_cast<StreamPosition*>(muxer->opaque)->file, false);
         } catch (const std::bad_alloc&) {
             return AVERROR(ENOMEM);
         }
@@ -108,7 +108,7 @@ void LibavFile::attach(AVFormatContext& format) {
 int LibavFile::close() {
     avio_flush(writer_);
     if (writer_->error < 0) return writer_->error;
-    return ::close(file_.release()) == 0 ? 0 : AVERROR(errno);
+    return std::fclose(file_.release()) == 0 ? 0 : AVERROR(errno);
 }
 
 namespace {

@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/text.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "output/samples.hpp"
 #include "output/workers.hpp"
 
@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -133,45 +132,23 @@ AVPixelFormat pixels_of(const PngOptions& options) {
 /// A file's text chunks follow its signature and header.
 constexpr std::size_t header_bytes = 8 + 25;
 
-using Write = std::function<void(std::string_view)>;
-
-/// Gives the bytes of the file to `write`, in order; `bytes` are the picture's in the format pixels_of(). `path` is for
-/// messages.
-void encode_samples(const Write& write, const std::filesystem::path& path, Size size, const std::uint8_t* bytes,
+/// The bytes of the file; `samples` are the picture's in the format pixels_of(). `path` is for messages.
+std::string encoded(const std::filesystem::path& path, Size size, const std::uint8_t* samples,
                     const PngOptions& options, const std::string& text_chunks) {
-    struct Target {
-        const Write& write;
-        const std::string& text_chunks;
-        std::exception_ptr error;
-    } target{write, text_chunks, nullptr};
-    const auto take = [](void* context, void* data, int count) {
-        auto& [pass_on, chunks, error] = *static_cast<Target*>(context);
-        const std::string_view png(static_cast<const char*>(data), std::size_t(count));
-        try {
-            pass_on(png.substr(0, header_bytes));
-            pass_on(chunks);
-            pass_on(png.substr(header_bytes));
-        } catch (...) {
-            error = std::current_exception();  // none can pass through C
-        }
-    };
     const int channels = options.with_alpha ? 4 : 3;
-    if (!stbi_write_png_to_func(take, &target, size.width, size.height, channels, bytes, channels * size.width))
+    int count = 0;
+    auto* const bytes =
+        stbi_write_png_to_mem(samples, channels * size.width, size.width, size.height, channels, &count);
+    if (!bytes)
         throw io_failed("{}: a picture of {}x{} px cannot be compressed", path.string(), size.width, size.height);
-    if (target.error) std::rethrow_exception(target.error);
-}
-
-void write_samples(const FilePlace& place, Size size, const std::uint8_t* bytes, const PngOptions& options,
-                   const std::string& text_chunks, const std::atomic<bool>& stop) {
-    throw_if_set(stop);
-    OutputFile output(place);
-    encode_samples([&](std::string_view part) { output.write(part); }, place.path, size, bytes, options, text_chunks);
-    output.close();
+    std::string png(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
+    arena.give_back(bytes);
+    return png.insert(header_bytes, text_chunks);
 }
 
 class PngSink final : public Sink {
 public:
-    PngSink(std::function<FilePlace(long)> place_of, std::size_t threads, PngOptions options,
+    PngSink(std::function<std::filesystem::path(long)> place_of, std::size_t threads, PngOptions options,
             const std::atomic<bool>& stop)
         : place_of_(std::move(place_of)),
           options_(std::move(options)),
@@ -191,17 +168,18 @@ public:
 
 private:
     struct Job {
-        FilePlace place;
+        std::filesystem::path place;
         Size size;
         Buffer bytes;
     };
 
     void write(Job& job) {
-        write_samples(job.place, job.size, job.bytes.data(), options_, text_chunks_, stop_);
+        throw_if_set(stop_);
+        write_file(job.place, encoded(job.place, job.size, job.bytes.data(), options_, text_chunks_));
         spare_.give_back(std::move(job.bytes));
     }
 
-    const std::function<FilePlace(long)> place_of_;
+    const std::function<std::filesystem::path(long)> place_of_;
     const PngOptions options_;
     const std::atomic<bool>& stop_;
     const std::string text_chunks_;
@@ -234,28 +212,27 @@ static std::string chunks_of(const PngOptions& options) {
     return chunks;
 }
 
-void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options,
-               const std::atomic<bool>& stop) {
+/// Not yet compressed.
+static Buffer samples_of(const Picture& picture, const PngOptions& options) {
     const Rect all = all_of(picture.size);
-    Buffer bytes;
-    const AVPixelFormat format = pixels_of(options);
-    convert(picture, all, format, bytes.make_room(byte_count(format, all)));
-    write_samples(place, picture.size, bytes.data(), options, chunks_of(options), stop);
+    Buffer samples;
+    convert(picture, all, pixels_of(options), samples.make_room(byte_count(pixels_of(options), all)));
+    return samples;
+}
+
+void write_png(const std::filesystem::path& place, const Picture& picture, const PngOptions& options,
+               const std::atomic<bool>& stop) {
+    const auto samples = samples_of(picture, options);
+    throw_if_set(stop);
+    write_file(place, encoded(place, picture.size, samples.data(), options, chunks_of(options)));
 }
 
 std::string png_bytes(const Picture& picture, const PngOptions& options) {
-    const Rect all = all_of(picture.size);
-    Buffer samples;
-    const AVPixelFormat format = pixels_of(options);
-    convert(picture, all, format, samples.make_room(byte_count(format, all)));
-    std::string png;
-    encode_samples([&](std::string_view part) { png += part; }, "a PNG", picture.size, samples.data(), options,
-                   chunks_of(options));
-    return png;
+    return encoded("a PNG", picture.size, samples_of(picture, options).data(), options, chunks_of(options));
 }
 
-std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options,
-                                    const std::atomic<bool>& stop) {
+std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> place_of, int threads,
+                                    PngOptions options, const std::atomic<bool>& stop) {
     return std::make_unique<PngSink>(std::move(place_of), static_cast<std::size_t>(std::max(threads, 1)),
                                      std::move(options), stop);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "output/sink.hpp"
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct PngOptions {
 };
 
 /// Compressed by libdeflate. Throws Error: exit 4, or 130 where `stop` was set before the picture was compressed.
-void write_png(const FilePlace& place, const Picture& picture, const PngOptions& options = {},
+void write_png(const std::filesystem::path& place, const Picture& picture, const PngOptions& options = {},
                const std::atomic<bool>& stop = false);
 
 /// The bytes of the same file. Throws Error (exit 4).
@@ -27,15 +27,15 @@ std::string png_bytes(const Picture& picture, const PngOptions& options = {});
 
 /// An 8-bit PNG of any kind, as RGBA. Throws Error: exit 2 where there is no such file, exit 4 where it is no regular
 /// file, a checksum is wrong, it cannot be decoded, or its colours are not sRGB.
-Picture read_png(const FilePlace& place);
+Picture read_png(const std::filesystem::path& place);
 
 /// The size that its header says. Throws as read_png().
-Size png_size(const FilePlace& place);
+Size png_size(const std::filesystem::path& place);
 
 /// A numbered sequence: picture k = 0, 1, … is written to place_of(k), called by take(). `threads` compress, fed
 /// through a bounded queue. take() and finish() throw as write_png(), and exit 130 soon after `stop` is set.
-std::unique_ptr<Sink> make_png_sink(std::function<FilePlace(long)> place_of, int threads, PngOptions options = {},
-                                    const std::atomic<bool>& stop = never_stopped);
+std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> place_of, int threads,
+                                    PngOptions options = {}, const std::atomic<bool>& stop = never_stopped);
 
 /// PNG's text chunks of metadata: tEXt where Latin-1 has all characters of a text, iTXt elsewhere. Keywords are the
 /// registered ones: "Title", "Comment", …, "Software" for the encoder.
@@ -46,7 +46,7 @@ int png_threads(int jobs, Size size);
 
 /// "data:image/png;base64,…" of a PNG file as it is: what a page needs to show it without the file. Throws Error
 /// (exit 4) where it cannot be read.
-std::string data_url(const FilePlace& png);
+std::string data_url(const std::filesystem::path& png);
 
 /// The same of a picture.
 std::string data_url(const Picture& picture, const PngOptions& options = {});

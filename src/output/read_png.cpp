@@ -32,11 +32,11 @@ std::uint64_t big_endian(const unsigned char* bytes) {
 
 constexpr std::size_t head_bytes = 26;  // signature, length, type, width, height, bits, kind of colour
 
-Stream open_png(const FilePlace& place) {
-    struct stat status {};
-    if (fstatat(place.descriptor(), place.name.c_str(), &status, 0) != 0 && errno == ENOENT)
-        throw bad_input("{}: there is no such file", place.path.string());
-    return stream_of(open_file(place), "rb", place.path, "read");
+Stream open_png(const std::filesystem::path& place) {
+    std::error_code ignored;
+    if (std::filesystem::status(place, ignored).type() == std::filesystem::file_type::not_found)
+        throw bad_input("{}: there is no such file", place.string());
+    return open_file(place);
 }
 
 /// Whether the chunk that starts so, and whose contents are read next, has the checksum at its end.
@@ -122,30 +122,30 @@ std::string other_colors(std::FILE* file) {
 
 }  // namespace
 
-Size png_size(const FilePlace& place) {
+Size png_size(const std::filesystem::path& place) {
     const auto file = open_png(place);
     unsigned char head[head_bytes];
     if (std::fread(head, 1, sizeof head, file.get()) != sizeof head ||
         std::string_view(reinterpret_cast<const char*>(head), 8) != "\x89PNG\r\n\x1a\n")
-        throw io_failed("{}: cannot be decoded as PNG: not PNG", place.path.string());
+        throw io_failed("{}: cannot be decoded as PNG: not PNG", place.string());
     return {static_cast<int>(big_endian(head + 16)), static_cast<int>(big_endian(head + 20))};
 }
 
-Picture read_png(const FilePlace& place) {
+Picture read_png(const std::filesystem::path& place) {
     const auto file = open_png(place);
     struct stat status {};
-    if (fstat(fileno(file.get()), &status) != 0) throw cannot(place.path, "read");
+    if (fstat(fileno(file.get()), &status) != 0) throw cannot(place, "read");
     const auto claim = impossible_claim(file.get(), static_cast<std::uint64_t>(status.st_size));
-    if (!claim.empty()) throw io_failed("{}: cannot be decoded as PNG: {}", place.path.string(), claim);
+    if (!claim.empty()) throw io_failed("{}: cannot be decoded as PNG: {}", place.string(), claim);
     if (const auto colors = other_colors(file.get()); !colors.empty())
-        throw io_failed("{}: has {}; convert it to sRGB, as all pictures of Doppel are", place.path.string(), colors);
+        throw io_failed("{}: has {}; convert it to sRGB, as all pictures of Doppel are", place.string(), colors);
     std::rewind(file.get());
 
     Size size;
     int channels = 0;
     const Owned<stbi_uc, stbi_image_free> pixels(
         stbi_load_from_file(file.get(), &size.width, &size.height, &channels, 4));
-    if (!pixels) throw io_failed("{}: cannot be decoded as PNG: {}", place.path.string(), stbi_failure_reason());
+    if (!pixels) throw io_failed("{}: cannot be decoded as PNG: {}", place.string(), stbi_failure_reason());
     Picture picture(size);
     std::copy_n(pixels.get(), picture.rgba.size(), picture.rgba.begin());
     return picture;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 
 #include <atomic>
 #include <memory>
@@ -64,7 +64,7 @@ struct VideoOptions {
 /// take() converts what changed; a thread of the sink encodes, fed through a queue of a few frames.
 /// Throws Error: exit 2 for options that the format cannot have, exit 4 where libav has no encoder for it (those
 /// present are listed) or writing fails, exit 130 soon after `stop` is set.
-std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options,
+std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop = never_stopped);
 
 /// Throws as make_video_sink(), but opens no file.

@@ -2,12 +2,15 @@
 
 #include "base/error.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cerrno>
+#include <set>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -16,168 +19,216 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Kind = Entry::Kind;
+using Type = fs::file_type;
 
-/// Opens the folder; its parents may be links, it may not.
-Folder open_last(const fs::path& folder, const std::vector<fs::path>& made) {
-    try {
-        if (!folder.has_filename() || folder.filename() == "." || folder.filename() == "..") return Folder::at(folder);
-        const auto parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
-        if (fs::is_symlink(folder))
-            throw io_failed("{} is a symbolic link; Doppel follows none there", folder.string());
-        return Folder::at(parent).folder(folder.filename(), folder);
-    } catch (...) {
-        remove_folders(made);
-        throw;
-    }
-}
-
-/// "000000.png": a picture of a sequence.
-bool is_numbered_picture(const std::string& name) {
-    return name.ends_with(".png") && name.size() > 4 &&
-           std::all_of(name.begin(), name.end() - 4, [](unsigned char c) { return std::isdigit(c); });
-}
+constexpr const char* lock_name = ".lock";  // holds the process, then, after commit(), "publish INODE …" of new folders
+constexpr const char* backup_name = ".old";  // of a folder, where the file system cannot exchange two names
 
 Error not_ours(const fs::path& path) {
     return io_failed("{} was not written by Doppel, as far as it knows; move it, or give another folder with --out",
                      path.string());
 }
 
-void remove_quietly(const Folder& folder, const std::string& name) {
-    try {
-        folder.remove(name);
-    } catch (const Error&) {
-        // something foreign there stays
-    }
+/// Throws where something of another type has the name; no link is followed.
+void demand_type(const fs::path& path, bool is_folder) {
+    const auto type = type_of(path);
+    if (type == Type::not_found || type == (is_folder ? Type::directory : Type::regular)) return;
+    throw io_failed("{} is {}; Doppel would {} there", path.string(),
+                    type == Type::symlink     ? "a symbolic link"
+                    : type == Type::directory ? "a folder"
+                    : type == Type::regular   ? "a file"
+                                              : "neither a file nor a folder",
+                    is_folder ? "make a folder" : "write a file");
+}
+
+ino_t inode_of(const fs::path& path) {
+    struct stat status {};
+    return lstat(path.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
+void append(const Stream& file, const std::string& text, const fs::path& path) {
+    const auto written = write(fileno(file.get()), text.data(), text.size());
+    if (written != static_cast<ssize_t>(text.size())) throw cannot(path, "written", written < 0 ? errno : ENOSPC);
+}
+
+/// Flushes it to the disk. Errors of file systems that cannot do not count.
+void sync(int file, const fs::path& path) {
+    if (fsync(file) != 0 && errno != EINVAL && errno != ENOSYS && errno != EROFS) throw cannot(path, "written");
+}
+
+void sync_folder(const fs::path& path, bool with_files = false) {
+    const Owned<DIR, closedir> folder(opendir(path.c_str()));
+    if (!folder || (with_files && syncfs(dirfd(folder.get())) != 0 && errno != ENOSYS)) throw cannot(path, "written");
+    sync(dirfd(folder.get()), path);
 }
 
 }  // namespace
 
-Transaction::Transaction(const fs::path& folder, const std::string& run, const std::string& kind, Replacing replacing)
-    : kind_(kind), replacing_(std::move(replacing)), made_(make_folders(folder)), folder_(open_last(folder, made_)) {
-    try {
-        journal_.emplace(folder_, run);
-        recover();
-        written_ = written_files(folder_);
-    } catch (...) {
-        journal_.reset();
-        remove_folders(made_);
-        throw;
-    }
+Transaction::Transaction(fs::path folder, std::string run, std::string kind, Replacing replacing)
+    : Transaction(std::move(folder), std::move(kind), std::move(replacing)) {
+    hidden_ = folder_ / (".doppel-" + run);
+    // what is thrown from here on, the destructor undoes
+    make_folders();
+    while (!lock()) continue;
+    written_ = written_files(folder_);
+    recover();
+    begin();
 }
+
+Transaction::Transaction(fs::path folder, std::string kind, Replacing replacing)
+    : folder_(std::move(folder)), kind_(std::move(kind)), replacing_(std::move(replacing)) {}
 
 Transaction::~Transaction() {
+    std::error_code ignored;
     for (const Part& part : parts_)
-        if (!keeps_finished_ || !part.finished) remove_quietly(folder_, part_name(part.name));
-    journal_.reset();
-    remove_folders(made_);
+        if (!part.finished) fs::remove_all(hidden(part.name), ignored);
+    if (lock_ && !keeps_hidden_) {
+        try {
+            clear();
+        } catch (const Error&) {
+            // what cannot be removed stays
+        }
+        unlink(hidden(lock_name).c_str());  // before the lock is released, so that no other run has it yet
+    }
+    rmdir(hidden_.c_str());  // where it is empty, as the folders
+    for (auto made = made_.rbegin(); made != made_.rend(); ++made) rmdir(made->c_str());
 }
 
-/// Completes or reverts what a killed run had begun, and removes what it left.
+void Transaction::make_folders() {
+    demand_type(folder_, true);
+    fs::path way;
+    for (const fs::path& step : folder_) {
+        way /= step;
+        std::error_code error, ignored;
+        while (!fs::is_directory(way, ignored)) {  // again where another run removes it
+            if (fs::create_directory(way, error)) made_.push_back(way);
+            if (!error) continue;
+            demand_type(way, true);
+            throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
+        }
+    }
+}
+
+/// Makes and locks the hidden folder; false where its owner has meanwhile removed it.
+bool Transaction::lock() {
+    const bool is_new = mkdir(hidden_.c_str(), 0777) == 0;
+    if (!is_new && errno != EEXIST) throw cannot(folder_, "written to");
+    demand_type(hidden_, true);
+    const auto path = hidden(lock_name);
+    auto file = open_stream(path, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK, "a+");
+    if (!file && errno == ENOENT) return false;
+    if (!file) throw cannot(folder_, "written to");
+    const int fault = flock(fileno(file.get()), LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+    struct stat status {};
+    fstat(fileno(file.get()), &status);
+    if (fault == EINTR || (fault == 0 && inode_of(path) != status.st_ino)) return false;
+    const bool knows_no_locks = fault == ENOLCK || fault == EOPNOTSUPP || fault == ENOSYS;
+    if (fault == 0 || (knows_no_locks && is_new)) {
+        lock_ = std::move(file);
+        return true;
+    }
+    if (fault != EWOULDBLOCK && !knows_no_locks) throw cannot(path, "locked", fault);
+    auto process = start_of_file(path, 64);
+    process = process.empty() ? "" : fmt::format(", process {},", process.substr(0, process.find('\n')));
+    if (fault == EWOULDBLOCK)
+        throw io_failed("{}: another run{} is writing there; wait for it, or give another folder with --out",
+                        folder_.string(), process);
+    throw io_failed(
+        "{}: another run{} may be writing there: the file system has no locks ({}), so nobody can tell; remove {} if "
+        "there is none, or give another folder with --out",
+        folder_.string(), process, std::generic_category().message(fault), hidden_.string());
+}
+
+/// Moves in what an earlier run had committed itself to, and did not come to.
 void Transaction::recover() {
-    const auto left = journal_->left();
-    journal_->leave();  // for the next run, where this fails
-    if (left.state == Publication::State::publish) {
-        written_ = written_files(folder_);
-        for (const auto& step : left.steps)
-            if (is_waiting(folder_, step))
-                refuse_foreign_files(step.name, folder_.entry(part_name(step.name)).kind == Kind::folder);
-        put_in_place(folder_, left);
-    }
-    if (left.state == Publication::State::withdraw) take_back(folder_, left);
-    clear_away(folder_, left);
-    for (const auto& name : left.parts) {
-        folder_.remove(part_name(name));
-        folder_.remove(aside_name(name));
-    }
-    journal_->begin();
-    journal_->leave(false);
+    std::string text(4096, '\0'), process, word;
+    const auto got = pread(fileno(lock_.get()), text.data(), text.size(), 0);
+    if (got < 0) throw cannot(hidden(lock_name), "read");
+    text.resize(static_cast<std::size_t>(got));
+    std::istringstream notes(text);
+    if (!std::getline(notes, process) || !(notes >> word) || !text.ends_with('\n')) return;
+    keeps_hidden_ = true;  // where this fails
+    std::set<ino_t> fresh;
+    for (ino_t inode = 0; notes >> inode;) fresh.insert(inode);
+    auto names = names_in(hidden_);
+    std::erase_if(names, [&](const std::string& name) {
+        const bool is_older = fs::is_directory(hidden(name)) && !fresh.contains(inode_of(hidden(name)));
+        return name == lock_name || name == backup_name || is_older;
+    });
+    std::stable_partition(names.begin(), names.end(), [](const auto& name) { return !name.ends_with(".json"); });
+    for (const auto& name : names) refuse_foreign_files(name, fs::is_directory(hidden(name)));
+    for (const auto& name : names) move_in(name);
+    sync_folder(folder_);
+    written_ = written_files(folder_);
 }
 
-/// By the file, not the path: links and hard links are the same.
-void Transaction::refuse_input(const Folder& folder, const std::string& name) const {
+/// Empties the hidden folder.
+void Transaction::clear() const {
+    std::error_code error;
+    for (const auto& name : names_in(hidden_))
+        if (name != lock_name && fs::remove_all(hidden(name), error) == static_cast<std::uintmax_t>(-1))
+            throw cannot(hidden(name), "removed", error.value());
+}
+
+/// Empties it for this process.
+void Transaction::begin() {
+    clear();
+    if (ftruncate(fileno(lock_.get()), 0) != 0) throw cannot(hidden(lock_name), "written");
+    keeps_hidden_ = false;
+    append(lock_, fmt::format("{}\n", getpid()), hidden(lock_name));
+}
+
+/// Throws where the name is there, and what has it may not be replaced by a file or a folder.
+void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
+    const auto path = folder_ / name;
+    demand_type(path, is_folder);
+    if (type_of(path) == Type::not_found) return;
+    if (!is_folder) return refuse_foreign_file(name);
+    for (const auto& file : names_in(path)) {
+        const bool is_numbered = file.ends_with(".png") && file.find_first_not_of("0123456789") == file.size() - 4;
+        if (type_of(path / file) != Type::regular || (!is_numbered && !written_.contains(name + "/" + file)))
+            throw not_ours(path / file);
+        refuse_foreign_file(name + "/" + file);
+    }
+}
+
+void Transaction::refuse_foreign_file(const std::string& name) const {
+    const auto path = folder_ / name;
     std::error_code error;
     for (const auto& input : replacing_.inputs)
-        if (fs::equivalent(input, folder.path() / name, error) && !error)
+        if (fs::equivalent(input, path, error) && !error)  // by the file: links and hard links are the same
             throw io_failed("{} is read by this run and would be replaced; give another folder with --out",
-                            (folder.path() / name).string());
-}
-
-void Transaction::refuse_changed(const Folder& folder, const std::string& name, const std::string& within) const {
-    if (!replacing_.force && is_changed(folder, name, written_, within))
+                            path.string());
+    const auto origin = origin_of(folder_, name, written_);
+    if (!origin.is_ours) throw not_ours(path);
+    if (!replacing_.force && !origin.kind.empty() && !kind_.empty() && origin.kind != kind_)
+        throw io_failed("{} is of a {}, and this is a {}; give another folder with --out, or replace it with --force",
+                        path.string(), origin.kind, kind_);
+    if (!replacing_.force && origin.is_changed)
         throw io_failed(
             "{} is not as Doppel wrote it: somebody changed it; move it, give another folder with --out, or replace it "
             "with --force",
-            (folder.path() / name).string());
+            path.string());
+    // an immutable file (chattr +i) cannot be renamed, a read-only one can: say so before work starts
+    if (access(path.c_str(), W_OK) != 0 && errno == EPERM) throw cannot(path, "replaced");
 }
 
-void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
-    const auto path = folder_.path() / name;
-    switch (folder_.entry(name).kind) {
-        case Kind::none:
-            return;
-        case Kind::link:
-            throw io_failed("{} is a symbolic link; Doppel follows none there", path.string());
-        case Kind::other:
-            throw io_failed("{} is neither a file nor a folder; remove it", path.string());
-        case Kind::file:
-            if (is_folder) throw io_failed("{} is a file; Doppel would make a folder there", path.string());
-            refuse_input(folder_, name);
-            if (!is_written(folder_, name, written_)) throw not_ours(path);
-            if (const auto kind = kind_of_file(folder_, name, written_);
-                !replacing_.force && !kind_.empty() && !kind.empty() && kind != kind_)
-                throw io_failed(
-                    "{} is of a {}, and this is a {}; give another folder with --out, or replace it with --force",
-                    path.string(), kind, kind_);
-            refuse_changed(folder_, name);
-            // an immutable file (chattr +i) cannot be renamed, a read-only one can: say so before work starts
-            if (faccessat(folder_.descriptor(), name.c_str(), W_OK, 0) != 0 && errno == EPERM)
-                throw cannot(path, "replaced");
-            return;
-        case Kind::folder:
-            break;
-    }
-    if (!is_folder) throw io_failed("{} is a folder; Doppel would write a file there", path.string());
-    const Folder inside = folder_.folder(name);
-    for (const auto& file : inside.names()) {
-        const bool ours =
-            inside.entry(file).kind == Kind::file &&
-            (written_.contains(name + "/" + file) || (is_numbered_picture(file) && is_written(inside, file, written_)));
-        if (inside.entry(file).kind == Kind::file) refuse_input(inside, file);
-        if (!ours) throw not_ours(path / file);
-        refuse_changed(inside, file, name + "/");
-    }
+fs::path Transaction::file(const std::string& name) {
+    refuse_foreign_files(name, false);
+    return hidden(parts_.emplace_back(Part{name}).name);
 }
 
-Transaction::Part& Transaction::add_part(const std::string& name, bool is_folder) {
-    refuse_foreign_files(name, is_folder);
-    const auto part = part_name(name);
-    for (const auto& taken : {part, aside_name(name)})
-        if (folder_.entry(taken).kind != Kind::none) throw not_ours(folder_.path() / taken);
-    note_part(name);
-    return parts_.emplace_back(Part{name, nullptr});
-}
-
-FilePlace Transaction::file(const std::string& name) {
-    add_part(name, false);
-    return {folder_, part_name(name)};
-}
-
-const Folder& Transaction::directory(const std::string& name) {
-    Part& part = add_part(name, true);
-    folder_.make_folder(part_name(name));
-    part.contents = std::make_unique<Folder>(folder_.folder(part_name(name)));
-    return *part.contents;
-}
-
-void Transaction::note_part(const std::string& name) {
-    journal_->note("part " + name);
+fs::path Transaction::directory(const std::string& name) {
+    refuse_foreign_files(name, true);
+    const auto path = hidden(parts_.emplace_back(Part{name}).name);
+    if (mkdir(path.c_str(), 0777) != 0) throw cannot(path, "made");
+    return path;
 }
 
 void Transaction::remove(const std::string& name) {
-    if (folder_.entry(name).kind == Kind::file && is_written(folder_, name, written_) &&
-        !is_changed(folder_, name, written_))
-        removed_.push_back(name);
+    if (type_of(folder_ / name) != Type::regular) return;
+    const auto origin = origin_of(folder_, name, written_);
+    if (origin.is_ours && !origin.is_changed) removed_.push_back(name);
 }
 
 void Transaction::finished(const std::string& name) {
@@ -187,11 +238,10 @@ void Transaction::finished(const std::string& name) {
 std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vector<fs::path>()>& last) {
     try {
         return last();
-    } catch (const Error& error) {
-        if (error.code() == ExitCode::interrupted) throw;
-        throw Error(error.code(), error.what() + keep());
     } catch (const std::exception& error) {
-        throw io_failed("{}{}", error.what(), keep());
+        const auto* ours = dynamic_cast<const Error*>(&error);
+        if (ours && ours->code() == ExitCode::interrupted) throw;
+        throw Error(ours ? ours->code() : ExitCode::io_failed, error.what() + keep());
     }
 }
 
@@ -199,101 +249,96 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
 std::string Transaction::keep() {
     std::string names;
     for (const Part& part : parts_)
-        if (part.finished) names += (names.empty() ? "" : ", ") + (folder_.path() / part_name(part.name)).string();
+        if (part.finished) names += (names.empty() ? "" : ", ") + hidden(part.name).string();
     if (names.empty()) return "";
-    keeps_finished_ = true;
-    journal_->leave();
+    keeps_hidden_ = true;
     return "; what is finished stays until the next run: " + names;
 }
 
-FilePlace Transaction::keep_only(const std::string& name, const std::string& new_name) {
+void Transaction::keep_only(const std::string& name, const std::string& new_name) {
     refuse_foreign_files(new_name, false);
-    note_part(new_name);
-    std::erase_if(parts_, [&](const Part& part) {
-        if (part.name == name) return false;
-        remove_quietly(folder_, part_name(part.name));
-        return true;
-    });
-    folder_.rename(part_name(name), part_name(new_name));
-    for (Part& part : parts_) part.name = new_name;
-    return {folder_, part_name(new_name)};
+    for (const Part& part : parts_)
+        if (part.name != name) fs::remove_all(hidden(part.name));
+    rename_file(hidden(name), hidden(new_name));
+    parts_ = {{new_name}};
 }
 
-std::vector<std::pair<std::string, FilePlace>> Transaction::finished_files() const {
-    std::vector<std::pair<std::string, FilePlace>> files;
-    for (const Part& part : parts_) {
-        if (!part.finished) continue;
-        if (!part.contents) files.emplace_back(part.name, FilePlace(folder_, part_name(part.name)));
-        for (const auto& name : part.contents ? part.contents->names() : std::vector<std::string>())
-            files.emplace_back(part.name + "/" + name, FilePlace(*part.contents, name));
+std::vector<std::pair<std::string, WrittenFile>> Transaction::finished_files() const {
+    std::vector<std::pair<std::string, WrittenFile>> files;
+    const auto add = [&](const std::string& name) {
+        files.push_back({name, {fs::file_size(hidden(name)), sha256_of_file(hidden(name))}});
+    };
+    for (const auto& [name, finished] : parts_) {
+        if (finished && !fs::is_directory(hidden(name))) add(name);
+        if (!finished || !fs::is_directory(hidden(name))) continue;
+        for (const auto& file : names_in(hidden(name))) add(name + "/" + file);
     }
     return files;
 }
 
-WrittenFiles Transaction::earlier_files() const {
-    WrittenFiles earlier;
+std::map<std::string, WrittenFile> Transaction::earlier_files() const {
+    std::map<std::string, WrittenFile> earlier;
     for (const auto& [name, about] : written_) {
-        const auto slash = name.find('/');
-        const auto first = name.substr(0, slash);
-        const auto is_first = [&](const std::string& other) { return other == first; };
-        if (std::ranges::any_of(parts_, is_first, &Part::name) || std::ranges::any_of(removed_, is_first)) continue;
-        const auto kind = folder_.entry(first).kind;
-        const bool stands =
-            slash == std::string::npos
-                ? kind == Kind::file
-                : kind == Kind::folder && folder_.folder(first).entry(name.substr(slash + 1)).kind == Kind::file;
-        if (stands && !earlier.contains(name)) earlier.emplace(name, about);
+        const auto is_it = [first = name.substr(0, name.find('/'))](const std::string& other) {
+            return other == first;
+        };
+        if (std::ranges::none_of(parts_, is_it, &Part::name) && std::ranges::none_of(removed_, is_it) &&
+            type_of(folder_ / name) == Type::regular)
+            earlier.emplace(name, about);
     }
     return earlier;
 }
 
-/// What is to be published; all flushed to the disk.
-Publication Transaction::publication() {
-    Publication publication{.state = Publication::State::publish};
-    for (const Part& part : parts_) {
-        const FilePlace place{folder_, part_name(part.name)};
-        refuse_foreign_files(part.name, part.contents != nullptr);
-        const Entry entry = folder_.entry(place.name);
-        if (entry.kind == Kind::none) throw cannot(place.path, "published", ENOENT);
-        if (part.contents)
-            part.contents->sync(true);
-        else if (const auto file = open_file(place); fsync(file.number()) != 0 && errno != EINVAL)
-            throw cannot(place.path, "written");
-        publication.steps.push_back({part.name, entry.inode});
-    }
-    publication.removed = removed_;
-    return publication;
-}
-
 std::vector<fs::path> Transaction::publish() {
     std::vector<fs::path> files;
-    for (const Part& part : parts_) files.push_back(folder_.path() / part.name);
-    const auto published = publication();
-    for (const auto& name : published.removed) journal_->note("remove " + name);
-    for (const auto& step : published.steps) journal_->note(fmt::format("place {} {}", step.inode, step.name));
-    folder_.sync();
-    try {
-        journal_->note("publish", true);
-        put_in_place(folder_, published);
-    } catch (...) {
-        // where this fails too, the next run reverts
-        auto parts = std::exchange(parts_, {});
-        journal_->leave();
-        journal_->note("withdraw", true);
-        take_back(folder_, published);
-        journal_->note("withdrawn", true);
-        journal_->leave(false);
-        parts_ = std::move(parts);
-        throw;
+    for (Part& part : parts_) {
+        const auto path = hidden(part.name);
+        if (type_of(path) == Type::not_found) throw cannot(path, "published", ENOENT);
+        refuse_foreign_files(part.name, fs::is_directory(path));
+        part.finished = true;
+        files.push_back(folder_ / part.name);
     }
-    parts_.clear();
-    removed_.clear();
+    commit();
+    for (; !parts_.empty(); parts_.erase(parts_.begin())) move_in(parts_.front().name);
+    sync_folder(folder_);
+    std::error_code ignored;
+    for (const auto& name : std::exchange(removed_, {})) fs::remove(folder_ / name, ignored);
     try {
-        clear_away(folder_, published);
+        begin();
     } catch (const Error&) {
-        journal_->leave();  // something foreign is there: the next run reports it
+        // all is in its place: the next run cleans up
     }
+    made_.clear();  // by "new/../there" the files are found only while there is "new"
     return files;
+}
+
+/// Has all files on the disk, and notes there that they are to be moved in, by the next run if not by this one.
+void Transaction::commit() {
+    std::string line = "publish";
+    for (const Part& part : parts_) {
+        const auto path = hidden(part.name);
+        if (fs::is_directory(path)) {
+            sync_folder(path, true);
+            line += fmt::format(" {}", inode_of(path));
+        } else {
+            sync(fileno(open_file(path).get()), path);
+        }
+    }
+    sync_folder(hidden_);
+    append(lock_, line + "\n", hidden(lock_name));
+    keeps_hidden_ = true;
+    sync(fileno(lock_.get()), hidden(lock_name));
+}
+
+/// Gives it its place; an older folder takes its place here.
+void Transaction::move_in(const std::string& name) const {
+    const auto from = hidden(name), to = folder_ / name;
+    if (type_of(to) == Type::directory) {
+        if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
+        if (errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP) throw cannot(from, "renamed to " + to.string());
+        rename_file(to, hidden(backup_name));
+    }
+    rename_file(from, to);
 }
 
 }  // namespace doppel

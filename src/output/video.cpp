@@ -11,7 +11,7 @@ namespace {
 /// (Queueing all of a 1080p frame would add a copy of 0.2 ms.)
 class VideoSink final : public Sink {
 public:
-    VideoSink(const FilePlace& place, const VideoOptions& options, const std::atomic<bool>& stop)
+    VideoSink(const std::filesystem::path& place, const VideoOptions& options, const std::atomic<bool>& stop)
         : encoder_(place, encoding_of(options), stop),
           encoding_(1, affordable(byte_count(pixels_, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { encode(changes); }) {}
@@ -43,7 +43,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Sink> make_video_sink(const FilePlace& place, const VideoOptions& options,
+std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop) {
     check_options(options);
     if (options.format == VideoFormat::gif) return make_gif_sink(place, options, stop);

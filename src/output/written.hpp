@@ -1,6 +1,6 @@
 #pragma once
 
-#include "output/folder.hpp"
+#include "output/files.hpp"
 
 #include <cstdint>
 #include <map>
@@ -19,30 +19,23 @@ struct WrittenFile {
 /// The files that the manifests in a folder list, by name ("frames/000000.png"); manifests do not list themselves. Where
 /// several list one, what a run's own manifest says comes first.
 using WrittenFiles = std::multimap<std::string, WrittenFile>;
-WrittenFiles written_files(const Folder& folder);
+WrittenFiles written_files(const std::filesystem::path& folder);
 
-/// The "Software" of a PNG in the folder; empty where it has none, or is no PNG.
-std::string maker_of_picture(const Folder& folder, const std::string& name);
+/// Who made a regular file.
+struct Origin {
+    bool is_ours = false;     // a manifest lists it, its contents show it (see made_by()), or it is a manifest
+    bool is_changed = false;  // manifests list it with a SHA-256, and it has none of these
+    std::string kind = {};    // of the run that it is of; empty where that is not known
+};
+/// Of "x.csv" or "frames/000000.png" in the folder whose manifests list `written`.
+Origin origin_of(const std::filesystem::path& folder, const std::string& name, const WrittenFiles& written);
 
-/// Whether a file there begins with these bytes.
-bool begins_with(const Folder& folder, const std::string& name, std::string_view start);
-
-/// What follows the end of a PDF of Doppel's, a comment: the program that made it.
-inline constexpr std::string_view pdf_mark = "%%EOF\n% Doppel";
-
-/// Whether Doppel made the regular file `name` there: a manifest lists it (as `within` + name), or its contents show it
-/// (a PNG of Doppel's, a manifest, the trials of a figure, a report or an SVG with a first comment "<!-- Doppel …", a PDF
-/// with a last one).
-bool is_written(const Folder& folder, const std::string& name, const WrittenFiles& written,
-                const std::string& within = {});
-/// Whether manifests list it with a SHA-256, and it has none of these: somebody changed or replaced it.
-bool is_changed(const Folder& folder, const std::string& name, const WrittenFiles& written,
-                const std::string& within = {});
-/// The kind of run that it is of; empty where that is not known.
-std::string kind_of_file(const Folder& folder, const std::string& name, const WrittenFiles& written);
+/// Whether the contents are by this program: a PNG whose "Software" begins so, an SVG, an HTML or XML page with a first
+/// comment "<!-- Doppel …", a PDF with a last one, or the trials of a figure.
+bool made_by(const std::filesystem::path& path, std::string_view program = "Doppel");
 
 /// SHA-256 of a file's bytes, 64 lower-case hexadecimal digits. Throws Error (exit 4) where it cannot be read.
-std::string sha256_of_file(const FilePlace& place);
+std::string sha256_of_file(const std::filesystem::path& path);
 /// The same of a text.
 std::string sha256_of_text(std::string_view text);
 

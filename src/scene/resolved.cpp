@@ -1,7 +1,7 @@
 #include "scene/resolved.hpp"
 
 #include "base/embedded.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "output/written.hpp"
 #include "scene/preset_fields.hpp"
 #include "scene/toml_reader.hpp"
@@ -188,16 +188,11 @@ Metadata metadata_of(const std::string& title, const std::string& name, const st
 void write_manifest(Transaction& parts, const std::string& name, Json manifest) {
     const auto place = parts.file(name);
     auto& files = manifest["files"] = Json::object();
-    const auto file_json = [](std::uintmax_t bytes, const std::string& sha256) {
-        return Json{{"bytes", bytes}, {"sha256", sha256}};
-    };
-    for (const auto& [file, where] : parts.finished_files())
-        files[file] = file_json(where.folder->entry(where.name).bytes, sha256_of_file(where));
+    const auto file_json = [](const WrittenFile& file) { return Json{{"bytes", file.bytes}, {"sha256", file.sha256}}; };
+    for (const auto& [file, about] : parts.finished_files()) files[file] = file_json(about);
     for (const auto& [file, about] : parts.earlier_files())
-        if (file != name) manifest["earlier_files"][file] = file_json(about.bytes, about.sha256);
-    OutputFile output(place);
-    output.write(manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    output.close();
+        if (file != name) manifest["earlier_files"][file] = file_json(about);
+    write_file(place, manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     parts.finished(name);
 }
 

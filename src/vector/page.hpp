@@ -1,6 +1,6 @@
 #pragma once
 
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "output/sink.hpp"
 #include "render/display_list.hpp"
 #include "render/typeface.hpp"
@@ -28,7 +28,7 @@ std::string pdf_page(const DisplayList& list, const Page& page);
 std::string svg_page(const DisplayList& list, const Page& page);
 
 /// The same as a file; `format` is not png.
-void write_page(const FilePlace& place, const DisplayList& list, const Page& page, PictureFormat format);
+void write_page(const std::filesystem::path& place, const DisplayList& list, const Page& page, PictureFormat format);
 
 /// The metadata's text of that key; empty where there is none.
 std::string text_of(const Metadata& metadata, std::string_view key);

@@ -1,5 +1,5 @@
 #include "base/error.hpp"
-#include "output/folder.hpp"
+#include "output/files.hpp"
 #include "vector/cairo_drawing.hpp"
 #include "vector/page.hpp"
 #include "vector/paths.hpp"

@@ -129,7 +129,7 @@ std::string maker_of(const Metadata& metadata) {
     return maker.starts_with("Doppel") ? maker : "Doppel";
 }
 
-void write_page(const FilePlace& place, const DisplayList& list, const Page& page, PictureFormat format) {
+void write_page(const std::filesystem::path& place, const DisplayList& list, const Page& page, PictureFormat format) {
     OutputFile file(place);
     file.write(format == PictureFormat::pdf ? pdf_page(list, page) : svg_page(list, page));
     file.close();

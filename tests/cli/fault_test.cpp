@@ -50,7 +50,7 @@ std::vector<std::string> film(const std::string& format, const std::vector<std::
 /// Starts a film that does not end, and returns where it is writing its pictures.
 pid_t start_endless(const fs::path& folder, const std::string& format) {
     const auto child = start(folder, film(format, endless));
-    const auto part = folder / "out/butterfly" / (format == "mp4" ? "butterfly.mp4.part" : "frames.part");
+    const auto part = folder / "out/butterfly/.doppel-run" / (format == "mp4" ? "butterfly.mp4" : "frames");
     EXPECT_TRUE(wait_until([&] {
         return format == "mp4" ? fs::exists(part) && fs::file_size(part) > 0 : fs::exists(part / "000005.png");
     }));
@@ -66,8 +66,8 @@ TEST(Faults, AFullDiskIsToldAndLeavesNothingButFinishedPartsItNames) {
         for room in size=4k size=12k size=32k nr_inodes=2 nr_inodes=4 nr_inodes=5 size=16m; do
             mount -t tmpfs -o $room none out || exit 77
             "$DOPPEL" $COMMAND 2>message >/dev/null; code=$?
-            for file in $(find out -type f ! -name .run.lock); do
-                case $file in *.part) grep -qF "$file" message || echo "$file";; *) echo "$file";; esac
+            for file in $(find out -type f ! -name .lock); do
+                case $file in */.doppel-run/*) grep -qF "$file" message || echo "$file";; *) echo "$file";; esac
             done >unnamed
             kept=$(grep -c "what is finished stays until the next run: out/" message)
             [ "$kept" = 0 ] && find out -mindepth 1 >>unnamed
@@ -193,9 +193,8 @@ TEST(Faults, WhatIsNotDoppelsIsLeftAloneBeforeWorkStarts) {
         std::string made, named, format;
     };
     const std::vector<Case> cases{
-        {"ln -s ../../thesis out/butterfly/.run.lock", "out/butterfly/.run.lock is a symbolic link", "mp4"},
+        {"ln -s ../../elsewhere out/butterfly/.doppel-run", "out/butterfly/.doppel-run is a symbolic link", "mp4"},
         {"ln -s ../../thesis out/butterfly/butterfly.mp4", "out/butterfly/butterfly.mp4 is a symbolic link", "mp4"},
-        {"ln -s ../../thesis out/butterfly/butterfly.gif.part", "out/butterfly/butterfly.gif.part", "gif"},
         {"ln -s ../elsewhere out/butterfly/frames", "out/butterfly/frames is a symbolic link", "png"},
         {"mkdir out/butterfly/frames; cp thesis out/butterfly/frames/notes.txt", "out/butterfly/frames/notes.txt",
          "png"},
@@ -239,7 +238,7 @@ TEST(Faults, ASecondRunIsRefusedWhileTheFirstIsWriting) {
                                       "or give another folder with --out\n",
                                       first));
     EXPECT_EQ(doppel(folder, with(film("png", quick), {"--out", "other"})).code, 0);
-    EXPECT_TRUE(fs::exists(folder / "out/butterfly/butterfly.mp4.part"));
+    EXPECT_TRUE(fs::exists(folder / "out/butterfly/.doppel-run/butterfly.mp4"));
     kill(first, SIGKILL);
     wait_for(first);
     EXPECT_EQ(doppel(folder, film("png", quick)).code, 0);  // no stale lock
@@ -268,7 +267,7 @@ TEST(Faults, APresetIsReadOnce) {
         write_bytes(folder / "butterfly.toml", text);
         const auto child =
             start(folder, with({"render", "butterfly.toml", "--set", "scene.duration_s=4", "--format", "png"}, small));
-        EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/frames.part/000005.png"); }));
+        EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/.doppel-run/frames/000005.png"); }));
         meanwhile();
         EXPECT_FALSE(fs::exists(folder / "out/butterfly/frames")) << "it was over before the preset changed";
         EXPECT_EQ(wait_for(child), 0) << bytes_of(folder / "stderr");

@@ -165,17 +165,15 @@ TEST(Init, LeavesWhatIsThere) {
     EXPECT_FALSE(fs::exists(folder / "no"));
 }
 
-TEST(Init, LeavesAFileUnderItsTemporaryName) {
+TEST(Init, LeavesNothingElseThere) {
     const auto folder = fresh_folder();
     write_bytes(folder / "mine.toml.part", "mine");
-    write_bytes(folder / "thesis", "thesis");
-    fs::create_symlink("thesis", folder / "other.toml.part");
-    for (const char* name : {"mine.toml", "other.toml"}) {
-        EXPECT_EQ(doppel(folder, {"init", name}).code, 4) << name;
-        EXPECT_FALSE(fs::exists(folder / name));
-    }
+    fs::create_directory(folder / "elsewhere");
+    fs::create_directory_symlink("elsewhere", folder / "link");
+    for (const char* name : {"mine.toml", "link/mine.toml"}) EXPECT_EQ(doppel(folder, {"init", name}).code, 0) << name;
     EXPECT_EQ(bytes_of(folder / "mine.toml.part"), "mine");
-    EXPECT_EQ(bytes_of(folder / "thesis"), "thesis");
+    EXPECT_EQ(listing(folder), (std::set<std::string>{"elsewhere", "elsewhere/mine.toml", "link", "mine.toml",
+                                                      "mine.toml.part", "stderr", "stdout"}));
 }
 
 TEST(Init, NamesTheSchemaThatIsThere) {

@@ -118,7 +118,7 @@ TEST(Streams, ClosedOnesAreNotTakenForTheFilm) {
         std::error_code ignored;
         return fs::read_symlink(fmt::format("/proc/{}/fd/{}", child, number), ignored).string();
     };
-    EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/butterfly.csv.part"); }));
+    EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/.doppel-run/butterfly.csv"); }));
     for (const int stream : {0, 1, 2}) EXPECT_EQ(link(stream), "/dev/null") << stream;
     kill(child, SIGKILL);
     wait_for(child);

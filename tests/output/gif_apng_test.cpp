@@ -207,7 +207,6 @@ TEST(Apng, FramesTimesAndWordsAreExact) {
 
 TEST(Spool, GivesBackWhatWasWrittenAndHasNoName) {
     const auto folder = fresh_folder();
-    write_bytes(folder / "x.gif.spool", "somebody's");
     {
         Spool spool(folder / "x.gif");
         SampledAreas frame;
@@ -227,9 +226,8 @@ TEST(Spool, GivesBackWhatWasWrittenAndHasNoName) {
             EXPECT_TRUE(std::equal(frame.bytes.data(), frame.bytes.data() + bytes, expected.bytes.data()));
         }
         expect_error(ExitCode::io_failed, {"x.gif", "cannot be read"}, [&] { spool.read(frame); });
-        EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+        EXPECT_TRUE(fs::is_empty(folder));
     }
-    EXPECT_EQ(bytes_of(folder / "x.gif.spool"), "somebody's");
     const fs::path none = "/none/x.gif";
     expect_error(ExitCode::io_failed, {"/none/x.gif", "No such file"}, [&] { Spool{none}; });
 }

@@ -20,7 +20,7 @@ using namespace test;
 const std::filesystem::path full_disk = "/dev/full";
 
 /// "0.png", "1.png", … in the folder.
-std::function<FilePlace(long)> numbered_in(const std::filesystem::path& folder) {
+std::function<std::filesystem::path(long)> numbered_in(const std::filesystem::path& folder) {
     return [folder](long k) { return folder / fmt::format("{}.png", k); };
 }
 

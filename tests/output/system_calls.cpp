@@ -31,26 +31,34 @@ void doppel::test::watch_calls(CallWatch wanted) {
 
 extern "C" {
 
-int openat(int folder, const char* name, int flags, ...) {
+int open(const char* name, int flags, ...) {
     va_list rest;
     va_start(rest, flags);
     const auto mode = va_arg(rest, unsigned);
     va_end(rest);
-    return fails("openat") ? -1 : next<int(int, const char*, int, ...)>("openat")(folder, name, flags, mode);
+    return fails("open") ? -1 : next<int(const char*, int, ...)>("open")(name, flags, mode);
 }
-int mkdirat(int folder, const char* name, mode_t mode) noexcept {
-    return fails("mkdirat") ? -1 : next<int(int, const char*, mode_t)>("mkdirat")(folder, name, mode);
+int mkdir(const char* name, mode_t mode) noexcept {
+    return fails("mkdir") ? -1 : next<int(const char*, mode_t)>("mkdir")(name, mode);
 }
-int renameat(int from, const char* old_name, int to, const char* name) noexcept {
-    if (fails("renameat")) return -1;
-    return next<int(int, const char*, int, const char*)>("renameat")(from, old_name, to, name);
+int rmdir(const char* name) noexcept {
+    return fails("rmdir") ? -1 : next<int(const char*)>("rmdir")(name);
+}
+int unlink(const char* name) noexcept {
+    return fails("unlink") ? -1 : next<int(const char*)>("unlink")(name);
+}
+int unlinkat(int folder, const char* name, int flags) noexcept {
+    return fails("unlinkat") ? -1 : next<int(int, const char*, int)>("unlinkat")(folder, name, flags);
+}
+int remove(const char* name) noexcept {
+    return fails("remove") ? -1 : next<int(const char*)>("remove")(name);
+}
+int rename(const char* old_name, const char* name) noexcept {
+    return fails("rename") ? -1 : next<int(const char*, const char*)>("rename")(old_name, name);
 }
 int renameat2(int from, const char* old_name, int to, const char* name, unsigned flags) noexcept {
     if (fails("renameat2")) return -1;
     return next<int(int, const char*, int, const char*, unsigned)>("renameat2")(from, old_name, to, name, flags);
-}
-int unlinkat(int folder, const char* name, int flags) noexcept {
-    return fails("unlinkat") ? -1 : next<int(int, const char*, int)>("unlinkat")(folder, name, flags);
 }
 int ftruncate(int file, off_t size) noexcept {
     return fails("ftruncate") ? -1 : next<int(int, off_t)>("ftruncate")(file, size);

@@ -1,7 +1,6 @@
 #include "output/transaction.hpp"
 
 #include "output/fixtures.hpp"
-#include "output/folder.hpp"
 #include "output/png.hpp"
 #include "output/written.hpp"
 
@@ -33,14 +32,21 @@ std::set<std::string> listing(const fs::path& folder) {
 
 using Names = std::set<std::string>;
 
-const std::string lock = ".run.lock";
+const std::string hidden = ".doppel-run", lock = ".doppel-run/.lock";
 
 void write_part(Transaction& files, const std::string& name, const std::string& bytes) {
-    write_bytes(files.file(name).path, bytes);
+    write_bytes(files.file(name), bytes);
 }
 
 void write_picture(Transaction& files, const std::string& name) {
-    write_bytes(files.directory("frames").path() / name, "picture");
+    write_bytes(files.directory("frames") / name, "picture");
+}
+
+/// What a listing has while a run has these files in its hidden folder.
+Names in_hidden(const Names& names) {
+    Names all{hidden, lock};
+    for (const auto& name : names) all.insert(hidden + "/" + name);
+    return all;
 }
 
 /// A manifest that names the files; `folder` holds something of each name.
@@ -68,10 +74,10 @@ TEST(Transaction, AppearTogetherWhenPublished) {
     write_part(files, "x.csv", "table");
     write_part(files, "x.mp4", "video");
     write_picture(files, "0.png");
-    EXPECT_EQ(listing(out / "a/b"), (Names{lock, "x.csv.part", "x.mp4.part", "frames.part", "frames.part/0.png"}));
+    EXPECT_EQ(listing(out / "a/b"), (in_hidden({"x.csv", "x.mp4", "frames", "frames/0.png"})));
     const auto folder = out / "a/b";
     EXPECT_EQ(files.publish(), (std::vector<fs::path>{folder / "x.csv", folder / "x.mp4", folder / "frames"}));
-    EXPECT_EQ(listing(out / "a/b"), (Names{lock, "x.csv", "x.mp4", "frames", "frames/0.png"}));
+    EXPECT_EQ(listing(out / "a/b"), (Names{hidden, lock, "x.csv", "x.mp4", "frames", "frames/0.png"}));
     EXPECT_EQ(bytes_of(out / "a/b/x.csv"), "table");
 }
 
@@ -95,6 +101,17 @@ TEST(Transaction, FoldersWithOtherThingsInThemStay) {
         write_bytes(out / "a/notes", "somebody's");
     }
     EXPECT_EQ(listing(out), (Names{"a", "a/notes"}));
+}
+
+TEST(Transaction, TheWayToPublishedFilesStays) {
+    const auto out = fresh_folder();
+    fs::path file;
+    {
+        Transaction files(out / "new/../there");
+        write_part(files, "x.csv", "table");
+        file = files.publish().at(0);
+    }
+    EXPECT_EQ(bytes_of(file), "table");
 }
 
 TEST(Transaction, RunsThatStartTogetherShareTheFoldersTheyMake) {
@@ -127,14 +144,14 @@ TEST(Transaction, OlderFilesStayUntilPublished) {
     write_record(out, {"x.csv"});
     {
         Transaction files(out);
-        EXPECT_FALSE(fs::exists(files.file("x.csv").path));
+        EXPECT_FALSE(fs::exists(files.file("x.csv")));
     }
     EXPECT_EQ(bytes_of(out / "x.csv"), "old");
     Transaction files(out);
     write_part(files, "x.csv", "new");
     files.publish();
     EXPECT_EQ(bytes_of(out / "x.csv"), "new");
-    EXPECT_EQ(listing(out), (Names{lock, "x.csv", "record.json"}));
+    EXPECT_EQ(listing(out), (Names{hidden, lock, "x.csv", "record.json"}));
 }
 
 TEST(Transaction, AFolderIsReplacedAsAWhole) {
@@ -146,7 +163,7 @@ TEST(Transaction, AFolderIsReplacedAsAWhole) {
     Transaction files(out);
     write_picture(files, "000000.png");
     files.publish();
-    EXPECT_EQ(listing(out), (Names{lock, "frames", "frames/000000.png", "record.json"}));
+    EXPECT_EQ(listing(out), (Names{hidden, lock, "frames", "frames/000000.png", "record.json"}));
     EXPECT_EQ(bytes_of(out / "frames/000000.png"), "picture");
 }
 
@@ -156,7 +173,7 @@ TEST(Transaction, OneThatCannotBePublishedTakesTheOthersWithIt) {
         Transaction files(out / "a");
         write_part(files, "x.csv", "table");
         files.file("x.mp4");  // asked for, never written
-        expect_error(ExitCode::io_failed, {"x.mp4.part", "No such file"}, [&] { files.publish(); });
+        expect_error(ExitCode::io_failed, {"x.mp4", "No such file"}, [&] { files.publish(); });
     }
     EXPECT_EQ(listing(out), Names{});
 }
@@ -169,7 +186,8 @@ TEST(Transaction, WhatIsInTheWayIsNamed) {
                  [&] { Transaction(out / "x").file("x.csv"); });
     expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"},
                  [&] { Transaction(out).directory("file"); });
-    expect_error(ExitCode::io_failed, {"file is no folder"}, [&] { Transaction(out / "file/x"); });
+    expect_error(ExitCode::io_failed, {"file is a file; Doppel would make a folder there"},
+                 [&] { Transaction(out / "file/x"); });
     expect_error(ExitCode::io_failed, {"/proc/doppel", "No such file"}, [] { Transaction("/proc/doppel/x"); });
     EXPECT_EQ(listing(out), (Names{"x", "x/x.csv", "file"}));
 }
@@ -177,7 +195,7 @@ TEST(Transaction, WhatIsInTheWayIsNamed) {
 TEST(Transaction, LinksAndPipesBelowTheFolderAreNeverFollowed) {
     const auto out = fresh_folder();
     write_bytes(out / "thesis", "years of work");
-    for (const std::string name : {".run.lock", "x.csv", "x.csv.part", "frames", "frames.part"})
+    for (const std::string name : {".doppel-run", "x.csv", "frames"})
         for (const std::string kind : {"symbolic link", "hard link", "pipe"}) {
             const auto folder = out / "x";
             fs::remove_all(folder);
@@ -280,20 +298,13 @@ TEST(Transaction, NeverReplacesAnInput) {
     Transaction(out, "run", "", {.inputs = {elsewhere / "none.csv"}}).file("x.csv");
 }
 
-TEST(Transaction, TheMakerOfAPictureIsReadWhole) {
-    const auto folder = fresh_folder();
-    const std::string maker = "Doppel " + std::string(300, 'x');  // its length takes two bytes
-    write_png(folder / "x.png", noise({4, 4}, 1), {.metadata = {{"encoder", maker}}});
-    EXPECT_EQ(maker_of_picture(Folder::at(folder), "x.png"), maker);
-}
-
 TEST(Transaction, AreNoPrograms) {
     const auto folder = fresh_folder();
     Transaction parts(folder);
     OutputFile(parts.file("x.csv")).close();
     const auto executable = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
-    EXPECT_EQ(listing(folder), (Names{lock, "x.csv.part"}));
-    for (const auto& entry : fs::directory_iterator(folder))
+    EXPECT_EQ(listing(folder), in_hidden({"x.csv"}));
+    for (const auto& entry : fs::directory_iterator(folder / hidden))
         EXPECT_EQ(entry.status().permissions() & executable, fs::perms::none) << entry;
 }
 
@@ -318,12 +329,13 @@ TEST(Transaction, WhatIsFinishedStaysWhereALaterStepFails) {
         write_part(files, "x.mp4", "video");
         files.finished("x.mp4");
         write_part(files, "x.csv", "half a tab");
-        expect_error(ExitCode::io_failed, {"no more room; what is finished stays", (out / "x.mp4.part").string()}, [&] {
-            files.keeping_finished([]() -> std::vector<fs::path> { throw std::runtime_error("no more room"); });
-        });
+        expect_error(
+            ExitCode::io_failed, {"no more room; what is finished stays", (out / hidden / "x.mp4").string()}, [&] {
+                files.keeping_finished([]() -> std::vector<fs::path> { throw std::runtime_error("no more room"); });
+            });
     }
-    EXPECT_EQ(listing(out), (Names{lock, "x.mp4.part"}));
-    fs::copy_file(out / "x.mp4.part", out / "rescued.mp4");
+    EXPECT_EQ(listing(out), in_hidden({"x.mp4"}));
+    fs::copy_file(out / hidden / "x.mp4", out / "rescued.mp4");
     { Transaction files(out); }
     EXPECT_EQ(listing(out), Names{"rescued.mp4"});
     {
@@ -343,10 +355,10 @@ TEST(Transaction, OneAloneIsKeptUnderAnotherName) {
     write_part(files, "x.csv", "table");
     write_part(files, "x.mp4", "video");
     write_picture(files, "0.png");
-    EXPECT_EQ(files.keep_only("x.csv", "x.failed.csv").path, out / "x.failed.csv.part");
-    EXPECT_EQ(listing(out), (Names{lock, "x.failed.csv.part"}));
+    files.keep_only("x.csv", "x.failed.csv");
+    EXPECT_EQ(listing(out), in_hidden({"x.failed.csv"}));
     EXPECT_EQ(files.publish(), std::vector<fs::path>{out / "x.failed.csv"});
-    EXPECT_EQ(listing(out), (Names{lock, "x.failed.csv"}));
+    EXPECT_EQ(listing(out), (Names{hidden, lock, "x.failed.csv"}));
     EXPECT_EQ(bytes_of(out / "x.failed.csv"), "table");
 }
 
@@ -355,17 +367,17 @@ TEST(Transaction, AnErrorThatLeavesWhatIsFinishedKeepsItsCode) {
     Transaction files(out);
     write_part(files, "x.mp4", "video");
     files.finished("x.mp4");
-    expect_error(ExitCode::method_failed, {"it broke down; what is finished stays", "x.mp4.part"}, [&] {
+    expect_error(ExitCode::method_failed, {"it broke down; what is finished stays", "x.mp4"}, [&] {
         files.keeping_finished([]() -> std::vector<fs::path> { throw method_failed("it broke down"); });
     });
 }
 
-TEST(Folder, NamesAreInTheirOrder) {
+TEST(Files, NamesAreInTheirOrder) {
     const auto folder = fresh_folder();
     std::vector<std::string> names;
     for (int i = 0; i < 60; ++i) write_bytes(folder / names.emplace_back(fmt::format("{}", 37 * i % 60)), "");
     std::ranges::sort(names);
-    EXPECT_EQ(Folder::at(folder).names(), names);
+    EXPECT_EQ(names_in(folder), names);
 }
 
 TEST(Transaction, HoldTheFolderForOneRunAtATime) {
@@ -376,7 +388,7 @@ TEST(Transaction, HoldTheFolderForOneRunAtATime) {
         expect_error(ExitCode::io_failed, {(out / "a").string() + ": ", "another run, process " + pid, "--out"},
                      [&] { Transaction(out / "a"); });
         Transaction shard(out / "a", "shard-1-of-2");  // of another name
-        EXPECT_EQ(listing(out / "a"), (Names{lock, ".shard-1-of-2.lock"}));
+        EXPECT_EQ(listing(out / "a"), (Names{hidden, lock, ".doppel-shard-1-of-2", ".doppel-shard-1-of-2/.lock"}));
         write_part(files, "x.csv", "sample,time_s,");
         files.publish();
     }
@@ -386,53 +398,35 @@ TEST(Transaction, HoldTheFolderForOneRunAtATime) {
 
 TEST(Transaction, WhatAKilledRunLeftGoesWithTheNext) {
     const auto out = fresh_folder();
-    write_bytes(out / "notes.part", "somebody's");
+    write_bytes(out / "x.mp4.part", "somebody's");
     killed([&] {
         Transaction files(out);
         write_part(files, "x.mp4", "video");
         write_picture(files, "0.png");
-        fs::create_directory(out / "frames.old.part");  // as where it is killed while publishing
         raise(SIGKILL);
     });
-    EXPECT_EQ(listing(out),
-              (Names{lock, "frames.old.part", "frames.part", "frames.part/0.png", "notes.part", "x.mp4.part"}));
+    auto left = in_hidden({"x.mp4", "frames", "frames/0.png"});
+    left.insert("x.mp4.part");
+    EXPECT_EQ(listing(out), left);
     { Transaction files(out, "another"); }  // is not concerned
-    EXPECT_TRUE(fs::exists(out / "x.mp4.part"));
+    EXPECT_EQ(listing(out), left);
     {
         Transaction files(out);
-        EXPECT_EQ(listing(out), (Names{lock, "notes.part"}));
+        EXPECT_EQ(listing(out), (Names{hidden, lock, "x.mp4.part"}));
     }
-    EXPECT_EQ(listing(out), Names{"notes.part"});
+    EXPECT_EQ(listing(out), Names{"x.mp4.part"});
 }
 
-TEST(Transaction, AStaleListRemovesNothingButParts) {
+TEST(Transaction, WhatItsLockSaysReachesNoOtherFolder) {
     const auto out = fresh_folder();
-    fs::create_directory(out / "a");
-    write_bytes(out / "x.part", "");
-    write_bytes(out / "a/x.csv", "");
-    std::string notes = "doppel run, process 1 on nowhere\n";
-    for (const auto& name :
-         {std::string("../x"), std::string("."), std::string(".."), std::string(), (out / "x").string()})
-        notes += "part " + name + "\nremove " + name + "\nplace 7 " + name + "\n";
-    for (const auto& [lines, publishes] :
-         {std::pair(notes + "part x.csv\n", "publish\n"), {notes, "withdraw\n"}, {notes, ""}}) {
-        write_bytes(out / "a" / lock, lines + publishes);
+    write_bytes(out / "x.csv", "mine");
+    fs::create_directories(out / "a" / hidden);
+    for (const std::string notes : {"", "1", "1\n", "1\npublish 7", "1\npublish ../x.csv 7\n", "my own\nlock\n"}) {
+        fs::create_directories(out / "a" / hidden);
+        write_bytes(out / "a" / lock, notes);
         { Transaction files(out / "a"); }
-        EXPECT_EQ(listing(out), (Names{"a", "a/x.csv", "x.part"}));
+        EXPECT_EQ(listing(out), (Names{"a", "x.csv"})) << notes;
     }
-}
-
-TEST(Transaction, ALockFileOfSomebodyElseStays) {
-    const auto out = fresh_folder();
-    for (const std::string text : {"1234\nx.csv.part\n", "my own lock", "doppel ran here"}) {
-        write_bytes(out / lock, text);
-        expect_error(ExitCode::io_failed, {(out / lock).string(), "no lock file of Doppel's"},
-                     [&] { Transaction files(out); });
-        EXPECT_EQ(bytes_of(out / lock), text);
-    }
-    write_bytes(out / lock, "doppel ru");  // killed while it wrote its first line
-    { Transaction files(out); }
-    EXPECT_EQ(listing(out), Names{});
 }
 
 }  // namespace transaction_test

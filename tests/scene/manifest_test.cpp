@@ -12,15 +12,17 @@ TEST(Manifest, IsFinishedAsTheFilesThatItNames) {
     const auto folder = fresh_folder();
     {
         Transaction files(folder);
-        write_bytes(files.file("x.mp4").path, "video");
+        write_bytes(files.file("x.mp4"), "video");
         files.finished("x.mp4");
         write_manifest(files, "x.json", {});
-        expect_error(ExitCode::io_failed, {(folder / "x.mp4.part").string(), (folder / "x.json.part").string()}, [&] {
-            files.keeping_finished([]() -> std::vector<std::filesystem::path> { throw std::runtime_error("no room"); });
-        });
+        expect_error(ExitCode::io_failed,
+                     {(folder / ".doppel-run/x.mp4").string(), (folder / ".doppel-run/x.json").string()}, [&] {
+                         files.keeping_finished(
+                             []() -> std::vector<std::filesystem::path> { throw std::runtime_error("no room"); });
+                     });
     }
     // sha256sum of "video"
-    const auto manifest = Json::parse(bytes_of(folder / "x.json.part"));
+    const auto manifest = Json::parse(bytes_of(folder / ".doppel-run/x.json"));
     EXPECT_EQ(
         manifest,
         Json::parse(
