@@ -63,13 +63,6 @@ TEST(EncodingTrial, ComparesWhatMovesApart) {
     EXPECT_LT(trial.whole.ssim, 1);
 }
 
-TEST(EncodingTrial, HasNothingToFindInWhatIsLossless) {
-    const auto trial = try_encoding(recorded(), {.size = size, .crf = 0});
-    EXPECT_EQ(trial.whole.psnr_db, std::numeric_limits<double>::infinity());
-    EXPECT_NEAR(trial.whole.ssim, 1, 1e-12);
-    EXPECT_NEAR(trial.moving.ssim, 1, 1e-12);
-}
-
 TEST(EncodingTrial, ReplacesOptions) {
     const auto frames = recorded();
     const auto bytes = [&](const Metadata& replaced) { return try_encoding(frames, {.size = size}, replaced).bytes; };
@@ -79,11 +72,6 @@ TEST(EncodingTrial, ReplacesOptions) {
         return try_encoding(frames, {.format = VideoFormat::webm, .size = size}, {{"cpu-used", speed}}).bytes;
     };
     EXPECT_NE(vp9("8"), vp9("0"));
-}
-
-TEST(EncodingTrial, StopsWhenAsked) {
-    const std::atomic<bool> stop = true;
-    expect_error(ExitCode::interrupted, {}, [&] { try_encoding(recorded(), {.size = size}, {}, stop); });
 }
 
 }  // namespace encoding_trial_test
