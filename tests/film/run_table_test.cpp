@@ -132,16 +132,6 @@ TEST(RunTable, LeavesTheLogRatioEmptyWhereThePairStartsAsOne) {
         EXPECT_TRUE(line.ends_with("log_ratio") || line.ends_with(","));
 }
 
-TEST(RunTable, IsTheSameForAnyJobsAndWithOrWithoutPictures) {
-    const auto out = fresh_folder();
-    std::set<std::string> tables;
-    for (const int jobs : {1, 2, 5}) {
-        render(small_scene(), {.out = out, .pictures = jobs != 2, .jobs = jobs});
-        tables.insert(sha256_of_file(out / "butterfly/butterfly.csv"));
-    }
-    EXPECT_EQ(tables.size(), 1u);
-}
-
 TEST(RunTable, LeavesTheEnergyErrorOpenWhereDampingTakesEnergy) {
     const auto out = fresh_folder();
     const auto scene = scene_of_text(R"(
