@@ -32,15 +32,6 @@ TEST(Performance, TablesFollowTheNumbersAndNothingElseChanges) {
     EXPECT_EQ(with_tables(made, read_performance(docs / "performance.json")), page);
 }
 
-TEST(Performance, SaysWhichMarkOrBenchmarkIsMissing) {
-    auto all = read_performance(docs / "performance.json");
-    EXPECT_NE(test::thrown_by([&] { with_tables("# Performance\n", all); }).second.find("<!-- measured: machine -->"),
-              std::string::npos);
-    all.benchmarks.erase("figure/fig8");
-    EXPECT_EQ(test::thrown_by([&] { with_tables(read_page(docs / "performance.md"), all); }),
-              (test::Thrown{ExitCode::bad_input, "docs/performance.json has no figure/fig8"}));
-}
-
 TEST(Performance, OfRoundsIsTheMedianAndTheirMiddleHalf) {
     const auto made = summary({{30, 3}, {10, 1}, {20, 9}, {100, 2}, {40, 2.5}});
     EXPECT_EQ(made.ns, 30);

@@ -1,14 +1,11 @@
-#include "film/run.hpp"
-#include "film/support.hpp"
+#include "film/runs.hpp"
 #include "film/words.hpp"
-#include "output/fixtures.hpp"
 #include "output/written.hpp"
 #include "render/font_files.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace doppel {
 namespace font_test {
@@ -37,14 +34,7 @@ TEST(Fonts, AFilmsWordsAreInTheUsersFontAndFindTheirRoom) {
     // what leaves no room shrinks: the subtitle, not the short title
     EXPECT_LT(size_of(labels, "real time"), 10);
     EXPECT_EQ(size_of(labels, "Two"), 18);
-    const Area picture{0, 0, 480, 270};
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        EXPECT_TRUE(picture.holds(box_of(labels[i], type))) << labels[i].text;
-        // large letters: twice the height that box_of() takes
-        for (std::size_t j = 0; j < i; ++j)
-            EXPECT_FALSE(box_of(labels[i], type).overlaps(box_of(labels[j], type)))
-                << labels[i].text << " | " << labels[j].text;
-    }
+    expect_apart(labels, {480, 270}, "wide", type);  // large letters: twice the height that box_of() takes
     EXPECT_NE(frame_of(scene, 0).rgba,
               frame_of(scene_of(folder / "film.toml",
                                 {"video.fonts.text=\"" + std::string(DOPPEL_SOURCE_DIR) + "/fonts/DejaVuSans.ttf\""}),
@@ -87,14 +77,10 @@ TEST(Fonts, AFileThatIsNoneIsNamedWithItsKey) {
 
 TEST(Fonts, AreInTheManifest) {
     const auto folder = folder_with_font();
-    const auto manifest_of = [&](const Scene& scene, const char* name) {
-        run(scene, {.out = folder / "out", .pictures = false}, false, [](const Progress&) {});
-        return nlohmann::json::parse(test::bytes_of(folder / "out" / name / (std::string(name) + ".json")));
-    };
     const auto font = folder / "wide.ttf";
-    EXPECT_EQ(manifest_of(scene_of(folder / "film.toml"), "film")["fonts"],
+    EXPECT_EQ(manifest_of(scene_of(folder / "film.toml"), folder / "out")["fonts"],
               (nlohmann::json{{font.string(), sha256_of_file(font)}}));
-    EXPECT_FALSE(manifest_of(scene_of("calm", {"scene.duration_s=0.1"}), "calm").contains("fonts"));
+    EXPECT_FALSE(manifest_of(scene_of("calm", {"scene.duration_s=0.1"})).contains("fonts"));
 }
 
 TEST(Fonts, PresetsOfDoppelLookTheSameEverywhere) {
@@ -106,19 +92,6 @@ TEST(Fonts, PresetsOfDoppelLookTheSameEverywhere) {
             EXPECT_TRUE(Typeface().has_own(text)) << preset.name << ": " << text;
         EXPECT_FALSE(preset.video.text_font) << preset.name;
     }
-}
-
-TEST(Fonts, LettersOfTheSystemAreDrawnAndNoBoxes) {
-    const std::string title = "title=\"双摆\"";
-    if (!system_font_for(U'双') || !system_font_for(U'摆')) {
-        EXPECT_NE(error_of([&] { scene_of("butterfly", {title}); }).second.find("\"双\" (U+53CC)"), std::string::npos);
-        GTEST_SKIP() << "fontconfig knows no font with 双摆 here";
-    }
-    const auto scene = scene_of("butterfly", {title, "video.size=[480, 270]"});
-    const auto& type = scene.preset.video.typeface;
-    for (const auto& glyph : type.lay_out("双摆", 18, Weight::bold).glyphs) EXPECT_NE(glyph.number, 0);
-    EXPECT_NE(frame_of(scene, 0).rgba,
-              frame_of(scene_of("butterfly", {"title=\"θθ\"", "video.size=[480, 270]"}), 0).rgba);
 }
 
 }  // namespace font_test

@@ -1,24 +1,13 @@
-#include "film/run.hpp"
-#include "film/support.hpp"
-#include "output/fixtures.hpp"
+#include "film/runs.hpp"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace doppel {
 namespace manifest_test {
 
-const std::atomic<bool> never = false;
-
-nlohmann::json manifest_of(const std::string& preset, const std::vector<std::string>& more) {
-    const auto out = test::fresh_folder();
-    run(scene_of(preset, more), {.out = out, .pictures = false}, never, [](const Progress&) {});
-    return nlohmann::json::parse(test::bytes_of(out / preset / (preset + ".json")));
-}
-
 // Released level, side b has next to no energy: relative to that, explicit Euler's error says nothing.
 TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
-    const auto side = manifest_of("butterfly", {"scene.duration_s=5"})["b"];
+    const auto side = manifest_of(scene_of("butterfly", {"scene.duration_s=5"}))["b"];
     const double range = 2 * 9.81 * (1 * 1 + 1 * 2);  // J: 2 g Σ m · height, 1 kg 1 m and 1 kg 2 m above and below
     EXPECT_NEAR(side["energy_range_J"].get<double>(), range, 0.01 * range);
     const double change = side["worst_energy_change_J"], of_range = side["worst_energy_error_of_range"];
@@ -32,20 +21,20 @@ TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
 TEST(Manifest, WarnsWhereEnergyIsNotKept) {
     const std::vector<std::string> coarse{"system.integrator=\"rk4\"", "system.step_s=\"1/10\"", "scene.sample_hz=10",
                                           "video.fps=10", "scene.duration_s=20"};
-    const auto warnings = manifest_of("butterfly", coarse)["warnings"];
+    const auto warnings = manifest_of(scene_of("butterfly", coarse))["warnings"];
     ASSERT_EQ(warnings.size(), 2u);
     const std::string first = warnings[0];
     EXPECT_NE(first.find("the energy of side a changed by "), std::string::npos) << first;
     EXPECT_NE(first.find("1/10 s is too coarse for these 20 s"), std::string::npos) << first;
-    EXPECT_TRUE(manifest_of("butterfly", {"scene.duration_s=5"})["warnings"].empty());
+    EXPECT_TRUE(manifest_of(scene_of("butterfly", {"scene.duration_s=5"}))["warnings"].empty());
     // friction takes energy: no error
-    EXPECT_TRUE(manifest_of("springs", {"scene.duration_s=2"})["warnings"].empty());
+    EXPECT_TRUE(manifest_of(scene_of("springs", {"scene.duration_s=2"}))["warnings"].empty());
 }
 
 TEST(Manifest, SaysHowFarARunCanBePredicted) {
-    EXPECT_TRUE(
-        manifest_of("butterfly", {"scene.duration_s=1"})["horizon_s"].is_null());  // its steps were chosen by hand
-    const auto chosen = manifest_of("horizon", {});
+    EXPECT_TRUE(manifest_of(scene_of("butterfly", {"scene.duration_s=1"}))["horizon_s"]
+                    .is_null());  // its steps were chosen by hand
+    const auto chosen = manifest_of(scene_of("horizon"));
     EXPECT_EQ(chosen["horizon_s"],
               std::min(chosen["a"]["accuracy"]["horizon_s"], chosen["b"]["accuracy"]["horizon_s"]));
     EXPECT_EQ(chosen["a"]["accuracy"]["unit"], "rad");

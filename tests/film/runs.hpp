@@ -5,24 +5,39 @@
 #include "output/fixtures.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
 namespace doppel {
 
-/// Half a second of butterfly in a little picture.
-inline Scene small_scene(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"video.size=[320, 180]", "scene.duration_s=0.5"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return scene_of("butterfly", arguments);
+/// So many seconds of butterfly in a little picture.
+inline Scene small_scene(std::vector<std::string> more = {}, const std::string& duration_s = "0.5") {
+    more.insert(more.begin(), {"video.size=[320, 180]", "scene.duration_s=" + duration_s});
+    return scene_of("butterfly", more);
 }
 
 inline RunResult render(const Scene& scene, const RunOptions& options) {
     const std::atomic<bool> never = false;
     return run(scene, options, never, [](const Progress&) {});
+}
+
+/// The manifest of a run without pictures.
+inline nlohmann::json manifest_of(const Scene& scene, const std::filesystem::path& out = test::fresh_folder()) {
+    render(scene, {.out = out, .pictures = false});
+    return nlohmann::json::parse(test::bytes_of(out / scene.preset.name / (scene.preset.name + ".json")));
+}
+
+/// Of the files in a folder.
+inline std::set<std::string> names_in(const std::filesystem::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.insert(entry.path().filename().string());
+    return names;
 }
 
 /// Of a CSV file, without their ends.
@@ -41,6 +56,13 @@ inline std::vector<std::string> cells_of(const std::string& line) {
     std::string cell;
     for (std::istringstream text(line + ","); std::getline(text, cell, ',');) cells.push_back(cell);
     return cells;
+}
+
+/// The table of a run without pictures.
+inline std::vector<std::string> table_of(const Scene& scene, const std::vector<std::string>& columns = {}) {
+    const auto out = test::fresh_folder();
+    render(scene, {.out = out, .pictures = false, .columns = columns});
+    return lines_of(out / scene.preset.name / (scene.preset.name + ".csv"));
 }
 
 }  // namespace doppel

@@ -1,28 +1,19 @@
 #include "film/film.hpp"
-#include "film/run.hpp"
-#include "film/support.hpp"
-#include "output/fixtures.hpp"
+#include "film/runs.hpp"
+#include "film/words.hpp"
 #include "output/png.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 
 namespace doppel {
 namespace schedule_test {
 
-namespace fs = std::filesystem;
-const std::atomic<bool> never = false;
-
 Scene held() {
-    return scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.25", "video.format=\"png\"",
-                                  "video.hold_start_s=0.05", "video.hold_end_s=0.1", "video.title_card_s=0.2",
-                                  "video.end_card_s=0.15"});
-}
-
-RunResult render(const Scene& scene, const fs::path& out, long first = 0, long last = -1) {
-    return run(scene, {.out = out, .first = first, .last = last}, never, [](const Progress&) {});
+    return small_scene({"video.format=\"png\"", "video.hold_start_s=0.05", "video.hold_end_s=0.1",
+                        "video.title_card_s=0.2", "video.end_card_s=0.15"},
+                       "0.25");
 }
 
 TEST(Schedule, CountsCardsAndHoldsBesideTheMotion) {
@@ -59,7 +50,7 @@ TEST(Schedule, CardsFadeOverHalfASecondAndNeverJump) {
 TEST(Schedule, FramesComeInItsOrderAndRangesGiveTheSameOnes) {
     const auto whole = test::fresh_folder(), parts = whole / "parts";
     const auto scene = held();
-    EXPECT_EQ(render(scene, whole).frames, 91);
+    EXPECT_EQ(render(scene, {.out = whole}).frames, 91);
     const auto frame = [&](long k) { return read_png(whole / fmt::format("butterfly/frames/{:06}.png", k)).rgba; };
     const auto first = frame_of(scene, 0).rgba, last = frame_of(scene, 30).rgba;
     EXPECT_NE(frame(0), first) << "a card hides it";
@@ -71,10 +62,11 @@ TEST(Schedule, FramesComeInItsOrderAndRangesGiveTheSameOnes) {
     // ranges of samples, drawn alone, are the same files; the cards belong to the first and the last sample
     std::set<std::string> seen;
     for (const auto& [from, to] : {std::pair{0L, 4L}, {4L, 30L}, {30L, 31L}}) {
-        render(scene, parts, from, to);
-        for (const auto& entry : fs::directory_iterator(parts / "butterfly/frames")) {
-            const auto name = entry.path().filename();
-            EXPECT_EQ(test::bytes_of(entry.path()), test::bytes_of(whole / "butterfly/frames" / name)) << name;
+        render(scene, {.out = parts, .first = from, .last = to});
+        for (const auto& name : names_in(parts / "butterfly/frames")) {
+            EXPECT_EQ(test::bytes_of(parts / "butterfly/frames" / name),
+                      test::bytes_of(whole / "butterfly/frames" / name))
+                << name;
             EXPECT_TRUE(seen.insert(name).second) << name << " belongs to two ranges";
         }
     }
@@ -83,16 +75,15 @@ TEST(Schedule, FramesComeInItsOrderAndRangesGiveTheSameOnes) {
 
 TEST(Schedule, ThePosterIsAFrameOfTheFilm) {
     const auto out = test::fresh_folder();
-    const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.5", "video.poster_s=0.25"});
-    render(scene, out);
+    const auto scene = small_scene({"video.poster_s=0.25"});
+    render(scene, {.out = out});
     EXPECT_EQ(read_png(out / "butterfly/butterfly.poster.png").rgba, frame_of(scene, 30).rgba);
 }
 
 TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
     const auto out = test::fresh_folder();
-    const auto scene = scene_of("butterfly", {"video.size=[320, 180]", "scene.duration_s=0.5", "video.trail_s=0",
-                                              "b.angle_deg=[-90, -90]", "video.contact_sheet=[3, 2]"});
-    render(scene, out);
+    const auto scene = small_scene({"video.trail_s=0", "b.angle_deg=[-90, -90]", "video.contact_sheet=[3, 2]"});
+    render(scene, {.out = out});
     const auto sheet = read_png(out / "butterfly/butterfly.contact.png");
     auto tile = scene;
     tile.preset.video.size = tile_size(scene, 320);
@@ -103,12 +94,8 @@ TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
     EXPECT_LT(title, 100);
     // the words of a tile are the time alone
     Composer composer(tile, false, Dress::tile);
-    std::vector<std::string> words;
     for_each_snapshot(tile, 60, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-    for (const auto& list : {composer.backdrop(), composer.frame()})
-        for (const auto& item : list)
-            if (const auto* label = std::get_if<Label>(&item)) words.push_back(label->text);
-    EXPECT_EQ(words, std::vector<std::string>{"0.50 s"});
+    EXPECT_EQ(words_of({composer.backdrop(), composer.frame()}), std::vector<std::string>{"0.50 s"});
     // the last tile is the end of the motion
     Renderer renderer(tile.preset.video.size, composer.backdrop());
     const auto last = renderer.draw(composer.frame());

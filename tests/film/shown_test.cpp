@@ -1,5 +1,5 @@
 #include "base/embedded.hpp"
-#include "film/support.hpp"
+#include "film/words.hpp"
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -17,12 +17,8 @@ TEST(Shown, IsWhatIsAskedForAndNoMore) {
                                    "subtitle=\"S\"", "a.label=\"A\"", "a.note=\"\"", "b.label=\"B\"", "b.note=\"N\""});
         Composer composer(scene);
         for_each_snapshot(scene, last, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-        std::vector<std::string> all;
-        for (const auto& list : {composer.backdrop(), composer.frame(), composer.end_card(1)})
-            for (const auto& item : list)
-                if (const auto* label = std::get_if<Label>(&item); label && !label->text.empty())
-                    all.push_back(label->text);
-        return fmt::format("{}", fmt::join(all, "|"));
+        return fmt::format("{}",
+                           fmt::join(words_of({composer.backdrop(), composer.frame(), composer.end_card(1)}), "|"));
     };
     const std::string outcome = "|together to the end, 30 s|from a state-space distance of 7.4 × 10⁻⁵ to 7.4 × 10⁻⁵",
                       credit = fmt::format("|Doppel {} · butterfly", version());
@@ -75,14 +71,12 @@ TEST(Shown, StripsOfEnergiesAnglesAndRatesHoldTheMotion) {
         EXPECT_NEAR(layout.strips[k].value.low, seen[k].low - width / 10, 1e-6 * width) << k;
         EXPECT_NEAR(layout.strips[k].value.high, seen[k].high + width / 10, 1e-6 * width) << k;
     }
-    std::vector<std::string> words;
-    std::size_t curves = 0;
-    for (const auto& list : {composer.backdrop(), composer.frame()})
-        for (const auto& item : list) {
-            if (const auto* label = std::get_if<Label>(&item)) words.push_back(label->text);
-            curves += std::holds_alternative<Stroke>(item) ? 1 : 0;
-        }
-    EXPECT_EQ(curves, 3u + 3 + 4 + 4);
+    const std::vector<DisplayList> lists{composer.backdrop(), composer.frame()};
+    const auto words = words_of(lists);
+    std::ptrdiff_t curves = 0;
+    for (const auto& list : lists)
+        curves += std::ranges::count_if(list, [](const Item& item) { return std::holds_alternative<Stroke>(item); });
+    EXPECT_EQ(curves, 3 + 3 + 4 + 4);
     for (const char* word : {"energy of left, J", "energy of b, J", "kinetic", "potential", "total", "angles, °",
                              "angular rates, °/s", "a1", "b2"})
         EXPECT_NE(std::find(words.begin(), words.end(), word), words.end()) << word;

@@ -1,27 +1,20 @@
-#include "film/run.hpp"
-#include "film/support.hpp"
-#include "output/fixtures.hpp"
+#include "film/runs.hpp"
 #include "output/png.hpp"
 
 #include <gtest/gtest.h>
-
-#include <set>
 
 namespace doppel {
 namespace still_test {
 
 namespace fs = std::filesystem;
-const std::atomic<bool> never = false;
-const auto no_report = [](const Progress&) {};
-
-Scene small(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"video.size=[320, 180]", "scene.duration_s=1.5", "video.format=\"png\""};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return scene_of("butterfly", arguments);
+Scene small(std::vector<std::string> more = {}) {
+    more.emplace_back("video.format=\"png\"");
+    return small_scene(more, "1.5");
 }
 
-fs::path still(const Scene& scene, const Rational& time, const fs::path& out = test::fresh_folder()) {
-    return draw_still(scene, time, PictureFormat::png, {.out = out}, never, no_report).files.at(0);
+fs::path still(const Scene& scene, const Rational& time, const fs::path& out = test::fresh_folder(),
+               PictureFormat format = PictureFormat::png) {
+    return draw_still(scene, time, format, {.out = out}, false, [](const Progress&) {}).files.at(0);
 }
 
 TEST(Still, IsTheFrameOfTheFilm) {
@@ -44,31 +37,26 @@ TEST(Still, HasTheOpacityOfATransparentFilm) {
 TEST(Still, IsWrittenBesideAFilmAndOtherStills) {
     const auto out = test::fresh_folder();
     const auto scene = small();
-    run(scene, {.out = out, .pictures = false}, never, no_report);
+    render(scene, {.out = out, .pictures = false});
     still(scene, {1, 2}, out);
     still(scene, {1, 1}, out);
     still(scene, {1, 1}, out);  // in place of the last
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(out / "butterfly")) names.insert(entry.path().filename());
-    EXPECT_EQ(names,
+    EXPECT_EQ(names_in(out / "butterfly"),
               (std::set<std::string>{"butterfly.csv", "butterfly.json", "butterfly.0.5s.png", "butterfly.1s.png"}));
 }
 
 TEST(Still, IsAlsoAPageOfPathsAndText) {
     const auto out = test::fresh_folder();
     for (int time = 0; time < 2; ++time) {  // the second in place of the first
-        const auto svg = draw_still(small(), {1, 1}, PictureFormat::svg, {.out = out}, never, no_report).files.at(0);
+        const auto svg = still(small(), {1, 1}, out, PictureFormat::svg);
         EXPECT_EQ(svg.filename(), "butterfly.1s.svg");
         EXPECT_NE(test::bytes_of(svg).find("Three thousandths of a degree</text>"), std::string::npos);
-        const auto pdf = draw_still(small(), {1, 1}, PictureFormat::pdf, {.out = out}, never, no_report).files.at(0);
+        const auto pdf = still(small(), {1, 1}, out, PictureFormat::pdf);
         EXPECT_TRUE(test::bytes_of(pdf).starts_with("%PDF-"));
     }
     // somebody else's is not replaced
     test::write_bytes(out / "butterfly/butterfly.0.5s.pdf", "%PDF-1.5 of mine");
-    EXPECT_EQ(error_of([&] {
-                  draw_still(small(), {1, 2}, PictureFormat::pdf, {.out = out}, never, no_report);
-              }).first,
-              ExitCode::io_failed);
+    EXPECT_EQ(error_of([&] { still(small(), {1, 2}, out, PictureFormat::pdf); }).first, ExitCode::io_failed);
 }
 
 TEST(Still, SaysWhichTimesThereAre) {
@@ -80,11 +68,8 @@ TEST(Still, SaysWhichTimesThereAre) {
 
 TEST(Still, RangesInSecondsAreThoseInSamples) {
     const auto names_of_frames = [](const RunOptions& options) {
-        run(small(), options, never, no_report);
-        std::set<std::string> names;
-        for (const auto& entry : fs::directory_iterator(options.out / "butterfly/frames"))
-            names.insert(entry.path().filename());
-        return names;
+        render(small(), options);
+        return names_in(options.out / "butterfly/frames");
     };
     const auto of = [&](std::optional<Rational> from, std::optional<Rational> to) {
         return names_of_frames({.out = test::fresh_folder(), .from_s = from, .to_s = to});

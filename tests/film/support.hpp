@@ -22,6 +22,22 @@ void for_each_snapshot(const Scene& scene, long last, Visit&& visit) {
     }
 }
 
+/// A preset x.toml of this text.
+inline Scene scene_of_text(const std::string& text) {
+    return make_scene(read_preset({"x", "presets/x.toml", text}));
+}
+
+/// What makes a chain one of one link, the sides at these angles.
+inline std::vector<std::string> one_link_at(const std::string& a, const std::string& b) {
+    return {"system.links=1",
+            "system.mass_kg=[1]",
+            "system.length_m=[1]",
+            "system.omega_deg_per_s=[0]",
+            "system.angle_deg=[" + a + "]",
+            "a.angle_deg=[" + a + "]",
+            "b.angle_deg=[" + b + "]"};
+}
+
 /// The picture of one sample.
 inline Picture frame_of(const Scene& scene, long sample) {
     Composer composer(scene);

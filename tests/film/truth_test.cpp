@@ -155,37 +155,5 @@ TEST(Truth, ABlowUpStaysInItsPanel) {
             ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, calm.at(x, y))) << x << " " << y;
 }
 
-TEST(Truth, LongWordsShrinkUntilTheyFit) {
-    const auto scene = scene_of(
-        "butterfly", {"title=\"A title that goes on and on, for as long as a double pendulum swings, and then some\"",
-                      "video.size=[640, 360]"});
-    const auto picture = frame_of(scene, 0), usual = frame_of(scene_of("butterfly", {"video.size=[640, 360]"}), 0);
-    const auto layout = make_layout(scene);
-    const int clock = static_cast<int>(layout.page.right - text_width("30.00 s", 40 * layout.text) - 20 * layout.text);
-    for (int y = 0; y < static_cast<int>(layout.page.top + 50 * layout.text); ++y)
-        for (int x = clock; x < 640; ++x)
-            ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, usual.at(x, y)));
-}
-
-TEST(Truth, TwinsDrawnMirroredAreMirrored) {
-    // each panel is the other's mirror image where the starts are
-    const auto scene = scene_of("butterfly", {"system.angle_deg=[70, 120]", "b.angle_deg=[-70, -120]",
-                                              "video.side_colors=[\"#ff8800\", \"#ff8800\"]"});
-    const auto picture = frame_of(scene, 150);
-    const auto layout = make_layout(scene);
-    const auto& left = layout.panels[0];
-    const auto& right = layout.panels[1];
-    long differing = 0;
-    const int reach = static_cast<int>(2.2f * left.px_per_m);
-    for (int dy = -reach; dy <= reach; ++dy)
-        for (int dx = -reach / 2; dx <= reach / 2; ++dx) {
-            const auto* l = picture.at(static_cast<int>(left.center.x) + dx, static_cast<int>(left.center.y) + dy);
-            const auto* r =
-                picture.at(static_cast<int>(right.center.x) - dx - 1, static_cast<int>(right.center.y) + dy);
-            for (int c = 0; c < 3; ++c) differing += std::abs(l[c] - r[c]) > 3;
-        }
-    EXPECT_EQ(differing, 0);  // both pivots are at whole or both at half pixels
-}
-
 }  // namespace truth_test
 }  // namespace doppel

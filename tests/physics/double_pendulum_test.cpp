@@ -13,10 +13,6 @@
 namespace doppel {
 namespace double_pendulum_test {
 
-Eigen::VectorXd accelerations_by_mass_matrix(const Pendulum<double>& p) {
-    return by_elimination(physical(p));
-}
-
 template <class Model>
 typename Model::State start_rate(const Pendulum<double>& p) {
     Model model(p);
@@ -26,29 +22,43 @@ typename Model::State start_rate(const Pendulum<double>& p) {
     return dydt;
 }
 
-TEST(DoublePendulum, ClosedFormSolvesTheMassMatrix) {
-    std::mt19937 random(1);
-    for (int i = 0; i < 200; ++i) {
-        const auto p = random_pendulum(random);
-        const auto rate = start_rate<DoublePendulum<double>>(p);
-        const auto expected = accelerations_by_mass_matrix(p);
-        EXPECT_NEAR(rate[2], expected[0], 3e-14 * (1 + expected.norm()));  // measured 5.2e-15 of it
-        EXPECT_NEAR(rate[3], expected[1], 1e-14 * (1 + expected.norm()));  // measured 1.9e-15 of it
+template <class Model>
+void expect_solves_the_mass_matrix(std::size_t links, double tolerance) {
+    std::mt19937 random(6);
+    for (int i = 0; i < 100; ++i) {
+        const auto p = random_pendulum(random, links);
+        const auto expected = by_elimination(physical(p));
+        const Eigen::VectorXd rate = start_rate<Model>(p);
+        const auto n = static_cast<long>(links);
+        EXPECT_LT((rate.tail(n) - expected).norm(), tolerance * (1 + expected.norm())) << links;
+        EXPECT_EQ(rate.head(n), Eigen::Map<const Eigen::VectorXd>(p.rate.data(), n));
     }
 }
 
-TEST(AngleChain, SolvesTheMassMatrixAtAnyLength) {
-    std::mt19937 random(6);
+TEST(Models, InAnglesSolveTheMassMatrix) {
+    expect_solves_the_mass_matrix<DoublePendulum<double>>(2, 3e-14);  // measured 5.2e-15 of it
     for (const std::size_t links : {1u, 2u, 3u, 4u, 7u, 32u})
-        for (int i = 0; i < 20; ++i) {
-            const auto p = random_pendulum(random, links);
-            const auto expected = accelerations_by_mass_matrix(p);
-            const Eigen::VectorXd rate = start_rate<AngleChain<double, Eigen::Dynamic>>(p);
-            const auto n = static_cast<long>(links);
-            EXPECT_LT((rate.tail(n) - expected).norm(), 7e-13 * (1 + expected.norm()))
-                << links;  // measured 1.4e-13 of it
-            EXPECT_EQ(rate.head(n), Eigen::Map<const Eigen::VectorXd>(p.rate.data(), n));
+        expect_solves_the_mass_matrix<AngleChain<double, Eigen::Dynamic>>(links, 7e-13);  // measured 1.4e-13 of it
+}
+
+template <int N>
+void expect_falls_as_the_angles_do(std::size_t links) {
+    std::mt19937 random(3);
+    for (int i = 0; i < 100; ++i) {
+        const auto p = random_pendulum(random, links);
+        const auto expected = accelerations_of_bobs(p);
+        const Eigen::VectorXd rate = start_rate<RodChain<double, N>>(p);
+        for (std::size_t link = 0; link < links; ++link) {
+            const Eigen::Vector2d found = rate.segment<2>(2 * static_cast<long>(links + link));
+            EXPECT_LT((found - expected[link]).norm(), 1e-12 * (1 + expected[link].norm())) << links;  // measured 3e-13
         }
+    }
+}
+
+TEST(Models, OnRodsFallAsTheAnglesDo) {
+    expect_falls_as_the_angles_do<2>(2);
+    expect_falls_as_the_angles_do<3>(3);
+    expect_falls_as_the_angles_do<Eigen::Dynamic>(12);
 }
 
 /// The rates at a stage, nearby and further away, are those found from nothing.
@@ -76,25 +86,6 @@ TEST(Models, StagesReuseTheAnglesOfTheStep) {
     expect_stages_reuse_angles<AngleChain<double, Eigen::Dynamic>>(9);
 }
 
-TEST(AngleChain, SolveMassIsTheInverseOfTheMassMatrix) {
-    std::mt19937 random(7);
-    for (const std::size_t links : {1u, 2u, 3u, 9u}) {
-        auto p = random_pendulum(random, links);
-        p.rate.assign(links, 0);  // so the forces are those of gravity alone, and M⁻¹ f the accelerations
-        AngleChain<double, Eigen::Dynamic> chain(p);
-        chain.update(AngleChain<double, Eigen::Dynamic>::start(p));
-        Eigen::VectorXd f(links), a(links);
-        double below = 0;
-        for (std::size_t i = links; i-- > 0;) {
-            below += p.mass[i];
-            f[static_cast<long>(i)] = -below * p.gravity * p.length[i] * std::sin(p.angle[i]);
-        }
-        chain.solve_mass(f, a);
-        const auto expected = accelerations_by_mass_matrix(p);
-        EXPECT_LT((a - expected).norm(), 3e-14 * (1 + expected.norm())) << links;  // measured 5.6e-15 of it
-    }
-}
-
 TEST(Models, HangAndStandStillExactly) {
     const Pendulum<double> p{{1, 2, 3}, {1, 2, 0.5}, {0, 0, 0}, {0, 0, 0}, 9.8},
         two{{1, 2}, {1, 3}, {0, 0}, {0, 0}, 9.8};
@@ -113,27 +104,6 @@ TEST(DoublePendulum, MirrorImageMovesAsTheMirrorImage) {
         EXPECT_EQ(start_rate<DoublePendulum<double>>(mirrored),
                   -start_rate<DoublePendulum<double>>(p));  // to the last bit: sine and product are odd in double, too
     }
-}
-
-template <int N>
-void expect_falls_as_the_angles_do(std::size_t links, unsigned seed) {
-    std::mt19937 random(seed);
-    for (int i = 0; i < 100; ++i) {
-        const auto p = random_pendulum(random, links);
-        const auto expected = accelerations_of_bobs(p);
-        const Eigen::VectorXd rate = start_rate<RodChain<double, N>>(p);
-        for (std::size_t link = 0; link < links; ++link) {
-            const Eigen::Vector2d found = rate.segment<2>(2 * static_cast<long>(links + link));
-            EXPECT_LT((found - expected[link]).norm(),
-                      1e-12 * (1 + expected[link].norm()));  // measured 3e-13, relative
-        }
-    }
-}
-
-TEST(RodChain, FallsAsTheAnglesDo) {
-    expect_falls_as_the_angles_do<2>(2, 3);
-    expect_falls_as_the_angles_do<3>(3, 8);
-    expect_falls_as_the_angles_do<Eigen::Dynamic>(12, 9);
 }
 
 TEST(RodChain, BothModelsReportTheSameBobs) {

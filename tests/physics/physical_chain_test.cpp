@@ -32,20 +32,6 @@ Eigen::VectorXd accelerations(const PhysicalPendulum<double>& p) {
     return rate.segment(chain.layout.half, chain.layout.coordinates);
 }
 
-TEST(PhysicalChain, OfPointMassesIsTheChainOfThem) {
-    std::mt19937 random(1);
-    for (std::size_t links = 1; links <= 6; ++links) {
-        const auto p = random_pendulum(random, links);
-        using Ideal = AngleChain<double, Eigen::Dynamic>;
-        Ideal ideal(p);
-        const auto y = Ideal::start(p);
-        auto rate = y;
-        ideal.rate(y, rate);
-        const Eigen::VectorXd expected = rate.tail(y.size() / 2);
-        EXPECT_LE((accelerations(physical(p)) - expected).norm(), 1e-13 * expected.norm()) << links;  // measured 9e-15
-    }
-}
-
 TEST(PhysicalChain, OfBodiesSolvesLagrangesEquations) {
     std::mt19937 random(2);
     for (int i = 0; i < 60; ++i) {

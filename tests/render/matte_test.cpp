@@ -47,21 +47,5 @@ TEST(Matte, TouchesNothingOutsideItsRectangle) {
             EXPECT_EQ(found.at(x, y)[3], x >= 1 && x < 3 && y >= 1 && y < 3 ? 0 : 77) << x << ' ' << y;
 }
 
-TEST(Matte, OfADrawnPictureGivesItBackOnBlack) {
-    constexpr Size size{64, 64};
-    const Box left{
-        .left = 8, .top = 8, .right = 30, .bottom = 30, .corner = 6, .color = rgb(0xffa640).with_alpha(0.5f)};
-    const Capsule dot{.from = {44, 44}, .to = {50, 50}, .radius = 7.3f, .color = rgb(0x4fb0ff)};
-    Renderer on_black(size, {filled(size, black)}), on_white(size, {filled(size, white)});
-    const auto &dark = on_black.draw({left, dot}), &light = on_white.draw({left, dot});
-    Picture found(size);
-    matte(dark, light, {0, 0, size.width, size.height}, found);
-    EXPECT_EQ(found.at(2, 60)[3], 0);
-    EXPECT_EQ(found.at(47, 47)[3], 255);
-    for (std::size_t i = 0; i < found.rgba.size(); i += 4)
-        for (std::size_t k = 0; k < 3; ++k)
-            EXPECT_NEAR(over(found.rgba[i + k], found.rgba[i + 3], 0), dark.rgba[i + k], 1);
-}
-
 }  // namespace matte_test
 }  // namespace doppel
