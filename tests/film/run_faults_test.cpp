@@ -12,19 +12,6 @@ namespace run_faults_test {
 namespace fs = std::filesystem;
 using test::fresh_folder;
 
-TEST(RunFaults, LeavesNothingWhenItIsInterrupted) {
-    for (const char* format : {"mp4", "png"}) {
-        const auto out = fresh_folder();
-        std::atomic<bool> stop = false;
-        const auto [code, message] = error_of([&] {
-            run(small_scene({fmt::format("video.format=\"{}\"", format)}), {.out = out}, stop,
-                [&](const Progress& p) { stop = p.done == 20; });
-        });
-        EXPECT_EQ(code, ExitCode::interrupted);
-        EXPECT_TRUE(fs::is_empty(out)) << format;
-    }
-}
-
 TEST(RunFaults, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     const auto out = fresh_folder();
     const auto scene = scene_of("butterfly", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000",

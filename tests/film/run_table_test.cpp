@@ -10,13 +10,8 @@
 namespace doppel {
 namespace run_table_test {
 
-using test::bytes_of;
-using test::fresh_folder;
-
 TEST(RunTable, HasTheColumnsOfTheContract) {
-    const auto out = fresh_folder();
-    render(small_scene(), {.out = out, .pictures = false});
-    const auto lines = lines_of(out / "butterfly/butterfly.csv");
+    const auto lines = table_of(small_scene());
     EXPECT_EQ(lines.front(),
               "sample,time_s,"
               "a_theta1_rad,a_theta2_rad,a_omega1_rad_per_s,a_omega2_rad_per_s,"
@@ -36,10 +31,8 @@ TEST(RunTable, HasTheColumnsOfTheContract) {
 }
 
 TEST(RunTable, GivesEveryQuadBack) {
-    const auto out = fresh_folder();
     const auto scene = small_scene({"system.precision=\"quad\"", "system.step_s=\"1/480\""});
-    render(scene, {.out = out, .pictures = false});
-    const auto lines = lines_of(out / "butterfly/butterfly.csv");
+    const auto lines = table_of(scene);
     const std::atomic<bool> never = false;
     PairRun pair(scene);
     std::size_t longest = 0;
@@ -64,15 +57,12 @@ TEST(RunTable, GivesEveryQuadBack) {
 }
 
 TEST(RunTable, HasTheColumnsThatAreChosenInTheirOrder) {
-    const auto out = fresh_folder();
     const auto scene =
         small_scene({"scene.energy_columns=true", "system.precision=\"quad\"", "system.step_s=\"1/480\""});
-    render(scene, {.out = out, .pictures = false});
-    const auto all = lines_of(out / "butterfly/butterfly.csv");
+    const auto all = table_of(scene);
     const auto names = cells_of(all[0]);
     const auto chosen = [&](const std::vector<std::string>& columns, const auto& is_chosen) {
-        render(scene, {.out = out / "few", .pictures = false, .columns = columns});
-        const auto few = lines_of(out / "few/butterfly/butterfly.csv");
+        const auto few = table_of(scene, columns);
         ASSERT_EQ(few.size(), all.size());
         for (std::size_t k = 0; k < all.size(); ++k) {
             const auto cells = cells_of(all[k]);
@@ -102,11 +92,7 @@ TEST(RunTable, RefusesColumnsThatItDoesNotHave) {
 }
 
 TEST(RunTable, HasTheEnergiesLastWhereTheyAreAskedFor) {
-    const auto out = fresh_folder();
-    render(small_scene({"scene.energy_columns=true"}), {.out = out, .pictures = false});
-    render(small_scene(), {.out = out / "plain", .pictures = false});
-    const auto lines = lines_of(out / "butterfly/butterfly.csv"),
-               plain = lines_of(out / "plain/butterfly/butterfly.csv");
+    const auto lines = table_of(small_scene({"scene.energy_columns=true"})), plain = table_of(small_scene());
     ASSERT_EQ(lines.size(), plain.size());
     EXPECT_EQ(lines[0], plain[0] + ",a_kinetic_J,a_potential_J,b_kinetic_J,b_potential_J");
     for (std::size_t k = 1; k < lines.size(); ++k) {
@@ -126,14 +112,11 @@ TEST(RunTable, HasTheEnergiesLastWhereTheyAreAskedFor) {
 }
 
 TEST(RunTable, LeavesTheLogRatioEmptyWhereThePairStartsAsOne) {
-    const auto out = fresh_folder();
-    render(scene_of("two-methods", {"scene.duration_s=0.1"}), {.out = out, .pictures = false});
-    for (const auto& line : lines_of(out / "two-methods/two-methods.csv"))
+    for (const auto& line : table_of(scene_of("two-methods", {"scene.duration_s=0.1"})))
         EXPECT_TRUE(line.ends_with("log_ratio") || line.ends_with(","));
 }
 
 TEST(RunTable, LeavesTheEnergyErrorOpenWhereDampingTakesEnergy) {
-    const auto out = fresh_folder();
     const auto scene = scene_of_text(R"(
 [scene]
 duration_s = 0.1
@@ -146,8 +129,7 @@ from = "bob2"
 to = [0, -3]
 damping_N_s_per_m = 2
 )");
-    render(scene, {.out = out, .pictures = false});
-    const auto lines = lines_of(out / "x/x.csv");
+    const auto lines = table_of(scene);
     const auto header = cells_of(lines[0]), last = cells_of(lines.back());
     const auto cell = [&](const char* name) {
         return last[static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin())];
@@ -157,7 +139,7 @@ damping_N_s_per_m = 2
     EXPECT_EQ(cell("b_energy_error"), "");
     EXPECT_NE(cell("b_energy_J"), "");
     EXPECT_NE(cell("b_length_error_m"), "");
-    const auto manifest = nlohmann::json::parse(bytes_of(out / "x/x.json"));
+    const auto manifest = manifest_of(scene);
     EXPECT_TRUE(manifest["a"]["worst_energy_error"].is_number());
     EXPECT_EQ(manifest["a"]["conserves_energy"], true);
     EXPECT_TRUE(manifest["b"]["worst_energy_error"].is_null());

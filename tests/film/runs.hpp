@@ -58,4 +58,11 @@ inline std::vector<std::string> cells_of(const std::string& line) {
     return cells;
 }
 
+/// The table of a run without pictures.
+inline std::vector<std::string> table_of(const Scene& scene, const std::vector<std::string>& columns = {}) {
+    const auto out = test::fresh_folder();
+    render(scene, {.out = out, .pictures = false, .columns = columns});
+    return lines_of(out / scene.preset.name / (scene.preset.name + ".csv"));
+}
+
 }  // namespace doppel

@@ -1,10 +1,6 @@
 #include "numeric/lanes.hpp"
 
-#include "integrate/euler.hpp"
-#include "integrate/runge_kutta.hpp"
 #include "numeric/support.hpp"
-#include "physics/angle_chain.hpp"
-#include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,74 +9,6 @@
 
 namespace doppel {
 namespace lanes_test {
-
-/// A different pendulum for every lane.
-Pendulum<double> trial(int number, std::size_t links) {
-    std::mt19937 random(static_cast<unsigned>(number));
-    std::uniform_real_distribution<double> some(0.5, 2);
-    Pendulum<double> p;
-    p.mass.clear(), p.length.clear(), p.angle.clear(), p.rate.clear();
-    for (std::size_t i = 0; i < links; ++i) {
-        p.mass.push_back(some(random));
-        p.length.push_back(some(random));
-        p.angle.push_back(2 * some(random) - 2);
-        p.rate.push_back(some(random) - 1);
-    }
-    return p;
-}
-
-template <class Side>
-Pendulum<Side> side_by_side(std::size_t links) {
-    auto sides = trial(0, links).template cast<Side>();
-    for (int lane = 0; lane < Side::width; ++lane) {
-        const auto p = trial(lane, links);
-        for (std::size_t i = 0; i < links; ++i) {
-            sides.mass[i].set(lane, p.mass[i]);
-            sides.length[i].set(lane, p.length[i]);
-            sides.angle[i].set(lane, p.angle[i]);
-            sides.rate[i].set(lane, p.rate[i]);
-        }
-    }
-    return sides;
-}
-
-/// Whether `steps` of the method give each lane the bits of a double.
-template <class Which, template <class> class Model, int width>
-void expect_the_bits_of_double(std::size_t links) {
-    using Side = Lanes<width>;
-    constexpr long steps = 3000;
-    const double step = 1.0 / 3000;
-    Model<Side> model(side_by_side<Side>(links));
-    typename Which::template Stepper<Model<Side>> stepper(model, Model<Side>::start(side_by_side<Side>(links)),
-                                                          Side(step));
-    stepper.advance(steps);
-    const auto y = stepper.state();
-    for (int lane = 0; lane < width; ++lane) {
-        Model<double> lone(trial(lane, links));
-        typename Which::template Stepper<Model<double>> alone(lone, Model<double>::start(trial(lane, links)), step);
-        alone.advance(steps);
-        for (Eigen::Index i = 0; i < y.size(); ++i)
-            EXPECT_EQ(bits(y[i][lane]), bits(alone.state()[i])) << "lane " << lane << ", entry " << i;
-    }
-}
-
-template <class Scalar>
-using AngleChain3 = AngleChain<Scalar, 3>;
-template <class Scalar>
-using RodChain2 = RodChain<Scalar, 2>;
-template <class Scalar>
-using RodChain3 = RodChain<Scalar, 3>;
-template <class Scalar>
-using LongRodChain = RodChain<Scalar, Eigen::Dynamic>;
-
-TEST(Lanes, StepToTheBitsOfDouble) {
-    expect_the_bits_of_double<Euler, DoublePendulum, 2>(2);
-    expect_the_bits_of_double<Rk4, DoublePendulum, 8>(2);
-    expect_the_bits_of_double<Rk4, AngleChain3, 4>(3);
-    expect_the_bits_of_double<Rk4, RodChain2, 8>(2);
-    expect_the_bits_of_double<Euler, RodChain3, 8>(3);
-    expect_the_bits_of_double<Rk4, LongRodChain, 2>(6);
-}
 
 TEST(Lanes, RoundLikeDouble) {
     std::mt19937_64 random(1);

@@ -39,15 +39,16 @@ void expect_faults(const std::vector<BadPart>& bad_parts) {
 
 TEST(MechanismFault, OfParticles) {
     EXPECT_EQ(fault_of({}), "the mechanism has no particles; it needs at least one");
-    auto parts = four_bars();
-    parts.particles[1].mass = 0;
-    EXPECT_EQ(fault_of(parts), "particle 2: its mass is 0 kg; it must be greater than 0");
-    parts = four_bars();
-    parts.particles[2].place[1] = std::nan("");
-    EXPECT_EQ(fault_of(parts), "particle 3: its place is (2.9, nan) m; both must be finite numbers");
-    parts = four_bars();
-    parts.particles[2].velocity[0] = INFINITY;
-    EXPECT_EQ(fault_of(parts), "particle 3: its velocity is (inf, 0) m/s; both must be finite numbers");
+    const auto changed = [](auto change) {
+        auto parts = four_bars();
+        change(parts.particles);
+        return fault_of(parts);
+    };
+    EXPECT_EQ(changed([](auto& p) { p[1].mass = 0; }), "particle 2: its mass is 0 kg; it must be greater than 0");
+    EXPECT_EQ(changed([](auto& p) { p[2].place[1] = std::nan(""); }),
+              "particle 3: its place is (2.9, nan) m; both must be finite numbers");
+    EXPECT_EQ(changed([](auto& p) { p[2].velocity[0] = INFINITY; }),
+              "particle 3: its velocity is (inf, 0) m/s; both must be finite numbers");
 }
 
 TEST(MechanismFault, OfParts) {
