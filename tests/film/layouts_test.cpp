@@ -70,11 +70,9 @@ TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
                 }
                 // the pendulums' circle stays inside its panel
                 for (const auto& panel : layout.panels) {
-                    const float reach = layout.reach;
-                    EXPECT_GE(panel.center.x - reach, panel.area.left) << what;
-                    EXPECT_LE(panel.center.x + reach, panel.area.right) << what;
-                    EXPECT_GE(panel.center.y - reach, panel.area.top) << what;
-                    EXPECT_LE(panel.center.y + reach, panel.area.bottom) << what;
+                    const auto& [x, y] = panel.center;
+                    EXPECT_TRUE(panel.area.holds(Point{x - layout.reach, y - layout.reach})) << what;
+                    EXPECT_TRUE(panel.area.holds(Point{x + layout.reach, y + layout.reach})) << what;
                 }
             }
 }

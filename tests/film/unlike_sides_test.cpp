@@ -1,4 +1,5 @@
 #include "film/runs.hpp"
+#include "render/pixels.hpp"
 #include "scene/captions.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +75,16 @@ TEST(UnlikeSides, AreDrawnInEveryLayoutThatTakesThem) {
     for (const char* layout : {"side-by-side", "overlay", "portrait"})
         for (const std::string& text : {std::string("[a]\nlinks = 1\n[scene]\nduration_s = 0.2\n"), chain_and_spring}) {
             const auto scene = scene_of_text(text + fmt::format("[video]\nlayout = \"{}\"\nsize = [180, 320]", layout));
-            EXPECT_EQ(frame_of(scene, 20).size, (Size{180, 320})) << layout;
+            const auto picture = frame_of(scene, 20);
+            const auto panels = make_layout(scene).panels;
+            PairState last;
+            for_each_snapshot(scene, 20, [&](const Snapshot& snapshot) { last = snapshot.pair; });
+            for (const std::size_t side : {0, 1}) {
+                const auto& bob = (side == 0 ? last.a : last.b).bobs.back();
+                const auto at = panels[panels.size() == 1 ? 0 : side].at(bob.x, bob.y);
+                EXPECT_TRUE(is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), themes[0].sides[side]))
+                    << layout << ", side " << side;
+            }
         }
     EXPECT_NE(
         error_of([] { scene_of("single-and-double", {"video.layout=\"ensemble\""}); })

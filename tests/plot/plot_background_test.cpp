@@ -1,5 +1,5 @@
 #include "plot/plot_figures.hpp"
-#include "render/renderer.hpp"
+#include "render/pixels.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,11 +18,7 @@ constexpr Size size{800, 500};
 double share_of(const Picture& picture, Color color) {
     long count = 0;
     for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x) {
-            const std::uint8_t* pixel = picture.at(x, y);
-            count += std::abs(pixel[0] - 255 * color.r) <= 1 && std::abs(pixel[1] - 255 * color.g) <= 1 &&
-                     std::abs(pixel[2] - 255 * color.b) <= 1;
-        }
+        for (int x = 0; x < size.width; ++x) count += is_color(picture.at(x, y), color, 1);
     return static_cast<double>(count) / (size.width * size.height);
 }
 
