@@ -123,29 +123,6 @@ TEST(SinCos, OfStagesAreTurnedNearbyAndTakenAfreshFurtherAway) {
     EXPECT_EQ(s[2], SinCos<double>(moved[2]).sin);
 }
 
-TEST(SinCos, OfStagesAreTheSameInLanes) {
-    std::mt19937_64 random(8);
-    std::uniform_real_distribution<double> angle(-9, 9), turn(-0.0013, 0.0013);
-    for (int i = 0; i < 500; ++i) {
-        Eigen::Matrix<Lanes<4>, 1, 1> from, to, s, c;
-        for (int lane = 0; lane < 4; ++lane) {
-            from[0].set(lane, angle(random));
-            to[0].set(lane, from[0][lane] + turn(random));
-        }
-        StageAngles<Lanes<4>, 1> together;
-        together.start(from, s, c);
-        together.at(to, s, c);
-        for (int lane = 0; lane < 4; ++lane) {
-            Eigen::Matrix<double, 1, 1> one(from[0][lane]), other(to[0][lane]), sin, cos;
-            StageAngles<double, 1> alone;
-            alone.start(one, sin, cos);
-            alone.at(other, sin, cos);
-            ASSERT_EQ(bits(sin[0]), bits(s[0][lane]));
-            ASSERT_EQ(bits(cos[0]), bits(c[0][lane]));
-        }
-    }
-}
-
 TEST(LanesRoughLog2, IsWithinAStraightLineOfTheLogarithm) {
     double worst_log = 0, worst_power = 0;
     for (double x = 1e-300; x < 1e300; x *= 1.0123) {
