@@ -97,7 +97,7 @@ inline FigurePreset small_sweep(std::vector<std::string> more = {}) {
     return figure_of("fig2-right", more);
 }
 
-inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
+inline std::vector<std::string> files_in(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         names.push_back(entry.path().filename().string());

@@ -21,7 +21,7 @@ TEST(RunFaults, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     EXPECT_NE(message.find("butterfly.failed.csv"), std::string::npos) << message;
 
     // two files, no video and nothing that looks whole
-    EXPECT_EQ(names_in(out / "butterfly"), (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
+    EXPECT_EQ(files_in(out / "butterfly"), (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
     const auto manifest = nlohmann::json::parse(std::ifstream(out / "butterfly" / "butterfly.failed.json"));
     const std::string failure = manifest["failed"];
     EXPECT_EQ(message.rfind(failure, 0), 0u);
@@ -83,7 +83,7 @@ TEST(RunFaults, LeavesNoFrameOfASequenceThatBrokeDown) {
     for (int round = 0; round < 4; ++round) {
         const auto out = fresh_folder();
         EXPECT_EQ(error_of([&] { render(scene, {.out = out, .jobs = 32}); }).first, ExitCode::method_failed);
-        EXPECT_EQ(names_in(out / "butterfly"),
+        EXPECT_EQ(files_in(out / "butterfly"),
                   (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
     }
 }

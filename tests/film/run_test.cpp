@@ -65,7 +65,7 @@ TEST(Run, OfAChangingSpeedHasTheSameTableAndMoreFrames) {
     const auto rows = lines_of(out / "part/butterfly/butterfly.csv");
     ASSERT_EQ(rows.size(), 8u);
     EXPECT_EQ(rows[1], lines_of(out / "all/butterfly/butterfly.csv")[1 + 24]);
-    const auto frames = names_in(out / "part/butterfly/frames");
+    const auto frames = files_in(out / "part/butterfly/frames");
     for (const auto& name : frames)
         EXPECT_EQ(bytes_of(out / "part/butterfly/frames" / name), bytes_of(out / "all/butterfly/frames" / name))
             << name;
@@ -75,7 +75,7 @@ TEST(Run, OfAChangingSpeedHasTheSameTableAndMoreFrames) {
 TEST(Run, ManifestTellsWhatRanAndHashesIt) {
     const auto out = fresh_folder();
     render(small_scene({"b.model=\"constraints\""}), {.out = out});
-    EXPECT_EQ(names_in(out / "butterfly"), (std::set<std::string>{"butterfly.mp4", "butterfly.csv", "butterfly.json"}));
+    EXPECT_EQ(files_in(out / "butterfly"), (std::set<std::string>{"butterfly.mp4", "butterfly.csv", "butterfly.json"}));
     const auto manifest = nlohmann::json::parse(bytes_of(out / "butterfly/butterfly.json"));
     EXPECT_EQ(manifest["preset"], "butterfly");
     EXPECT_EQ(manifest["resolved_preset"]["b"]["angle_deg"][0], 90.003);

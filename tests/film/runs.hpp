@@ -33,7 +33,7 @@ inline nlohmann::json manifest_of(const Scene& scene, const std::filesystem::pat
 }
 
 /// Of the files in a folder.
-inline std::set<std::string> names_in(const std::filesystem::path& folder) {
+inline std::set<std::string> files_in(const std::filesystem::path& folder) {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         names.insert(entry.path().filename().string());

@@ -63,7 +63,7 @@ TEST(Schedule, FramesComeInItsOrderAndRangesGiveTheSameOnes) {
     std::set<std::string> seen;
     for (const auto& [from, to] : {std::pair{0L, 4L}, {4L, 30L}, {30L, 31L}}) {
         render(scene, {.out = parts, .first = from, .last = to});
-        for (const auto& name : names_in(parts / "butterfly/frames")) {
+        for (const auto& name : files_in(parts / "butterfly/frames")) {
             EXPECT_EQ(test::bytes_of(parts / "butterfly/frames" / name),
                       test::bytes_of(whole / "butterfly/frames" / name))
                 << name;

@@ -41,7 +41,7 @@ TEST(Still, IsWrittenBesideAFilmAndOtherStills) {
     still(scene, {1, 2}, out);
     still(scene, {1, 1}, out);
     still(scene, {1, 1}, out);  // in place of the last
-    EXPECT_EQ(names_in(out / "butterfly"),
+    EXPECT_EQ(files_in(out / "butterfly"),
               (std::set<std::string>{"butterfly.csv", "butterfly.json", "butterfly.0.5s.png", "butterfly.1s.png"}));
 }
 
@@ -69,7 +69,7 @@ TEST(Still, SaysWhichTimesThereAre) {
 TEST(Still, RangesInSecondsAreThoseInSamples) {
     const auto names_of_frames = [](const RunOptions& options) {
         render(small(), options);
-        return names_in(options.out / "butterfly/frames");
+        return files_in(options.out / "butterfly/frames");
     };
     const auto of = [&](std::optional<Rational> from, std::optional<Rational> to) {
         return names_of_frames({.out = test::fresh_folder(), .from_s = from, .to_s = to});
