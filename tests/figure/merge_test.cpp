@@ -25,9 +25,9 @@ protected:
     fs::path part(int i) const { return folder_ / fmt::format("fig2-right.{}-of-3.shard", i); }
 
     void expect_refused(ExitCode code, const std::vector<std::string>& words, const FigurePreset& figure) const {
-        const auto before = files_in(folder_);
+        const auto before = names_in(folder_);
         expect_error(code, words, [&] { run_figure(figure, {.out = out_, .merge = true}); });
-        EXPECT_EQ(files_in(folder_), before);
+        EXPECT_EQ(names_in(folder_), before);
     }
     /// Words of a part's header replaced.
     void edit(int i, const std::string& from, const std::string& to) const {
@@ -41,7 +41,7 @@ protected:
 };
 
 TEST_F(Merge, JoinsWhatIsThereAndComputesNothing) {
-    EXPECT_EQ(files_in(folder_), (std::vector<std::string>{"fig2-right.1-of-3.shard", "fig2-right.2-of-3.shard",
+    EXPECT_EQ(names_in(folder_), (std::vector<std::string>{"fig2-right.1-of-3.shard", "fig2-right.2-of-3.shard",
                                                            "fig2-right.3-of-3.shard"}));
     const auto result = run_figure(small_sweep(), {.out = out_, .merge = true});
     EXPECT_EQ(result.samples, 0);
@@ -147,7 +147,7 @@ TEST(MergeOfNothing, SaysHowToMakeParts) {
     const auto out = fresh_folder() / "out";
     expect_error(ExitCode::bad_input, {"fig2-right", "--shard I/N"},
                  [&] { run_figure(small_sweep(), {.out = out, .merge = true}); });
-    EXPECT_TRUE(!fs::exists(out) || files_in(out).empty());
+    EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
 }
 
 /// An orbit may never come back to the section; it has no points, and is computed nonetheless.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "figure/run.hpp"
+#include "output/files.hpp"
 #include "output/fixtures.hpp"
 #include "scene/support.hpp"
 
@@ -95,14 +96,6 @@ inline const std::vector<std::string> small_chart{"sweep.to=9", "scene.duration_
 inline FigurePreset small_sweep(std::vector<std::string> more = {}) {
     more.insert(more.end(), small_chart.begin(), small_chart.end());
     return figure_of("fig2-right", more);
-}
-
-inline std::vector<std::string> files_in(const std::filesystem::path& folder) {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
 }
 
 /// What figures said on their way.
