@@ -79,7 +79,8 @@ SideSpec with_droplet(SideSpec spec, bool droplet) {
 
 /// The distances of a pair at samples 0 … count.
 std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count) {
-    PairRun run(make_scene({.name = "study", .duration_s = *reduced(count, 120), .a = a, .b = b}));
+    const auto scene = make_scene({.name = "study", .duration_s = *reduced(count, 120), .a = a, .b = b});
+    PairRun run(scene);
     std::vector<double> all;
     for (long n = 0; n <= count; ++n) all.push_back(run.next(never).distance);
     return all;
