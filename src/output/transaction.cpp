@@ -64,7 +64,7 @@ void sync_folder(const fs::path& path, bool with_files = false) {
 
 }  // namespace
 
-Transaction::Transaction(fs::path folder, std::string run, std::string kind, Replacing replacing)
+Transaction::Transaction(fs::path folder, const std::string& run, std::string kind, Replacing replacing)
     : Transaction(std::move(folder), std::move(kind), std::move(replacing)) {
     hidden_ = folder_ / (".doppel-" + run);
     // what is thrown from here on, the destructor undoes

@@ -28,7 +28,7 @@ public:
     /// Makes `folder` and its parents, and locks it for runs named `run`; runs of other names may write other files
     /// there at the same time. `kind` = "film", "figure" or "fit": files of another kind stay. Throws Error (exit 4)
     /// where that fails or another process has the lock.
-    explicit Transaction(std::filesystem::path folder, std::string run = "run", std::string kind = {},
+    explicit Transaction(std::filesystem::path folder, const std::string& run = "run", std::string kind = {},
                          Replacing replacing = {});
     ~Transaction();
     Transaction(const Transaction&) = delete;

@@ -128,13 +128,14 @@ struct Reading {
     }
 };
 
-double unexplained(std::vector<Glimpse> glimpses, const Reading& reading) {
-    for (auto& [one, two] : glimpses) {
+double unexplained(const std::vector<Glimpse>& glimpses, const Reading& reading) {
+    auto taken = glimpses;
+    for (auto& [one, two] : taken) {
         reading.take(one.angle, two.angle, true);
         reading.take(one.rate, two.rate, false);
         reading.take(one.acceleration, two.acceleration, false);
     }
-    const auto result = regress(glimpses);
+    const auto result = regress(taken);
     return result.is_physical ? result.unexplained : 1;
 }
 
