@@ -6,6 +6,8 @@ install(TARGETS doppel)
 install(DIRECTORY presets DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel FILES_MATCHING PATTERN *.toml PATTERN *.json)
 install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 install(FILES packaging/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
+install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
 
 add_custom_command(
     OUTPUT ${pages}/made

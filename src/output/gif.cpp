@@ -30,14 +30,14 @@ void check(liq_error error) {
     if (error != LIQ_OK) throw std::logic_error("libimagequant refuses its task");
 }
 
-/// What libimagequant allocates is null only where memory is out.
-/// Closing it frees it.
+/// A new file that has no name any more: closing it frees it.
 Stream unnamed_file(const std::filesystem::path& path) {
     auto file = create_file(path);
     std::filesystem::remove(path);
     return file;
 }
 
+/// What libimagequant allocates is null only where memory is out.
 template <class T>
 T* checked(T* thing) {
     if (!thing) throw std::bad_alloc();
