@@ -135,4 +135,9 @@ private:
     Gradients ahead_;             // further on
 };
 
+template <class Scalar>
+std::unique_ptr<Series<Scalar>> series_of_mechanism(const Assembly<Scalar>& parts, int order) {
+    return std::make_unique<MechanismSeries<Scalar>>(parts, order);
+}
+
 }  // namespace doppel

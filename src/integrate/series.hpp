@@ -54,6 +54,11 @@ template <class Scalar>
 std::unique_ptr<Series<Scalar>> series_of_bodies(const PhysicalChain<Scalar>& model, int order);
 template <class Scalar>
 std::unique_ptr<Series<Scalar>> series_of_mechanism(const Assembly<Scalar>& parts, int order);
+// As they are compiled, one file a scalar.
+template <class Scalar>
+using SeriesOfBodies = std::unique_ptr<Series<Scalar>>(const PhysicalChain<Scalar>& model, int order);
+template <class Scalar>
+using SeriesOfMechanism = std::unique_ptr<Series<Scalar>>(const Assembly<Scalar>& parts, int order);
 
 /// How many of the last coefficients a step goes by. Four, because of a motion from rest at 90° three in every four
 /// vanish.

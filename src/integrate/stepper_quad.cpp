@@ -9,15 +9,8 @@ template <>
 std::unique_ptr<Series<Quad>> series_of_chain(const Pendulum<Quad>& p, int order) {
     return std::make_unique<AngleSeries<Quad>>(p, order);
 }
-template <>
-std::unique_ptr<Series<Quad>> series_of_bodies(const PhysicalChain<Quad>& model, int order) {
-    return std::make_unique<BodiesSeries<Quad>>(model, order);
-}
-template <>
-std::unique_ptr<Series<Quad>> series_of_mechanism(const Assembly<Quad>& parts, int order) {
-    return std::make_unique<MechanismSeries<Quad>>(parts, order);
-}
-
+template SeriesOfBodies<Quad> series_of_bodies;
+template SeriesOfMechanism<Quad> series_of_mechanism;
 template MakeAnyStepper<State<Quad, Eigen::Dynamic>> make_any_stepper;
 template MakeStepper<Quad> make_angles_stepper;
 template MakeStepper<Quad> make_constraints_stepper;

@@ -2,13 +2,7 @@
 
 namespace doppel {
 
-template <>
-std::unique_ptr<Series<double>> series_of_bodies(const PhysicalChain<double>& model, int order) {
-    return std::make_unique<BodiesSeries<double>>(model, order);
-}
-template <>
-std::unique_ptr<Series<double>> series_of_mechanism(const Assembly<double>& parts, int order) {
-    return std::make_unique<MechanismSeries<double>>(parts, order);
-}
+template SeriesOfBodies<double> series_of_bodies;
+template SeriesOfMechanism<double> series_of_mechanism;
 
 }  // namespace doppel

@@ -175,4 +175,9 @@ private:
     const PhysicalChain<Scalar>& model_;
 };
 
+template <class Scalar>
+std::unique_ptr<Series<Scalar>> series_of_bodies(const PhysicalChain<Scalar>& model, int order) {
+    return std::make_unique<BodiesSeries<Scalar>>(model, order);
+}
+
 }  // namespace doppel
