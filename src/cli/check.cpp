@@ -248,7 +248,7 @@ void add_check(CLI::App& app) {
             const auto preset = find_preset(name, &stop);
             if (const auto fault = schema_line_fault(preset)) print_line("{}", *fault);
             if (is_figure(preset))
-                print_figure(read_figure(preset, overrides_of(*options)), stop);
+                print_figure(read_figure(preset, overrides_of(*options), {}, stop), stop);
             else
                 print_scene(make_scene(read_preset(preset, overrides_of(*options)), stop), stop);
         }

@@ -35,7 +35,7 @@ public:
         if (static_cast<std::size_t>(link_) > pair_.a.links())
             throw table.fault("link", "must be 1 to {}, the number of links; it is {}", pair_.a.links(), link_);
         settings_ = resolved_pair(pair_) + table.finish();
-        if (!parameter_.is_of_method) step_all_alike(pair_, at(0));
+        if (!parameter_.is_of_method) step_all_alike(pair_, at(0), reader.stop);
         for (const std::size_t end : {std::size_t(0), trials() - 1}) {
             const auto scene = make_scene(at(end));  // reports faults now
             period_of(table, scene.preset.a);

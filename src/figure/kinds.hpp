@@ -45,6 +45,7 @@ struct FigureReader {
     const TomlDocument& document;
     TomlReader &top, &scene, &chart;  // of [chart], a kind may take keys of its own
     std::span<const ExternalMethod> external_methods = {};
+    const std::atomic<bool>& stop = never_stopped;
 
     /// The kind's own table, all of its fields read.
     template <class Kind>

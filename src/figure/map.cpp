@@ -66,7 +66,7 @@ public:
         if (x_.is_of_one_side && difference_ != 0)
             throw table.fault("difference", "must be 0 for {}, in which the two of a pair cannot differ", x_.name);
         settings_ = resolved_pair(pair_) + table.finish();
-        if (!x_.is_of_method && !y_.is_of_method) step_all_alike(pair_, twins(0, 0));
+        if (!x_.is_of_method && !y_.is_of_method) step_all_alike(pair_, twins(0, 0), reader.stop);
         measurement_.emplace(table, "quantity", quantity_, twins(0, 0), x_.keeps_method && y_.keeps_method,
                              exponent_duration_s_);
         demand_apart(table, quantity_, x_, difference_,

@@ -129,7 +129,7 @@ std::string FigurePreset::resolved() const {
 }
 
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
-                         std::span<const ExternalMethod> external_methods) {
+                         std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
     const auto document = parse_document(source, overrides);
     find_faults(source, document, overrides);
     FigurePreset figure;
@@ -143,7 +143,7 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     if (figure.kind == pair_kind)
         throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");
-    FigureReader reader{source.name, document, top, scene, chart, external_methods};
+    FigureReader reader{source.name, document, top, scene, chart, external_methods, stop};
     for (const auto& kind : figure_kinds())
         if (kind.name == figure.kind) figure.experiment = kind.read(reader);
     if (!top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();

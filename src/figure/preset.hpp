@@ -26,9 +26,11 @@ struct FigurePreset {
     std::string resolved() const;
 };
 
-/// Errors as read_preset()'s. Work–precision diagrams also show `external_methods`, which outlive the figure.
+/// Errors as read_preset()'s, and exit 130 soon after `stop` is set. Work–precision diagrams also show `external_methods`,
+/// which outlive the figure.
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {},
-                         std::span<const ExternalMethod> external_methods = {});
+                         std::span<const ExternalMethod> external_methods = {},
+                         const std::atomic<bool>& stop = never_stopped);
 
 /// What all figures have, then the tables that are a kind's own (figure/kinds.hpp).
 std::vector<FieldTable> figure_tables();

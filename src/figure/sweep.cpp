@@ -21,7 +21,7 @@ public:
         parameter_ = parameter_of(reader, table, "parameter", parameter_name_, pair_);
         check_range(table);
         settings_ = resolved_pair(pair_) + table.finish();
-        if (!parameter_.is_of_method) step_all_alike(pair_, twins(0));
+        if (!parameter_.is_of_method) step_all_alike(pair_, twins(0), reader.stop);
         const auto first = twins(0);
         measurements_.emplace_back(table, "quantity", quantity_, first, parameter_.keeps_method, exponent_duration_s_);
         if (exponent_ && quantity_ != Quantity::exponent)

@@ -287,7 +287,7 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
     return chosen;
 }
 
-void step_all_alike(Preset& pair, const Preset& first) {
+void step_all_alike(Preset& pair, const Preset& first, const std::atomic<bool>& stop) {
     const std::array sides{&pair.a, &pair.b};
     const auto asks = [](const SideSpec* side) { return side->accuracy && side->track.is_none(); };
     if (std::ranges::none_of(sides, asks)) return;
@@ -297,9 +297,8 @@ void step_all_alike(Preset& pair, const Preset& first) {
                                side->stabilise == Stabilise::none && side->links() <= 3 &&
                                (side->model == ModelChoice::automatic || side->model == ModelChoice::angles));
     };
-    const std::atomic<bool> never = false;
     std::array<std::optional<Side>, 2> chosen;
-    if (!std::ranges::all_of(sides, surely_keeps)) chosen = MethodChooser(first, never).choose(1, never);
+    if (!std::ranges::all_of(sides, surely_keeps)) chosen = MethodChooser(first, stop).choose(1, stop);
     for (std::size_t i = 0; i < 2; ++i) {
         auto& side = *sides[i];
         if (!asks(&side)) continue;

@@ -77,7 +77,7 @@ private:
 
 /// In place of a choice for each pair of a sweep: steps the sides that require an accuracy by one method as exactly as the
 /// precision allows, which takes less time than to find out how exact a pair must be.
-/// Errors  exit 2 where the `first` pair of the sweep cannot keep its accuracy for one swing.
-void step_all_alike(Preset& pair, const Preset& first);
+/// Errors  exit 2 where the `first` pair of the sweep cannot keep its accuracy for one swing, exit 130 soon after `stop` is set.
+void step_all_alike(Preset& pair, const Preset& first, const std::atomic<bool>& stop);
 
 }  // namespace doppel

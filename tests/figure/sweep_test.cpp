@@ -165,5 +165,13 @@ TEST(FlipMap, OfAPartHasTheCellsOfTheWhole) {
     for (const auto& row : still.rows) EXPECT_TRUE(std::isnan(row[2]));
 }
 
+TEST(Sweep, TheChoiceOfItsMethodHeedsAnInterruption) {
+    const std::atomic<bool> stop = true;
+    const PresetText preset{"x", "presets/x.toml",
+                            "[scene]\nkind = \"sweep\"\n[system]\nlinks = 6\naccuracy = 1e-6\n"
+                            "model = \"constraints\"\n[sweep]\nparameter = \"theta1_deg\"\ndifference = 0.01\n"};
+    test::expect_error(ExitCode::interrupted, {"interrupted"}, [&] { read_figure(preset, {}, {}, stop); });
+}
+
 }  // namespace sweep_test
 }  // namespace doppel
