@@ -116,6 +116,7 @@ auto for_side(const Preset& preset, char name, const Make& make) {
     try {
         return make();
     } catch (const Error& fault) {
+        if (fault.code() == ExitCode::interrupted) throw;
         throw Error(fault.code(), fmt::format("{}: side {}: {}", preset.name, name, fault.what()));
     }
 }
