@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <set>
@@ -248,7 +249,7 @@ TEST(Choice, IsOneForSidesThatDifferInWhatMovesAlone) {
 TEST(Choice, IsOneForAllPairsOfASweep) {
     const auto alike = [](const std::string& system) {
         auto pair = preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-6\n" + system);
-        step_all_alike(pair, pair);
+        step_all_alike(pair, pair, never);
         EXPECT_FALSE(pair.a.accuracy || pair.b.accuracy) << system;
         EXPECT_EQ(pair.a.tolerance, pair.b.tolerance) << system;
         return fmt::format("{} {}", pair.a.integrator, text_of(*pair.a.tolerance));
@@ -258,10 +259,10 @@ TEST(Choice, IsOneForAllPairsOfASweep) {
     EXPECT_EQ(alike("rod_mass_kg = 1"), "dop853 " + text_of(parse_quad("1e-14")));
     EXPECT_EQ(alike("precision = \"quad\""), "taylor " + text_of(parse_quad("1e-30")));
     auto far = preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-15");
-    EXPECT_THROW(step_all_alike(far, far), Error);
+    EXPECT_THROW(step_all_alike(far, far, never), Error);
     // a side with a method of its own keeps it
     auto mixed = preset_from("[system]\naccuracy = 1e-6\n[b]\nintegrator = \"rk4\"");
-    step_all_alike(mixed, mixed);
+    step_all_alike(mixed, mixed, never);
     EXPECT_EQ(mixed.a.integrator, "taylor");
     EXPECT_EQ(mixed.b.integrator, "rk4");
 }
