@@ -106,6 +106,19 @@ void say_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<
     for (const auto& [how, who] : moved) all.push_back({who + " " + (of_b ? how : "in place")});
 }
 
+/// What drives it, where the other side is driven in another way.
+void say_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vector<Statement>& all) {
+    if (one.pivot != other.pivot)
+        all.push_back({one.pivot.amplitude_m == 0 ? "pivot at rest"
+                                                  : fmt::format("pivot ±{} m at {} Hz", text_of(one.pivot.amplitude_m),
+                                                                text_of(one.pivot.frequency_hz))});
+    if (one.torques == other.torques) return;
+    std::vector<std::string> motors;
+    for (const auto& motor : one.torques)
+        motors.push_back(fmt::format("{} N m at {} Hz", text_of(motor.amplitude_N_m), text_of(motor.frequency_hz)));
+    all.push_back({motors.empty() ? "no motor" : fmt::format("motor {}", fmt::join(motors, " and "))});
+}
+
 /// How finely a side is stepped, as far as its preset says it.
 std::string control_words(const Side& side) {
     return side.choice ? fmt::format("accuracy {:g} rad", side.choice->accuracy) : step_control_text(side);
@@ -122,7 +135,9 @@ std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDiffe
         say_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
         say_links("l", spec.length_m, other.length_m, " m", false, all);
     }
-    for (auto& text : physical_differences(spec.physical, other.physical)) all.push_back({std::move(text)});
+    for (const auto& difference : differences)
+        if (difference.any().is_of_links) all.push_back({difference.words(of_b)});
+    say_drives(spec.physical, other.physical, all);
     say_particles(scene.preset.a, scene.preset.b, of_b, all);
     for (const auto& difference : differences)
         if (difference.any().is_of_part) all.push_back({difference.words(of_b)});
@@ -211,6 +226,21 @@ SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
 }
 
 }  // namespace
+
+std::string physical_words(const PhysicalSpec& physical) {
+    std::vector<std::string> words;
+    const auto has = [](const std::vector<Quad>& list) { return !is_zero(list); };
+    if (has(physical.rod_mass_kg) || has(physical.inertia_kg_m2) || !physical.center_m.empty())
+        words.push_back("heavy links");
+    if (has(physical.joint_viscous_N_m_s) || has(physical.joint_coulomb_N_m)) words.push_back("friction");
+    if (has(physical.arm_drag_linear_N_m_s) || has(physical.arm_drag_quadratic_N_m_s2) ||
+        has(physical.air_drag_quadratic_N_m_s2) || has(physical.drag_linear_N_s_per_m) ||
+        has(physical.drag_quadratic_N_s2_per_m2))
+        words.push_back("drag");
+    if (physical.pivot.amplitude_m != 0) words.push_back("a moving pivot");
+    if (!physical.torques.empty()) words.push_back("motors");
+    return fmt::format("{}", fmt::join(words, ", "));
+}
 
 std::string chain_words(std::size_t links, std::string_view plural) {
     constexpr std::array<std::string_view, 3> words{"", "double ", "triple "};

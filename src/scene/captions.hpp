@@ -11,8 +11,6 @@ namespace doppel {
 std::string chain_words(std::size_t links, std::string_view plural = "");
 /// What a chain has besides point masses: "heavy links, friction"; empty where it has nothing.
 std::string physical_words(const PhysicalSpec& physical);
-/// What `one` has where it differs from `other`, in the same order for both: "no viscous friction", "pivot ±0.1 m at 3 Hz".
-std::vector<std::string> physical_differences(const PhysicalSpec& one, const PhysicalSpec& other);
 
 /// What a picture says about one side: `heading`, what sets it apart from the other; `note`, the start it has besides;
 /// or what the preset says in their place.

@@ -58,6 +58,8 @@ struct Field {
     std::span<const std::string_view> known = {};  // names that it takes, where not the reader checks them
     std::string_view pattern = {};                 // of a string's form: a regular expression, for the schema
     std::optional<Bounds> otherwise = {};          // the widest that it takes, where other keys decide on `bounds`
+    std::string_view caption = {};                 // what pictures call it; the key without its unit where not given
+    std::string_view symbol = {};                  // "θ" of numbers that captions write as θ₁, θ₂
 };
 
 /// The names of an enumeration's values in presets, in their order.

@@ -32,58 +32,6 @@ std::span<Quad> numbers_in(T& member) {
     }
 }
 
-/// Finds the number of one key in lists of fields: real ones, of an array or a single one; a whole one; or a step.
-struct NumberVisitor {
-    std::string_view key;
-    std::optional<int> put_whole = {};  // in place of a whole one: lists of fields go on by it
-    std::optional<Field> field = {};
-    std::span<Quad> values = {};
-    bool is_whole = false;
-    std::optional<Rational>* step = nullptr;
-    std::vector<std::string_view> names = {};  // of all numbers
-
-    template <class T>
-    void operator()(const Field& of, T& member) {
-        constexpr bool is_int = std::is_same_v<T, int>, is_step = std::is_same_v<T, std::optional<Rational>>;
-        if constexpr (is_int || is_step || holds_numbers<T>) {
-            if constexpr (is_optional<T> && !is_step)
-                if (!member && of.absent.empty()) return;  // no number holds in its place
-            names.push_back(of.key);
-            if (of.key != key) return;
-            field = of;
-            is_whole = is_int;
-            if constexpr (is_int)
-                member = put_whole.value_or(member);
-            else if constexpr (is_step)
-                step = &member;
-            else
-                values = numbers_in(member);
-        }
-    }
-    static bool from_command_line(std::string_view) { return false; }
-    template <class Visit>
-    static void table(std::string_view, const Visit&) {}  // visit_side() goes there itself
-};
-
-/// All numbers of a chain and of what it has besides, an array as one.
-struct AllNumbers {
-    std::vector<std::span<Quad>> all = {};
-
-    explicit AllNumbers(SideSpec& side) {
-        side_fields(*this, side);
-        for_each_entry(side, [&](auto, auto, const auto&, const auto& fields) { fields(*this); });
-    }
-    template <class T>
-    void operator()(const Field&, T& member) {
-        if constexpr (holds_numbers<T> && !is_optional<T>) all.push_back(numbers_in(member));
-    }
-    static bool from_command_line(std::string_view) { return false; }
-    template <class Visit>
-    void table(std::string_view, const Visit& visit) {
-        visit(*this);
-    }
-};
-
 /// "force.spring.stiffness_N_per_m": the table's key, the entry's name and the entry's key; or the last alone.
 struct Place {
     std::string_view table, entry, key;
@@ -97,39 +45,69 @@ struct Place {
     }
 };
 
-/// The keys of the side itself; or of the entry of that name, or else of the only one of that kind.
-void visit_side(SideSpec& side, const Place& place, NumberVisitor& visit) {
-    if (place.table.empty()) return side_fields(visit, side);
-    if (place.table == "pivot") return pivot_fields(visit, side.physical.pivot);
-    int named = 0, of_kind = 0;
-    const auto count = [&](std::string_view table, std::string_view kind, std::string_view name, const auto&) {
-        if (table != place.table) return;
-        named += name == place.entry;
-        of_kind += kind == place.entry && kind != table;
-    };
-    for_each_entry(side, count);
-    bool is_done = false;
-    for_each_entry(side, [&](std::string_view table, std::string_view kind, std::string_view name, const auto& fields) {
-        const bool is_meant = named > 0 ? name == place.entry : of_kind == 1 && kind == place.entry;
-        if (table != place.table || !is_meant || is_done) return;
-        is_done = true;
-        fields(visit);
+/// A number of a side: real ones, of an array or a single one; a whole one; or a step.
+struct FoundNumber {
+    std::optional<Field> field = {};
+    std::span<Quad> values = {};
+    bool is_whole = false;
+    std::optional<Rational>* step = nullptr;
+    std::vector<std::string_view> names = {};  // of all numbers in its table
+};
+
+/// The number of the entry that is meant: by its name, or else the only one of that kind; 0 = the side itself, or its pivot.
+int entry_meant(SideSpec& side, const Place& place) {
+    if (place.table.empty() || place.table == "pivot") return 0;
+    std::vector<int> named, of_kind;
+    int number = 0;
+    for_each_entry(side, [&](std::string_view table, std::string_view kind, std::string_view name, const auto&) {
+        ++number;
+        if (table == place.table && name == place.entry) named.push_back(number);
+        if (table == place.table && kind == place.entry && kind != table) of_kind.push_back(number);
     });
+    if (!named.empty()) return named.front();
+    return of_kind.size() == 1 ? of_kind.front() : -1;
+}
+
+/// `put_whole` = in place of a whole one: lists of fields go on by it.
+FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> put_whole = {}) {
+    FoundNumber found;
+    const int entry = entry_meant(side, place);
+    for_each_key(side, [&]<class T>(const KeyOwner& owner, const Field& field, T& member) {
+        constexpr bool is_int = std::is_same_v<T, int>, is_step = std::is_same_v<T, std::optional<Rational>>;
+        if (owner.table != place.table || owner.number != entry) return;
+        if constexpr (is_int || is_step || holds_numbers<T>) {
+            if constexpr (is_optional<T> && !is_step)
+                if (!member && field.absent.empty()) return;  // no number holds in its place
+            found.names.push_back(field.key);
+            if (field.key != place.key) return;
+            found.field = field;
+            found.is_whole = is_int;
+            if constexpr (is_int)
+                member = put_whole.value_or(member);
+            else if constexpr (is_step)
+                found.step = &member;
+            else
+                found.values = numbers_in(member);
+        }
+    });
+    return found;
+}
+
+/// All numbers of a chain and of what it has besides, an array as one.
+std::vector<std::span<Quad>> all_numbers(SideSpec& side) {
+    std::vector<std::span<Quad>> all;
+    for_each_key(side, [&]<class T>(const KeyOwner&, const Field&, T& member) {
+        if constexpr (holds_numbers<T> && !is_optional<T>) all.push_back(numbers_in(member));
+    });
+    return all;
 }
 
 std::string label_of(const NumericKey& key, const Field& field) {
     const Place place(key.inside);
-    static constexpr std::array<std::array<std::string_view, 3>, 4> of_links{
-        {{"angle_deg", "release angle", "θ"},
-         {"mass_kg", "mass", "m"},
-         {"length_m", "length", "l"},
-         {"omega_deg_per_s", "rate at the start", "ω"}}};
-    auto words = words_of_key(place.key);
-    if (place.table.empty())
-        for (const auto& [name, meaning, symbol] : of_links)
-            if (place.key == name)
-                words = key.element ? fmt::format("{} {}{}", meaning, symbol, subscript(*key.element + 1))
-                                    : fmt::format("{} of all links", meaning);
+    auto words = caption_of(field);
+    if (!field.symbol.empty())
+        words = key.element ? fmt::format("{} {}{}", words, field.symbol, subscript(*key.element + 1))
+                            : fmt::format("{} of all links", words);
     if (!place.entry.empty())
         words = fmt::format("{} of {}{}", words, place.entry, key.element ? *key.element == 0 ? ", x" : ", y" : "");
     if (key.sides != NumericKey::Sides::both) words += key.sides == NumericKey::Sides::a ? " of side a" : " of side b";
@@ -165,8 +143,7 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
 /// Checks the number against one side, and takes what its field says.
 void find_in(SideSpec side, const TomlReader& table, std::string_view key, NumericKey& number) {
     const Place place(number.inside);
-    NumberVisitor found{place.key};
-    visit_side(side, place, found);
+    const auto found = find_number(side, place);
     if (!found.field) {
         if (place.key == "accuracy")
             throw table.fault(key, "\"{}\" is varied where the preset gives an accuracy", number.path);
@@ -199,9 +176,9 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {
     const Place place(number.inside);
     auto old = side;
-    NumberVisitor found{place.key};
-    if (number.is_whole) found.put_whole = static_cast<int>(std::lround(static_cast<double>(value)));
-    visit_side(side, place, found);
+    const auto whole =
+        number.is_whole ? std::optional(static_cast<int>(std::lround(static_cast<double>(value)))) : std::nullopt;
+    const auto found = find_number(side, place, whole);
     if (found.step) {
         const auto interval = quotient({1, 1}, sample_hz);
         const auto steps = std::lround(static_cast<double>(Quad(interval->as<Quad>() / value)));
@@ -216,7 +193,7 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
     const auto are_one = [](std::span<const Quad> all) {
         return !all.empty() && std::ranges::all_of(all, [&](const Quad& x) { return x == all[0]; });
     };
-    const auto numbers = AllNumbers(side).all, were = AllNumbers(old).all;
+    const auto numbers = all_numbers(side), were = all_numbers(old);
     for (std::size_t i = 0; i < numbers.size(); ++i)
         if (are_one(were[i])) std::ranges::fill(numbers[i], were[i][0]);
     if (const auto& centers = old.physical.center_m; !centers.empty())
@@ -248,7 +225,7 @@ void NumericKey::set(Preset& preset, const Quad& value, const Quad& difference) 
 }
 
 SideSpec between(SideSpec from, SideSpec to, const Quad& share) {
-    const auto numbers = AllNumbers(from).all, ends = AllNumbers(to).all;
+    const auto numbers = all_numbers(from), ends = all_numbers(to);
     for (std::size_t i = 0; i < numbers.size(); ++i)
         for (std::size_t k = 0; k < numbers[i].size(); ++k)
             numbers[i][k] = Quad(numbers[i][k] + share * (ends[i][k] - numbers[i][k]));

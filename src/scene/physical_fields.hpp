@@ -35,32 +35,45 @@ void part_fields(Visit& visit, Torque& torque) requires std::is_same_v<std::remo
 /// What a real chain has besides, but torques.
 template <class Visit, class Physical>
 void physical_fields(Visit& visit, Physical& physical) {
-    const auto list = [&](std::string_view key, std::string_view help, std::string_view unit, auto& values) {
-        visit({key, help, unit, not_negative, "", {.holds = !is_zero(values)}, "one a link"}, values);
+    const auto list = [&](std::string_view key, std::string_view caption, std::string_view help, std::string_view unit,
+                          auto& values) {
+        visit({.key = key,
+               .help = help,
+               .unit = unit,
+               .bounds = not_negative,
+               .only = {.holds = !is_zero(values)},
+               .each = "one a link",
+               .caption = caption},
+              values);
     };
-    list("rod_mass_kg", "mass of each rod, evenly along it, besides mass_kg", "kg", physical.rod_mass_kg);
-    visit({"center_m",
-           "of a link whose mass_kg is a body: from its joint to the centre of mass",
-           "m",
-           not_negative,
-           "at the end",
-           {.holds = !physical.center_m.empty()},
-           "one a link"},
+    list("rod_mass_kg", "", "mass of each rod, evenly along it, besides mass_kg", "kg", physical.rod_mass_kg);
+    visit({.key = "center_m",
+           .help = "of a link whose mass_kg is a body: from its joint to the centre of mass",
+           .unit = "m",
+           .bounds = not_negative,
+           .absent = "at the end",
+           .only = {.holds = !physical.center_m.empty()},
+           .each = "one a link",
+           .caption = "centre of mass"},
           physical.center_m);
-    list("inertia_kg_m2", "of such a body, about its centre of mass", "kg m²", physical.inertia_kg_m2);
-    list("joint_viscous_N_m_s", "friction at each joint, by its rate", "N m s", physical.joint_viscous_N_m_s);
-    list("joint_coulomb_N_m", "friction at each joint, whatever its rate (Coulomb)", "N m", physical.joint_coulomb_N_m);
+    list("inertia_kg_m2", "", "of such a body, about its centre of mass", "kg m²", physical.inertia_kg_m2);
+    list("joint_viscous_N_m_s", "viscous friction", "friction at each joint, by its rate", "N m s",
+         physical.joint_viscous_N_m_s);
+    list("joint_coulomb_N_m", "Coulomb friction", "friction at each joint, whatever its rate (Coulomb)", "N m",
+         physical.joint_coulomb_N_m);
     visit({"joint_coulomb_width_deg_per_s", "has no effect any more: a joint comes to rest where its rate is 0",
            "deg/s", positive},
           physical.joint_coulomb_width_deg_per_s);
-    list("arm_drag_linear_N_m_s", "drag on each link, by its own rate", "N m s", physical.arm_drag_linear_N_m_s);
-    list("arm_drag_quadratic_N_m_s2", "the same, by the square of its rate", "N m s²",
+    list("arm_drag_linear_N_m_s", "linear drag on arms", "drag on each link, by its own rate", "N m s",
+         physical.arm_drag_linear_N_m_s);
+    list("arm_drag_quadratic_N_m_s2", "drag on arms", "the same, by the square of its rate", "N m s²",
          physical.arm_drag_quadratic_N_m_s2);
-    list("air_drag_quadratic_N_m_s2",
+    list("air_drag_quadratic_N_m_s2", "air drag",
          "drag on each link, by the square of the rate with which its centre of oscillation meets the air broadside",
          "N m s²", physical.air_drag_quadratic_N_m_s2);
-    list("drag_linear_N_s_per_m", "drag on each end of a link, by its speed", "N s/m", physical.drag_linear_N_s_per_m);
-    list("drag_quadratic_N_s2_per_m2", "the same, by the square of its speed", "N s²/m²",
+    list("drag_linear_N_s_per_m", "linear drag", "drag on each end of a link, by its speed", "N s/m",
+         physical.drag_linear_N_s_per_m);
+    list("drag_quadratic_N_s2_per_m2", "quadratic drag", "the same, by the square of its speed", "N s²/m²",
          physical.drag_quadratic_N_s2_per_m2);
     visit.table("pivot", [&](auto& table) { pivot_fields(table, physical.pivot); });
 }

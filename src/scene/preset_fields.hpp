@@ -54,17 +54,36 @@ void link_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
            .unit = "kg",
            .bounds = masses,
            .each = "one a link",
-           .otherwise = not_negative},
+           .otherwise = not_negative,
+           .symbol = "m"},
           side.mass_kg);
-    visit({"length_m", "lengths of the links", "m", positive, "", {}, "one a link"}, side.length_m);
+    visit({.key = "length_m",
+           .help = "lengths of the links",
+           .unit = "m",
+           .bounds = positive,
+           .each = "one a link",
+           .symbol = "l"},
+          side.length_m);
 }
 
 template <class Visit, class Side>
 void chain_fields(Visit& visit, Side& side, const Bounds& masses = positive) {
     link_fields(visit, side, masses);
-    constexpr std::string_view from_vertical = "at the start, from the downward vertical, counter-clockwise";
-    visit({"angle_deg", from_vertical, "deg", angle_bounds, "", {}, "one a link"}, side.angle_deg);
-    visit({"omega_deg_per_s", "rates at the start", "deg/s", {}, "", {}, "one a link"}, side.omega_deg_per_s);
+    visit({.key = "angle_deg",
+           .help = "at the start, from the downward vertical, counter-clockwise",
+           .unit = "deg",
+           .bounds = angle_bounds,
+           .each = "one a link",
+           .caption = "release angle",
+           .symbol = "θ"},
+          side.angle_deg);
+    visit({.key = "omega_deg_per_s",
+           .help = "rates at the start",
+           .unit = "deg/s",
+           .each = "one a link",
+           .caption = "rate at the start",
+           .symbol = "ω"},
+          side.omega_deg_per_s);
 }
 
 template <class Visit, class Side>
@@ -190,6 +209,50 @@ void for_each_entry(Side& side, const Use& use) {
     plain("particle", side.particles);
     of_kinds("constraint", side.constraints);
     of_kinds("force", side.forces);
+}
+
+/// Which table of a side has a key: the side itself, where all is empty; its pivot; or an entry.
+struct KeyOwner {
+    std::string_view table = {}, kind = {};  // "force", "spring"
+    std::string name = {};                   // its own; may be empty
+    int number = 0;                          // of an entry, from 1, in the order of for_each_entry()
+};
+
+/// Passes the keys of a list of fields on: use(owner, field, member).
+template <class Use>
+class KeyVisitor {
+public:
+    explicit KeyVisitor(const Use& use) : use_(use) {}
+
+    template <class T>
+    void operator()(const Field& field, T& member) const {
+        use_(owner, field, member);
+    }
+    template <class Visit>
+    void table(std::string_view key, const Visit& visit) {
+        owner.table = key;
+        visit(*this);
+        owner = {};
+    }
+    static bool from_command_line(std::string_view) { return false; }
+
+    KeyOwner owner;
+
+private:
+    const Use& use_;
+};
+
+/// use(owner, field, member) for each key that decides how a side moves, those of its entries included.
+template <class Side, class Use>
+void for_each_key(Side& side, const Use& use) {
+    KeyVisitor visit(use);
+    side_fields(visit, side);
+    int number = 0;
+    for_each_entry(side,
+                   [&](std::string_view table, std::string_view kind, const std::string& name, const auto& fields) {
+                       visit.owner = {table, kind, name, ++number};
+                       fields(visit);
+                   });
 }
 
 inline constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL takes, which says so itself

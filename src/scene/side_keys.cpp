@@ -13,80 +13,51 @@
 namespace doppel {
 namespace {
 
-/// Visits lists of fields (scene/preset_fields.hpp) and keeps what they hold.
-class KeyCollector {
-public:
-    explicit KeyCollector(std::vector<SideKey>& all) : all_(all) {}
+/// What the key holds; whether it holds anything.
+template <class T>
+bool hold(const T& value, SideKey& key) {
+    if constexpr (is_optional<T>)
+        return value && hold(*value, key);
+    else if constexpr (std::is_same_v<T, EndSpec>)
+        return std::visit([&](const auto& end) { return hold(end, key); }, value);
+    else if constexpr (std::is_same_v<T, Quad>)
+        key.numbers = {value};
+    else if constexpr (std::is_same_v<T, QuadPair> || std::is_same_v<T, std::vector<Quad>>)
+        key.numbers.assign(value.begin(), value.end());
+    else
+        key.text = toml_value(value);
+    return true;
+}
 
-    template <class T>
-    void operator()(const Field& field, const T& value) {
-        if (!field.only.holds && !field.only.fault.empty()) return;
-        if constexpr (is_optional<T>) {
-            if (value) (*this)(field, *value);
-        } else if constexpr (std::is_same_v<T, EndSpec>) {
-            std::visit([&](const auto& end) { (*this)(field, end); }, value);
-        } else {
-            SideKey key{.place = place_, .key = field.key, .unit = field.unit, .is_of_part = is_part_};
-            if constexpr (std::is_same_v<T, Quad>)
-                key.numbers = {value};
-            else if constexpr (std::is_same_v<T, QuadPair> || std::is_same_v<T, std::vector<Quad>>)
-                key.numbers.assign(value.begin(), value.end());
-            else
-                key.text = toml_value(value);
-            all_.push_back(std::move(key));
-        }
-    }
-    template <class Visit>
-    void table(std::string_view key, const Visit& visit) {
-        place_ = key;
-        visit(*this);
-        place_.clear();
-    }
-    static bool from_command_line(std::string_view) { return false; }
-
-    /// visit(collector) visits the fields of an entry.
-    template <class Visit>
-    void entry(const std::string& place, bool is_part, const Visit& visit) {
-        all_.push_back({.place = place, .key = "", .unit = "", .is_of_part = is_part});
-        place_ = place;
-        is_part_ = is_part;
-        visit(*this);
-        place_.clear();
-        is_part_ = false;
-    }
-
-private:
-    std::vector<SideKey>& all_;
-    std::string place_;
-    bool is_part_ = false;
-};
-
-/// Entries of a kind by their names, or by their numbers.
-class EntryNames {
-public:
-    std::string next(std::string_view kind, const std::string& name) {
-        const int number = ++counts_[std::string(kind)];
-        return name.empty() ? fmt::format("{} {}", kind, number) : fmt::format("{} \"{}\"", kind, name);
-    }
-
-private:
-    std::map<std::string, int> counts_;
-};
-
-std::vector<SideKey> keys_of(const SideSpec& side) {
+std::vector<SideKey> keys_of(SideSpec side) {
+    side.step_s = side.step();
+    side.tolerance = side.allowed_error();
     std::vector<SideKey> all;
-    KeyCollector collect(all);
-    EntryNames names;
-    auto complete = side;
-    complete.step_s = side.step();
-    complete.tolerance = side.allowed_error();
-    const auto& spec = complete;
-    side_fields(collect, spec);
-    for_each_entry(spec,
-                   [&](std::string_view table, std::string_view kind, const std::string& name, const auto& fields) {
-                       const bool is_part = (table == "constraint" || table == "force") && kind != "droplet";
-                       collect.entry(names.next(kind, name), is_part, fields);
-                   });
+    std::map<std::string_view, int> counts;  // of entries, by their kinds
+    int entry = 0;
+    std::string place;
+    const auto& spec = side;
+    for_each_key(spec, [&](const KeyOwner& owner, const Field& field, const auto& value) {
+        const bool is_part = (owner.table == "constraint" || owner.table == "force") && owner.kind != "droplet";
+        if (owner.number == 0) {
+            place = owner.table;
+        } else if (owner.number != entry) {
+            entry = owner.number;
+            const int number = ++counts[owner.kind];
+            place = owner.name.empty() ? fmt::format("{} {}", owner.kind, number)
+                                       : fmt::format("{} \"{}\"", owner.kind, owner.name);
+            all.push_back({.place = place, .key = "", .unit = "", .is_of_part = is_part});
+        }
+        if (!field.only.holds && !field.only.fault.empty()) return;
+        SideKey key{.place = place,
+                    .key = field.key,
+                    .unit = field.unit,
+                    .caption = caption_of(field),
+                    .counts = field.only.holds,
+                    .is_of_links = !field.each.empty() && field.symbol.empty() && place.empty(),
+                    .is_of_part = is_part};
+        if (hold(value, key)) all.push_back(std::move(key));
+    });
     return all;
 }
 
@@ -96,10 +67,12 @@ bool hold_the_same(const SideKey& one, const SideKey& other) {
 
 }  // namespace
 
-std::string words_of_key(std::string_view key) {
+std::string caption_of(const Field& field) {
+    if (!field.caption.empty()) return std::string(field.caption);
     constexpr std::array<std::string_view, 16> units{
         "_m3_per_kg_s2", "_N_s2_per_m2", "_N_s_per_m", "_deg_per_s", "_m_per_s2", "_N_per_m", "_m_per_s", "_per_s",
         "_N_m_s2",       "_N_m_s",       "_N_m",       "_kg_m2",     "_deg",      "_kg",      "_hz",      "_m"};
+    auto key = field.key;
     for (const auto unit : units)
         if (key.ends_with(unit)) {
             key.remove_suffix(unit.size());
@@ -146,8 +119,8 @@ std::string KeyDifference::words(bool of_b) const {
     const auto &self = of_b ? b : a, &other = of_b ? a : b;
     const auto& known = any();
     if (known.key.empty()) return fmt::format("{} {}", self ? "with" : "no", known.place);
-    const auto name = fmt::format("{}{}{}", known.place, known.place.empty() ? "" : " ", words_of_key(known.key));
-    if (!self) return fmt::format("no {}", name);
+    const auto name = fmt::format("{}{}{}", known.place, known.place.empty() ? "" : " ", known.caption);
+    if (!self || !self->counts) return fmt::format("no {}", name);
     if (self->numbers.empty()) return fmt::format("{} {}", name, self->text);
     const auto unit = fmt::format("{}{}", known.unit.empty() ? "" : " ", known.unit);
     // of a long list, the first number in which the sides differ
@@ -155,7 +128,9 @@ std::string KeyDifference::words(bool of_b) const {
     const auto& numbers = self->numbers;
     if (numbers.size() > most_listed && other && other->numbers.size() == numbers.size()) {
         const auto at = std::mismatch(numbers.begin(), numbers.end(), other->numbers.begin()).first;
-        return fmt::format("{}[{}] {}{}", name, at - numbers.begin(), text_of(*at), unit);
+        const auto number = at - numbers.begin();
+        const auto which = known.is_of_links ? fmt::format(" of link {}", number + 1) : fmt::format("[{}]", number);
+        return fmt::format("{}{} {}{}", name, which, text_of(*at), unit);
     }
     std::vector<std::string> texts;
     for (const auto& number : numbers) texts.push_back(text_of(number));

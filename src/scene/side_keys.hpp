@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scene/field.hpp"
 #include "scene/preset.hpp"
 
 #include <optional>
@@ -13,8 +14,11 @@ namespace doppel {
 struct SideKey {
     std::string place;               // the entry that has it, "spring 1", or "pivot"; empty: the side itself
     std::string_view key, unit;      // without `key`: that there is such an entry
+    std::string caption = {};        // what captions call it
     std::vector<Quad> numbers = {};  // which mean all their decimals
     std::string text = {};           // TOML, where it holds no such numbers
+    bool counts = true;              // false where it is as good as not given
+    bool is_of_links = false;        // one number a link, without a symbol of its own
     bool is_of_part = false;         // of a constraint, a spring or an attraction
 
     /// "spring 1 stiffness_N_per_m"
@@ -33,7 +37,7 @@ struct KeyDifference {
 /// By all keys that decide how sides move: what hangs, what acts on it, how it is stepped.
 std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b);
 
-/// A key without the unit at its end, in words: "stiffness" of "stiffness_N_per_m".
-std::string words_of_key(std::string_view key);
+/// What captions call a key: "stiffness" of "stiffness_N_per_m".
+std::string caption_of(const Field& field);
 
 }  // namespace doppel
