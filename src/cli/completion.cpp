@@ -149,8 +149,10 @@ void add_keys(const FieldTable& table, const std::string& above, const std::stri
         const auto brackets = field.is_list() ? std::pair("[", "]") : std::pair("", "");
         for (const auto& choice : field.choices)
             all.push_back({fmt::format("{}{}\"{}\"{}", key, brackets.first, choice, brackets.second)});
-        if (field.type == type_words<bool>()) all.insert(all.end(), {{key + "true"}, {key + "false"}});
-        if (field.choices.empty() && field.type != type_words<bool>()) all.push_back({key + field.example()});
+        if (field.type.schema == truth_schema)
+            all.insert(all.end(), {{key + "true"}, {key + "false"}});
+        else if (field.choices.empty())
+            all.push_back({key + field.example()});
     }
 }
 

@@ -50,8 +50,7 @@ std::string starting_value(const ListedField& field, std::string_view kind) {
     if (kind != "links") return value;
     // of chains of one link, which the longer ones are made of
     if (field.key == "links") return "1";
-    if (value.starts_with('[') && field.type == type_words<std::vector<double>>())
-        return value.substr(0, value.find(',')) + "]";
+    if (value.starts_with('[') && field.type.schema == numbers_schema) return value.substr(0, value.find(',')) + "]";
     return value;
 }
 

@@ -286,6 +286,11 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         try {
             result = writer.write(figures[*k], computation.header(), computation.take(), record, *files[*k]);
         } catch (const Error& fault) {
+            // the same command would find no more to draw
+            if (fault.code() == ExitCode::method_failed) {
+                fs::remove(*computation.record());
+                throw;
+            }
             throw computation.with_record(fault);
         }
         fs::remove(*computation.record());

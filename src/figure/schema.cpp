@@ -2,96 +2,8 @@
 #include "figure/preset.hpp"
 #include "scene/resolved.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <stdexcept>
-
 namespace doppel {
 namespace {
-
-/// A number of JSON: whole where it is.
-Json json_number(double number) {
-    constexpr double most = 1e15;
-    if (number == std::floor(number) && std::abs(number) < most) return std::llround(number);
-    return number;
-}
-
-Json number_schema(const Bounds& bounds) {
-    Json schema{{"type", "number"}};
-    if (bounds.has_low() || bounds.is_positive) {
-        schema["minimum"] = json_number(std::max(bounds.low, bounds.is_positive ? 0.0 : -Bounds::infinity));
-        if (bounds.is_open) schema["exclusiveMinimum"] = true;
-    }
-    if (bounds.has_high()) schema["maximum"] = json_number(bounds.high);
-    return schema;
-}
-
-Json list_schema(Json items, std::size_t least, std::size_t most) {
-    Json schema{{"type", "array"}, {"items", std::move(items)}};
-    if (least > 0) schema["minItems"] = least;
-    if (most > 0) schema["maxItems"] = most;
-    return schema;
-}
-
-Json text_schema(const ListedField& field) {
-    Json schema{{"type", "string"}};
-    if (!field.choices.empty()) schema["enum"] = field.choices;
-    if (field.is_needed()) schema["minLength"] = 1;
-    if (field.is_drawn) schema["maxLength"] = most_letters;
-    if (!field.pattern.empty()) schema["pattern"] = field.pattern;
-    return schema;
-}
-
-/// A ratio is not negative, and nothing is divided by 0.
-Json ratio_schema(Bounds bounds) {
-    constexpr std::string_view exponent = R"(([eE]\+?-?[0-9]+)?)", any = R"(([0-9]+\.?[0-9]*|\.[0-9]+))",
-                               not_0 = R"(([0-9]*[1-9][0-9]*\.?[0-9]*|[0-9]*\.[0-9]*[1-9][0-9]*))";
-    const auto above = fmt::format("{}{}", bounds.is_open ? not_0 : any, exponent);
-    const auto below = fmt::format("{}{}", not_0, exponent);
-    if (!bounds.has_low()) bounds.low = 0;
-    const auto pattern = fmt::format(R"(^(\+?{0}(/\+?{1})?|-{0}/-{1})$)", above, below);
-    return {{"anyOf", {number_schema(bounds), {{"type", "string"}, {"pattern", pattern}}}}};
-}
-
-/// What the reader of a key takes (scene/toml_reader.hpp), by type_words().
-Json value_schema(const ListedField& field) {
-    const auto number = number_schema(field.bounds);
-    auto whole = number;
-    whole["multipleOf"] = 1;
-    const Json color{{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}};
-    const auto pair = list_schema(number, 2, 2);
-    const auto is = [&](std::string_view words) { return field.type == words; };
-    if (is(type_words<bool>())) return {{"type", "boolean"}};
-    if (is(type_words<double>())) return number;
-    if (is(type_words<Rational>())) return ratio_schema(field.bounds);
-    if (is(type_words<Speed>())) {
-        const Json places{ratio_schema(not_negative), ratio_schema(changing_speeds)};
-        const Json change{{"type", "array"}, {"items", places}, {"minItems", 2}, {"additionalItems", false}};
-        return {{"anyOf", {ratio_schema(field.bounds), list_schema(change, 1, 0)}}};
-    }
-    if (is(type_words<std::vector<double>>()))
-        return field.most > 0 ? list_schema(number, 1, field.most)
-                              : Json{{"anyOf", {number, list_schema(number, 1, 0)}}};
-    const std::size_t texts = field.is_drawn ? most_texts : 0;
-    if (field.is_list()) return list_schema(text_schema(field), is(type_words<Panels>()) ? 1 : 0, texts);
-    if (is(type_words<QuadPair>()) || is(type_words<Range>())) return pair;
-    if (is(type_words<ChosenText>()))
-        return {{"anyOf", {{{"type", "boolean"}}, text_schema(field), list_schema(text_schema(field), 0, texts)}}};
-    if (is(type_words<EndSpec>())) return {{"anyOf", {text_schema(field), pair}}};
-    if (is(type_words<Size>())) return list_schema(whole, 2, 2);
-    if (is(type_words<Color>())) return color;
-    if (is(type_words<std::array<Color, 2>>())) return list_schema(color, 2, 2);
-    if (is(type_words<std::string>())) return text_schema(field);
-    auto integer = number;
-    integer["type"] = "integer";
-    if (is(type_words<Members>())) {
-        const auto release = list_schema(number_schema({}), 1, 0);
-        return {{"anyOf", {integer, list_schema(release, 2, Members::most_releases)}}};
-    }
-    if (!is(type_words<int>())) throw std::logic_error(fmt::format("no schema of \"{}\"", field.type));
-    return integer;
-}
 
 /// "a whole number of samples. Unit: s. Range: > 0. Default: 30."
 std::string description_of(const ListedField& field) {
@@ -102,7 +14,7 @@ std::string description_of(const ListedField& field) {
 }
 
 Json key_schema(const ListedField& field) {
-    auto schema = value_schema(field);
+    auto schema = field.type.schema(field);
     schema["title"] = field.unit.empty() ? std::string(field.key) : fmt::format("{}, {}", field.key, field.unit);
     schema["description"] = description_of(field);
     if (const auto value = field.default_value(); !value.empty())

@@ -13,7 +13,7 @@ template <class Spec>
 void add_part_tables(const std::string& name, std::vector<FieldTable>& tables) {
     const auto add = [&]<class Part>(std::string_view kind, const Part& part) {
         auto& table = tables.emplace_back(FieldTable{fmt::format("[[system.{}]] kind = \"{}\"", name, kind)});
-        table.fields.push_back({"name", "text", "", "by which `[a]` and `[b]` change it", "none"});
+        table.fields.push_back({"name", value_type<std::string>(), "", "by which `[a]` and `[b]` change it", "none"});
         part_fields(table, part, kind);
     };
     [&]<class... Parts>(const std::variant<Parts...>&) {
@@ -39,7 +39,7 @@ std::string ListedField::default_value() const {
 }
 
 std::string ListedField::takes() const {
-    std::string text(type);
+    std::string text(type.words);
     if (!choices.empty()) text = fmt::format("`\"{}\"`", fmt::join(choices, "\"`, `\""));
     if (!choices.empty() && is_list()) text = "list of " + text;
     if (most > 0) text = fmt::format("1 to {} {}", most, text);
@@ -50,22 +50,13 @@ std::string ListedField::takes() const {
 
 std::string ListedField::example() const {
     if (const auto value = default_value(); !value.empty()) return value;
-    const auto is = [&](std::string_view words) { return type == words; };
     const auto first = by_default.substr(0, by_default.find_first_of("; "));  // of "1e-12; in quad 1e-28"
     const bool is_number = !first.empty() && first.find_first_not_of("0123456789.e-/") == std::string::npos;
     if (is_number) return first.find('/') == std::string::npos ? first : fmt::format("\"{}\"", first);
     if (!choices.empty()) return fmt::format("{}\"{}\"{}", is_list() ? "[" : "", choices.front(), is_list() ? "]" : "");
-    if (is_list()) return "[\"\"]";
-    if (is(type_words<Color>())) return "\"#ff9f40\"";
-    if (is(type_words<std::array<Color, 2>>())) return "[\"#ff9f40\", \"#4fc3f7\"]";
-    if (is(type_words<Range>())) return bounds.is_open ? "[1e-6, 10]" : "[0, 10]";
-    if (is(type_words<QuadPair>())) return "[0, 0]";
-    if (is(type_words<Size>())) return "[4, 3]";
-    if (is(type_words<Rational>())) return bounds.is_open ? "60" : "1";
+    if (type.schema == integer_schema && bounds.has_low()) return fmt::format("{}", bounds.low);
     if (unit == "cm") return "8.6";  // a column of a journal
-    if (is(type_words<double>())) return bounds.is_open ? "1e-6" : "1";
-    if (is(type_words<std::vector<Quad>>())) return "1";
-    return "\"\"";
+    return std::string(bounds.is_open ? type.positive_example : type.example);
 }
 
 void FieldTable::append(const FieldTable& other) {
@@ -118,10 +109,10 @@ std::vector<FieldTable> film_tables() {
     column_fields(scene, preset);
     side_fields(system, side);
     particle.fields.push_back(
-        {"name", "text", "", "by which constraints and forces call it", std::string(must_be_given)});
+        {"name", value_type<std::string>(), "", "by which constraints and forces call it", std::string(must_be_given)});
     particle.fields.back().is_drawn = true;
     part_fields(particle, released);
-    torque.fields.push_back({"name", "text", "", "by which `[a]` and `[b]` change it", "none"});
+    torque.fields.push_back({"name", value_type<std::string>(), "", "by which `[a]` and `[b]` change it", "none"});
     part_fields(torque, static_cast<const TorqueSpec&>(TorqueSpec()));
     video(size_field, preset.video.size);
     video(preview_field, false);

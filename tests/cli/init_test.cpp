@@ -92,7 +92,7 @@ TEST(Init, EachKeyOfAFigureCanBeTakenIntoUse) {
     // those that are for other values of other keys, and what the figure gives itself
     std::map<std::string_view, std::set<std::string>> beside{
         {"bifurcation", {"tolerance"}},
-        {"sweep", {"tolerance", "exponent_duration_s", "points"}},
+        {"sweep", {"tolerance", "exponent_duration_s"}},
         {"map", {"tolerance", "exponent_duration_s", "color_range"}},
         {"curves", {"tolerance", "check_tolerance"}},
         {"convergence", {"center_m", "tolerance"}},  // links with mass have no rods to compare with
