@@ -28,58 +28,8 @@
 namespace doppel {
 namespace {
 
-// how far bold moves the outline to either side, em: vertical stems grow more than horizontal bars
-constexpr float bold_across = 0.0215f;
-constexpr float bold_along = 0.0130f;
-
-/// A point of an outline, on the curve or off it.
-struct ControlPoint {
-    short *x, *y;
-    Point at, moved;
-};
-
-/// Moves one closed contour to its left, which is outward where ink lies on the right of the pen.
-void embolden(std::span<ControlPoint> contour, Point strength) {
-    const std::size_t n = contour.size();
-    // the unit vector from a point to the next one elsewhere, walking in steps of +1 or −1
-    const auto direction = [&](std::size_t from, std::size_t step) {
-        for (std::size_t k = 1; k < n; ++k) {
-            const Point a = contour[from].at, b = contour[(from + k * step) % n].at;
-            const float length = std::hypot(b.x - a.x, b.y - a.y);
-            if (length > 0) return Point{(b.x - a.x) / length, (b.y - a.y) / length};
-        }
-        return Point{};
-    };
-    for (std::size_t i = 0; i < n; ++i) {
-        const Point out = direction(i, 1), back = direction(i, n - 1);
-        // both sides stay parallel: the point slides along the bisector, but not far at a sharp tip
-        const Point in{-back.x, -back.y};
-        const float sharpness = std::max(1 + in.x * out.x + in.y * out.y, 0.35f);
-        contour[i].moved = {contour[i].at.x - strength.x * (in.y + out.y) / sharpness,
-                            contour[i].at.y + strength.y * (in.x + out.x) / sharpness};
-    }
-    for (const ControlPoint& point : contour) {
-        *point.x = static_cast<short>(std::lround(point.moved.x));
-        *point.y = static_cast<short>(std::lround(point.moved.y));
-    }
-}
-
-void embolden_all(std::span<stbtt_vertex> outline, Point strength) {
-    std::vector<ControlPoint> contour;
-    const auto add = [&](short& x, short& y) {
-        contour.push_back({&x, &y, {static_cast<float>(x), static_cast<float>(y)}, {}});
-    };
-    for (stbtt_vertex& v : outline) {
-        if (v.type == STBTT_vmove) {
-            embolden(contour, strength);
-            contour.clear();
-        }
-        if (v.type == STBTT_vcurve || v.type == STBTT_vcubic) add(v.cx, v.cy);
-        if (v.type == STBTT_vcubic) add(v.cx1, v.cy1);
-        add(v.x, v.y);
-    }
-    embolden(contour, strength);
-}
+/// Of a font that is made bolder, em: how much wider and higher its letters become, and how much further apart they stand.
+constexpr float bolder_across = 0.043f, bolder_up = 0.026f, bolder_apart = 0.030f;
 
 /// The rectangle that holds an outline, px right of the pen's pixel and below the baseline.
 Area extent_of(std::span<const stbtt_vertex> outline, float scale, float shift) {
@@ -183,11 +133,12 @@ struct Font::Tables {
     float scale(float size) const { return size / static_cast<float>(face->units_per_EM); }
 };
 
-Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index)
+Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index, Weight weight)
     : file_(std::move(file)),
       owned_(std::move(owned)),
       bytes_(owned_.empty() ? bytes : owned_),
       index_(index),
+      weight_(weight),
       tables_(std::make_unique<Tables>()) {
     auto& [mutex, library, face, is_complete] = *tables_;
     if (FT_Init_FreeType(&library) != 0) throw io_failed("FreeType cannot be started");
@@ -203,13 +154,16 @@ Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes
 
 Font::~Font() = default;
 
-const Font& Font::built_in() {
-    static const Font font = [] {
-        for (const EmbeddedFile& file : render_files())
-            if (file.name == "DejaVuSans.ttf") return Font({}, {}, file.contents, 0);
-        throw io_failed("there is no built-in font DejaVuSans.ttf");
-    }();
-    return font;
+const Font& Font::built_in(Weight weight) {
+    const auto load = [](std::string_view name, Weight of) {
+        const auto files = render_files();
+        const auto file = std::ranges::find(files, name, &EmbeddedFile::name);
+        if (file == files.end()) throw io_failed("there is no built-in font {}", name);
+        return Font({}, {}, file->contents, 0, of);
+    };
+    static const Font regular = load("DejaVuSans.ttf", Weight::regular);
+    static const Font bold = load("DejaVuSans-Bold.ttf", Weight::bold);
+    return weight == Weight::bold ? bold : regular;
 }
 
 std::shared_ptr<const Font> Font::from_file(const std::filesystem::path& path, int index) {
@@ -237,7 +191,7 @@ float Font::advance(int glyph, float size, Weight weight) const {
     FT_Fixed units = 0;
     if (FT_Get_Advance(tables_->face, static_cast<FT_UInt>(glyph), FT_LOAD_NO_SCALE, &units) != 0) units = 0;
     // letters move apart by less than they grow: heavier text is set tighter
-    const float extra = weight == Weight::bold && units > 0 ? bold_spacing * size : 0;
+    const float extra = lacks(weight) && units > 0 ? bolder_apart * size : 0;
     return static_cast<float>(units) * tables_->scale(size) + extra;
 }
 
@@ -246,17 +200,14 @@ Coverage Font::rasterised(int glyph, float size, Weight weight, float shift) con
     const std::lock_guard hold(tables_->mutex);
     FT_Outline* const read = tables_->outline_of(glyph);
     if (!read) return missing_box(size, weight, shift);
+    const float scale = tables_->scale(size);
+    if (lacks(weight)) {
+        const auto units = [&](float em) { return static_cast<FT_Pos>(std::lround(em * size / scale)); };
+        FT_Outline_EmboldenXY(read, units(bolder_across), units(bolder_up));  // to the right and up
+        FT_Outline_Translate(read, units((bolder_apart - bolder_across) / 2), units(-bolder_up / 2));
+    }
     auto outline = OutlineBuilder(*read).vertices();
     if (outline.empty()) return {};
-
-    // the outline at its final weight; the bold one sits in the middle of its wider advance
-    const float scale = tables_->scale(size);
-    if (weight == Weight::bold) {
-        const bool is_postscript = (read->flags & FT_OUTLINE_REVERSE_FILL) != 0;  // ink on the left of the pen
-        const float units_per_em = (is_postscript ? -size : size) / scale;
-        embolden_all(outline, {bold_across * units_per_em, bold_along * units_per_em});
-        shift += bold_spacing / 2 * size;
-    }
     const Area extent = extent_of(outline, scale, shift);
     const float reach = std::max({-extent.left, -extent.top, extent.right, extent.bottom});
     if (!(reach <= most_ems * size)) return missing_box(size, weight, shift);

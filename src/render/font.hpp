@@ -19,16 +19,12 @@ struct Coverage {
     std::vector<std::uint8_t> values;
 };
 
-/// A font has one weight. Bold: how much wider the pen is, which draws on either side of the outline, and how much further
-/// the next letter is; em.
-inline constexpr float bold_pen = 0.0345f, bold_spacing = 0.0300f;
-
 /// One font, of a TrueType or OpenType file with outlines. It never changes: threads may share it. FreeType reads it: a
 /// damaged font has wrong letters, boxes for letters, or none, and nothing worse.
 class Font {
 public:
-    /// The built-in one.
-    static const Font& built_in();
+    /// The built-in one of that weight.
+    static const Font& built_in(Weight weight = Weight::regular);
     /// Font `index` of a file. Throws Error: exit 2 where it is no such font, exit 4 where it cannot be read.
     static std::shared_ptr<const Font> from_file(const std::filesystem::path& path, int index = 0);
     ~Font();
@@ -40,22 +36,26 @@ public:
     /// The file's contents, and which of its fonts this is.
     std::string_view bytes() const { return bytes_; }
     int index() const { return index_; }
+    /// Whether it has to be made bolder to be as bold as that.
+    bool lacks(Weight weight) const { return weight == Weight::bold && weight_ != Weight::bold; }
     /// The number of a character's glyph; 0 where there is none, or one without an outline, as of coloured letters.
     int number_of(char32_t character) const;
     /// How far the pen moves past a glyph, px.
     float advance(int glyph, float size, Weight weight) const;
-    /// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge; a hollow box for number 0. The font has
-    /// one weight: bold moves the outline outward.
+    /// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge; a hollow box for number 0. Where the
+    /// font lacks the weight, its outline is moved outward.
     Coverage rasterised(int glyph, float size, Weight weight, float shift) const;
 
 private:
     struct Tables;  // as FreeType has them
-    Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index);
+    Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index,
+         Weight weight = Weight::regular);
 
     std::filesystem::path file_;
     std::string owned_;       // a file's bytes
     std::string_view bytes_;  // those, or the built-in ones
     int index_;
+    Weight weight_;
     std::unique_ptr<Tables> tables_;
 };
 

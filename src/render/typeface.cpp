@@ -29,10 +29,10 @@ Point start_of(const Label& label, const TextLine& line) {
     return {label.anchor.x - before * line.width, std::round(label.anchor.y)};
 }
 
-TextLine::Glyph Typeface::glyph_of(char32_t character, bool in_system) const {
+TextLine::Glyph Typeface::glyph_of(char32_t character, bool in_system, Weight weight) const {
     if (own_)
         if (const int number = own_->number_of(character)) return {own_.get(), number};
-    const Font& built_in = Font::built_in();
+    const Font& built_in = Font::built_in(weight);
     const int number = built_in.number_of(character);
     if (number != 0 || !in_system) return {&built_in, number};
     const Font* const found = system_font_for(character);
@@ -47,7 +47,7 @@ TextLine Typeface::lay_out(std::string_view text, float size, Weight weight) con
         const std::size_t byte = bytes - text.size();
         const char32_t character = next_character(text);
         if (is_variation_selector(character)) continue;
-        auto& glyph = line.glyphs.emplace_back(glyph_of(character, system_));
+        auto& glyph = line.glyphs.emplace_back(glyph_of(character, system_, weight));
         glyph.pen = line.width;
         glyph.byte = byte;
         line.width += glyph.font->advance(glyph.number, size, weight);

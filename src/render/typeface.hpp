@@ -58,7 +58,7 @@ public:
 
 private:
     Typeface(std::shared_ptr<const Font> own, bool system) : own_(std::move(own)), system_(system) {}
-    TextLine::Glyph glyph_of(char32_t character, bool in_system) const;
+    TextLine::Glyph glyph_of(char32_t character, bool in_system, Weight weight = Weight::regular) const;
 
     std::shared_ptr<const Font> own_;  // the user's
     bool system_ = false;

@@ -26,7 +26,7 @@ void check(cairo_status_t status) {
     if (status != CAIRO_STATUS_SUCCESS) throw io_failed("a PDF cannot be made: {}", cairo_status_to_string(status));
 }
 
-/// The font, which has one weight: FreeType makes the other. It keeps FreeType until Cairo has let go of it.
+/// The font; where it lacks the weight, FreeType makes it. It keeps FreeType until Cairo has let go of it.
 FontFace load_font(const Font& font, Weight weight) {
     struct Loaded {
         FT_Library library = nullptr;
@@ -47,7 +47,7 @@ FontFace load_font(const Font& font, Weight weight) {
     check(cairo_font_face_set_user_data(face.get(), &key, loaded.get(),
                                         [](void* kept) { delete static_cast<Loaded*>(kept); }));
     static_cast<void>(loaded.release());
-    if (weight == Weight::bold) cairo_ft_font_face_set_synthesize(face.get(), CAIRO_FT_SYNTHESIZE_BOLD);
+    if (font.lacks(weight)) cairo_ft_font_face_set_synthesize(face.get(), CAIRO_FT_SYNTHESIZE_BOLD);
     return face;
 }
 

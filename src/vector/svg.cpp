@@ -59,17 +59,10 @@ public:
 
     void operator()(const Label& label) const {
         constexpr std::string_view anchors[] = {"start", "middle", "end"};
-        const bool is_bold = label.weight == Weight::bold;
-        const auto bold = is_bold ? fmt::format(R"( {} stroke-width="{}" stroke-linejoin="miter" letter-spacing="{}")",
-                                                paint("stroke", label.color), number(bold_pen * label.size),
-                                                number(bold_spacing * label.size))
-                                  : "";
-        // as much to the left of the first letter as to the right of the last
-        const float shift =
-            is_bold ? bold_spacing / 2 * label.size * static_cast<float>(1 - static_cast<int>(label.align)) : 0;
-        line(R"(<text x="{}" y="{}" font-size="{}" text-anchor="{}" {}{}>{}</text>)", number(label.anchor.x + shift),
+        line(R"(<text x="{}" y="{}" font-size="{}" text-anchor="{}" {}{}>{}</text>)", number(label.anchor.x),
              number(std::round(label.anchor.y)), number(label.size), anchors[static_cast<std::size_t>(label.align)],
-             paint("fill", label.color), bold, markup(label.text));
+             paint("fill", label.color), label.weight == Weight::bold ? R"( font-weight="bold")" : "",
+             markup(label.text));
     }
 
     void operator()(const Image& image) const {
@@ -93,12 +86,17 @@ private:
 std::string svg_page(const DisplayList& list, const Page& page) {
     const auto [width, height] = page.size;
     std::string faces;
-    const auto embed = [&](std::string_view name, const Font& font) {
-        faces += fmt::format("@font-face {{ font-family: \"{}\"; src: url({}) }}\n", name,
+    const auto embed = [&](std::string_view name, const Font& font, std::string_view weight = "normal") {
+        faces += fmt::format("@font-face {{ font-family: \"{}\"; font-weight: {}; src: url({}) }}\n", name, weight,
                              data_url("font/ttf", font.bytes()));
     };
     if (const auto* own = page.typeface.own()) embed("Own", *own);
     embed("Doppel", Font::built_in());
+    if (std::ranges::any_of(list, [](const Item& item) {
+            const auto* label = std::get_if<Label>(&item);
+            return label && label->weight == Weight::bold;
+        }))
+        embed("Doppel", Font::built_in(Weight::bold), "bold");
     auto file = fmt::format(
         R"(<?xml version="1.0" encoding="UTF-8"?>
 <!-- {} -->
