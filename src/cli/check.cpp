@@ -53,7 +53,6 @@ double make_brief(Scene& scene, Side& side) {
     if (!brief) return 1;
     motion.sample_interval = *brief;
     if (!adaptive) motion.steps_per_sample = steps;
-    scene.frames.ticks_per_sample = 1;
     scene.preset.sample_hz = quotient({1, 1}, *brief).value_or(scene.preset.sample_hz);
     return parts;
 }
@@ -201,9 +200,11 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
                : estimate.at_least ? "more than "
                                    : "about ",
                counted(estimate.steps));
-    const auto stride = scene.frames.stride == 1 ? "" : fmt::format(" (one of {} samples is one)", scene.frames.stride);
+    const auto& every = scene.frames.stride;  // samples
+    const bool is_of_samples = every.is_whole() && every.numerator > 1;
+    const auto stride = is_of_samples ? fmt::format(" (one of {} samples is one)", every.numerator) : "";
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
-               video.size.height, scene.fps.text(), stride, format_words(video));
+               video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(video));
     print_line("  takes  {} {:.2g} s to simulate, {:.2g} s to render", estimate.at_least ? "more than" : "about",
                estimate.seconds, std::max(estimate.seconds, estimated_pictures(scene)));
 }

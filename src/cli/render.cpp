@@ -20,15 +20,15 @@ struct StillOptions : PresetOptions {
     bool force = false;
 };
 
-/// The samples of --frames, or the times of --from and --to.
+/// The frames of --frames, or the times of --from and --to.
 void take_range(const RenderOptions& options, RunOptions& run) {
     if (!options.from.empty()) run.from_s = seconds_of_option("--from", options.from);
     if (!options.to.empty()) run.to_s = seconds_of_option("--to", options.to);
     if (options.frames.empty()) return;
-    if (run.from_s || run.to_s) throw bad_input("--frames counts samples, --from and --to seconds; give one");
+    if (run.from_s || run.to_s) throw bad_input("--frames counts frames, --from and --to seconds; give one");
     const auto range = two_numbers(options.frames, ':');
     if (!range || range->first < 0 || range->second <= range->first)
-        throw bad_input("--frames wants A:B with 0 ≤ A < B, the samples A to B−1; it is \"{}\"", options.frames);
+        throw bad_input("--frames wants A:B with 0 ≤ A < B, the frames A to B−1; it is \"{}\"", options.frames);
     std::tie(run.first, run.last) = *range;
 }
 
@@ -64,11 +64,17 @@ void add_render(CLI::App& app) {
     add_run_options(command, *options,
                     "Threads that compress PNGs, one a core where not given; films of other formats, and all bytes, do "
                     "not depend on it");
-    command.add_option("--frames", options->frames, "Only the samples A to B-1; the same pixels as in the whole")
+    command
+        .add_option("--frames", options->frames,
+                    "Only the frames A to B-1 of the motion, without cards and holds; the same pixels as in the whole")
         ->type_name("A:B");
     command.add_option("--from", options->from, "Only from this time on, s; the same pixels as in the whole")
         ->type_name("SECONDS");
-    command.add_option("--to", options->to, "Only up to this time, s, itself included")->type_name("SECONDS");
+    command
+        .add_option("--to", options->to,
+                    "Only up to this time, s, itself left out: --to 20 makes 20 s; to the end, itself included, where "
+                    "not given")
+        ->type_name("SECONDS");
     command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")
         ->type_name("WxH");
     command
@@ -109,9 +115,7 @@ void add_still(CLI::App& app) {
         "  doppel still butterfly --at 14 --format pdf");
     add_preset_options(command, *options);
     add_beside_option(command, *options);
-    command.add_option("--at", options->at, "The time of the picture, s; there must be a sample")
-        ->type_name("SECONDS")
-        ->required();
+    command.add_option("--at", options->at, "The time of the picture, s")->type_name("SECONDS")->required();
     add_out_options(command, options->out, options->progress, options->force);
     command.add_option("--size", options->size, "Size of the picture, px; the preset's where not given")
         ->type_name("WxH");
@@ -129,7 +133,7 @@ void add_still(CLI::App& app) {
         const RunOptions run{.out = options->out,
                              .gl = gl_named(options->gl),
                              .replacing = {inputs_of(options->presets, scenes), options->force}};
-        for (const auto& scene : scenes) still_sample(scene, at);
+        for (const auto& scene : scenes) still_moment(scene, at);
         const auto& stop = watch_interrupts();
         work_on_all(scenes, options->progress, "samples", [&](const Scene& scene, const auto& report) {
             return draw_still(scene, at, format, run, stop, report);

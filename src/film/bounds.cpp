@@ -121,7 +121,7 @@ std::vector<std::size_t> shown_links(std::size_t count) {
 std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance) {
     if (state.sample == 0 || 20 * state.sample < scene.samples) return std::nullopt;
     if (!(state.distance > 0 && start_distance > 0)) return std::nullopt;
-    return std::log(state.distance / start_distance) / scene.time_of_tick(state.tick);
+    return std::log(state.distance / start_distance) / scene.time(state.moment());
 }
 
 std::optional<MotionBounds> motion_bounds(const Scene& scene, const std::atomic<bool>& stop) {

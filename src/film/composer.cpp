@@ -188,8 +188,9 @@ DisplayList Composer::backdrop() const {
 
 void Composer::add(const Snapshot& snapshot) {
     state_.snapshot = snapshot;
+    if (state_.is_between()) return;
     const auto& state = snapshot.pair;
-    if (state.tick == 0) state_.start_distance = state.distance;
+    if (state.sample == 0) state_.start_distance = state.distance;
     state_.largest_distance = std::max(state_.largest_distance, state.distance);
     state_.parting.add(state_.time(), state.distance);
     for (const auto& layer : layers_) layer->add();

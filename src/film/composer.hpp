@@ -13,7 +13,7 @@ public:
     /// `state` outlives the cards. Without a title or end card in the film there is no still.
     explicit Cards(const FilmState& state);
 
-    /// The next snapshot, in order from sample 0, is that of the state.
+    /// The next sample, from 0 on, is that of the state.
     void add() {
         if (still_) still_->add();
     }
@@ -32,8 +32,8 @@ private:
     std::unique_ptr<Layer> still_;
 };
 
-/// Turns a film's snapshots into display lists, layer by layer. A list depends only on the scene and the snapshots so
-/// far: any frame can be drawn alone.
+/// Turns a film's snapshots into display lists, layer by layer. A list depends only on the scene, the samples so far and
+/// the snapshot that it shows: any frame can be drawn alone, and is the same at any frames a second.
 class Composer {
 public:
     /// Throws as make_layout() does.
@@ -44,7 +44,7 @@ public:
     /// What never changes: the page, the panels, the axes and their labels.
     DisplayList backdrop() const;
 
-    /// The next snapshot, in order from sample 0.
+    /// The next snapshot, in order: all samples from 0 on, and any moments between them.
     void add(const Snapshot& snapshot);
 
     /// The picture of the snapshot added last.

@@ -35,16 +35,14 @@ DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
     return list;
 }
 
-/// The ticks of `count` frames spread over those of the samples from first to last − 1, both ends included.
-std::vector<long> spread(const FrameTimes& frames, long first, long last, long count) {
-    const long low = frames.first_from(first * frames.ticks_per_sample),
-               high = frames.first_from((last - 1) * frames.ticks_per_sample + 1) - 1;
-    std::vector<long> ticks;
+/// The moments of `count` frames spread over those from `low` to `high`, both ends included.
+std::vector<Moment> spread(const FrameTimes& frames, long low, long high, long count) {
+    std::vector<Moment> moments;
     for (long k = 0; k < count; ++k)
-        ticks.push_back(frames.tick(
+        moments.push_back(frames.at(
             count == 1 ? high
                        : low + std::lround(static_cast<double>((high - low) * k) / static_cast<double>(count - 1))));
-    return ticks;
+    return moments;
 }
 
 /// Snapshots ahead: many of a pair, few of an ensemble, whose snapshots are large.
@@ -80,7 +78,7 @@ Schedule schedule_of(const Scene& scene) {
     const auto frames = [&](const Rational& seconds) { return std::lround(seconds.value() * scene.fps.value()); };
     return {.title = frames(video.title_card_s),
             .hold_start = frames(video.hold_start_s),
-            .motion = scene.frames.count(),
+            .motion = scene.frames.count,
             .hold_end = frames(video.hold_end_s),
             .end = frames(video.end_card_s)};
 }
@@ -92,15 +90,14 @@ double card_opacity(long k, long count, double fps, bool fades_in) {
     return share * share * (3 - 2 * share);
 }
 
-std::optional<long> poster_tick(const Scene& scene) {
+std::optional<long> poster_frame(const Scene& scene) {
     const auto& seconds = scene.preset.video.poster_s;
     if (!seconds) return std::nullopt;
     const auto& frames = scene.frames;
-    const double tick =
-        seconds->value() * scene.preset.sample_hz.value() * static_cast<double>(frames.ticks_per_sample);
-    const long frame = std::min(frames.first_from(std::lround(tick)), frames.count() - 1);
-    const auto off = [&](long k) { return std::abs(static_cast<double>(frames.tick(k)) - tick); };
-    return frames.tick(frame > 0 && off(frame - 1) < off(frame) ? frame - 1 : frame);
+    const auto moment = moment_at(seconds->value() * scene.preset.sample_hz.value());
+    const long frame = std::min(frames.first_from(moment), frames.count - 1);
+    const auto off = [&](long k) { return std::abs(scene.time(frames.at(k)) - scene.time(moment)); };
+    return frame > 0 && off(frame - 1) < off(frame) ? frame - 1 : frame;
 }
 
 VideoOptions video_options(const Scene& scene) {
@@ -120,7 +117,7 @@ VideoOptions video_options(const Scene& scene) {
             .metadata = film_metadata(scene.preset)};
 }
 
-Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, RunRecord& record,
+Film::Film(const Scene& scene, const RunOptions& options, long first, long last, Transaction& parts, RunRecord& record,
            const std::atomic<bool>& stop)
     : scene_(scene), schedule_(schedule_of(scene)), composer_(scene, stop), parts_(parts), stop_(stop) {
     const auto& video = scene.preset.video;
@@ -137,15 +134,14 @@ Film::Film(const Scene& scene, const RunOptions& options, Transaction& parts, Ru
         sink_ = make_video_sink(parts.file(film_name_), file, stop);
         record.libav = libav_description();
     }
-    if (poster_tick(scene)) parts.demand(scene.preset.name + ".poster.png");
+    if (poster_frame(scene)) parts.demand(scene.preset.name + ".poster.png");
     if (video.contact_sheet) parts.demand(scene.preset.name + ".contact.png");
     canvas_.emplace(scene, composer_, options.gl, stop);
     record.gl = canvas_->description();
     if (video.contact_sheet)
-        sheet_.emplace(scene,
-                       spread(scene.frames, options.first, options.last,
-                              long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]),
-                       options.gl, stop);
+        sheet_.emplace(
+            scene, spread(scene.frames, first, last - 1, long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]),
+            options.gl, stop);
 }
 
 const Picture& Film::take(const DisplayList& list, RunRecord& record) {
@@ -171,13 +167,8 @@ void Film::take_card(long frames, bool fades_in, RunRecord& record) {
     }
 }
 
-/// What is wanted of a frame besides the film.
-void Film::keep(const Picture& picture) {
-    if (poster_tick(scene_) == tick_) poster_ = picture;
-}
-
 void Film::write_frame(RunRecord& record) {
-    const long number = scene_.frames.first_from(tick_);
+    const long number = scene_.frames.first_from(moment_);
     const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
     if (record.frames == 0) first_number_ = is_first ? 0 : schedule_.title + schedule_.hold_start + number;
     if (is_first) take_card(schedule_.title, false, record);
@@ -185,7 +176,7 @@ void Film::write_frame(RunRecord& record) {
     const long times = 1 + (is_first ? schedule_.hold_start : 0) + (is_last ? schedule_.hold_end : 0);
     for (long k = 0; k < times; ++k) {
         const auto& picture = take(list, record);
-        if (k == 0) keep(picture);
+        if (k == 0 && number == poster_frame(scene_)) poster_ = picture;
     }
     if (is_last) take_card(schedule_.end, true, record);
 }
@@ -204,14 +195,14 @@ void Film::finish() {
     if (sheet_) write(".contact.png", sheet_->picture());
 }
 
-Simulation::Simulation(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop)
+Simulation::Simulation(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop)
     : ahead_(most_ahead(with_pictures)),
-      thread_(start_thread([this, &scene, last, with_pictures, &stop] { work(scene, last, with_pictures, stop); })) {}
+      thread_(start_thread([this, &scene, end, with_pictures, &stop] { work(scene, end, with_pictures, stop); })) {}
 
-Snapshot Simulation::next() {
+std::optional<Snapshot> Simulation::next() {
     auto snapshot = ahead_.pop();
-    if (!snapshot) std::rethrow_exception(fault_);
-    return std::move(*snapshot);
+    if (!snapshot && fault_) std::rethrow_exception(fault_);
+    return snapshot;
 }
 
 std::pair<Effort, Effort> Simulation::efforts() {
@@ -219,29 +210,44 @@ std::pair<Effort, Effort> Simulation::efforts() {
     return efforts_;
 }
 
-void Simulation::work(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop) {
+void Simulation::work(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop) {
     try {
-        PairRun pair(scene);
-        std::optional<MotionBatch> members;
-        if (with_pictures && !scene.members.empty()) members.emplace(scene.members, 1);
-        const auto& frames = scene.frames;
-        for (long tick = 0, before = 0; tick <= (last - 1) * frames.ticks_per_sample;
-             before = std::exchange(tick, with_pictures ? frames.next_moment(tick) : tick + frames.ticks_per_sample)) {
-            Snapshot snapshot{pair.advance_to(tick, stop), {}};
-            if (members) {
-                for (long k = before; k < tick; ++k) members->advance(stop);
-                for (std::size_t k = 0; k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
-            }
-            cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID) + pair.other_cpu_s();
-            {
-                const std::lock_guard hold(mutex_);
-                efforts_ = {pair.effort_a(), pair.effort_b()};
-            }
-            if (!ahead_.push(std::move(snapshot))) return;
-        }
+        simulate(scene, end, with_pictures, stop);
     } catch (...) {
         fault_ = std::current_exception();
-        ahead_.close();
+    }
+    ahead_.close();
+}
+
+void Simulation::simulate(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop) {
+    PairRun pair(scene);
+    std::optional<MotionBatch> members;
+    if (with_pictures && !scene.members.empty()) members.emplace(scene.members, 1);
+    /// False where nobody takes snapshots any more.
+    const auto push = [&](const PairState& state) {
+        Snapshot snapshot{state, {}};
+        for (std::size_t k = 0; members && k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
+        cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID) + pair.other_cpu_s();
+        {
+            const std::lock_guard hold(mutex_);
+            efforts_ = {pair.effort_a(), pair.effort_b()};
+        }
+        return ahead_.push(std::move(snapshot));
+    };
+    const auto& frames = scene.frames;
+    long frame = 0;
+    for (Moment sample; sample < end; ++sample.sample) {
+        const auto state = pair.next(stop);
+        if (members && sample.sample > 0) members->advance(stop);
+        if (!push(state)) return;
+        if (!with_pictures) continue;
+        for (; frame < frames.count && frames.at(frame) < std::min(end, {sample.sample + 1}); ++frame) {
+            const auto moment = frames.at(frame);
+            if (moment.share == 0) continue;
+            const auto between = pair.advance_to(moment, stop);
+            if (members) members->advance_within(moment.share, stop);
+            if (!push(between)) return;
+        }
     }
 }
 

@@ -55,12 +55,12 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
 /// Many moments of a film in one picture: pendulums and time alone, in rows, and one title above.
 class ContactSheet {
 public:
-    /// `ticks` in ascending order, one a tile. Throws as Composer and Renderer do.
-    ContactSheet(const Scene& scene, std::vector<long> ticks, Gl gl, const std::atomic<bool>& stop);
+    /// `moments` in ascending order, one a tile. Throws as Composer and Renderer do.
+    ContactSheet(const Scene& scene, std::vector<Moment> moments, Gl gl, const std::atomic<bool>& stop);
     ContactSheet(const ContactSheet&) = delete;
     ContactSheet& operator=(const ContactSheet&) = delete;
 
-    /// Every snapshot, in order from sample 0.
+    /// As Composer::add().
     void add(const Snapshot& snapshot);
 
     /// Of the tiles so far, one at least.
@@ -70,7 +70,7 @@ private:
     const Scene scene_;  // of a tile
     Composer composer_;
     Renderer renderer_;
-    std::vector<long> ticks_;
+    std::vector<Moment> moments_;
     std::vector<Picture> tiles_;
     int columns_;
     Gl gl_;
@@ -112,14 +112,13 @@ private:
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster and the contact sheet.
 class Film {
 public:
-    /// For the samples options.first … options.last − 1. Adds its files to `parts`. All may throw Error (exit 130) soon
-    /// after `stop` is set.
-    Film(const Scene& scene, const RunOptions& options, Transaction& parts, RunRecord& record,
+    /// For the frames first … last − 1. Adds its files to `parts`. All may throw Error (exit 130) soon after `stop` is set.
+    Film(const Scene& scene, const RunOptions& options, long first, long last, Transaction& parts, RunRecord& record,
          const std::atomic<bool>& stop);
 
     /// Every sample and frame, from 0 on.
     void add(const Snapshot& snapshot) {
-        tick_ = snapshot.pair.tick;
+        moment_ = snapshot.pair.moment();
         composer_.add(snapshot);
         if (sheet_) sheet_->add(snapshot);
     }
@@ -133,15 +132,13 @@ public:
 private:
     const Picture& take(const DisplayList& list, RunRecord& record);
     void take_card(long frames, bool fades_in, RunRecord& record);
-    void keep(const Picture& picture);
-
     const Scene& scene_;
     Schedule schedule_;
     Composer composer_;
     Transaction& parts_;
     std::string film_name_;  // of the video, or the folder of pictures
     const std::atomic<bool>& stop_;
-    long tick_ = 0;                       // added last
+    Moment moment_;                       // added last
     std::atomic<long> first_number_ = 0;  // of the first picture; compressor threads ask
     std::unique_ptr<Sink> sink_;
     std::optional<Canvas> canvas_;
@@ -149,9 +146,8 @@ private:
     std::optional<ContactSheet> sheet_;
 };
 
-/// The tick that the poster shows, where there is one: that of the frame at its time, or of the nearest where the speed
-/// changes.
-std::optional<long> poster_tick(const Scene& scene);
+/// The frame that is the poster, where there is one: that nearest to its time.
+std::optional<long> poster_frame(const Scene& scene);
 
 /// How the video file of a scene is written.
 VideoOptions video_options(const Scene& scene);
@@ -159,22 +155,23 @@ VideoOptions video_options(const Scene& scene);
 /// Steps the pair, and an ensemble's members, in a thread of its own, a bounded number of snapshots ahead.
 class Simulation {
 public:
-    /// Samples 0 … last − 1 and, `with_pictures`, the frames between them; the members of an ensemble, too. Throws Error (exit 4) where
-    /// there is no thread to be had.
-    Simulation(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop);
+    /// The samples before `end` and, `with_pictures`, the frames between them; the members of an ensemble, too. Throws Error
+    /// (exit 4) where there is no thread to be had.
+    Simulation(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop);
     ~Simulation() { ahead_.close(); }
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
-    /// The next snapshot; rethrows what stopped the simulation.
-    Snapshot next();
+    /// The next snapshot; nothing at the end. Rethrows what stopped the simulation.
+    std::optional<Snapshot> next();
 
     /// CPU time of the thread, s, and what the sides have cost; complete once the last snapshot was taken.
     double cpu_s() const { return cpu_s_; }
     std::pair<Effort, Effort> efforts();
 
 private:
-    void work(const Scene& scene, long last, bool with_pictures, const std::atomic<bool>& stop);
+    void work(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop);
+    void simulate(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop);
 
     Queue<Snapshot> ahead_;
     std::exception_ptr fault_;

@@ -154,11 +154,7 @@ void add_legend(Layout& layout, const Scene& scene, const Area& panel) {
 }  // namespace
 
 std::string clock_text(const Scene& scene, double time) {
-    const auto& speed = scene.preset.video.speed;
-    double slowest = speed.constant.value();
-    if (speed.changes_over_time()) slowest = speed.changes.front().speed.value();
-    for (const auto& change : speed.changes) slowest = std::min(slowest, change.speed.value());
-    const double frame = 1 / (scene.fps.value() / slowest);
+    const double frame = 1 / (scene.fps.value() / scene.preset.video.speed.slowest().value());
     return fmt::format("{:.{}f} s", time, frame >= 1 ? 0 : frame >= 0.1 ? 1 : 2);
 }
 

@@ -54,7 +54,7 @@ private:
     Points points_;
 };
 
-/// The state at one sample: the pair, and the bobs of an ensemble's members.
+/// The state at a sample, or between two where a frame is: the pair, and the bobs of an ensemble's members.
 struct Snapshot {
     PairState pair;
     std::vector<Bobs<double>> members;
@@ -68,7 +68,9 @@ struct FilmState {
     double start_distance = 0, largest_distance = 0;
     Parting parting{};
 
-    double time() const { return scene.time_of_tick(snapshot.pair.tick); }
+    double time() const { return scene.time(snapshot.pair.moment()); }
+    /// Whether the snapshot is between two samples: traces and trails end at the last sample, and are drawn up to it.
+    bool is_between() const { return snapshot.pair.share > 0; }
     const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
     const Observation& seen(std::size_t side) const { return side == 0 ? snapshot.pair.a : snapshot.pair.b; }
 };
@@ -81,7 +83,7 @@ public:
 
     /// What never changes.
     virtual void backdrop(DisplayList& list) const = 0;
-    /// The next snapshot, in order from sample 0, is that of the state.
+    /// The next sample, from 0 on, is that of the state.
     virtual void add() {}
     /// What lies on the backdrop at the snapshot added last.
     virtual void frame(DisplayList& list) const = 0;

@@ -50,6 +50,12 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     return json;
 }
 
+/// null where the speed changes.
+Json samples_per_frame(const FrameTimes& frames) {
+    if (!frames.changing.empty()) return nullptr;
+    return frames.stride.is_whole() ? Json(frames.stride.numerator) : Json(frames.stride.text());
+}
+
 /// The fonts of the film's words with their hashes, but for the built-in one: another machine may have others.
 Json fonts_json(const Preset& preset) {
     std::string words = "0 " + preset.title + preset.subtitle.value_or("");  // digits are in every film
@@ -85,10 +91,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"resolved_preset", json_of_toml(resolved_toml(scene.preset))},
         {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
         {"frames",
-         {{"count", record.frames},
-          {"fps", scene.fps.text()},
-          {"samples_per_frame", scene.frames.ticks.empty() ? Json(scene.frames.stride) : Json(nullptr)},
-          {"ticks_per_sample", scene.frames.ticks_per_sample}}},
+         {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", samples_per_frame(scene.frames)}}},
         {"steps", record.a.effort.steps + record.b.effort.steps},
         {"a", scene.a.replay ? track_json(*scene.a.replay, scene.preset.a.track) : side_json(scene, scene.a, record.a)},
         {"b", scene.b.replay ? track_json(*scene.b.replay, scene.preset.b.track) : side_json(scene, scene.b, record.b)},

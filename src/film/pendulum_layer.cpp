@@ -51,6 +51,7 @@ private:
     };
 
     void extend(Path& path, const Bob<double>& bob) const;
+    void draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const;
     bool swing_as_one() const;
     void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
     void draw_members(DisplayList& list) const;
@@ -105,6 +106,15 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     path.last = {bob, now};
 }
 
+/// Up to the bob.
+void PendulumLayer::draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const {
+    const auto draw = [&](const Trail& trail) { trail.draw(panel_.area, state_.time(), at(bob), list); };
+    if (!state_.is_between() || !path.last) return draw(path.trail);
+    auto ahead = path;
+    extend(ahead, bob);
+    draw(ahead.trail);
+}
+
 void PendulumLayer::frame(DisplayList& list) const {
     if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
@@ -119,7 +129,7 @@ void PendulumLayer::frame(DisplayList& list) const {
         for (std::size_t i = 0; i < bobs.size(); ++i) draw_disc(at(bobs[i]), bob_radius(other, i), ghost, list);
     }
     for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side)
-        paths_[*side].trail.draw(panel_.area, state_.time(), at(state_.seen(*side).bobs.back()), list);
+        draw_trail(paths_[*side], state_.seen(*side).bobs.back(), list);
     for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side) draw_pendulum(*side, alone, list);
 }
 
@@ -169,8 +179,7 @@ float PendulumLayer::member_trail_width() const {
 void PendulumLayer::draw_members(DisplayList& list) const {
     const auto& members = state_.snapshot.members;
     const bool few = members.size() <= most_full_members;
-    for (std::size_t k = member_paths_.size(); k-- > 0;)
-        member_paths_[k].trail.draw(panel_.area, state_.time(), at(members[k].back()), list);
+    for (std::size_t k = member_paths_.size(); k-- > 0;) draw_trail(member_paths_[k], members[k].back(), list);
     for (std::size_t k = members.size(); k-- > 0;) {
         draw_lines(0, members[k], layout_.rod_radius, member_hue(k, 0.43f), list);
         if (few) draw_member_bobs(k, list);

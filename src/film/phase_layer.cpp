@@ -105,8 +105,10 @@ void PhaseLayer::frame(DisplayList& list) const {
         for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
         if (video_.phase != PhaseKind::rate) continue;
         // a path that leaves at ±180° comes back at the other end
-        trails_[side].draw(panel_.area, state_.time(), std::nullopt, list, panel_.area.width() / 2);
         const Point now = at(state_.seen(side).bobs[link_]);
+        auto trail = trails_[side];
+        if (state_.is_between()) trail.add(now, state_.time(), state_.time());
+        trail.draw(panel_.area, state_.time(), std::nullopt, list, panel_.area.width() / 2);
         list.push_back(Capsule{now, now, head, color});
     }
 }

@@ -87,77 +87,81 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());
 }
 
-/// The samples that are asked for: first … last − 1; `total` is reported of them, the frames where there are pictures.
-struct SampleRange {
-    long first, last, total;
+/// The frames first … last − 1 that are asked for, and the samples of their time: from `begin` to before `end`.
+struct Part {
+    long first, last;
+    Moment begin, end;
+
+    long first_sample() const { return begin.share > 0 ? begin.sample + 1 : begin.sample; }
+    long last_sample() const { return end.share > 0 ? end.sample : end.sample - 1; }
 };
 
-/// The samples from `from_s` to `to_s`. Throws Error (exit 2) where there is none.
-std::pair<long, long> samples_between(const Scene& scene, const RunOptions& options) {
-    const auto &name = scene.preset.name, duration = scene.preset.duration_s.text();
-    const double hz = scene.preset.sample_hz.value(), end = scene.preset.duration_s.value();
-    const double from = options.from_s ? options.from_s->value() : 0, to = options.to_s ? options.to_s->value() : end;
+/// From options.from_s to before options.to_s. Throws Error (exit 2) where no frame is there.
+Part part_between(const Scene& scene, const RunOptions& options) {
+    const auto& name = scene.preset.name;
+    const double duration = scene.preset.duration_s.value(), hz = scene.preset.sample_hz.value();
+    const double from = options.from_s ? options.from_s->value() : 0;
+    const double to = options.to_s ? options.to_s->value() : duration;
     for (const auto& [option, time] : {std::pair("--from", from), {"--to", to}})
-        if (time > end) throw bad_input("{} {}: {} ends at {} s", option, time, name, duration);
-    if (from > to) throw bad_input("--from {} --to {}: the end must not be before the start", from, to);
-    constexpr double slack = 1e-9;  // samples, of rounding
-    const long first = std::lround(std::ceil(from * hz - slack)), last = std::lround(std::floor(to * hz + slack));
-    if (first > last)
-        throw bad_input("--from {} --to {}: {} has no sample there; they are {:.3g} s apart", from, to, name, 1 / hz);
-    return {first, last + 1};
+        if (time > duration) throw bad_input("{} {}: {} ends at {} s", option, time, name, duration);
+    if (options.to_s && from >= to)
+        throw bad_input("--from {} --to {}: the end, which is not included, must be after the start", from, to);
+    const auto begin = moment_at(from * hz), end = options.to_s ? moment_at(to * hz) : Moment{scene.samples + 1};
+    const Part part{scene.frames.first_from(begin), scene.frames.first_from(end), begin, end};
+    if (part.first >= part.last)
+        throw bad_input("--from {} --to {}: {} has no frame there; they are {:.3g} s apart", from, to, name,
+                        scene.preset.video.speed.slowest().value() / scene.fps.value());
+    return part;
 }
 
-/// Throws Error (exit 2) where the scene has no such samples, none of them is a frame, or the poster is none of them.
-SampleRange range_of(const Scene& scene, RunOptions options) {
-    if (options.from_s || options.to_s) std::tie(options.first, options.last) = samples_between(scene, options);
-    const long first = options.first, last = options.last < 0 ? scene.samples + 1 : options.last;
-    if (first < 0 || first >= last || last > scene.samples + 1)
-        throw bad_input("--frames {}:{}: {} has the samples 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
-                        scene.preset.name, scene.samples, scene.samples + 1);
-    if (!options.pictures) return {first, last, last - first};
+/// The frames from options.first to before options.last. Throws Error (exit 2) where the scene has not all of them.
+Part part_of_frames(const Scene& scene, const RunOptions& options) {
     const auto& frames = scene.frames;
-    const long begin = first * frames.ticks_per_sample, end = (last - 1) * frames.ticks_per_sample;
-    const long total = frames.first_from(end + 1) - frames.first_from(begin);
-    if (total < 1)
-        throw bad_input("--frames {}:{}: no frame of {} falls into it; every {}th sample is one", first, last,
-                        scene.preset.name, frames.stride);
-    if (const auto poster = poster_tick(scene); poster && (*poster < begin || *poster > end)) {
-        const long sample = *poster / frames.ticks_per_sample, after = (*poster - 1) / frames.ticks_per_sample + 1;
-        throw bad_input("--frames {}:{}: the poster of {}, poster_s = {}, is sample {}; --frames {}:{} would have it",
-                        first, last, scene.preset.name, scene.preset.video.poster_s->text(), sample,
-                        std::min(first, sample), std::max(last, after + 1));
-    }
-    return {first, last, total};
+    const long first = options.first, last = options.last < 0 ? frames.count : options.last;
+    if (first < 0 || first >= last || last > frames.count)
+        throw bad_input("--frames {}:{}: {} has the frames 0 to {}; A:B must have 0 ≤ A < B ≤ {}", first, last,
+                        scene.preset.name, frames.count - 1, frames.count);
+    return {first, last, frames.at(first), last == frames.count ? Moment{scene.samples + 1} : frames.at(last)};
+}
+
+/// Throws Error (exit 2) as these do, and where the poster is none of the frames.
+Part part_of(const Scene& scene, const RunOptions& options) {
+    const bool by_time = options.from_s || options.to_s;
+    const auto part = by_time ? part_between(scene, options) : part_of_frames(scene, options);
+    const auto poster = options.pictures ? poster_frame(scene) : std::nullopt;
+    if (poster && (*poster < part.first || *poster >= part.last))
+        throw bad_input("--frames {}:{}: the poster of {}, poster_s = {}, is frame {}; --frames {}:{} would have it",
+                        part.first, part.last, scene.preset.name, scene.preset.video.poster_s->value(), *poster,
+                        std::min(part.first, *poster), std::max(part.last, *poster + 1));
+    return part;
 }
 
 }  // namespace
 
 void check_run(const Scene& scene, const RunOptions& options) {
-    range_of(scene, options);
+    part_of(scene, options);
     columns_of(scene, options.columns);
 }
 
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-    const auto [first, last, total] = range_of(scene, options);
-    RunRecord record{.first_sample = first, .last_sample = last - 1};
+    const auto part = part_of(scene, options);
+    RunRecord record{.first_sample = part.first_sample(), .last_sample = part.last_sample()};
+    const long samples = record.last_sample - record.first_sample + 1;
+    const long total = options.pictures ? part.last - part.first : samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
     parts.demand(scene.preset.name + ".json");
     std::optional<Film> film;
-    auto range = options;
-    range.first = first, range.last = last;
-    if (options.pictures) film.emplace(scene, range, parts, record, stop);
+    if (options.pictures) film.emplace(scene, options, part.first, part.last, parts, record, stop);
     const auto csv_name = scene.preset.name + ".csv";
     PairTable table(parts.file(csv_name), scene, options.columns);
 
-    Simulation simulation(scene, last, options.pictures, stop);
+    Simulation simulation(scene, part.end, options.pictures, stop);
     const auto take_efforts = [&] { std::tie(record.a.effort, record.b.effort) = simulation.efforts(); };
     double start_distance = 0;
-    const auto& frames = scene.frames;
-    const long begin = first * frames.ticks_per_sample, end = (last - 1) * frames.ticks_per_sample;
-    for (long tick = -1, done = 0; tick < end;) {
-        Snapshot snapshot;
+    for (long frame = part.first, done = 0;;) {
+        std::optional<Snapshot> snapshot;
         try {
             snapshot = simulation.next();
         } catch (const BreakDown& fault) {
@@ -166,21 +170,25 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             film.reset();  // its threads write into what goes now
             keep_failed(scene, fault, record, parts, stop);
         }
-        const auto& state = snapshot.pair;
+        if (!snapshot) break;
+        const auto& state = snapshot->pair;
         throw_if_set(stop);
         check_distance(scene, state);
-        tick = state.tick;
-        if (tick == 0) start_distance = state.distance;
-        watch(record.a, state.a, state.energy_error_a);
-        watch(record.b, state.b, state.energy_error_b);
-        record.largest_distance = std::max(record.largest_distance, state.distance);
-        record.parting.add(scene.time_of_tick(tick), state.distance);
-        if (film) film->add(snapshot);
-        if (tick < begin) continue;
-        if (tick % frames.ticks_per_sample == 0) table.add(state, start_distance);
-        const long frame = frames.first_from(tick);
-        if (film && (frame == frames.count() || frames.tick(frame) != tick)) continue;
-        if (film) film->write_frame(record);
+        if (film) film->add(*snapshot);
+        if (state.share == 0) {
+            if (state.sample == 0) start_distance = state.distance;
+            watch(record.a, state.a, state.energy_error_a);
+            watch(record.b, state.b, state.energy_error_b);
+            record.largest_distance = std::max(record.largest_distance, state.distance);
+            record.parting.add(scene.time(state.sample), state.distance);
+            if (state.sample >= record.first_sample) {
+                table.add(state, start_distance);
+                if (!film) report({++done, total});
+            }
+        }
+        if (!film || frame == part.last || state.moment() != scene.frames.at(frame)) continue;
+        ++frame;
+        film->write_frame(record);
         report({++done, total});
     }
     take_efforts();
@@ -202,7 +210,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     auto files = parts.keeping_finished(finish);
     return {.files = std::move(files),
             .frames = record.frames,
-            .samples = last - first,
+            .samples = samples,
             .wall_s = record.wall_s,
             .warnings = warnings_of(scene, record)};
 }

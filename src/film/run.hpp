@@ -18,8 +18,8 @@ namespace doppel {
 struct RunOptions {
     std::filesystem::path out = "out";               // the files go to OUT/NAME/
     bool pictures = true;                            // false: the table and the manifest alone; no GL
-    long first = 0, last = -1;                       // samples first … last − 1; all where last < 0
-    std::optional<Rational> from_s = {}, to_s = {};  // in their place: times, both included
+    long first = 0, last = -1;                       // frames first … last − 1; all where last < 0
+    std::optional<Rational> from_s = {}, to_s = {};  // in their place: times, up to before to_s; to the end without it
     int jobs = 0;                                    // threads that compress PNGs; 0 = one a core
     Gl gl = Gl::automatic;                           // what draws
     std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all where there is none
@@ -40,15 +40,14 @@ struct RunResult {
     std::vector<std::string> warnings = {};  // sentences; the manifest has them, too
 };
 
-/// One picture, OUT/NAME/NAME.14s.png (or .pdf, .svg): that of the sample at `time`, s. `options` say where to, and what
-/// draws. Throws Error as run(), and exit 2 where there is no sample at that time.
+/// One picture, OUT/NAME/NAME.14s.png (or .pdf, .svg): that of any `time`, s. `options` say where to, and what draws.
+/// Throws Error as run(), and exit 2 where the scene ends before.
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
-/// The sample at that time. Throws Error (exit 2) where there is none.
-long still_sample(const Scene& scene, const Rational& time);
+/// That of such a picture. Throws Error (exit 2) where the scene ends before.
+Moment still_moment(const Scene& scene, const Rational& time);
 
-/// Throws Error (exit 2) where the scene has none of the samples, or of the frames, that `options` ask for, or not all
-/// of the columns.
+/// Throws Error (exit 2) where the scene has not all of the frames, or of the columns, that `options` ask for.
 void check_run(const Scene& scene, const RunOptions& options);
 
 /// Simulates, draws and writes; the three overlap through bounded queues. Files appear complete or not at all.

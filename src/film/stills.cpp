@@ -31,42 +31,36 @@ std::string seconds_text(double seconds) {
 
 }  // namespace
 
-long still_sample(const Scene& scene, const Rational& time) {
-    const auto &name = scene.preset.name, duration = scene.preset.duration_s.text();
-    if (time.value() > scene.preset.duration_s.value())
-        throw bad_input("--at {}: {} ends at {} s", time.text(), name, duration);
-    const auto sample = product(time, scene.preset.sample_hz);
-    if (sample && sample->is_whole()) return sample->numerator;
-    const long before = std::lround(std::floor(time.value() * scene.preset.sample_hz.value()));
-    throw bad_input("--at {}: {} has no sample there; those at {} s and {} s are next to it",
-                    seconds_text(time.value()), name, seconds_text(scene.time(before)),
-                    seconds_text(scene.time(before + 1)));
+Moment still_moment(const Scene& scene, const Rational& time) {
+    const double end = scene.preset.duration_s.value();
+    if (time.value() > end) throw bad_input("--at {}: {} ends at {} s", time.value(), scene.preset.name, end);
+    return moment_at(time.value() * scene.preset.sample_hz.value());
 }
 
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
     const double start = seconds_of(CLOCK_MONOTONIC);
-    const long last = still_sample(scene, time);
-    const auto text = seconds_text(scene.time(last));
+    const auto moment = still_moment(scene, time);
+    const auto text = seconds_text(scene.time(moment));
     const auto name = fmt::format("{}.{}s.{}", scene.preset.name, text, name_of(format));
     Transaction parts(options.out / scene.preset.name, "still", "film", options.replacing);
     const auto place = parts.file(name);
     Composer composer(scene, stop);
     std::optional<Canvas> canvas;  // now: what cannot draw says so at once
     if (format == PictureFormat::png) canvas.emplace(scene, composer, options.gl, stop);
-    Simulation simulation(scene, last + 1, true, stop);
-    const long end = last * scene.frames.ticks_per_sample;
-    for (long tick = -1; tick < end;) {
-        const auto snapshot = simulation.next();
+    auto alone = scene;  // with one frame
+    alone.frames = {.last = moment, .count = 1};
+    Simulation simulation(alone, {moment.sample + 1}, true, stop);
+    const long samples = moment.sample + 1;
+    while (const auto snapshot = simulation.next()) {
         throw_if_set(stop);
-        check_distance(scene, snapshot.pair);
-        composer.add(snapshot);
-        tick = snapshot.pair.tick;
-        report({snapshot.pair.sample + 1, last + 1});
+        check_distance(scene, snapshot->pair);
+        composer.add(*snapshot);
+        if (!(snapshot->pair.share > 0)) report({snapshot->pair.sample + 1, samples});
     }
     const auto& video = scene.preset.video;
     const auto metadata = metadata_of(scene.preset.title, scene.preset.name,
-                                      fmt::format("at {} s of {}", text, scene.preset.duration_s.text()));
+                                      fmt::format("at {} s of {}", text, scene.preset.duration_s.value()));
     if (canvas) {
         write_png(place, canvas->draw(composer.frame()), {.with_alpha = video.transparent, .metadata = metadata}, stop);
     } else {
@@ -80,7 +74,7 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
         throw_if_set(stop);
         return parts.publish();
     });
-    return {.files = std::move(files), .frames = 1, .samples = last + 1, .wall_s = seconds_of(CLOCK_MONOTONIC) - start};
+    return {.files = std::move(files), .frames = 1, .samples = samples, .wall_s = seconds_of(CLOCK_MONOTONIC) - start};
 }
 
 namespace {
@@ -123,18 +117,18 @@ DisplayList title_of(const Scene& scene, const Style& style, Size size, float un
 
 }  // namespace
 
-ContactSheet::ContactSheet(const Scene& scene, std::vector<long> ticks, Gl gl, const std::atomic<bool>& stop)
+ContactSheet::ContactSheet(const Scene& scene, std::vector<Moment> moments, Gl gl, const std::atomic<bool>& stop)
     : scene_(tile_scene(scene)),
       composer_(scene_, stop, Dress::tile),
       renderer_(scene_.preset.video.size, composer_.backdrop(), gl, stop, scene_.preset.video.typeface),
-      ticks_(std::move(ticks)),
+      moments_(std::move(moments)),
       columns_((*scene.preset.video.contact_sheet)[0]),
       gl_(gl),
       stop_(stop) {}
 
 void ContactSheet::add(const Snapshot& snapshot) {
     composer_.add(snapshot);
-    const auto times = std::count(ticks_.begin(), ticks_.end(), snapshot.pair.tick);
+    const auto times = std::count(moments_.begin(), moments_.end(), snapshot.pair.moment());
     if (times == 0) return;
     const auto& picture = renderer_.draw(composer_.frame(), stop_);
     tiles_.insert(tiles_.end(), static_cast<std::size_t>(times), picture);

@@ -41,13 +41,15 @@ public:
     void add() override {
         const auto now = values();
         traces_.resize(now.size());
-        for (std::size_t k = 0; k < now.size(); ++k)
-            if (now[k].value) traces_[k].add({strip_.time.at(state_.time()), strip_.value.at(*now[k].value)});
+        for (std::size_t k = 0; k < now.size(); ++k) extend(traces_[k], now[k]);
     }
     void frame(DisplayList& list) const override;
 
 private:
     std::vector<StripValue> values() const;
+    void extend(Trace& trace, const StripValue& now) const {
+        if (now.value) trace.add({strip_.time.at(state_.time()), strip_.value.at(*now.value)});
+    }
     /// The words of a line of the caption, from 0 on, at its left.
     float base(int line) const {
         return strip_.base - caption_line * layout_.text * static_cast<float>(strip_.lines - 1 - line);
@@ -255,8 +257,11 @@ void StripLayer::frame(DisplayList& list) const {
     else if (index_ == 0 && state_.scene.horizon())
         say_horizon_above(list);
     list.push_back(vertical_line(x, strip_.area.top, strip_.area.bottom, px(style_.width.mark), theme_.cursor));
-    for (std::size_t k = 0; k < now.size(); ++k)
-        list.push_back(Stroke{.vertices = traces_[k].vertices(), .width = px(now[k].width), .color = now[k].color});
+    for (std::size_t k = 0; k < now.size(); ++k) {
+        auto trace = traces_[k];
+        if (state_.is_between()) extend(trace, now[k]);
+        list.push_back(Stroke{.vertices = trace.vertices(), .width = px(now[k].width), .color = now[k].color});
+    }
     if (now.size() != 1 || !now[0].value) return;
     const Point head{x, strip_.value.at(*now[0].value)};
     list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});

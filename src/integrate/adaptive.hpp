@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "integrate/output_time.hpp"
 #include "integrate/runge_kutta.hpp"
-#include "numeric/compensated.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <cmath>
@@ -18,7 +18,6 @@ namespace doppel {
 ///     tolerance · (1 + |y_i|)
 /// with y_i in rad and rad/s, or m and m/s: one tolerance, absolute and relative alike.
 ///
-/// Time is kept as the distance from the start of the last step, in two parts: it neither drifts nor coarsens.
 /// Source  Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, §II.4 to II.6.
 template <System Model, const auto& pair, const Method& method>
 class Adaptive {
@@ -47,17 +46,28 @@ public:
         ends_at_event_ = false;
         doppel::slope(model_, y1_, k_[end]);
         ++evaluations_;
-        span_ = offset_ = lost_ = Scalar(0);
+        span_ = Scalar(0);
+        time_ = {};
         interpolates_ = false;
     }
 
     void advance(const Scalar& seconds) {
-        add_compensated(offset_, lost_, seconds);
-        while (offset_ > span_) {
-            add_compensated(offset_, lost_, Scalar(-span_));
+        time_.advance(seconds);
+        while (time_.offset() > span_) {
+            time_.pass(span_);
             step(seconds);
         }
-        sample();
+        sample(time_.offset());
+    }
+    void look_ahead(const Scalar& seconds) {
+        auto ahead = time_;
+        ahead.advance(seconds);
+        while (ahead.offset() > span_) {
+            ahead.pass(span_);
+            time_.note_step_ahead(span_);
+            step(seconds);
+        }
+        sample(ahead.offset());
     }
 
     const State& state() const { return out_; }
@@ -190,12 +200,12 @@ private:
         return Scalar(step < 100 * guess ? step : 100 * guess);
     }
 
-    /// out ← the state at the output time.
-    void sample() {
-        if (offset_ == span_)
+    /// out ← the state at the output time, `offset` s from the start of the last step.
+    void sample(const Scalar& offset) {
+        if (offset == span_)
             out_ = y1_;
         else
-            interpolate(offset_);
+            interpolate(offset);
     }
 
     /// out ← the state at t s from the start of the last step.
@@ -219,9 +229,9 @@ private:
 
     Model& model_;
     Scalar tolerance_;
-    Scalar h_ = Scalar(0), span_ = Scalar(0);       // s, of the next step and of the last
-    Scalar offset_ = Scalar(0), lost_ = Scalar(0);  // s, from the start of the last step to the output time
-    Scalar smallest_ = Scalar(0);                   // s
+    Scalar h_ = Scalar(0), span_ = Scalar(0);  // s, of the next step and of the last
+    OutputTime<Scalar> time_;
+    Scalar smallest_ = Scalar(0);  // s
     double error_before_ = 1e-4;
     long steps_ = 0, evaluations_ = 0;
     bool interpolates_ = false;   // the slopes for it are those of the last step

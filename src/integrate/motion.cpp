@@ -73,28 +73,28 @@ public:
     }
 
     void advance(const std::atomic<bool>& stop) override {
-        const auto check = [&] { throw_if_set(stop); };
-        if (adaptive_) {
-            for (long i = 0; i < portions_; ++i) {
-                check();
-                advance_by(portion_);
-            }
-        } else {
-            for (long left = steps_per_sample_, steps; left > 0; left -= steps) {
-                check();
-                steps = std::min(left, portion_steps_);
-                if (turns_.followed()) steps = std::min(steps, steps_within(turns_.longest_interval(), step_));
-                stepper_->advance(steps);
-                follow_turns(static_cast<double>(steps) * step_);
-            }
-            steps_ += steps_per_sample_;
-        }
+        ahead_.reset();
+        adaptive_ ? take_portions(portions_, stop) : take_steps(steps_per_sample_, stop);
+        steps_ += steps_per_sample_;
+        taken_ = 0;
+    }
+
+    void advance_within(double share, const std::atomic<bool>& stop) override {
+        if (!adaptive_) return take_steps(std::lround(share * static_cast<double>(steps_per_sample_)), stop);
+        const double portions = share * static_cast<double>(portions_), whole = std::floor(portions);
+        take_portions(static_cast<long>(whole), stop);
+        const Scalar rest = Scalar(portions - whole) * portion_;
+        stepper_->look_ahead(rest);
+        if (!turns_.followed()) return;
+        ahead_ = turns_;
+        stepper_->read(y_);
+        ahead_->update(y_, static_cast<double>(rest));
     }
 
     Observation observe() const override {
         const auto y = stepper_->state();
         auto bobs = bobs_of(chain_state(y));
-        turns_.add_to(bobs);
+        (ahead_ ? *ahead_ : turns_).add_to(bobs);
         const double length_error = length_error_of(y, bobs);
         const auto pivot = pivot_of(y);
         if (physical_) move_with(bobs, pivot);
@@ -170,6 +170,24 @@ private:
         return static_cast<double>(mechanism_ ? mechanism_->length_error(y) : length_error(*pendulum_, bobs));
     }
 
+    /// Up to that portion of the way to the next sample.
+    void take_portions(long last, const std::atomic<bool>& stop) {
+        for (; taken_ < last; ++taken_) {
+            throw_if_set(stop);
+            advance_by(portion_);
+        }
+    }
+    /// Up to that step.
+    void take_steps(long last, const std::atomic<bool>& stop) {
+        for (long steps; taken_ < last; taken_ += steps) {
+            throw_if_set(stop);
+            steps = std::min(last - taken_, portion_steps_);
+            if (turns_.followed()) steps = std::min(steps, steps_within(turns_.longest_interval(), step_));
+            stepper_->advance(steps);
+            follow_turns(static_cast<double>(steps) * step_);
+        }
+    }
+
     /// An adaptive method, in as many pieces as following the turns takes.
     void advance_by(const Scalar& seconds) {
         constexpr double most = 1e6;
@@ -201,9 +219,11 @@ private:
     Scalar portion_{0};                                          // s
     long steps_per_sample_ = 0, portion_steps_ = 1, steps_ = 0;  // of a fixed step
     double step_ = 0;                                            // s
+    long taken_ = 0;                                             // portions or steps since the last sample
     Scalar start_energy_{0};
     State y_;  // of the last update of turns
     Turns turns_;
+    std::optional<Turns> ahead_;  // at a state that was looked at ahead
 };
 
 }  // namespace

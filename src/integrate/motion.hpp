@@ -62,6 +62,9 @@ public:
     virtual ~Motion() = default;
     /// On to the next sample. Throws Error: exit 3 where a step cannot be made, exit 130 soon after `stop` is set.
     virtual void advance(const std::atomic<bool>& stop) = 0;
+    /// On to a share, 0…1, of the way from the last sample to the next, of a fixed step to the nearest step; then on to
+    /// greater shares, or by advance(). Samples are the same to the bit as without it. Throws as advance().
+    virtual void advance_within(double share, const std::atomic<bool>& stop) = 0;
     virtual Observation observe() const = 0;
     virtual Effort effort() const = 0;
 };

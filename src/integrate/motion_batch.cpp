@@ -6,6 +6,7 @@
 #include "integrate/turns.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 
 namespace doppel {
@@ -26,14 +27,17 @@ public:
 
     int width() const { return batch_.width(); }
 
-    void advance(const std::atomic<bool>& stop) {
-        for (long left = spec_.steps_per_sample, steps; left > 0; left -= steps) {
+    /// 1 = to the next sample.
+    void advance(double share, const std::atomic<bool>& stop) {
+        const long last = std::lround(share * static_cast<double>(spec_.steps_per_sample));
+        for (long steps; taken_ < last; taken_ += steps) {
             throw_if_set(stop);
-            steps = std::min(left, portion_);
+            steps = std::min(last - taken_, portion_);
             for (const auto& turns : turns_) steps = std::min(steps, steps_within(turns.longest_interval(), step_));
             batch_.advance(steps);
             follow_turns(static_cast<double>(steps) * step_);
         }
+        if (share == 1) taken_ = 0;
     }
 
     Bobs<double> bobs(std::size_t k) const {
@@ -63,6 +67,7 @@ private:
     double step_;  // s
     Batch batch_;
     long portion_;              // steps in one go
+    long taken_ = 0;            // steps since the last sample
     std::vector<Turns> turns_;  // of each; none where they are not followed
     State<double, Eigen::Dynamic> state_;
 };
@@ -119,18 +124,18 @@ void MotionBatch::with_name(std::size_t k, const Act& act) const {
     }
 }
 
-void MotionBatch::advance_part(std::size_t part, const std::atomic<bool>& stop) {
-    if (!together_.empty()) return together_[part]->advance(stop);
+void MotionBatch::advance_part(std::size_t part, double share, const std::atomic<bool>& stop) {
+    if (!together_.empty()) return together_[part]->advance(share, stop);
     for (std::size_t k = part * part_; k < std::min(size_, (part + 1) * part_); ++k)
-        with_name(k, [&] { one_by_one_[k]->advance(stop); });
+        with_name(k, [&] { share == 1 ? one_by_one_[k]->advance(stop) : one_by_one_[k]->advance_within(share, stop); });
 }
 
-void MotionBatch::advance(const std::atomic<bool>& stop) {
+void MotionBatch::advance_all(double share, const std::atomic<bool>& stop) {
     // of several errors always the same one, whoever came first
     std::vector<std::exception_ptr> errors((size_ + part_ - 1) / part_);
     parallel_for(errors.size(), jobs_, [&](std::size_t i) {
         try {
-            advance_part(i, stop);
+            advance_part(i, share, stop);
         } catch (...) {
             errors[i] = std::current_exception();
         }

@@ -22,7 +22,9 @@ public:
 
     /// All on to the next sample. Throws what Motion::advance() does, of the first that cannot go on; the message says
     /// which one that is. The batch is lost then.
-    void advance(const std::atomic<bool>& stop);
+    void advance(const std::atomic<bool>& stop) { advance_all(1, stop); }
+    /// All as Motion::advance_within().
+    void advance_within(double share, const std::atomic<bool>& stop) { advance_all(share, stop); }
 
     std::size_t size() const { return size_; }
 
@@ -35,7 +37,9 @@ public:
 private:
     class SideBySide;
 
-    void advance_part(std::size_t part, const std::atomic<bool>& stop);
+    /// 1 = to the next sample.
+    void advance_all(double share, const std::atomic<bool>& stop);
+    void advance_part(std::size_t part, double share, const std::atomic<bool>& stop);
     template <class Act>
     void with_name(std::size_t k, const Act& act) const;
 

@@ -51,6 +51,9 @@ public:
     void advance_by([[maybe_unused]] const Scalar& seconds) override {
         if constexpr (adaptive) method_.advance(seconds);
     }
+    void look_ahead([[maybe_unused]] const Scalar& seconds) override {
+        if constexpr (adaptive) method_.look_ahead(seconds);
+    }
     void read(State<Scalar, Eigen::Dynamic>& y) const override { y = method_.state(); }
     long evaluations() const override { return method_.evaluations(); }
     long steps() const override {

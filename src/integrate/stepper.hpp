@@ -31,6 +31,7 @@ concept FixedStepper = Steps<S> && requires(S stepper) {
 template <class S>
 concept AdaptiveStepper = Steps<S> && requires(S stepper, const typename S::Scalar& seconds) {
     stepper.advance(seconds);
+    stepper.look_ahead(seconds);
     { stepper.steps() } -> std::convertible_to<long>;                        // accepted
     { stepper.smallest_step() } -> std::convertible_to<typename S::Scalar>;  // s, of those that error control chose
 };
@@ -145,10 +146,13 @@ public:
     virtual ~Stepper() = default;
     virtual void advance(long steps) = 0;                // of a method with a fixed step
     virtual void advance_by(const Scalar& seconds) = 0;  // of an adaptive one
-    virtual void read(State& y) const = 0;               // y ← the state now
-    virtual long evaluations() const = 0;                // of the right-hand side
-    virtual long steps() const = 0;                      // of an adaptive method, accepted
-    virtual Scalar smallest_step() const = 0;            // s, of those
+    /// Of an adaptive one: read() tells the state so long after the last advance_by(); later ones are the same to the bit
+    /// as if it had not been asked for.
+    virtual void look_ahead(const Scalar& seconds) = 0;
+    virtual void read(State& y) const = 0;     // y ← the state now
+    virtual long evaluations() const = 0;      // of the right-hand side
+    virtual long steps() const = 0;            // of an adaptive method, accepted
+    virtual Scalar smallest_step() const = 0;  // s, of those
 
     State state() const {
         State y;

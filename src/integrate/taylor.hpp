@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
+#include "integrate/output_time.hpp"
 #include "integrate/series.hpp"
 #include "integrate/stabilise.hpp"
 #include "integrate/stepper.hpp"
@@ -31,7 +32,7 @@ namespace doppel {
 /// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the rates' amount.
 ///         Rates are the harder part: an angle errs by about h/p times as much. No step is more than twice the one
 ///         before.
-/// Rounding of the state is carried over to the next step, and time is kept as a distance from the start of the step.
+/// Rounding of the state is carried over to the next step.
 /// Source  Jorba & Zou 2005, A software package for the numerical integration of ODEs by means of high-order Taylor
 ///         methods, Experimental Mathematics 14:99.
 template <class S>
@@ -55,9 +56,22 @@ public:
     }
 
     void advance(const Scalar& seconds) {
-        add_compensated(offset_, offset_lost_, seconds);
-        while (offset_ > step_) next_step(static_cast<double>(seconds));
-        at(offset_);
+        time_.advance(seconds);
+        while (time_.offset() > step_) {
+            time_.pass(step_);
+            next_step(static_cast<double>(seconds));
+        }
+        at(time_.offset());
+    }
+    void look_ahead(const Scalar& seconds) {
+        auto ahead = time_;
+        ahead.advance(seconds);
+        while (ahead.offset() > step_) {
+            ahead.pass(step_);
+            time_.note_step_ahead(step_);
+            next_step(static_cast<double>(seconds));
+        }
+        at(ahead.offset());
     }
     const State& state() const { return out_; }
 
@@ -65,8 +79,7 @@ public:
     /// expanded. On it, at(t) holds for 0 ≤ t ≤ step(), s from where it starts; at(step()) is at(0) of the one after,
     /// to the bit.
     void take_step() {
-        offset_ = step_;
-        offset_lost_ = Scalar(0);
+        time_ = {};
         next_step(static_cast<double>(step_));
         at(Scalar(0));
     }
@@ -105,7 +118,6 @@ private:
             series_->move(step_, change_);
             for (Eigen::Index i = 0; i < base_.size(); ++i) add_compensated(base_[i], lost_[i], change_[i]);
             project(base_);
-            add_compensated(offset_, offset_lost_, Scalar(-step_));
             if (ends_at_event_) {
                 system_->settle(base_);
                 lost_.setZero();
@@ -169,11 +181,11 @@ private:
     int order_;
     std::unique_ptr<Series<Scalar>> series_;
     std::optional<AnySystem<State>> system_;
-    State base_, lost_;                                    // where the step starts, and what rounding took from it
-    State change_, out_;                                   // the state at the output time
-    Scalar step_ = Scalar(0), smallest_ = Scalar(0);       // s
-    double free_step_ = 0;                                 // s, what the step would be but for events
-    Scalar offset_ = Scalar(0), offset_lost_ = Scalar(0);  // s, from the start of the step to the output time
+    State base_, lost_;                               // where the step starts, and what rounding took from it
+    State change_, out_;                              // the state at the output time
+    Scalar step_ = Scalar(0), smallest_ = Scalar(0);  // s
+    double free_step_ = 0;                            // s, what the step would be but for events
+    OutputTime<Scalar> time_;
     long steps_ = 0;
     bool ends_at_event_ = false;  // the step
     Stall stall_;

@@ -13,11 +13,11 @@
 namespace doppel {
 
 PairState PairRun::next(const std::atomic<bool>& stop) {
-    return advance_to(tick_ < 0 ? 0 : (tick_ / ticks_per_sample_ + 1) * ticks_per_sample_, stop);
+    return advance_to({sample_ + 1}, stop);
 }
 
-void PairRun::advance_sides(long tick, const std::atomic<bool>& stop, PairState& now) {
-    const auto advance_b = [&] { now.b = b_.advance_to(tick, stop); };
+void PairRun::advance_sides(const std::atomic<bool>& stop, PairState& now) {
+    const auto advance_b = [&] { now.b = b_.advance_to(now.moment(), stop); };
     std::exception_ptr fault;
     std::vector<std::jthread> other;
     if (are_large_)
@@ -30,17 +30,17 @@ void PairRun::advance_sides(long tick, const std::atomic<bool>& stop, PairState&
             other_cpu_s_ += seconds_of(CLOCK_THREAD_CPUTIME_ID);
         });
     const bool is_alone = other.empty();
-    now.a = a_.advance_to(tick, stop);
+    now.a = a_.advance_to(now.moment(), stop);
     if (is_alone) return advance_b();
     other.clear();
     if (fault) std::rethrow_exception(fault);
 }
 
-PairState PairRun::advance_to(long tick, const std::atomic<bool>& stop) {
+PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {
     PairState now;
-    now.tick = tick_ = tick;
-    now.sample = tick / ticks_per_sample_;
-    advance_sides(tick, stop, now);
+    now.sample = sample_ = moment.sample;
+    now.share = moment.share;
+    advance_sides(stop, now);
     now.energy_error_a = a_.energy_error(now.a);
     now.energy_error_b = b_.energy_error(now.b);
     const bool exact = !now.a.exact.empty() && !now.b.exact.empty();

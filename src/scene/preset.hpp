@@ -292,13 +292,14 @@ void read_physical_release(TomlReader& table, SideSpec& side);
 void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset,
                 bool is_film = false);
 
-/// Steps and samples must fall on each other exactly.
+/// Samples must be at steps, the end at a sample, and the numbers of the clock such that no sum of it leaves 64 bits.
 void check_clock(const Preset& preset, const TomlReader& scene);
 
 /// Reads the file of a side's track, if it has one. Throws Error, or takes note of the fault, as the reader of its table does.
 void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side);
 
-/// Frames must fall on samples exactly, the poster on a frame; a GIF that names no rate gets one.
+/// Frames must not be too many; 23.976 frames/s and the like become what they mean, 24000/1001. A GIF, and a film whose
+/// speed changes, get a rate where none is named.
 void check_frames(Preset& preset, const TomlReader& video);
 
 }  // namespace doppel

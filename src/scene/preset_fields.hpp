@@ -301,10 +301,11 @@ void format_fields(Visit& visit, Video& video) {
 template <class Visit, class Video>
 void time_fields(Visit& visit, Video& video) {
     constexpr auto seconds = from_to(0, 3600, "none");
-    constexpr std::string_view all_samples = "sample_hz · speed; of a gif 10 to 50";
+    constexpr std::string_view all_samples = "sample_hz · speed, of a gif up to 30; where the speed changes sample_hz";
     constexpr auto speeds = Bounds{.low = 0, .is_open = true};
-    visit({"fps", "frames a second; divides sample_hz · speed, unless the speed changes", "1/s", positive, all_samples},
-          video.fps);
+    constexpr std::string_view rates =
+        "frames a second; 23.976, 29.97 and 59.94 mean 24000/1001, 30000/1001, 60000/1001";
+    visit({"fps", rates, "1/s", positive, all_samples}, video.fps);
     visit({"speed", "seconds of motion a second of film; a list: each speed is reached at its time", "", speeds},
           video.speed);
     const Only of_changes{video.speed.changes_over_time(), "is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]",
@@ -316,7 +317,7 @@ void time_fields(Visit& visit, Video& video) {
     visit({"hold_end_s", "how long the last frame stands", "s", seconds}, video.hold_end_s);
     visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);
     visit({"end_card_s", "a card with the outcome after the film", "s", seconds}, video.end_card_s);
-    visit({"poster_s", "NAME.poster.png: the frame at this time", "s", not_negative}, video.poster_s);
+    visit({"poster_s", "NAME.poster.png: the frame nearest to this time", "s", not_negative}, video.poster_s);
     constexpr std::string_view across = "frames across and down";
     visit({"contact_sheet",
            "NAME.contact.png: pendulums and time at so many moments, across and down",

@@ -234,6 +234,10 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
 }
 
 void check_clock(const Preset& preset, const TomlReader& scene) {
+    constexpr long most_digits = 1'000'000'000;
+    if (preset.sample_hz.numerator > most_digits || preset.sample_hz.denominator > most_digits)
+        throw scene.fault("sample_hz", "must be a fraction of whole numbers up to {}; it is {}", most_digits,
+                          preset.sample_hz.text());
     for (const auto* side : {&preset.a, &preset.b}) {
         if (!side->track.is_none() || side->accuracy || find_method(side->integrator)->adaptive) continue;
         const auto rate = quotient({1, 1}, side->step());
@@ -246,7 +250,8 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
     const auto samples = product(preset.duration_s, preset.sample_hz);
     if (!samples || !samples->is_whole())
         throw scene.fault("duration_s", "must be a whole number of samples at {} Hz; {} s are {}",
-                          preset.sample_hz.text(), preset.duration_s.text(), samples ? samples->text() : "too many");
+                          preset.sample_hz.text(), preset.duration_s.value(),
+                          samples ? fmt::format("{}", samples->value()) : "too many");
     constexpr long most_samples = 100'000'000;
     if (samples->numerator > most_samples)
         throw scene.fault("duration_s", "must be at most {} samples; it is {}", most_samples, samples->numerator);

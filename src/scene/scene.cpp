@@ -8,13 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace doppel {
 
-double Scene::time_of_tick(long tick) const {
-    return static_cast<double>(tick) * static_cast<double>(preset.sample_hz.denominator) /
-           static_cast<double>(preset.sample_hz.numerator * frames.ticks_per_sample);
+double Scene::time(const Moment& moment) const {
+    return (static_cast<double>(moment.sample) + moment.share) * static_cast<double>(preset.sample_hz.denominator) /
+           static_cast<double>(preset.sample_hz.numerator);
 }
 
 std::optional<double> Scene::horizon() const {
@@ -33,26 +32,31 @@ void check_tracks(const Scene& scene) {
     for (const auto* side : {&scene.a, &scene.b}) {
         if (!side->replay) continue;
         const auto most = longest_duration(*side->replay, preset.sample_hz);
-        if (preset.duration_s.value() > most.value())
+        const double seconds = most.value();  // as a decimal, where that is all of it
+        const auto text = rational_from_decimal(seconds) == most ? fmt::format("{}", seconds) : toml_ratio(most);
+        if (preset.duration_s.value() > seconds)
             throw bad_input(
                 "{}: [scene] duration_s must be at most {}, as long as the track of side {} lasts; it is {}",
-                preset.name, toml_ratio(most), side == &scene.a ? "a" : "b", preset.duration_s.text());
+                preset.name, text, side == &scene.a ? "a" : "b", preset.duration_s.value());
     }
 }
 
-/// By which the steps of a sample can be divided on both sides; 0 = by anything.
-long common_steps(const Scene& scene) {
-    const auto steps = [](const Side& side) {
-        return side.replay || side.method.adaptive ? 0 : side.motion.steps_per_sample;
-    };
-    return std::gcd(steps(scene.a), steps(scene.b));
-}
-
-/// The same motion, observed at each tick of a sample.
-MotionSpec in_ticks(MotionSpec motion, long ticks_per_sample) {
-    motion.sample_interval = *quotient(motion.sample_interval, {ticks_per_sample, 1});
-    if (!find_method(motion.method)->adaptive) motion.steps_per_sample /= ticks_per_sample;
-    return motion;
+/// Frames between samples show the nearest of fixed steps. Throws Error (exit 2) where that is off by more than a
+/// sixteenth of the way from frame to frame: the film would stutter.
+void check_steps(const Scene& scene) {
+    const auto& speed = scene.preset.video.speed;
+    const double between_frames = speed.slowest().value() / scene.fps.value();  // s of motion
+    constexpr double least_steps = 8;
+    for (const auto* side : {&scene.a, &scene.b}) {
+        if (side->replay || side->method.adaptive || between_frames >= least_steps * side->step.value()) continue;
+        const auto steps = product(scene.frames.stride, {side->motion.steps_per_sample, 1});
+        if (!speed.changes_over_time() && steps && steps->is_whole()) continue;
+        throw bad_input(
+            "{}: [video] frames are {:.3g} s of the motion apart and not all at steps, which are {:.3g} s long on side "
+            "{}: they must be at most {:.3g} s, by a smaller step_s or accuracy",
+            scene.preset.name, between_frames, side->step.value(), side == &scene.a ? "a" : "b",
+            between_frames / least_steps);
+    }
 }
 
 /// The members of an ensemble, stepped as side a is; what no list gives goes from side a to side b in equal steps.
@@ -63,7 +67,7 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     for (std::size_t k = 0; k < asked.size(); ++k) {
         auto member = between(first, last, Quad(k) / Quad(asked.size() - 1));
         if (!asked.angles_deg.empty()) member.angle_deg = asked.angles_deg[k];
-        members.push_back(in_ticks(scene.a.motion, scene.frames.ticks_per_sample));
+        members.push_back(scene.a.motion);
         members.back().chain = chain_of(member);
         if (!member.physical.is_none()) members.back().physical = physical_of(member);
         members.back().wants_tension = false;
@@ -90,7 +94,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
                 .frames = {},
                 .chooser = chooser};
     scene.fps = preset.video.fps ? *preset.video.fps : *product(preset.sample_hz, preset.video.speed.constant);
-    scene.frames = frame_times(preset, scene.fps, scene.samples, common_steps(scene));
+    scene.frames = frame_times(preset, scene.fps, scene.samples);
+    check_steps(scene);
     const auto wanted = [&](StripKind kind) {
         return std::find(preset.video.strips.begin(), preset.video.strips.end(), kind) != preset.video.strips.end();
     };
@@ -132,10 +137,8 @@ std::optional<std::string> not_finite(const Observation& seen, bool has_angles) 
 }
 
 std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
-    return for_side(scene.preset, name, [&] {
-        const auto motion = in_ticks(side.motion, scene.frames.ticks_per_sample);
-        return side.replay ? make_replay(motion, *side.replay) : make_motion(motion);
-    });
+    return for_side(scene.preset, name,
+                    [&] { return side.replay ? make_replay(side.motion, *side.replay) : make_motion(side.motion); });
 }
 
 }  // namespace
@@ -153,11 +156,10 @@ std::optional<double> SideRun::energy_error(const Observation& seen) const {
 }
 
 BreakDown SideRun::broken(const std::string& what) const {
-    const long ticks = scene_.frames.ticks_per_sample;
-    return {fmt::format("{}: side {} broke down by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_,
-                        scene_.time_of_tick(tick_), what, name_of(side_.motion.model), side_.method.title,
-                        step_control_text(side_)),
-            name_, (tick_ + ticks - 1) / ticks};
+    return {
+        fmt::format("{}: side {} broke down by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_, scene_.time(now_),
+                    what, name_of(side_.motion.model), side_.method.title, step_control_text(side_)),
+        name_, now_.share > 0 ? now_.sample + 1 : now_.sample};
 }
 
 void SideRun::watch(const Observation& seen) {
@@ -170,21 +172,21 @@ void SideRun::watch(const Observation& seen) {
 }
 
 Observation SideRun::next(const std::atomic<bool>& stop) {
-    const long ticks = scene_.frames.ticks_per_sample;
-    return advance_to(tick_ < 0 ? 0 : (tick_ / ticks + 1) * ticks, stop);
+    return advance_to({now_.sample + 1}, stop);
 }
 
-Observation SideRun::advance_to(long tick, const std::atomic<bool>& stop) {
+Observation SideRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {
     throw_if_set(stop);
-    tick_ = std::max(tick_, 0L);
-    while (tick_ < tick) {
-        ++tick_;
-        try {
+    const bool is_released = now_.sample < 0;
+    now_ = moment;
+    try {
+        if (moment.share > 0)
+            motion_->advance_within(moment.share, stop);
+        else if (!is_released)
             motion_->advance(stop);
-        } catch (const Error& fault) {
-            if (fault.code() != ExitCode::method_failed) throw;
-            throw broken(fault.what());
-        }
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::method_failed) throw;
+        throw broken(fault.what());
     }
     auto seen = motion_->observe();
     watch(seen);

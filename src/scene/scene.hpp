@@ -18,24 +18,31 @@
 
 namespace doppel {
 
-/// Which moments of the motion the frames of a film show, as numbers of ticks from the start. At one speed a tick is a
-/// sample; where the speed changes, samples are cut into ticks so fine that frames fall on them.
-struct FrameTimes {
-    long ticks_per_sample = 1;
-    long stride = 1, last = 0;  // at one speed: ticks from frame to frame; the last one's
-    std::vector<long> ticks;    // where the speed changes: each frame's
+/// A moment of a motion: a share, 0 ≤ share < 1, of the way from a sample to the next.
+struct Moment {
+    long sample = 0;
+    double share = 0;
 
-    long count() const { return ticks.empty() ? last / stride + 1 : static_cast<long>(ticks.size()); }
-    long tick(long frame) const { return ticks.empty() ? frame * stride : ticks[static_cast<std::size_t>(frame)]; }
-    /// The first frame at that tick or later; count() where there is none.
-    long first_from(long tick) const;
-    /// The next sample or frame, whichever is sooner.
-    long next_moment(long tick) const;
+    friend auto operator<=>(const Moment&, const Moment&) = default;
+};
+/// So many samples from the start; at a sample where it is within 1e-6 of one.
+Moment moment_at(double samples);
+
+/// Which moments of the motion the frames of a film show: at one speed frame n is n · stride samples from the start, exactly.
+/// The last frame shows the end of the motion, wherever the one before it is.
+struct FrameTimes {
+    Rational stride{1, 1};         // samples from frame to frame, at one speed
+    std::vector<Moment> changing;  // where the speed changes: each frame's but the last
+    Moment last;
+    long count = 0;
+
+    Moment at(long frame) const;
+    /// The first frame at that moment or later; count where there is none.
+    long first_from(const Moment& moment) const;
 };
 
-/// The frames of a motion of `samples`. The steps of a sample can be divided by divisors of `common_steps` alone (0 = by
-/// anything). Throws Error (exit 2) where steps are too coarse for a speed that changes.
-FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples, long common_steps);
+/// The frames of a motion of `samples`.
+FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples);
 
 /// How long the film takes to show the motion up to `time`, s, where the speed changes: between the end of one speed
 /// and the next the film's seconds a second of motion go over by 3u² − 2u³.
@@ -133,8 +140,8 @@ struct Scene {
     FrameTimes frames;                       // which moments they show
     std::shared_ptr<MethodChooser> chooser;  // where a side requires an accuracy
 
-    double time_of_tick(long tick) const;  // s
-    double time(long sample) const { return time_of_tick(sample * frames.ticks_per_sample); }
+    double time(const Moment& moment) const;  // s
+    double time(long sample) const { return time(Moment{sample}); }
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
     std::optional<double> horizon() const;
     /// By which pictures and manifest measure errors of the energy, J: the larger side's potential range.
@@ -149,13 +156,15 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 /// is the same to compute with; all of the system; or the pull of a droplet, beside gravity.
 void check_difference(const Scene& scene);
 
-/// Both sides and how they differ at one sample.
+/// Both sides and how they differ at a sample, or between two.
 struct PairState {
-    long sample = 0;  // the last one that is over
-    long tick = 0;    // FrameTimes::ticks_per_sample a sample
+    long sample = 0;   // the last one that is over
+    double share = 0;  // of the way to the next one
     Observation a, b;
     std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
     double distance = 0;                                   // state space, analysis/difference.hpp
+
+    Moment moment() const { return {sample, share}; }
 };
 
 /// A side whose method broke down (exit 3).
@@ -176,8 +185,9 @@ public:
     /// out of all proportion, a rod is off by its own length, or a step cannot be made; exit 130 soon after `stop` is
     /// set.
     Observation next(const std::atomic<bool>& stop);
-    /// A tick that is later, or 0 at first. Throws as next().
-    Observation advance_to(long tick, const std::atomic<bool>& stop);
+    /// On to a moment before the next sample, or to that; Motion::advance_within() says what is at it with a fixed step.
+    /// Throws as next().
+    Observation advance_to(const Moment& moment, const std::atomic<bool>& stop);
 
     /// Relative (analysis/breakdown.hpp); nothing where damping takes energy, so that no change of it is an error.
     std::optional<double> energy_error(const Observation& seen) const;
@@ -192,7 +202,7 @@ private:
     char name_;
     std::unique_ptr<Motion> motion_;
     Proportion proportion_;
-    long tick_ = -1;
+    Moment now_{-1};
 };
 
 /// What of a side's masses is compared with the other's: all, or the last one where the sides differ in kind.
@@ -210,14 +220,13 @@ class PairRun {
 public:
     explicit PairRun(const Scene& scene)
         : scene_(scene),
-          ticks_per_sample_(scene.frames.ticks_per_sample),
           a_(scene, scene.a, 'a'),
           b_(scene, scene.b, 'b'),
           are_large_(std::min(scene.a.mass.size(), scene.b.mass.size()) >= large) {}
 
     /// Sample 0, then 1, 2, … Throws as SideRun does.
     PairState next(const std::atomic<bool>& stop);
-    PairState advance_to(long tick, const std::atomic<bool>& stop);
+    PairState advance_to(const Moment& moment, const std::atomic<bool>& stop);
 
     Effort effort_a() const { return a_.effort(); }
     Effort effort_b() const { return b_.effort(); }
@@ -227,14 +236,13 @@ public:
 private:
     static constexpr std::size_t large = 256;  // masses; a sample takes longer than to start a thread
 
-    void advance_sides(long tick, const std::atomic<bool>& stop, PairState& now);
+    void advance_sides(const std::atomic<bool>& stop, PairState& now);
 
     const Scene& scene_;
-    long ticks_per_sample_;
     SideRun a_, b_;
     bool are_large_;
     double other_cpu_s_ = 0;
-    long tick_ = -1;
+    long sample_ = -1;
 };
 
 }  // namespace doppel

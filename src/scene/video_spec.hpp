@@ -145,6 +145,10 @@ struct Speed {
     std::vector<Change> changes;  // from 0 s on
 
     bool changes_over_time() const { return !changes.empty(); }
+    Rational slowest() const {
+        const auto by_value = [](const Change& change) { return change.speed.value(); };
+        return changes.empty() ? constant : std::ranges::min(changes, {}, by_value).speed;
+    }
 };
 
 /// The pendulums of an ensemble: so many from side a to side b, or each by its angles at the start.
@@ -165,7 +169,7 @@ struct Panels {
 /// [video]: what a film shows and how it is written. Sizes are for 1920×1080 and grow and shrink with the picture.
 struct VideoSpec : Panels {
     Size size{1920, 1080};
-    std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif about 30
+    std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif up to 30
     Speed speed;
     double speed_ease_s = 0.5;                      // of motion, before each change
     Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // how long the first and the last frame stand
@@ -177,7 +181,7 @@ struct VideoSpec : Panels {
     bool transparent = false;  // no page, no panels; what is drawn alone
     std::string preset = "doppel";
     int crf = 18;
-    std::optional<Rational> poster_s;                 // the frame at this time as a picture of its own
+    std::optional<Rational> poster_s;                 // the frame nearest to this time, as a picture of its own
     std::optional<std::array<int, 2>> contact_sheet;  // frames across and down
 
     Arrangement layout = Arrangement::side_by_side;

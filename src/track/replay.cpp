@@ -21,9 +21,12 @@ public:
 
     void advance(const std::atomic<bool>&) override {
         ++count_;
+        share_ = 0;
         if (time() > replay_.length() + whole_sample)
             throw method_failed("the track ends {:.6g} s after its start", replay_.length());
     }
+
+    void advance_within(double share, const std::atomic<bool>&) override { share_ = share; }
 
     Observation observe() const override {
         const auto [one, two] = glimpse_at(*replay_.track, replay_.samples(), replay_.start_s + time());
@@ -44,12 +47,13 @@ public:
     Effort effort() const override { return {}; }
 
 private:
-    double time() const { return static_cast<double>(count_) * interval_s_; }
+    double time() const { return (static_cast<double>(count_) + share_) * interval_s_; }
 
     PhysicalPendulum<double> pendulum_;
     Replay replay_;
     double interval_s_;
-    long count_ = 0;
+    long count_ = 0;    // samples
+    double share_ = 0;  // of the way to the next one
 };
 
 }  // namespace

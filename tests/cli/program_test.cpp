@@ -143,17 +143,17 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(Program, SamplesThatALaterPresetLacksAreToldBeforeTheFirstRuns) {
+TEST(Program, FramesThatALaterPresetLacksAreToldBeforeTheFirstRuns) {
     const auto folder = fresh_folder();
     write_bytes(folder / "long.toml", "[scene]\nduration_s = 2\n");
     write_bytes(folder / "short.toml", "[scene]\nduration_s = 1\n");
     write_bytes(folder / "rare.toml", "[scene]\nduration_s = 2\n[video]\nfps = 1\n");
     const auto result = doppel(folder, {"render", "long.toml", "short.toml", "--frames", "130:140"});
     EXPECT_EQ(result.code, 2);
-    EXPECT_EQ(result.err, "doppel: --frames 130:140: short has the samples 0 to 120; A:B must have 0 ≤ A < B ≤ 121\n");
+    EXPECT_EQ(result.err, "doppel: --frames 130:140: short has the frames 0 to 120; A:B must have 0 ≤ A < B ≤ 121\n");
     const auto between = doppel(folder, {"render", "long.toml", "rare.toml", "--frames", "130:140"});
     EXPECT_EQ(between.code, 2);
-    EXPECT_EQ(between.err, "doppel: --frames 130:140: no frame of rare falls into it; every 120th sample is one\n");
+    EXPECT_EQ(between.err, "doppel: --frames 130:140: rare has the frames 0 to 2; A:B must have 0 ≤ A < B ≤ 3\n");
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 

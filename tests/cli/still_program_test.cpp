@@ -22,9 +22,9 @@ TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
              {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""}, "and still, which draws PNG"},
              {{"render", "calm", "--from", "-1"}, "--from wants seconds ≥ 0"},
              {{"render", "calm", "--from", "1", "--frames", "0:3"},
-              "--frames counts samples, --from and --to seconds; give one"},
+              "--frames counts frames, --from and --to seconds; give one"},
              {{"render", "calm", "--from", "3", "--to", "2"},
-              "--from 3 --to 2: the end must not be before the start"}}) {
+              "--from 3 --to 2: the end, which is not included, must be after the start"}}) {
         const auto refused = test::doppel(folder, arguments);
         EXPECT_EQ(refused.code, 2) << message;
         EXPECT_NE(refused.err.find(message), std::string::npos) << refused.err;

@@ -66,6 +66,7 @@ class Oracle final : public Motion {
 public:
     explicit Oracle(long evaluations) : evaluations_(evaluations) {}
     void advance(const std::atomic<bool>& /*stop*/) override {}
+    void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) override {}
     Observation observe() const override {
         Observation seen;
         seen.bobs.resize(2);

@@ -230,6 +230,7 @@ public:
     void advance(const std::atomic<bool>& /*stop*/) override {
         if (setting_ < 1e-3) throw method_failed("idle: it gives up");
     }
+    void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) override {}
     Observation observe() const override {
         Observation seen;
         seen.bobs.resize(2);

@@ -139,7 +139,7 @@ TEST(Layouts, ExponentSoFarIsTheSlopeOfTheLogarithm) {
     const auto scene = scene_of("butterfly");
     PairState state;
     state.distance = 1e-4 * std::exp(0.7 * 10);
-    state.sample = state.tick = 1200;
+    state.sample = 1200;
     EXPECT_NEAR(*exponent_so_far(scene, state, 1e-4), 0.7, 1e-15);  // measured 0
     EXPECT_FALSE(exponent_so_far(scene, state, 0));
     state.sample = 179;  // before a twentieth of 30 s

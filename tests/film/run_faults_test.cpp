@@ -96,8 +96,8 @@ TEST(RunFaults, RefusesFramesThatAreNotThereAndAPosterOutsideThem) {
         EXPECT_EQ(code, ExitCode::bad_input) << first;
         EXPECT_EQ(message, expected);
     };
-    expect_refused(60, 62, "--frames 60:62: butterfly has the samples 0 to 60; A:B must have 0 ≤ A < B ≤ 61");
-    const std::string poster = "the poster of butterfly, poster_s = 1/4, is sample 30; ";
+    expect_refused(60, 62, "--frames 60:62: butterfly has the frames 0 to 60; A:B must have 0 ≤ A < B ≤ 61");
+    const std::string poster = "the poster of butterfly, poster_s = 0.25, is frame 30; ";
     expect_refused(0, 30, "--frames 0:30: " + poster + "--frames 0:31 would have it");
     expect_refused(31, 40, "--frames 31:40: " + poster + "--frames 30:40 would have it");
     EXPECT_TRUE(fs::is_empty(out));

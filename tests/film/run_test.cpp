@@ -61,15 +61,44 @@ TEST(Run, OfAChangingSpeedHasTheSameTableAndMoreFrames) {
     // a part of it has the frames of the whole, and the rows of its samples
     const auto png = small_scene({"video.speed=[[0, 1], [0.2, 0.25]]", "video.format=\"png\""});
     render(png, {.out = out / "all"});
-    render(png, {.out = out / "part", .first = 24, .last = 31});
+    const long first = png.frames.first_from({24});
+    EXPECT_EQ(png.frames.at(first), Moment{24});
+    render(png, {.out = out / "part", .first = first, .last = first + 25});
     const auto rows = lines_of(out / "part/butterfly/butterfly.csv");
-    ASSERT_EQ(rows.size(), 8u);
+    ASSERT_EQ(rows.size(), 8u);  // 24 to 30
     EXPECT_EQ(rows[1], lines_of(out / "all/butterfly/butterfly.csv")[1 + 24]);
     const auto frames = files_in(out / "part/butterfly/frames");
     for (const auto& name : frames)
         EXPECT_EQ(bytes_of(out / "part/butterfly/frames" / name), bytes_of(out / "all/butterfly/frames" / name))
             << name;
     EXPECT_EQ(frames.size(), 25u);  // 6 samples at a quarter of the speed, both ends
+}
+
+TEST(Run, OfAnyRateHasTheSameTableAndFramesThatAreTheSameAtAnyOther) {
+    const auto out = fresh_folder();
+    for (const std::string preset : {"butterfly", "fan", "phase-dance"}) {
+        const auto scene = [&](const char* fps) {
+            return scene_of(preset, {"video.size=[320, 180]", "scene.duration_s=0.2", "video.format=\"png\"",
+                                     "video.hold_start_s=0", "video.hold_end_s=0", "video.title_card_s=0",
+                                     "video.end_card_s=0", fmt::format("video.fps={}", fps)});
+        };
+        const auto film = scene("50");
+        render(scene("120"), {.out = out / "120"});
+        EXPECT_EQ(render(film, {.out = out / "50"}).frames, 11);
+        EXPECT_EQ(render(scene("600"), {.out = out / "600"}).frames, 121);
+        const auto name = "/" + preset + "/" + preset + ".csv";
+        for (const char* other : {"50", "600"})
+            EXPECT_EQ(bytes_of(out / (other + name)), bytes_of(out / ("120" + name))) << preset << ' ' << other;
+        const auto frame = [&](const char* folder, long k) {
+            return bytes_of(out / folder / preset / "frames" / fmt::format("{:06}.png", k));
+        };
+        for (const long k : {0, 1, 12, 23, 24}) EXPECT_EQ(frame("600", 5 * k), frame("120", k)) << preset << ' ' << k;
+        for (const long k : {0, 1, 2, 5, 9, 10}) EXPECT_EQ(frame("50", k), frame("600", 12 * k)) << preset << ' ' << k;
+        EXPECT_NE(frame("600", 61), frame("600", 60));
+        // and alone: of sample 16.8, between two
+        render(film, {.out = out / "part", .first = 7, .last = 8});
+        EXPECT_EQ(frame("part", 7), frame("50", 7)) << preset;
+    }
 }
 
 TEST(Run, ManifestTellsWhatRanAndHashesIt) {
@@ -135,9 +164,9 @@ TEST(Run, SameArgumentsGiveTheSameBytesWhateverTheJobsAndCores) {
             films.insert(bytes_of(film));
             tables.insert(bytes_of(out / "butterfly/butterfly.csv"));
         };
-        one_core([&] { render(scene, {.out = out, .last = 20, .jobs = 1}); });
+        one_core([&] { render(scene, {.out = out, .to_s = Rational{1, 6}, .jobs = 1}); });
         keep();
-        render(scene, {.out = out, .last = 20, .jobs = 5});
+        render(scene, {.out = out, .to_s = Rational{1, 6}, .jobs = 5});
         keep();
         EXPECT_EQ(films.size() + tables.size(), 2u) << fmt::format("{}", fmt::join(arguments, " "));
     }

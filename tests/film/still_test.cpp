@@ -59,14 +59,19 @@ TEST(Still, IsAlsoAPageOfPathsAndText) {
     EXPECT_EQ(error_of([&] { still(small(), {1, 2}, out, PictureFormat::pdf); }).first, ExitCode::io_failed);
 }
 
-TEST(Still, SaysWhichTimesThereAre) {
-    const auto message = [](const Rational& time) { return error_of([&] { still(small(), time); }).second; };
-    EXPECT_EQ(message({1003, 1000}),
-              "--at 1.003: butterfly has no sample there; those at 1 s and 1.008333 s are next to it");
-    EXPECT_EQ(message({2, 1}), "--at 2: butterfly ends at 3/2 s");
+TEST(Still, IsOfAnyTimeUpToTheEnd) {
+    const auto path = still(small(), {1003, 1000});
+    EXPECT_EQ(path.filename(), "butterfly.1.003s.png");
+    // the picture of a film that has a sample there
+    const auto pixels = [](std::vector<std::string> more) {
+        more.insert(more.end(), {"video.trail_s=0", "video.panels=[\"pendulums\"]", "video.fps=60"});
+        return read_png(still(small(more), {1003, 1000})).rgba;
+    };
+    EXPECT_EQ(pixels({}), pixels({"scene.sample_hz=1000"}));
+    EXPECT_EQ(error_of([&] { still(small(), {2, 1}); }).second, "--at 2: butterfly ends at 1.5 s");
 }
 
-TEST(Still, RangesInSecondsAreThoseInSamples) {
+TEST(Still, RangesInSecondsAreThoseInFramesWithoutTheirEnd) {
     const auto names_of_frames = [](const RunOptions& options) {
         render(small(), options);
         return files_in(options.out / "butterfly/frames");
@@ -74,19 +79,26 @@ TEST(Still, RangesInSecondsAreThoseInSamples) {
     const auto of = [&](std::optional<Rational> from, std::optional<Rational> to) {
         return names_of_frames({.out = test::fresh_folder(), .from_s = from, .to_s = to});
     };
-    const auto samples = [&](long first, long last) {
+    const auto frames = [&](long first, long last) {
         return names_of_frames({.out = test::fresh_folder(), .first = first, .last = last});
     };
-    EXPECT_EQ(of(Rational{1, 2}, Rational{3, 5}), samples(60, 73));  // both ends
-    EXPECT_EQ(of(Rational{7, 5}, std::nullopt), samples(168, 181));
-    EXPECT_EQ(of(std::nullopt, Rational{1, 100}), samples(0, 2));  // between two samples
+    EXPECT_EQ(of(Rational{1, 2}, Rational{3, 5}), frames(60, 72));
+    EXPECT_EQ(of(Rational{7, 5}, std::nullopt), frames(168, 181)) << "the end of the whole is a frame";
+    EXPECT_EQ(of(Rational{7, 5}, Rational{3, 2}), frames(168, 180)) << "0.1 s to the frame: such parts make loops";
+    EXPECT_EQ(of(std::nullopt, Rational{1, 100}), frames(0, 2));  // between two frames
+    // of frames at 25/s the samples of the same time
+    EXPECT_EQ(
+        render(small({"video.fps=25"}), {.out = test::fresh_folder(), .from_s = Rational{1, 2}, .to_s = Rational{3, 5}})
+            .samples,
+        12);
     const auto message = [&](std::optional<Rational> from, std::optional<Rational> to) {
         return error_of([&] { of(from, to); }).second;
     };
-    EXPECT_EQ(message(Rational{2, 1}, std::nullopt), "--from 2: butterfly ends at 3/2 s");
-    EXPECT_EQ(message(Rational{1, 1}, Rational{1, 2}), "--from 1 --to 0.5: the end must not be before the start");
+    EXPECT_EQ(message(Rational{2, 1}, std::nullopt), "--from 2: butterfly ends at 1.5 s");
+    EXPECT_EQ(message(Rational{1, 1}, Rational{1, 2}),
+              "--from 1 --to 0.5: the end, which is not included, must be after the start");
     EXPECT_EQ(message(Rational{1001, 1000}, Rational{1002, 1000}),
-              "--from 1.001 --to 1.002: butterfly has no sample there; they are 0.00833 s apart");
+              "--from 1.001 --to 1.002: butterfly has no frame there; they are 0.00833 s apart");
 }
 
 }  // namespace still_test

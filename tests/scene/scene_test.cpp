@@ -71,8 +71,8 @@ TEST(Clock, TimeIsWhatTheSampleNumberSays) {
 TEST(Clock, SpeedAndFramesFallOnSamples) {
     const auto slow = scene_of("butterfly", {"video.speed=0.25", "scene.sample_hz=240"});
     EXPECT_EQ(slow.fps.text(), "60");
-    EXPECT_EQ(slow.frames.stride, 1);
-    EXPECT_EQ(scene_of("butterfly", {"video.fps=60"}).frames.stride, 2);
+    EXPECT_EQ(slow.frames.stride, (Rational{1, 1}));
+    EXPECT_EQ(scene_of("butterfly", {"video.fps=60"}).frames.stride, (Rational{2, 1}));
 }
 
 TEST(AutoModel, IsTheSmallestThatServes) {

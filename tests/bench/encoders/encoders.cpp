@@ -41,18 +41,17 @@ Scene scene_of(const FilmToEncode& film, const std::string& codec) {
 
 RecordedFrames record(const Scene& scene) {
     const auto& frames = scene.frames;
-    const long first =
-        frames.first_from(std::lround(from_s * scene.preset.sample_hz.value()) * frames.ticks_per_sample);
+    const long first = frames.first_from(moment_at(from_s * scene.preset.sample_hz.value()));
     const long end = first + count;
     Composer composer(scene);
-    Simulation simulation(scene, frames.tick(end - 1) / frames.ticks_per_sample + 2, true, never_stopped);
+    Simulation simulation(scene, frames.at(end), true, never_stopped);
     Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, never_stopped,
                       scene.preset.video.typeface);
     RecordedFrames recorded{scene.preset.video.size, {}};
     for (long frame = 0; frame < end;) {
         const auto snapshot = simulation.next();
-        composer.add(snapshot);
-        if (snapshot.pair.tick != frames.tick(frame) || frame++ < first) continue;
+        composer.add(*snapshot);
+        if (snapshot->pair.moment() != frames.at(frame) || frame++ < first) continue;
         const auto& picture = renderer.draw(composer.frame(), never_stopped);
         convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, recorded.frames.emplace_back());
     }

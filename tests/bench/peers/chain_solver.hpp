@@ -37,6 +37,7 @@ public:
         for (const double x : y_)
             if (!std::isfinite(x)) throw method_failed("the motion has blown up");
     }
+    void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) final {}
     Observation observe() const final {
         Observation seen;
         seen.bobs = bobs_of_angles(chain_, Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
