@@ -53,6 +53,7 @@ std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const 
 void check_video(const VideoOptions& options) {
     check_options(options);
     encoding_of(options);
+    if (options.format == VideoFormat::gif) check_gif_filters();
 }
 
 }  // namespace doppel

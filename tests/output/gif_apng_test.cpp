@@ -3,6 +3,8 @@
 #include "output/gif.hpp"
 #include "output/sink.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -138,6 +140,18 @@ TEST(Gif, TheSameFramesGiveTheSameBytes) {
     const VideoOptions options{.format = VideoFormat::gif, .size = small, .fps_numerator = 50};
     const auto first = bytes_of(film(folder / "a.gif", options, 10));
     for (int k = 0; k < 2; ++k) EXPECT_TRUE(bytes_of(film(folder / "b.gif", options, 10)) == first);
+}
+
+TEST(Gif, FramesThatWaitTakeNoMemory) {
+    const auto sink = make_video_sink(fresh_folder() / "x.gif",
+                                      {.format = VideoFormat::gif, .size = {320, 180}, .fps_numerator = 25});
+    const auto take = [&](long from, long to) {
+        for (long k = from; k < to; ++k) sink->take(moving_scene({320, 180}, k % 8), whole({320, 180}));
+        const auto memory = mallinfo2();
+        return memory.uordblks + memory.hblkhd;
+    };
+    const auto before = take(0, 20);
+    EXPECT_LT(take(20, 220), before + 10'000'000);  // those 200 frames have 46 MB
 }
 
 TEST(Gif, EvenNoiseHasAPalette) {
