@@ -92,7 +92,7 @@ TEST(VideoErrors, APreviewIsAQuarterOfThePixelsUnlessTheCommandLineSaysOtherwise
 
 TEST(VideoErrors, GifsGetARateThatTheyCanShow) {
     EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\""}).fps, (Rational{30, 1}));
-    EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\"", "scene.duration_s=\"1/120\""}).fps, (Rational{120, 1}));
+    EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\"", "scene.duration_s=\"3/120\""}).fps, (Rational{40, 1}));
     EXPECT_EQ(scene_of("butterfly", {"video.format=\"gif\"", "video.fps=20"}).fps, (Rational{20, 1}));
     const auto rate = [](const char* duration, const char* sampled = "scene.sample_hz=120") {
         return scene_of("butterfly", {"video.format=\"gif\"", duration, sampled, "system.integrator=\"taylor\""}).fps;
