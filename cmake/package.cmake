@@ -75,7 +75,7 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog.Debian CONTENT
 execute_process(COMMAND gzip -9nkf ${PROJECT_BINARY_DIR}/changelog.Debian)
 install(FILES ${PROJECT_BINARY_DIR}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# libraries that the program opens itself, which dpkg-shlibdeps cannot see: what draws
+# libraries that the program opens itself, which dpkg-shlibdeps cannot see: what draws, and what makes the palettes of GIFs
 find_library(OSMESA_LIBRARY NAMES libOSMesa.so.8 OSMesa)
 set(egl "libegl1, libegl-mesa0, libgl1-mesa-dri")
 if(OSMESA_LIBRARY)
@@ -84,6 +84,8 @@ if(OSMESA_LIBRARY)
 else()
     set(CPACK_DEBIAN_PACKAGE_DEPENDS "${egl}")
 endif()
+string(REGEX MATCH "^[0-9]+" avfilter "${AVFILTER_VERSION}")
+string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", libavfilter${avfilter} | libavfilter-extra${avfilter}")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME doppel)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})

@@ -1,9 +1,9 @@
-#include "base/clock.hpp"
 #include "base/machine.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "figure/computation.hpp"
+#include "film/estimate.hpp"
 #include "film/film.hpp"
 #include "scene/captions.hpp"
 #include "scene/forecast.hpp"
@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -22,92 +21,17 @@ long frames_of(const Scene& scene) {
     return schedule_of(scene).frames();
 }
 
-/// "H.264 veryfast, crf 18", "PNG sequence", "GIF".
+/// "H.264 veryfast, crf 18, yuv420p", "PNG sequence", "GIF".
 std::string format_words(const VideoSpec& video) {
-    if (video.format == FilmFormat::png) return "PNG sequence";
-    if (video.format == FilmFormat::gif) return "GIF";
-    if (video.format == FilmFormat::apng) return "animated PNG";
-    const auto codec = video.format == FilmFormat::mp4 ? "H.264" : video.codec == "av1" ? "AV1" : "VP9";
-    return fmt::format("{} {}, crf {}, {}", codec, video.preset, video.crf, name_of(video.pixel_format));
-}
-
-/// What a look at the beginning of a run tells of all of it.
-struct Estimate {
-    double seconds = 0;  // to simulate
-    double steps = 0;
-    bool at_least = false;  // where the look was too brief
-};
-
-/// Makes the samples of one side brief, a few steps each, as one of the scene's may hold any number of them. The
-/// number of brief ones in one of the scene's.
-double make_brief(Scene& scene, Side& side) {
-    constexpr long few_steps = 250;
-    constexpr double brief_s = 0.01, most_parts = 1e12;
-    auto& motion = side.motion;
-    const bool adaptive = side.method.adaptive;
-    const auto steps = std::min(few_steps, motion.steps_per_sample);
-    const double parts = adaptive ? std::clamp(std::ceil(motion.sample_interval.value() / brief_s), 1.0, most_parts)
-                                  : static_cast<double>(motion.steps_per_sample) / static_cast<double>(steps);
-    const auto brief =
-        adaptive ? quotient(motion.sample_interval, {std::llround(parts), 1}) : product(side.step, {steps, 1});
-    if (!brief) return 1;
-    motion.sample_interval = *brief;
-    if (!adaptive) motion.steps_per_sample = steps;
-    scene.preset.sample_hz = quotient({1, 1}, *brief).value_or(scene.preset.sample_hz);
-    return parts;
-}
-
-Estimate estimated_side(Scene scene, Side Scene::*which, char name, const std::atomic<bool>& stop) {
-    constexpr double look_s = 0.025, patience_s = 1;
-    auto& side = scene.*which;
-    const double whole_samples = static_cast<double>(scene.samples);
-    const double steps = whole_samples * static_cast<double>(side.motion.steps_per_sample);
-    const double samples = whole_samples * make_brief(scene, side);
-    SideRun run(scene, side, name);
-    const TimeLimit limit(patience_s, stop);
-    double start = seconds_of(CLOCK_MONOTONIC), elapsed = 0, done = 0;
-    try {
-        run.next(limit.reached());
-        start = seconds_of(CLOCK_MONOTONIC);
-        for (; done < samples && elapsed < look_s; ++done) {
-            run.next(limit.reached());
-            elapsed = seconds_of(CLOCK_MONOTONIC) - start;
-        }
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::interrupted || stop) throw;
-        elapsed = seconds_of(CLOCK_MONOTONIC) - start;
-    }
-    const double share = samples / std::max(done, 1.0);
-    return {elapsed * share, side.method.adaptive ? static_cast<double>(run.effort().steps) * share : steps, done < 1};
-}
-
-Estimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop) {
-    const auto estimated = [&](Side Scene::*side, char name) {
-        return (scene.*side).replay ? Estimate{} : estimated_side(scene, side, name, stop);
-    };
-    const auto a = estimated(&Scene::a, 'a'), b = estimated(&Scene::b, 'b');
-    return {a.seconds + b.seconds, a.steps + b.steps, a.at_least || b.at_least};
+    const auto& row = video.format_row();
+    if (!row.is_encoded()) return std::string(row.title);
+    return fmt::format("{} {}, crf {}, {}", row.title, video.preset, video.crf, name_of(video.pixel_format));
 }
 
 /// "1 800 000", whatever the number.
 std::string counted(double number) {
     constexpr double most = 1e18;
     return number < most ? grouped(std::llround(number)) : scientific(number);
-}
-
-/// Drawing and encoding, s; measured on two cores, in ms a megapixel.
-double estimated_pictures(const Scene& scene) {
-    const auto& video = scene.preset.video;
-    const double megapixels = 1e-6 * video.size.width * video.size.height;
-    const bool slow = video.preset.find("slow") != std::string::npos;
-    const double ms = video.format == FilmFormat::png    ? 3.5
-                      : video.format == FilmFormat::webm ? 20
-                      : video.format != FilmFormat::mp4  ? 10
-                      : video.preset == "ultrafast"      ? 2
-                      : video.preset == "medium"         ? 6
-                      : slow                             ? 12
-                                                         : 3.6;
-    return 1e-3 * ms * megapixels * static_cast<double>(frames_of(scene));
 }
 
 void print_side(const char* name, const Side& side) {
@@ -181,9 +105,20 @@ void print_rivals(const Scene& scene, Side Scene::*which, const std::atomic<bool
     }
 }
 
+/// "5.1 s to render", or why that is not known.
+std::string render_words(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
+    try {
+        return fmt::format("{:.2g} s to render", estimated_render(scene, simulation, stop));
+    } catch (const Error& fault) {
+        if (fault.code() == ExitCode::interrupted) throw;
+        return fmt::format("to render is not known: {}", fault.what());
+    }
+}
+
 void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     const auto& video = scene.preset.video;
     print_line("{}: {}", scene.preset.name, scene.preset.title);
+    check_video(video_options(scene));
     const auto estimate = estimated_simulation(scene, stop);
     constexpr double patience = 2;  // s, for runs that only inform
     for (const auto which : {&Scene::a, &Scene::b}) {
@@ -205,8 +140,8 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     const auto stride = is_of_samples ? fmt::format(" (one of {} samples is one)", every.numerator) : "";
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
                video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(video));
-    print_line("  takes  {} {:.2g} s to simulate, {:.2g} s to render", estimate.at_least ? "more than" : "about",
-               estimate.seconds, std::max(estimate.seconds, estimated_pictures(scene)));
+    print_line("  takes  {} {:.2g} s to simulate, {}", estimate.at_least ? "more than" : "about", estimate.seconds,
+               render_words(scene, estimate, stop));
 }
 
 void print_figure(const FigurePreset& figure, const std::atomic<bool>& stop) {

@@ -81,7 +81,7 @@ void add_render(CLI::App& app) {
         .add_option("--format", options->format,
                     "mp4, webm, gif, apng or png (a sequence); the preset's where not given")
         ->type_name("FORMAT")
-        ->check(CLI::IsMember({"mp4", "webm", "gif", "apng", "png"}));
+        ->check(CLI::IsMember(std::vector<std::string>(format_names.begin(), format_names.end())));
     command
         .add_option("--quality", options->quality,
                     "draft (a quarter of the pixels, fast), standard (what the preset says) or best (slow)")
@@ -99,8 +99,7 @@ void add_render(CLI::App& app) {
         take_range(*options, run);
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first of them is filmed
-        for (const auto& scene : scenes)
-            if (scene.preset.video.format != FilmFormat::png) check_video(video_options(scene));
+        for (const auto& scene : scenes) check_video(video_options(scene));
         run_all(scenes, *options, run);
     });
 }

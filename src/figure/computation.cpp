@@ -2,6 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/threads.hpp"
+#include "figure/map_figure.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -138,39 +139,95 @@ void Computation::tell_estimate(double time) {
                              figure_.experiment->unit(), roughly(rate), threads_, duration_words(left / rate)));
 }
 
-ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
-    constexpr double allowed_s = 1;
-    const auto& experiment = *figure.experiment;
-    const std::size_t trials = experiment.trials(), together = experiment.together();
-    double total = 0, done = 0;
-    const double before = now();
-    for (std::size_t trial = 0; trial < trials; ++trial) {
-        total += experiment.units(trial);
-        // trials of 0 units are what others need: computed first, outside the estimate
-        TrialNumbers numbers;
-        if (experiment.units(trial) == 0) experiment.compute(trial, {&numbers, 1}, stop);
-    }
-    const double start = now();
-    const TimeLimit limit(allowed_s, stop);
-    // trials differ: samples by steps of the golden ratio
+namespace {
+
+/// Some of a figure's trials, or of a map's cells, and what they took.
+struct Sampled {
+    double done = 0, seconds = 0;
+};
+
+/// Calls sample(place, seen) with places 0…1 that are spread evenly, however many there are, until the time is over or it
+/// returns false; it adds to `seen` what it has done.
+template <class Sample>
+Sampled sampled(const TimeLimit& limit, const std::atomic<bool>& stop, const Sample& sample) {
     constexpr double golden = 0.6180339887498949;
-    const std::size_t groups = (trials + together - 1) / together;
+    Sampled seen;
+    const double start = now();
     try {
-        double place = 0.5;
-        for (std::size_t i = 0; i < groups && !limit.reached(); ++i, place += golden - std::floor(place + golden)) {
-            const auto first =
-                static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(groups)) * together;
-            if (experiment.units(first) == 0) continue;
-            std::vector<TrialNumbers> numbers(std::min(together, trials - first));
-            experiment.compute(first, numbers, limit.reached());
-            for (std::size_t k = 0; k < numbers.size(); ++k) done += experiment.units(first + k);
+        for (double place = 0.5; !limit.reached() && sample(place, seen);
+             place += golden - std::floor(place + golden)) {
         }
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::interrupted || stop) throw;
     }
-    const double cpu_s = start - before + (now() - start) * (done > 0 ? total / done : static_cast<double>(groups));
+    if (seen.done == 0) seen.seconds = now() - start;
+    return seen;
+}
+
+/// Cells of a map: a row of slow ones would take too long, and neighbours may be computed together. Pieces of rows,
+/// longer ones as long as they take little; the longest count.
+Sampled sampled_cells(const MapFigure& map, std::size_t rows, const TimeLimit& limit, const std::atomic<bool>& stop) {
+    constexpr double brief_s = 0.05;
+    constexpr std::size_t longest = 512;
+    const auto columns = static_cast<std::size_t>(map.frame().x.count);
+    std::size_t length = 1;
+    bool is_longer = true;
+    return sampled(limit, stop, [&](double place, Sampled& seen) {
+        const double row = place * static_cast<double>(rows), in_row = row - std::floor(row);
+        std::vector<TrialNumbers> cells(length);
+        const double start = now();
+        map.find(static_cast<int>(row), static_cast<int>(in_row * static_cast<double>(columns - length)), cells,
+                 limit.reached());
+        const double seconds = now() - start;
+        if (is_longer) seen = {};
+        seen = {seen.done + static_cast<double>(length), seen.seconds + seconds};
+        is_longer = seconds < brief_s && length < std::min(longest, columns);
+        if (is_longer) length = std::min({4 * length, longest, columns});
+        return true;
+    });
+}
+
+Sampled sampled_trials(const Experiment& experiment, const TimeLimit& limit, const std::atomic<bool>& stop) {
+    const std::size_t trials = experiment.trials(), together = experiment.together();
+    const std::size_t groups = (trials + together - 1) / together;
+    std::size_t calls = 0;
+    return sampled(limit, stop, [&](double place, Sampled& seen) {
+        if (calls++ == groups) return false;
+        const auto first = static_cast<std::size_t>(place * static_cast<double>(groups)) * together;
+        if (experiment.units(first) == 0) return true;
+        std::vector<TrialNumbers> numbers(std::min(together, trials - first));
+        const double start = now();
+        experiment.compute(first, numbers, limit.reached());
+        seen.seconds += now() - start;
+        for (std::size_t k = 0; k < numbers.size(); ++k) seen.done += experiment.units(first + k);
+        return true;
+    });
+}
+
+}  // namespace
+
+ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
+    constexpr double allowed_s = 1;
+    const auto& experiment = *figure.experiment;
+    const auto* map = experiment.map();
+    double total = 0;
+    std::size_t counted = 0;
+    const double before = now();
+    for (std::size_t trial = 0; trial < experiment.trials(); ++trial) {
+        const double units = experiment.units(trial);
+        // trials of 0 units are what others need: computed first, outside the estimate
+        TrialNumbers numbers;
+        if (units == 0) experiment.compute(trial, {&numbers, 1}, stop);
+        if (units > 0) ++counted;
+        total += map && units > 0 ? map->frame().x.count : units;
+    }
+    const double needed_s = now() - before;
+    const TimeLimit limit(allowed_s, stop);
+    const auto seen = map ? sampled_cells(*map, counted, limit, stop) : sampled_trials(experiment, limit, stop);
+    const std::size_t groups = (counted + experiment.together() - 1) / experiment.together();
+    const double of_all = seen.done > 0 ? total / seen.done : map ? total : static_cast<double>(groups);
     const double shared = std::min(static_cast<double>(threads), static_cast<double>(groups));
-    return {cpu_s / shared, done == 0};
+    return {(needed_s + seen.seconds * of_all) / shared, seen.done == 0};
 }
 
 }  // namespace doppel

@@ -101,20 +101,9 @@ std::optional<long> poster_frame(const Scene& scene) {
 }
 
 VideoOptions video_options(const Scene& scene) {
-    const auto& video = scene.preset.video;
-    return {.format = video.format == FilmFormat::webm   ? VideoFormat::webm
-                      : video.format == FilmFormat::gif  ? VideoFormat::gif
-                      : video.format == FilmFormat::apng ? VideoFormat::apng
-                                                         : VideoFormat::mp4,
-            .codec = video.codec,
-            .size = video.size,
-            .fps_numerator = static_cast<int>(scene.fps.numerator),
-            .fps_denominator = static_cast<int>(scene.fps.denominator),
-            .pixel_format = video.pixel_format,
-            .preset = video.preset,
-            .crf = video.crf,
-            .transparent = video.transparent,
-            .metadata = film_metadata(scene.preset)};
+    auto options = scene.preset.video.options(scene.fps);
+    options.metadata = film_metadata(scene.preset);
+    return options;
 }
 
 Film::Film(const Scene& scene, const RunOptions& options, long first, long last, Transaction& parts, RunRecord& record,

@@ -2,33 +2,26 @@
 
 #include "base/error.hpp"
 #include "base/machine.hpp"
-#include "base/threads.hpp"
+#include "base/shared_library.hpp"
 #include "output/libav_encoder.hpp"
 #include "output/workers.hpp"
 
 extern "C" {
-#include <libavutil/imgutils.h>
+#include <libavfilter/avfilter.h>
+#include <libavfilter/buffersink.h>
+#include <libavfilter/buffersrc.h>
 }
 
 #include <fmt/ranges.h>
 #include <libdeflate.h>
-#include <libimagequant.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <new>
-#include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace doppel {
 namespace {
-
-using LiqImage = Owned<liq_image, liq_image_destroy>;
-
-void check(liq_error error) {
-    if (error == LIQ_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (error != LIQ_OK) throw std::logic_error("libimagequant refuses its task");
-}
 
 /// A new file that has no name any more: closing it frees it.
 Stream unnamed_file(const std::filesystem::path& path) {
@@ -37,64 +30,69 @@ Stream unnamed_file(const std::filesystem::path& path) {
     return file;
 }
 
-/// What libimagequant allocates is null only where memory is out.
+/// What libdeflate and libavfilter allocate is null only where memory is out.
 template <class T>
 T* checked(T* thing) {
     if (!thing) throw std::bad_alloc();
     return thing;
 }
 
-/// The 255 colours that stand best for all that was counted, by libimagequant (median cut, refined by k-means, in a
-/// perceptual colour space). Each pixel becomes the nearest colour, without dithering, which would flicker from frame
-/// to frame and compress badly. Pixels are rectangles of opaque RGBA, rows from the top down, no padding.
-class Palette {
+/// libavfilter, loaded where a GIF is written: the thirty libraries that it needs would take every command 18 ms more.
+struct FilterLibrary {
+    SharedLibrary library{{fmt::format("libavfilter.so.{}", LIBAVFILTER_VERSION_MAJOR)}};
+    decltype(&avfilter_graph_alloc) graph_alloc = library["avfilter_graph_alloc"];
+    decltype(&avfilter_graph_free) graph_free = library["avfilter_graph_free"];
+    decltype(&avfilter_graph_parse2) graph_parse = library["avfilter_graph_parse2"];
+    decltype(&avfilter_graph_config) graph_config = library["avfilter_graph_config"];
+    decltype(&avfilter_graph_get_filter) graph_get_filter = library["avfilter_graph_get_filter"];
+    decltype(&av_buffersrc_add_frame_flags) add_frame = library["av_buffersrc_add_frame_flags"];
+    decltype(&av_buffersink_get_frame) get_frame = library["av_buffersink_get_frame"];
+};
+
+/// Throws Error (exit 4) where it cannot be loaded.
+const FilterLibrary& filter_library() {
+    static const FilterLibrary library;
+    return library;
+}
+
+/// "buffer@NAME=…": where frames of libavfilter's palette filters enter a graph.
+std::string source(std::string_view name, Size size) {
+    return fmt::format("buffer@{}=video_size={}x{}:pix_fmt=bgra:time_base=1/1:pixel_aspect=1/1", name, size.width,
+                       size.height);
+}
+
+/// Filters of libavfilter between named buffers and one sink. `owner` = what errors are about. All throw Error (exit 4).
+class Filters {
 public:
-    Palette() {
-        check(liq_set_max_colors(attributes_.get(), 255));
-        histogram_.reset(checked(liq_histogram_create(attributes_.get())));
+    Filters(const std::string& owner, const std::string& text)
+        : owner_(owner), graph_(checked(library_.graph_alloc())) {
+        graph_->nb_threads = 1;
+        AVFilterInOut *inputs = nullptr, *outputs = nullptr;  // none are left open
+        check(library_.graph_parse(graph_.get(), (text + ",buffersink@out").c_str(), &inputs, &outputs));
+        check(library_.graph_config(graph_.get(), nullptr));
     }
 
-    void count(const std::uint8_t* rgba, Size size) {
-        check(liq_histogram_add_image(histogram_.get(), attributes_.get(), view(rgba, size).get()));
+    /// Null: the last was given.
+    void give(const char* buffer, AVFrame* frame) {
+        check(library_.add_frame(filter(buffer), frame, AV_BUFFERSRC_FLAG_KEEP_REF | AV_BUFFERSRC_FLAG_PUSH));
     }
-
-    /// Chooses the colours; nothing can be counted after.
-    void choose() {
-        liq_result* result = nullptr;
-        check(liq_histogram_quantize(histogram_.get(), attributes_.get(), &result));
-        result_.reset(result);
-        histogram_.reset();
-        check(liq_set_dithering_level(result, 0));
-    }
-
-    /// Entry 255 is transparent black and stands for no pixel; unused entries are opaque black.
-    std::array<std::uint32_t, 256> argb() const {
-        std::array<std::uint32_t, 256> entries;
-        entries.fill(0xff000000u);
-        entries[255] = 0;
-        const liq_palette& palette = *liq_get_palette(result_.get());
-        for (unsigned i = 0; i < palette.count; ++i) {
-            const auto [r, g, b, a] = palette.entries[i];
-            entries[i] |= std::uint32_t{r} << 16 | std::uint32_t{g} << 8 | b;
-        }
-        return entries;
-    }
-
-    /// `index` ← the entry of each pixel.
-    void map(const std::uint8_t* rgba, Size size, std::uint8_t* index) {
-        check(liq_write_remapped_image(result_.get(), view(rgba, size).get(), index,
-                                       std::size_t(size.width) * size.height));
+    /// In place of what the frame had.
+    void take(AVFrame& frame) {
+        av_frame_unref(&frame);
+        check(library_.get_frame(filter("buffersink@out"), &frame));
     }
 
 private:
-    /// No copy: `rgba` must outlive it.
-    LiqImage view(const std::uint8_t* rgba, Size size) const {
-        return LiqImage(checked(liq_image_create_rgba(attributes_.get(), rgba, size.width, size.height, 0)));
-    }
+    struct Free {
+        void operator()(AVFilterGraph* graph) const { filter_library().graph_free(&graph); }
+    };
 
-    Owned<liq_attr, liq_attr_destroy> attributes_{checked(liq_attr_create())};
-    Owned<liq_histogram, liq_histogram_destroy> histogram_;
-    Owned<liq_result, liq_result_destroy> result_;
+    void check(int result) const { check_libav(result, owner_, "the palette cannot be made"); }
+    AVFilterContext* filter(const char* name) const { return library_.graph_get_filter(graph_.get(), name); }
+
+    const FilterLibrary& library_ = filter_library();
+    const std::string owner_;
+    const std::unique_ptr<AVFilterGraph, Free> graph_;
 };
 
 /// A frame in the spool begins with this; its areas and their compressed bytes follow.
@@ -102,8 +100,12 @@ struct FrameHeader {
     std::size_t areas, packed;
 };
 
-Size size_of(const Rect& area) {
-    return {area.right - area.left, area.bottom - area.top};
+/// RGBA → opaque BGRA.
+void make_opaque_bgra(std::uint8_t* pixels, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; i += 4) {
+        std::swap(pixels[i], pixels[i + 2]);
+        pixels[i + 3] = 255;
+    }
 }
 
 /// A comment extension (GIF89a, 24) with a line for each text, in blocks of at most 255 bytes; then the trailer.
@@ -120,13 +122,18 @@ std::string comment_and_end(const Metadata& metadata) {
     return bytes + '\x3b';
 }
 
+/// The first pass makes one palette of all colours, the second gives each pixel the nearest of them, without dithering,
+/// which would flicker from frame to frame.
 class GifSink final : public Sink {
 public:
     GifSink(const std::filesystem::path& place, const VideoOptions& options, const std::atomic<bool>& stop)
         : options_(options),
           encoder_(place, encoding_of(options), stop),
           spool_(place),
-          counting_(1, affordable(byte_count(AV_PIX_FMT_RGBA, all_of(options.size)), 8),
+          path_(place.string()),
+          frame_(make_frame(options.size, AV_PIX_FMT_BGRA)),
+          colours_(path_, source("film", options.size) + ",palettegen=stats_mode=full"),
+          counting_(1, affordable(byte_count(AV_PIX_FMT_BGRA, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { count(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
@@ -142,30 +149,37 @@ public:
     }
 
 private:
-    /// First pass: counts colours.
     void count(SampledAreas& changes) {
-        std::uint8_t* rgba = changes.bytes.data();
-        for (const Rect& area : changes.areas) {
-            const std::size_t bytes = byte_count(AV_PIX_FMT_RGBA, area);
-            for (std::size_t i = 3; i < bytes; i += 4) rgba[i] = 255;
-            palette_.count(rgba, size_of(area));
-            rgba += bytes;
-        }
+        make_opaque_bgra(changes.bytes.data(), byte_count(AV_PIX_FMT_RGBA, changes.areas));
+        show(changes, spool_.frames(), colours_);
         spool_.write(changes);
         spare_.give_back(std::move(changes));
     }
 
-    /// Second pass.
+    /// The frame before, with its changes, enters the filters.
+    void show(const SampledAreas& changes, long k, Filters& filters) {
+        if (av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();
+        put(changes, *frame_);
+        frame_->pts = k;
+        filters.give("buffer@film", frame_.get());
+    }
+
     void encode() {
-        palette_.choose();
-        const auto colours = palette_.argb();
+        constexpr Size palette_size{16, 16};
+        const auto palette = make_frame(palette_size, AV_PIX_FMT_BGRA);
+        colours_.give("buffer@film", nullptr);
+        colours_.take(*palette);
+        Filters indices(path_, source("film", options_.size) + "[film];" + source("palette", palette_size) +
+                                   "[palette];[film][palette]paletteuse=dither=none");
+        palette->pts = 0;
+        indices.give("buffer@palette", palette.get());
+        indices.give("buffer@palette", nullptr);
         spool_.rewind();
         SampledAreas changes = spare_.take();
         for (long k = 0; k < spool_.frames(); ++k) {
             spool_.read(changes);
-            AVFrame& frame = encoder_.frame();
-            std::ranges::copy(colours, reinterpret_cast<std::uint32_t*>(frame.data[1]));
-            paste(changes, frame);
+            show(changes, k, indices);
+            indices.take(encoder_.frame());
             const std::int64_t start = time_of(k), duration = time_of(k + 1) - start;
             // the muxer cannot know how long the last frame lasts
             encoder_.set_option("final_delay", fmt::to_string(duration));
@@ -173,29 +187,17 @@ private:
         }
     }
 
-    void paste(const SampledAreas& changes, AVFrame& frame) {
-        const std::uint8_t* rgba = changes.bytes.data();
-        for (const Rect& area : changes.areas) {
-            const Size size = size_of(area);
-            std::uint8_t* index = indices_.make_room(std::size_t(size.width) * size.height);
-            palette_.map(rgba, size, index);
-            const int stride = frame.linesize[0];
-            av_image_copy_plane(frame.data[0] + std::ptrdiff_t{area.top} * stride + area.left, stride, index,
-                                size.width, size.width, size.height);
-            rgba += byte_count(AV_PIX_FMT_RGBA, area);
-        }
-    }
-
     /// When frame k starts, 1/100 s.
     std::int64_t time_of(long k) const {
-        return av_rescale(k, std::int64_t{100} * options_.fps_denominator, options_.fps_numerator);
+        return av_rescale(k, 100 * options_.fps_denominator, options_.fps_numerator);
     }
 
     const VideoOptions options_;
     Encoder encoder_;
     Spool spool_;
-    Palette palette_;
-    Buffer indices_;
+    const std::string path_;
+    Libav<AVFrame> frame_;
+    Filters colours_;
     Pool<SampledAreas> spare_;
     Workers<SampledAreas> counting_;
 };
@@ -250,10 +252,12 @@ void Spool::fail(const char* what) const {
     throw io_failed("{}: its frames on the disk: {}: {}", path_.string(), what, std::generic_category().message(errno));
 }
 
+void check_gif_filters() {
+    filter_library();
+}
+
 std::unique_ptr<Sink> make_gif_sink(const std::filesystem::path& place, const VideoOptions& options,
                                     const std::atomic<bool>& stop) {
-    // libimagequant's OpenMP starts one thread a core for each caller, and ends the program where it cannot
-    need_threads(2 * std::size_t{std::thread::hardware_concurrency()});
     return std::make_unique<GifSink>(place, options, stop);
 }
 

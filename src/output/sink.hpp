@@ -2,6 +2,7 @@
 
 #include "image/picture.hpp"
 #include "output/files.hpp"
+#include "output/formats.hpp"
 
 #include <atomic>
 #include <memory>
@@ -10,10 +11,6 @@
 #include <vector>
 
 namespace doppel {
-
-/// A file's metadata: keys and texts, UTF-8. Every format stores "title", "comment", "description", "artist",
-/// "copyright" and "date"; all but mp4 (where libav names itself) also "encoder", the program that made the file.
-using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// For sinks that are never asked to stop.
 inline const std::atomic<bool> never_stopped = false;
@@ -31,27 +28,9 @@ public:
     virtual void finish() = 0;
 };
 
-enum class VideoFormat { mp4, webm, gif, apng };
-
-/// Of H.264, VP9 and AV1: chroma subsampling and bits a sample.
-enum class PixelFormat { yuv420, yuv444, yuv420_10 };
-
 /// Threads of an encoder, the same on every machine, as the output of x264 and libvpx depends on them. (On two cores,
 /// eight take x264 as much CPU time as two.)
 inline constexpr std::size_t encoder_threads = 8;
-
-struct VideoOptions {
-    VideoFormat format = VideoFormat::mp4;
-    std::string codec = {};   // "h264" (mp4), "vp9" or "av1" (webm); empty = h264, vp9
-    Size size;                // px; even where chroma is for 2×2 pixels
-    int fps_numerator = 120;  // frames/s
-    int fps_denominator = 1;
-    PixelFormat pixel_format = PixelFormat::yuv420;  // gif and apng: not used
-    std::string preset = "doppel";                   // or x264's names, for each codec; gif and apng: not used
-    int crf = 18;              // h264 0…51, vp9 and av1 0…63, lower is better; gif and apng: not used
-    bool transparent = false;  // the pictures' alpha counts: apng, webm of vp9; else it is taken for 255
-    Metadata metadata = {};
-};
 
 /// A video file:
 /// mp4   H.264, the index at the front.
@@ -67,11 +46,8 @@ struct VideoOptions {
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop = never_stopped);
 
-/// Throws as make_video_sink(), but opens no file.
+/// Throws as make_video_sink(), but opens no file. A sequence of PNGs has nothing that is missing.
 void check_video(const VideoOptions& options);
-
-/// ".mp4", ".webm", ".gif", ".apng".
-std::string extension(VideoFormat format);
 
 /// Versions of the libraries that write the video, for the manifest: "libavcodec 59.37.100, libavformat …".
 std::string libav_description();

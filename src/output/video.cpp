@@ -46,13 +46,15 @@ private:
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop) {
     check_options(options);
-    if (options.format == VideoFormat::gif) return make_gif_sink(place, options, stop);
+    if (options.format == FilmFormat::gif) return make_gif_sink(place, options, stop);
     return std::make_unique<VideoSink>(place, options, stop);
 }
 
 void check_video(const VideoOptions& options) {
     check_options(options);
+    if (options.format == FilmFormat::png) return;
     encoding_of(options);
+    if (options.format == FilmFormat::gif) check_gif_filters();
 }
 
 }  // namespace doppel

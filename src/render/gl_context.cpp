@@ -1,11 +1,11 @@
 #include "render/gl_context.hpp"
 
 #include "base/error.hpp"
+#include "base/shared_library.hpp"
 
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <dlfcn.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -47,44 +47,6 @@ bool set_mesa_defaults() {
     return true;
 }
 
-/// A shared library found at run time. It stays for the rest of the process: Mesa cannot be unloaded safely.
-class Library {
-public:
-    /// The first of `names` that there is. Throws Error (exit 4), which says why none could be loaded.
-    explicit Library(const std::vector<std::string>& names) {
-        std::string faults;
-        for (const auto& name : names) {
-            handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
-            name_ = name;
-            if (handle_) return;
-            // a library that is there and cannot be used says more than one that is not there
-            const std::string fault = dlerror();
-            if (!fault.starts_with(name + ": cannot open shared object file: No such file"))
-                faults += (faults.empty() ? "" : "; ") + fault;
-        }
-        throw io_failed("{}", faults.empty() ? fmt::format("there is no {}", fmt::join(names, " or ")) : faults);
-    }
-
-    /// An address that converts to any type of function.
-    struct Symbol {
-        void* address;
-        template <class Function>
-        operator Function*() const {
-            return reinterpret_cast<Function*>(address);
-        }
-    };
-    /// Throws Error (exit 4) where there is no such function.
-    Symbol operator[](const char* name) const {
-        void* const found = dlsym(handle_, name);
-        if (!found) throw io_failed("{} has no {}", name_, name);
-        return {found};
-    }
-
-private:
-    std::string name_;
-    void* handle_ = nullptr;
-};
-
 /// What Doppel uses of GL/osmesa.h, which Mesa has dropped with version 25.1.
 namespace osmesa {
 using Handle = struct osmesa_context*;
@@ -119,7 +81,7 @@ private:
     void release() override { make_current_(nullptr, nullptr, 0, 0, 0); }
     gl::Function function(const char* name) const override { return address_(name); }
 
-    const Library library_;
+    const SharedLibrary library_;
     osmesa::Create create_ = library_["OSMesaCreateContextAttribs"];
     osmesa::MakeCurrent make_current_ = library_["OSMesaMakeCurrent"];
     osmesa::Destroy destroy_ = library_["OSMesaDestroyContext"];
@@ -164,7 +126,7 @@ private:
         if (!done) throw io_failed("it {} (EGL error {:#x})", otherwise, error_());
     }
 
-    const Library library_;
+    const SharedLibrary library_;
     decltype(&eglGetPlatformDisplay) platform_display_ = library_["eglGetPlatformDisplay"];
     decltype(&eglInitialize) initialize_ = library_["eglInitialize"];
     decltype(&eglBindAPI) bind_api_ = library_["eglBindAPI"];

@@ -273,25 +273,23 @@ void theme_field(Visit& visit, auto& theme) {
 template <class Visit, class Video>
 void format_fields(Visit& visit, Video& video) {
     static constexpr std::array<std::string_view, 2> codecs{"vp9", "av1"};
-    static constexpr std::array<std::string_view, 10> encoder_presets{
-        "doppel", "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"};
     visit({"format", "the file; png: a picture a frame"}, video.format);
     const auto only = [&](bool holds, const char* what) {
         return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
                     visit.from_command_line("format"), false, "format"};
     };
+    const FormatRow& row = format_row(video.format, video.codec);
     const bool is_webm = video.format == FilmFormat::webm;
-    const auto encoded = only(video.is_encoded(), "of mp4 and webm");
+    const auto encoded = only(row.is_encoded(), "of mp4 and webm");
     visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
     visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
     visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.holds = video.transparent}},
           video.transparent);
     constexpr std::string_view effort = "of mp4 and webm: effort of the encoder; \"doppel\": chosen for such pictures";
     visit({"preset", effort, "", {}, "", encoded, "", encoder_presets}, video.preset);
-    const auto quality = from_to(0, is_webm ? 63 : 51);
     visit({.key = "crf",
            .help = "of mp4 and webm: lower is better; of mp4 up to 51",
-           .bounds = quality,
+           .bounds = from_to(0, row.largest_crf),
            .only = encoded,
            .otherwise = from_to(0, 63)},
           video.crf);

@@ -88,24 +88,9 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
         throw table.fault("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
 }
 
-/// Sizes that the pixel format allows.
-void check_size(const TomlReader& table, const VideoSpec& video) {
-    if (!video.is_encoded() || video.pixel_format == PixelFormat::yuv444) return;
-    const auto even = [](int pixels) { return pixels + pixels % 2; };
-    if (video.size.width % 2 != 0 || video.size.height % 2 != 0)
-        throw table.fault("size", "must be even, as {} needs it in {}; it is [{}, {}]; [{}, {}] would do",
-                          video.format == FilmFormat::mp4 ? "H.264" : "WebM", name_of(video.pixel_format),
-                          video.size.width, video.size.height, even(video.size.width), even(video.size.height));
-}
-
-void check_transparent(const TomlReader& table, const VideoSpec& video) {
-    const bool has_alpha =
-        video.format == FilmFormat::png || video.format == FilmFormat::apng ||
-        (video.format == FilmFormat::webm && video.codec != "av1" && video.pixel_format == PixelFormat::yuv420);
-    if (video.transparent && !has_alpha)
-        throw table.fault("transparent",
-                          "takes a format with opacity: png, apng, or webm (VP9, yuv420p); the format is \"{}\"",
-                          name_of(video.format));
+/// What the format cannot have; frames/s once they are known.
+void check_format(const TomlReader& table, const std::optional<FormatFault>& fault) {
+    if (fault) throw table.fault(fault->key, "{}", fault->words);
 }
 
 void check_layout(const TomlReader& table, const VideoSpec& video) {
@@ -134,7 +119,7 @@ void check_style(const TomlReader& table, const VideoSpec& video) {
 void make_preview(TomlReader& table, VideoSpec& video) {
     const auto half = [](int pixels) { return std::max(pixels / 4 * 2, static_cast<int>(picture_sizes.low)); };
     if (!table.from_command_line("size")) video.size = {half(video.size.width), half(video.size.height)};
-    if (!video.is_encoded()) return;
+    if (!video.format_row().is_encoded()) return;
     if (!table.from_command_line("preset")) video.preset = "ultrafast";
     if (!table.from_command_line("crf")) video.crf = 26;
 }
@@ -150,9 +135,8 @@ void read_video(TomlReader& table, VideoSpec& video) {
     read_style(table, video);
     table.finish();
     table.check_together([&] {
-        check_transparent(table, video);
         check_layout(table, video);
-        check_size(table, video);
+        check_format(table, format_fault(video.options({1, 1})));
         check_style(table, video);
     });
     if (is_preview) make_preview(table, video);
@@ -287,6 +271,8 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     place_members(document, top, video, preset);
     check_clock(preset, scene);
     check_frames(preset, video);
+    const auto rate = preset.video.fps ? preset.video.fps : product(preset.sample_hz, preset.video.speed.constant);
+    check_format(video, rate_fault(preset.video.options(*rate)));
     check_layout(preset, video);
     return preset;
 }

@@ -4,7 +4,7 @@
 #include "image/picture.hpp"
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
-#include "output/sink.hpp"
+#include "output/formats.hpp"
 #include "render/typeface.hpp"
 #include "scene/field.hpp"
 #include "vector/page.hpp"
@@ -67,14 +67,12 @@ enum class PhaseKind { rate, section };
 template <>
 inline constexpr auto names_of<PhaseKind> = std::to_array<std::string_view>({"rate", "section"});
 
-/// What a film is written as; png: a picture a frame.
-enum class FilmFormat { mp4, webm, gif, apng, png };
 template <>
-inline constexpr auto names_of<FilmFormat> = std::to_array<std::string_view>({"mp4", "webm", "gif", "apng", "png"});
+inline constexpr auto names_of<FilmFormat> = format_names;
 template <>
 inline constexpr auto names_of<PictureFormat> = std::to_array<std::string_view>({"png", "pdf", "svg"});
 template <>
-inline constexpr auto names_of<PixelFormat> = std::to_array<std::string_view>({"yuv420p", "yuv444p", "yuv420p10"});
+inline constexpr auto names_of<PixelFormat> = pixel_format_names;
 
 /// A member of a group of keys that are alike.
 template <class Group, class Value>
@@ -202,8 +200,19 @@ struct VideoSpec : Panels {
     double trail_s = 2.5;           // s; 0 = none
 
     bool shows(std::string_view part) const { return std::find(show.begin(), show.end(), part) != show.end(); }
-    /// Whether an encoder with a pixel format and a quality writes it.
-    bool is_encoded() const { return format == FilmFormat::mp4 || format == FilmFormat::webm; }
+    const FormatRow& format_row() const { return doppel::format_row(format, codec); }
+    /// How the file of a film of so many frames/s is written, but for its metadata.
+    VideoOptions options(const Rational& rate) const {
+        return {.format = format,
+                .codec = codec,
+                .size = size,
+                .fps_numerator = rate.numerator,
+                .fps_denominator = rate.denominator,
+                .pixel_format = pixel_format,
+                .preset = preset,
+                .crf = crf,
+                .transparent = transparent};
+    }
 };
 
 }  // namespace doppel

@@ -197,6 +197,33 @@ TEST(Program, ADistanceBeyondDoubleNamesTheSide) {
     EXPECT_TRUE(left_nothing(folder));
 }
 
+TEST(Program, AnEstimateIsNearWhatRenderingTakesAndLeavesNothing) {
+    const auto folder = fresh_folder(), temporary = folder / "temporary";
+    fs::create_directory(temporary);
+    for (const char* format : {"gif", "webm", "apng"}) {
+        std::vector<std::string> film{"fan",
+                                      "--set",
+                                      fmt::format("video.format=\"{}\"", format),
+                                      "--set",
+                                      "video.size=[320, 180]",
+                                      "--set",
+                                      "scene.duration_s=3"};
+        auto check = film, render = film;
+        check.insert(check.begin(), "check");
+        render.insert(render.begin(), "render");
+        const auto said = doppel(folder, check, [&] { setenv("TMPDIR", temporary.c_str(), 1); });
+        EXPECT_EQ(said.code, 0) << said.err;
+        const auto start = std::chrono::steady_clock::now();
+        EXPECT_EQ(doppel(folder, with(render, {"--progress", "none"})).code, 0);
+        const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const auto words = said.out.substr(said.out.find("to simulate, ") + 13);
+        // measured 1.1 to 1.3; other work on the machine may come and go
+        EXPECT_GT(std::stod(words), taken / 6) << format << " " << taken << " s\n" << said.out;
+        EXPECT_LT(std::stod(words), taken * 6) << format << " " << taken << " s\n" << said.out;
+    }
+    EXPECT_TRUE(fs::is_empty(temporary));
+}
+
 TEST(Program, ACheckEndsHoweverManyStepsThereAre) {
     const auto folder = fresh_folder();
     const auto check = [&](const std::vector<std::string>& sets, const char* words) {

@@ -102,7 +102,7 @@ constexpr Library libraries[]{
     {"fontconfig/", "render", "system_fonts"},
     {"libavutil/", "output", ""},
     {"libdeflate", "output", ""},
-    {"libimagequant", "output", ""},
+    {"libavfilter/", "output", "gif"},
     {"stb_image", "output", ""},
     {"toml++/", "scene", ""},
     {"CLI/", "cli", ""},

@@ -56,7 +56,7 @@ TEST(EncodingTrial, ReplacesOptions) {
     EXPECT_LT(bytes({{"x264-params", "qp=40"}}), bytes({}));
     expect_error(ExitCode::io_failed, {"nonsense"}, [&] { bytes({{"nonsense", "1"}}); });
     const auto vp9 = [&](const char* speed) {
-        return try_encoding(frames, {.format = VideoFormat::webm, .size = size}, {{"cpu-used", speed}}).bytes;
+        return try_encoding(frames, {.format = FilmFormat::webm, .size = size}, {{"cpu-used", speed}}).bytes;
     };
     EXPECT_NE(vp9("8"), vp9("0"));
 }

@@ -32,7 +32,7 @@ fs::path film(const fs::path& path, const VideoOptions& options, long frames) {
 
 struct Kind {
     const char* name;
-    VideoFormat format;
+    FilmFormat format;
     const char* codec;
     PixelFormat pixel_format;
     bool transparent;
@@ -41,19 +41,19 @@ struct Kind {
 };
 constexpr auto yuv420 = PixelFormat::yuv420, yuv444 = PixelFormat::yuv444, yuv420_10 = PixelFormat::yuv420_10;
 constexpr std::array kinds{
-    Kind{"h264", VideoFormat::mp4, "", yuv420, false, "h264", "yuv420p", 42.8},
-    Kind{"h264-444", VideoFormat::mp4, "h264", yuv444, false, "h264", "yuv444p", 42.4},
-    Kind{"h264-10", VideoFormat::mp4, "", yuv420_10, false, "h264", "yuv420p10le", 42.7},
-    Kind{"vp9", VideoFormat::webm, "", yuv420, false, "vp9", "yuv420p", 48.7},
-    Kind{"vp9-444", VideoFormat::webm, "vp9", yuv444, false, "vp9", "yuv444p", 48.7},
-    Kind{"vp9-10", VideoFormat::webm, "", yuv420_10, false, "vp9", "yuv420p10le", 49.0},
-    Kind{"vp9-alpha", VideoFormat::webm, "", yuv420, true, "vp9", "yuv420p", 48.7},
-    Kind{"av1", VideoFormat::webm, "av1", yuv420, false, "av1", "yuv420p", 49.0},
-    Kind{"av1-444", VideoFormat::webm, "av1", yuv444, false, "av1", "yuv444p", 50.4},
-    Kind{"av1-10", VideoFormat::webm, "av1", yuv420_10, false, "av1", "yuv420p10le", 49.5},
-    Kind{"gif", VideoFormat::gif, "", yuv420, false, "gif", "bgra", 61.3},
-    Kind{"apng", VideoFormat::apng, "", yuv420, false, "apng", "rgb24", 1e9},
-    Kind{"apng-alpha", VideoFormat::apng, "", yuv420, true, "apng", "rgba", 1e9},
+    Kind{"h264", FilmFormat::mp4, "", yuv420, false, "h264", "yuv420p", 42.8},
+    Kind{"h264-444", FilmFormat::mp4, "h264", yuv444, false, "h264", "yuv444p", 42.4},
+    Kind{"h264-10", FilmFormat::mp4, "", yuv420_10, false, "h264", "yuv420p10le", 42.7},
+    Kind{"vp9", FilmFormat::webm, "", yuv420, false, "vp9", "yuv420p", 48.7},
+    Kind{"vp9-444", FilmFormat::webm, "vp9", yuv444, false, "vp9", "yuv444p", 48.7},
+    Kind{"vp9-10", FilmFormat::webm, "", yuv420_10, false, "vp9", "yuv420p10le", 49.0},
+    Kind{"vp9-alpha", FilmFormat::webm, "", yuv420, true, "vp9", "yuv420p", 48.7},
+    Kind{"av1", FilmFormat::webm, "av1", yuv420, false, "av1", "yuv420p", 49.0},
+    Kind{"av1-444", FilmFormat::webm, "av1", yuv444, false, "av1", "yuv444p", 50.4},
+    Kind{"av1-10", FilmFormat::webm, "av1", yuv420_10, false, "av1", "yuv420p10le", 49.5},
+    Kind{"gif", FilmFormat::gif, "", yuv420, false, "gif", "bgra", 61.3},
+    Kind{"apng", FilmFormat::apng, "", yuv420, false, "apng", "rgb24", 1e9},
+    Kind{"apng-alpha", FilmFormat::apng, "", yuv420, true, "apng", "rgba", 1e9},
 };
 
 VideoOptions options_of(const Kind& kind, Size size = small) {
@@ -80,7 +80,7 @@ class Encoders : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(All, Encoders, testing::Values(kinds[0], kinds[6], kinds[7], kinds[10], kinds[12]), name_of);
 
 bool is_yuv(const Kind& kind) {
-    return kind.format == VideoFormat::mp4 || kind.format == VideoFormat::webm;
+    return kind.format == FilmFormat::mp4 || kind.format == FilmFormat::webm;
 }
 
 TEST(Encoder, SaysWhatLibavSays) {
@@ -101,10 +101,11 @@ TEST(Formats, HaveNoSizeThatLibavDoesNotTake) {
     const Size huge{16384, 16384};
     expect_error(
         ExitCode::bad_input,
-        {"H.264 of 16384x16384 px is more than libav encodes; 16254x16254 would do, and 8192x4352 for players"},
+        {"size is more than libav encodes as H.264; it is [16384, 16384]; [16254, 16254] would do, and [8192, 4352] "
+         "for players"},
         [&] { check_video({.size = huge}); });
-    expect_error(ExitCode::bad_input, {"VP9 of 16384x16384 px", "16254x16254 would do"},
-                 [&] { check_video({.format = VideoFormat::webm, .size = huge}); });
+    expect_error(ExitCode::bad_input, {"as VP9", "[16254, 16254] would do"},
+                 [&] { check_video({.format = FilmFormat::webm, .size = huge}); });
     EXPECT_NO_THROW(check_video({.size = {16254, 16254}}));
     EXPECT_NO_THROW(check_video({.size = {16384, 8192}}));
 }
@@ -143,26 +144,24 @@ TEST_P(Formats, HaveTheFramesTimesTagsWordsAndLooksAskedFor) {
     for (long k = 0; k < 24; ++k) EXPECT_EQ(video.times[std::size_t(k)], (Ratio{k, 50})) << k;
     EXPECT_EQ(video.average_rate, (Ratio{50, 1}));
 
-    if (kind.format == VideoFormat::gif) {
+    if (kind.format == FilmFormat::gif) {
         EXPECT_EQ(video.metadata.at("comment"), "title: Three thousandths of a degree\ncomment: butterfly – 90.003°");
     } else {
         EXPECT_EQ(video.metadata.at("title"), "Three thousandths of a degree");
         // PNG: a dash is beyond Latin-1, and libav does not read iTXt
-        EXPECT_EQ(video.metadata.count("comment"), kind.format == VideoFormat::apng ? 0u : 1u);
-        EXPECT_EQ(video.metadata["comment"], kind.format == VideoFormat::apng ? "" : "butterfly – 90.003°");
+        EXPECT_EQ(video.metadata.count("comment"), kind.format == FilmFormat::apng ? 0u : 1u);
+        EXPECT_EQ(video.metadata["comment"], kind.format == FilmFormat::apng ? "" : "butterfly – 90.003°");
     }
     // SVT-AV1 4.2 (beside FFmpeg 9) spends less at the same crf than 1.4: measured 42.3 and 47.1 dB, 8 and 10 bits
     const bool is_newer_av1 = std::string_view(kind.codec) == "av1" && avcodec_version() >= AV_VERSION_INT(62, 0, 0);
     EXPECT_GT(worst, kind.psnr - (is_newer_av1 ? 7.0 : 1.0));
-    const double alpha_floor = !kind.transparent                  ? 0.0
-                               : kind.format == VideoFormat::apng ? 1e8
-                                                                  : 46.0;  // measured 48.2
+    const double alpha_floor = !kind.transparent ? 0.0 : kind.format == FilmFormat::apng ? 1e8 : 46.0;  // measured 48.2
     EXPECT_GT(worst_alpha, alpha_floor);
 }
 
 TEST_P(Encoders, OnlyWhatChangedNeedsToBeTaken) {
     const Kind& kind = GetParam();
-    if (kind.format == VideoFormat::gif) return;  // what is taken more often weighs more in the palette
+    if (kind.format == FilmFormat::gif) return;  // what is taken more often weighs more in the palette
     auto options = options_of(kind);
     const auto square = [](long k) {
         Picture picture = clear_scene(small, 0);
@@ -275,27 +274,32 @@ TEST(FormatsRefusals, AreMadeBeforeAnyWork) {
         expect_error(ExitCode::bad_input, words, [&] { make_video_sink(path, options); });
         EXPECT_FALSE(fs::exists(path));
     };
-    using F = VideoFormat;
-    refused({.format = F::webm, .codec = "h264", .size = small}, {"webm holds vp9, av1, not \"h264\""});
-    refused({.format = F::mp4, .codec = "vp9", .size = small}, {"mp4 holds h264, not \"vp9\""});
-    refused({.format = F::gif, .codec = "lzw", .size = small}, {"gif has only one codec", "lzw"});
-    refused({.format = F::webm, .size = {641, 360}}, {"VP9 needs even sizes; 641x360 is not; 642x360 would do"});
-    refused({.format = F::mp4, .size = {640, 361}, .pixel_format = yuv420_10}, {"even sizes", "640x362"});
-    refused({.format = F::mp4, .size = {20000, 20}}, {"1x1 … 16384x16384", "20000x20"});
+    using F = FilmFormat;
+    refused({.format = F::webm, .codec = "h264", .size = small}, {"codec of webm must be vp9 or av1; it is \"h264\""});
+    refused({.format = F::mp4, .codec = "vp9", .size = small}, {"codec of mp4 must be h264; it is \"vp9\""});
+    refused({.format = F::gif, .codec = "lzw", .size = small}, {"gif has only one", "lzw"});
+    refused({.format = F::webm, .size = {641, 360}},
+            {"size must be even, as VP9 needs it in yuv420p; it is [641, 360]; [642, 360] would do"});
+    refused({.format = F::mp4, .size = {640, 361}, .pixel_format = yuv420_10}, {"in yuv420p10", "[640, 362]"});
+    refused({.format = F::mp4, .size = {20000, 20}}, {"from 1 to 16384 of H.264; it is [20000, 20]"});
     refused({.format = F::gif, .size = {70000, 1}}, {"65535"});
-    refused({.format = F::apng, .size = {0, 1}}, {"0x1"});
-    refused({.format = F::gif, .size = small, .fps_numerator = 60}, {"1/100 s", "60 frames/s", "at most 50 would do"});
-    refused({.format = F::webm, .size = small, .fps_numerator = 3001, .fps_denominator = 3}, {"3001/3", "1000"});
-    refused({.format = F::apng, .size = small, .fps_numerator = 65536}, {"65535", "65536/1"});
+    refused({.format = F::apng, .size = {0, 1}}, {"[0, 1]"});
+    refused({.format = F::gif, .size = small, .fps_numerator = 60},
+            {"fps must be at most 50, as a frame of a GIF takes 2 to 65535 hundredths of a second; it is 60"});
+    refused({.format = F::gif, .size = small, .fps_numerator = 1, .fps_denominator = 656}, {"at least", "1/656"});
+    refused({.format = F::webm, .size = small, .fps_numerator = 3001, .fps_denominator = 3},
+            {"at most 1000, as WebM counts milliseconds; it is 3001/3"});
+    refused({.format = F::apng, .size = small, .fps_numerator = 65536}, {"up to 65535", "it is 65536"});
     refused({.format = F::apng, .size = small, .fps_numerator = 1, .fps_denominator = 65536}, {"65535", "1/65536"});
-    refused({.format = F::mp4, .size = small, .fps_numerator = 0}, {"frames per second must be > 0"});
+    refused({.format = F::mp4, .size = small, .fps_numerator = 0}, {"fps must be > 0; it is 0"});
     refused({.format = F::mp4, .size = small, .transparent = true},
-            {"H.264 has no transparency; webm of vp9 and apng"});
-    refused({.format = F::webm, .codec = "av1", .size = small, .transparent = true}, {"AV1 has no transparency"});
-    refused({.format = F::gif, .size = small, .fps_numerator = 25, .transparent = true}, {"GIF has no transparency"});
-    refused({.format = F::webm, .size = small, .pixel_format = yuv444, .transparent = true}, {"4:2:0 of 8 bits"});
+            {"transparent takes a format with opacity", "the format is \"mp4\""});
+    refused({.format = F::webm, .codec = "av1", .size = small, .transparent = true}, {"the codec is \"av1\""});
+    refused({.format = F::gif, .size = small, .fps_numerator = 25, .transparent = true}, {"the format is \"gif\""});
+    refused({.format = F::webm, .size = small, .pixel_format = yuv444, .transparent = true},
+            {"the pixel_format is \"yuv444p\""});
     refused({.format = F::webm, .size = small, .preset = "swift"}, {"\"swift\"", "veryfast"});
-    refused({.format = F::webm, .size = small, .crf = 64}, {"crf of VP9 must be 0 … 63; it is 64"});
+    refused({.format = F::webm, .size = small, .crf = 64}, {"crf must be from 0 to 63; it is 64"});
     for (const Kind& kind : kinds) EXPECT_NO_THROW(check_video(options_of(kind)));
     check_video({.format = F::mp4, .size = {641, 361}, .pixel_format = yuv444});
     check_video({.format = F::apng, .size = small, .fps_numerator = 65535, .fps_denominator = 65534});

@@ -3,6 +3,8 @@
 #include "output/gif.hpp"
 #include "output/sink.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -50,7 +52,7 @@ TEST(Gif, TimesAreRoundedWithoutAddingUp) {
     const auto folder = fresh_folder();
     for (const Ratio rate : {Ratio{30, 1}, Ratio{50, 1}, Ratio{24, 1}, Ratio{30000, 1001}, Ratio{7, 1}, Ratio{1, 2}}) {
         const Video video = read_video(film(folder / "x.gif",
-                                            {.format = VideoFormat::gif,
+                                            {.format = FilmFormat::gif,
                                              .size = small,
                                              .fps_numerator = static_cast<int>(rate.numerator),
                                              .fps_denominator = static_cast<int>(rate.denominator)},
@@ -64,7 +66,7 @@ TEST(Gif, TimesAreRoundedWithoutAddingUp) {
 
 TEST(Gif, WhatRestsKeepsItsColours) {
     const auto path =
-        film(fresh_folder() / "x.gif", {.format = VideoFormat::gif, .size = small, .fps_numerator = 50}, 20);
+        film(fresh_folder() / "x.gif", {.format = FilmFormat::gif, .size = small, .fps_numerator = 50}, 20);
     Picture source, shown;
     std::set<std::uint32_t> colours;
     read_video(path, [&](const Luma& frame) {
@@ -92,7 +94,7 @@ TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
             std::copy_n(
                 std::array<std::uint8_t, 4>{std::uint8_t(17 * (x % 16)), std::uint8_t(17 * (y % 14)), 9, 0}.data(), 4,
                 picture.at(x, y));
-    const auto sink = make_video_sink(path, {.format = VideoFormat::gif, .size = small, .fps_numerator = 25});
+    const auto sink = make_video_sink(path, {.format = FilmFormat::gif, .size = small, .fps_numerator = 25});
     for (int k = 0; k < 5; ++k) sink->take(picture, k == 0 ? whole(small) : std::vector<Rect>{});
     sink->finish();
     double worst = 1e9;
@@ -120,7 +122,7 @@ TEST(Gif, WhatChangedStandsWhereItBelongs) {
             }
         return picture;
     };
-    const auto sink = make_video_sink(path, {.format = VideoFormat::gif, .size = small, .fps_numerator = 25});
+    const auto sink = make_video_sink(path, {.format = FilmFormat::gif, .size = small, .fps_numerator = 25});
     for (int k = 0; k < 6; ++k)
         sink->take(scene(k), k == 0 ? whole(small)
                                     : std::vector<Rect>{{26 + 5 * k, 17, 60 + 5 * k, 40}, {0, 59 + k, 160, 61 + k}});
@@ -135,14 +137,26 @@ TEST(Gif, WhatChangedStandsWhereItBelongs) {
 
 TEST(Gif, TheSameFramesGiveTheSameBytes) {
     const auto folder = fresh_folder();
-    const VideoOptions options{.format = VideoFormat::gif, .size = small, .fps_numerator = 50};
+    const VideoOptions options{.format = FilmFormat::gif, .size = small, .fps_numerator = 50};
     const auto first = bytes_of(film(folder / "a.gif", options, 10));
     for (int k = 0; k < 2; ++k) EXPECT_TRUE(bytes_of(film(folder / "b.gif", options, 10)) == first);
 }
 
+TEST(Gif, FramesThatWaitTakeNoMemory) {
+    const auto sink = make_video_sink(fresh_folder() / "x.gif",
+                                      {.format = FilmFormat::gif, .size = {320, 180}, .fps_numerator = 25});
+    const auto take = [&](long from, long to) {
+        for (long k = from; k < to; ++k) sink->take(moving_scene({320, 180}, k % 8), whole({320, 180}));
+        const auto memory = mallinfo2();
+        return memory.uordblks + memory.hblkhd;
+    };
+    const auto before = take(0, 20);
+    EXPECT_LT(take(20, 220), before + 10'000'000);  // those 200 frames have 46 MB
+}
+
 TEST(Gif, EvenNoiseHasAPalette) {
     const auto path = fresh_folder() / "x.gif";
-    const auto sink = make_video_sink(path, {.format = VideoFormat::gif, .size = small, .fps_numerator = 50});
+    const auto sink = make_video_sink(path, {.format = FilmFormat::gif, .size = small, .fps_numerator = 50});
     for (unsigned k = 0; k < 4; ++k) sink->take(noise(small, k), whole(small));
     sink->finish();
     double worst = 1e9;
@@ -158,7 +172,7 @@ TEST(Gif, EndsInItsCommentWhereThereIsOne) {
     const auto ends_as = [&](const Metadata& metadata, const std::string& end) {
         const auto path =
             film(folder / "x.gif",
-                 {.format = VideoFormat::gif, .size = small, .fps_numerator = 25, .metadata = metadata}, 2);
+                 {.format = FilmFormat::gif, .size = small, .fps_numerator = 25, .metadata = metadata}, 2);
         const auto bytes = bytes_of(path);
         return bytes.substr(bytes.size() - std::min(end.size(), bytes.size())) == end;
     };
@@ -172,7 +186,7 @@ TEST(Gif, EndsInItsCommentWhereThereIsOne) {
 
 TEST(Apng, FramesTimesAndWordsAreExact) {
     const auto path = film(fresh_folder() / "x.apng",
-                           {.format = VideoFormat::apng,
+                           {.format = FilmFormat::apng,
                             .size = {241, 137},
                             .fps_numerator = 30000,
                             .fps_denominator = 1001,

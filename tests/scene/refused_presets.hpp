@@ -194,6 +194,19 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   R"([video] size must be higher than wide for the layout "portrait"; it is [1280, 720])"},
     RefusedPreset{"size = [301, 200]",
                   "[video] size must be even, as H.264 needs it in yuv420p; it is [301, 200]; [302, 200] would do"},
+    RefusedPreset{
+        "size = [16384, 16384]",
+        "[video] size is more than libav encodes as H.264; it is [16384, 16384]; [16254, 16254] would do, and "
+        "[8192, 4352] for players that keep to the highest level of H.264, 6.2"},
+    RefusedPreset{
+        "transparent = true\nformat = \"webm\"\ncodec = \"av1\"",
+        R"([video] transparent takes a format with opacity: png, apng, or webm (VP9, yuv420p); the codec is "av1")"},
+    RefusedPreset{
+        "transparent = true\nformat = \"webm\"\npixel_format = \"yuv444p\"",
+        R"([video] transparent takes a format with opacity: png, apng, or webm (VP9, yuv420p); the pixel_format is "yuv444p")"},
+    RefusedPreset{
+        "fps = 60\nformat = \"gif\"",
+        "[video] fps must be at most 50, as a frame of a GIF takes 2 to 65535 hundredths of a second; it is 60"},
     RefusedPreset{"codec = \"av1\"", R"([video] codec is a choice of webm; the format is "mp4")"},
     RefusedPreset{"pixel_format = \"yuv444p\"\nformat = \"gif\"",
                   R"([video] pixel_format is of mp4 and webm; the format is "gif")"},

@@ -1,0 +1,132 @@
+#include "output/formats.hpp"
+
+#include "output/libav_encoder.hpp"
+
+extern "C" {
+#include <libavutil/imgutils.h>
+}
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace doppel {
+namespace {
+
+std::string_view name_of_format(const VideoOptions& options) {
+    return format_names[static_cast<std::size_t>(options.format)];
+}
+
+std::string words_of(Size size) {
+    return fmt::format("[{}, {}]", size.width, size.height);
+}
+
+/// libav's limit: a picture's bytes, with padding, in 31 bits.
+bool libav_takes(Size size) {
+    capture_libav_log();
+    return av_image_check_size(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height), 0, nullptr) >= 0;
+}
+
+/// The largest of about the same shape that libav takes, of even sides.
+Size largest_alike(Size size) {
+    const double height = static_cast<double>(size.height) / size.width;
+    for (int width = size.width - size.width % 2; width > 2; width -= 2)
+        if (const Size alike{width, 2 * static_cast<int>(width * height / 2)}; alike.height > 0 && libav_takes(alike))
+            return alike;
+    return {2, 2};
+}
+
+std::optional<FormatFault> codec_fault(const VideoOptions& options) {
+    std::vector<std::string_view> codecs;
+    for (const auto& row : film_formats)
+        if (row.format == options.format && !row.codec.empty()) codecs.push_back(row.codec);
+    if (options.codec.empty() || std::ranges::find(codecs, options.codec) != codecs.end()) return std::nullopt;
+    if (codecs.empty())
+        return FormatFault{"codec", fmt::format("must not be given: {} has only one, and no name for it; it is \"{}\"",
+                                                name_of_format(options), options.codec)};
+    return FormatFault{"codec", fmt::format("of {} must be {}; it is \"{}\"", name_of_format(options),
+                                            fmt::join(codecs, " or "), options.codec)};
+}
+
+std::optional<FormatFault> size_fault(const VideoOptions& options, const FormatRow& row) {
+    const auto [width, height] = options.size;
+    const auto given = words_of(options.size);
+    if (std::min(width, height) < 1 || std::max(width, height) > row.largest_side)
+        return FormatFault{"size",
+                           fmt::format("must be from 1 to {} of {}; it is {}", row.largest_side, row.title, given)};
+    if (options.format != FilmFormat::png && !libav_takes(options.size))
+        return FormatFault{
+            "size", fmt::format("is more than libav encodes as {}; it is {}; {} would do{}", row.title, given,
+                                words_of(largest_alike(options.size)),
+                                options.format == FilmFormat::mp4
+                                    ? ", and [8192, 4352] for players that keep to the highest level of H.264, 6.2"
+                                    : "")};
+    const bool halved = row.is_encoded() && options.pixel_format != PixelFormat::yuv444;
+    if (halved && (width % 2 != 0 || height % 2 != 0))
+        return FormatFault{"size", fmt::format("must be even, as {} needs it in {}; it is {}; {} would do", row.title,
+                                               pixel_format_names[static_cast<std::size_t>(options.pixel_format)],
+                                               given, words_of({width + width % 2, height + height % 2}))};
+    return std::nullopt;
+}
+
+std::optional<FormatFault> alpha_fault(const VideoOptions& options, const FormatRow& row) {
+    const auto fault = [](std::string_view key, std::string_view value) {
+        return FormatFault{
+            "transparent",
+            fmt::format("takes a format with opacity: png, apng, or webm (VP9, yuv420p); the {} is \"{}\"", key,
+                        value)};
+    };
+    if (!options.transparent) return std::nullopt;
+    if (!row.has_alpha && format_row(options.format, "").has_alpha) return fault("codec", row.codec);
+    if (!row.has_alpha) return fault("format", name_of_format(options));
+    if (row.is_encoded() && options.pixel_format != PixelFormat::yuv420)
+        return fault("pixel_format", pixel_format_names[static_cast<std::size_t>(options.pixel_format)]);
+    return std::nullopt;
+}
+
+}  // namespace
+
+const FormatRow& format_row(FilmFormat format, std::string_view codec) {
+    const auto* found = std::ranges::find_if(
+        film_formats, [&](const FormatRow& row) { return row.format == format && row.codec == codec; });
+    return found != film_formats.end() ? *found : *std::ranges::find(film_formats, format, &FormatRow::format);
+}
+
+std::optional<FormatFault> format_fault(const VideoOptions& options) {
+    const auto& row = format_row(options.format, options.codec);
+    if (auto fault = codec_fault(options)) return fault;
+    if (auto fault = alpha_fault(options, row)) return fault;
+    if (auto fault = size_fault(options, row)) return fault;
+    if (!row.is_encoded()) return std::nullopt;
+    if (std::ranges::find(encoder_presets, options.preset) == encoder_presets.end())
+        return FormatFault{"preset",
+                           fmt::format("must be {}; it is \"{}\"", fmt::join(encoder_presets, ", "), options.preset)};
+    if (options.crf < 0 || options.crf > row.largest_crf)
+        return FormatFault{"crf", fmt::format("must be from 0 to {}; it is {}", row.largest_crf, options.crf)};
+    return std::nullopt;
+}
+
+std::optional<FormatFault> rate_fault(const VideoOptions& options) {
+    const auto& row = format_row(options.format, options.codec);
+    const long numerator = options.fps_numerator, denominator = options.fps_denominator;
+    const auto given = denominator == 1 ? fmt::to_string(numerator) : fmt::format("{}/{}", numerator, denominator);
+    const auto fault = [&](const std::string& limit) {
+        return FormatFault{"fps", fmt::format("must be {}; it is {}", limit, given)};
+    };
+    if (numerator < 1 || denominator < 1) return fault("> 0");
+    if (row.most_fps > 0 && numerator > row.most_fps * denominator)
+        return fault(fmt::format("at most {}, as {}", row.most_fps, row.rate_words));
+    if (row.longest_frame_s > 0 &&
+        static_cast<double>(denominator) > row.longest_frame_s * static_cast<double>(numerator))
+        return fault(fmt::format("at least {:.3g}, as {}", 1 / row.longest_frame_s, row.rate_words));
+    const long largest = std::max(numerator, denominator) / std::gcd(numerator, denominator);
+    if (row.most_terms > 0 && largest > row.most_terms)
+        return fault(fmt::format("a fraction of whole numbers up to {}, as {}", row.most_terms, row.rate_words));
+    constexpr long most_of_libav = 1'000'000'000;
+    if (std::max(numerator, denominator) > most_of_libav)
+        return fault(fmt::format("a fraction of whole numbers up to {}", most_of_libav));
+    return std::nullopt;
+}
+
+}  // namespace doppel
