@@ -46,10 +46,15 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
 /// The sample at that time. Throws Error (exit 2) where there is none.
 long still_sample(const Scene& scene, const Rational& time);
+/// "NAME.14s.png", of such a sample.
+std::string still_name(const Scene& scene, long sample, PictureFormat format);
 
 /// Throws Error (exit 2) where the scene has none of the samples, or of the frames, that `options` ask for, or not all
 /// of the columns.
 void check_run(const Scene& scene, const RunOptions& options);
+
+/// What run() writes into OUT/NAME/, folders with "/".
+std::vector<std::string> run_files(const Scene& scene, bool pictures);
 
 /// Simulates, draws and writes; the three overlap through bounded queues. Files appear complete or not at all.
 /// Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.

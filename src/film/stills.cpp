@@ -43,12 +43,16 @@ long still_sample(const Scene& scene, const Rational& time) {
                     seconds_text(scene.time(before + 1)));
 }
 
+std::string still_name(const Scene& scene, long sample, PictureFormat format) {
+    return fmt::format("{}.{}s.{}", scene.preset.name, seconds_text(scene.time(sample)), name_of(format));
+}
+
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
     const double start = seconds_of(CLOCK_MONOTONIC);
     const long last = still_sample(scene, time);
     const auto text = seconds_text(scene.time(last));
-    const auto name = fmt::format("{}.{}s.{}", scene.preset.name, text, name_of(format));
+    const auto name = still_name(scene, last, format);
     Transaction parts(options.out / scene.preset.name, "still", "film", options.replacing);
     const auto place = parts.file(name);
     Composer composer(scene, stop);
