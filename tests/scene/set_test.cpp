@@ -90,18 +90,20 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
         {"video.size[0]=1", "the preset has no size; give all of it: 'video.size=[…]'"},
         {"system.model[0]=1", "an element is set of a list of numbers; it is a string (\"angles\")"},
     };
-    for (const auto& [set, words] : cases) {
+    for (const auto& [given, words] : cases) {
+        const auto& set = given;  // clang 14 captures no structured binding
         const auto [code, message] = error_of([&] { with("[system]\nmodel = \"angles\"", {set}); });
         EXPECT_EQ(code, ExitCode::bad_input) << set;
         EXPECT_NE(message.find(words), std::string::npos) << message;
     }
-    for (const auto& [set, words] : std::vector<std::pair<std::string, std::string>>{
+    for (const auto& [given, words] : std::vector<std::pair<std::string, std::string>>{
              {"system.force.rope.length_m=1", "[[system.force]] has no entry \"rope\"; there are tie"},
              {"system.constraint.rope.length_m=1",
               "[[system.constraint]] has no entry \"rope\"; give the entry that is meant a name in the preset"},
              {"b.force.rope.length_m=1", "[[b.force]] has no entry \"rope\""},
              {"system.force.tie.stiffnes_N_per_m=1",
               "has no \"stiffnes_N_per_m\"; did you mean \"stiffness_N_per_m\"?"}}) {
+        const auto& set = given;
         const auto [code, message] = error_of([&] { with(mechanism, {set}); });
         EXPECT_EQ(code, ExitCode::bad_input) << set;
         EXPECT_NE(message.find(words), std::string::npos) << message;
