@@ -3,7 +3,8 @@ include(GNUInstallDirs)
 set(pages ${PROJECT_BINARY_DIR}/pages)  # of what the program says of itself
 
 install(TARGETS doppel)
-install(DIRECTORY presets DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel FILES_MATCHING PATTERN *.toml PATTERN *.json)
+install(DIRECTORY presets DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel FILES_MATCHING PATTERN *.toml PATTERN *.json PATTERN *.csv)
+install(PROGRAMS .ci/golden DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel/ci)
 install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 install(FILES packaging/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 file(GLOB documents CONFIGURE_DEPENDS docs/*.md)

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cerrno>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,7 +14,16 @@
 namespace doppel {
 
 /// What the process answers with; one number a kind of outcome.
-enum class ExitCode { done = 0, differs = 1, bad_input = 2, method_failed = 3, io_failed = 4, interrupted = 130 };
+enum class ExitCode {
+    done = 0,
+    differs = 1,
+    bad_input = 2,
+    method_failed = 3,
+    io_failed = 4,
+    try_again = 75,
+    interrupted = 130,
+    terminated = 143
+};
 
 /// The one exception of Doppel: a sentence for the person who runs it, and the exit code that goes with it. It is
 /// thrown where the fault is known best, and caught once, in main.
@@ -49,7 +59,18 @@ Error io_failed(fmt::format_string<Args...> format, Args&&... args) {
     return {ExitCode::io_failed, fmt::format(format, std::forward<Args>(args)...)};
 }
 
-/// Asked to stop before the end (exit 130).
+/// The same, where it may succeed later: no space, another run is writing, a part is missing (exit 75).
+template <class... Args>
+Error try_again(fmt::format_string<Args...> format, Args&&... args) {
+    return {ExitCode::try_again, fmt::format(format, std::forward<Args>(args)...)};
+}
+
+/// Of reading or writing that failed with this errno.
+inline ExitCode code_of_errno(int reason) {
+    return reason == ENOSPC || reason == EDQUOT ? ExitCode::try_again : ExitCode::io_failed;
+}
+
+/// Asked to stop before the end (exit 130, or 143 by SIGTERM).
 inline Error interrupted() {
     return {ExitCode::interrupted, "interrupted"};
 }

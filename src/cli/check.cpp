@@ -11,11 +11,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <tuple>
 
 namespace doppel {
 namespace {
+
+constexpr const char* unsettled_words = "stretches of the motion differ by more than chance: that ± may be too small";
 
 long frames_of(const Scene& scene) {
     return schedule_of(scene).frames();
@@ -44,8 +51,7 @@ void print_side(const char* name, const Side& side) {
 }
 
 /// What to expect of a side: how far it errs, and how far any run of its precision could be right.
-void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
-    const auto seen = forecast_of(scene, side, stop);
+void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) {
     const auto unit = side.has_angles ? "rad" : "of its size";
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto say = [](const std::string& words) { print_line("         {}", words); };
@@ -56,7 +62,7 @@ void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool
         say(fmt::format("errs by {} {} at most, to the end; verified by {}", scientific(side.choice->estimated_error),
                         unit, side.choice->reference->description()));
     else if (seen.error_s < scene.time(scene.samples))
-        say(fmt::format("off by half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", seen.error_s));
+        say(off_words(side, seen.error_s));
     else
         say(fmt::format("errs by about {} {} at the end", scientific(seen.error), unit));
     if (seen.exponent) {
@@ -69,7 +75,7 @@ void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool
             case Forecast::Kind::chaotic:
                 say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
                                 tenfold, value, uncertainty));
-                if (!is_settled) say("stretches of the motion differ by more than chance: that ± may be too small");
+                if (!is_settled) say(unsettled_words);
                 break;
             case Forecast::Kind::unstable:
                 say(
@@ -85,7 +91,8 @@ void print_forecast(const Scene& scene, const Side& side, const std::atomic<bool
 }
 
 /// What half or ten times the accuracy would take, against what is asked.
-void print_rivals(const Scene& scene, Side Scene::*which, const std::atomic<bool>& stop) {
+std::vector<std::string> rivals_of(const Scene& scene, Side Scene::*which, const std::atomic<bool>& stop) {
+    std::vector<std::string> all;
     const auto& choice = *(scene.*which).choice;
     for (const auto& [factor, title] : {std::pair(2.0, "half"), {0.1, "ten times"}}) {
         if (factor * choice.accuracy > 1) continue;
@@ -101,32 +108,55 @@ void print_rivals(const Scene& scene, Side Scene::*which, const std::atomic<bool
         } catch (const Error& fault) {
             if (fault.code() != ExitCode::bad_input) throw;
         }
-        print_line("         {} the accuracy {}", title, words);
+        all.push_back(fmt::format("{} the accuracy {}", title, words));
     }
+    return all;
 }
 
-/// "5.1 s to render", or why that is not known.
-std::string render_words(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
+/// All that check tells of a film.
+struct SceneCheck {
+    struct OfSide {
+        std::optional<Forecast> forecast;  // where it takes little time
+        std::vector<std::string> rivals;
+    };
+    const Scene& scene;
+    SimulationEstimate simulation;
+    std::optional<double> render_s;
+    std::string why_not;  // where it is not known what rendering takes
+    std::array<OfSide, 2> sides;
+};
+
+SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
+    check_video(video_options(scene));
+    SceneCheck check{scene, estimated_simulation(scene, stop), {}, {}, {}};
     try {
-        return fmt::format("{:.2g} s to render", estimated_render(scene, simulation, stop));
+        check.render_s = estimated_render(scene, check.simulation, stop);
     } catch (const Error& fault) {
         if (fault.code() == ExitCode::interrupted) throw;
-        return fmt::format("to render is not known: {}", fault.what());
+        check.why_not = fault.what();
     }
-}
-
-void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
-    const auto& video = scene.preset.video;
-    print_line("{}: {}", scene.preset.name, scene.preset.title);
-    check_video(video_options(scene));
-    const auto estimate = estimated_simulation(scene, stop);
     constexpr double patience = 2;  // s, for runs that only inform
     for (const auto which : {&Scene::a, &Scene::b}) {
         const auto& side = scene.*which;
-        print_side(which == &Scene::a ? "a" : "b", side);
+        auto& [forecast, rivals] = check.sides[which == &Scene::a ? 0 : 1];
         if (side.replay) continue;
-        if (!estimate.at_least && estimate.seconds < patience) print_forecast(scene, side, stop);
-        if (side.choice) print_rivals(scene, which, stop);
+        if (!check.simulation.at_least && check.simulation.seconds < patience)
+            forecast = forecast_of(scene, side, stop);
+        if (side.choice) rivals = rivals_of(scene, which, stop);
+    }
+    return check;
+}
+
+void print_scene(const SceneCheck& check) {
+    const auto& scene = check.scene;
+    const auto& estimate = check.simulation;
+    const auto& video = scene.preset.video;
+    print_line("{}: {}", scene.preset.name, scene.preset.title);
+    for (const auto& [name, side, of_side] :
+         {std::tuple("a", &scene.a, &check.sides[0]), {"b", &scene.b, &check.sides[1]}}) {
+        print_side(name, *side);
+        if (of_side->forecast) print_forecast(scene, *side, *of_side->forecast);
+        for (const auto& rival : of_side->rivals) print_line("         {}", rival);
     }
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
     print_line("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all", scene.preset.duration_s.value(),
@@ -141,12 +171,97 @@ void print_scene(const Scene& scene, const std::atomic<bool>& stop) {
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
                video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(video));
     print_line("  takes  {} {:.2g} s to simulate, {}", estimate.at_least ? "more than" : "about", estimate.seconds,
-               render_words(scene, estimate, stop));
+               check.render_s ? fmt::format("{:.2g} s to render", *check.render_s)
+                              : "to render is not known: " + check.why_not);
 }
 
-void print_figure(const FigurePreset& figure, const std::atomic<bool>& stop) {
+Json forecast_json(const Scene& scene, const Side& side, const Forecast& seen) {
+    Json json{{"error", seen.error}, {"unit", side.has_angles ? "rad" : "its size"}, {"at_s", seen.error_s}};
+    json["off_from_s"] = seen.error_s < scene.time(scene.samples) ? Json(seen.error_s) : Json(nullptr);
+    if (const auto& exponent = seen.exponent) {
+        json["motion"] = seen.kind == Forecast::Kind::regular   ? "regular"
+                         : seen.kind == Forecast::Kind::chaotic ? "chaotic"
+                                                                : "unstable";
+        json["exponent_per_s"] = {
+            {"value", exponent->value}, {"uncertainty", exponent->uncertainty}, {"settled", exponent->is_settled}};
+    }
+    json["limit_s"] = seen.limit ? Json({seen.limit->from, seen.limit->to}) : Json(nullptr);
+    return json;
+}
+
+/// Of one side; adds its warnings to `warnings`.
+Json side_json(const SceneCheck& check, std::size_t which, Json& warnings) {
+    const auto& scene = check.scene;
+    const auto& side = which == 0 ? scene.a : scene.b;
+    const auto& track = which == 0 ? scene.preset.a.track : scene.preset.b.track;
+    if (side.replay) return {{"model", "track"}, {"why", side.why}, {"file", track.file}};
+    auto json = method_json(scene, side);
+    json["precision"] = side.motion.precision == Precision::in_quad ? "quad" : "double";
+    const auto& [forecast, rivals] = check.sides[which];
+    const auto warn = [&](const std::string& words) {
+        warnings.push_back(fmt::format("side {}: {}", which == 0 ? 'a' : 'b', words));
+    };
+    json["forecast"] = forecast ? forecast_json(scene, side, *forecast) : Json(nullptr);
+    if (forecast && !side.choice && forecast->error_s < scene.time(scene.samples))
+        warn(off_words(side, forecast->error_s));
+    if (forecast && forecast->exponent && forecast->kind == Forecast::Kind::chaotic && !forecast->exponent->is_settled)
+        warn(unsettled_words);
+    if (side.choice) json["other_accuracies"] = rivals;
+    return json;
+}
+
+/// What preset files of films and figures have in common.
+Json heading_json(const PresetText& preset, const std::string& title) {
+    std::error_code ignored;
+    const bool is_file = std::filesystem::exists(preset.path, ignored);
+    return {{"name", preset.name},
+            {"title", title},
+            {"kind", kind_of_preset(preset)},
+            {"path", is_file ? Json(preset.path) : Json(nullptr)}};
+}
+
+Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
+    const auto& scene = check.scene;
+    const auto& video = scene.preset.video;
+    const bool is_exact = !scene.a.method.adaptive && !scene.b.method.adaptive;
+    auto json = heading_json(preset, scene.preset.title);
+    for (const std::size_t which : {0, 1}) json[which == 0 ? "a" : "b"] = side_json(check, which, warnings);
+    json["duration_s"] = scene.preset.duration_s.value();
+    json["sample_hz"] = scene.preset.sample_hz.value();
+    json["samples"] = scene.samples + 1;
+    json["steps"] = check.simulation.steps;
+    json["steps_are_exact"] = is_exact;
+    json["frames"] = frames_of(scene);
+    json["fps"] = scene.fps.value();
+    json["size"] = {video.size.width, video.size.height};
+    json["format"] = name_of(video.format);
+    json["encoding"] = format_words(video);
+    json["simulate_s"] = check.simulation.seconds;
+    json["render_s"] = check.render_s ? Json(*check.render_s) : Json(nullptr);
+    json["times_are_least"] = check.simulation.at_least;
+    json["horizon_s"] = scene.horizon() ? Json(*scene.horizon()) : Json(nullptr);
+    json["warnings"] = std::move(warnings);
+    return json;
+}
+
+/// All that check tells of a figure.
+struct FigureCheck {
+    const FigurePreset& figure;
     double units = 0;
-    for (std::size_t trial = 0; trial < figure.experiment->trials(); ++trial) units += figure.experiment->units(trial);
+    int threads = 1;
+    ComputationEstimate estimate;
+};
+
+FigureCheck checked(const FigurePreset& figure, const std::atomic<bool>& stop) {
+    FigureCheck check{figure, 0, figure.experiment->measures_time() ? 1 : cores(), {}};
+    for (std::size_t trial = 0; trial < figure.experiment->trials(); ++trial)
+        check.units += figure.experiment->units(trial);
+    check.estimate = estimated_computation(figure, check.threads, stop);
+    return check;
+}
+
+void print_figure(const FigureCheck& check) {
+    const auto& [figure, units, threads, estimate] = check;
     const auto layout = layout_of(figure.chart);
     constexpr double cm_per_pt = 2.54 / 72;
     print_line("{}: {}", figure.name, figure.title);
@@ -159,36 +274,76 @@ void print_figure(const FigurePreset& figure, const std::atomic<bool>& stop) {
                    figure.chart.theme);
     else
         print_line("  chart  {}×{} px, {}", layout.picture.width, layout.picture.height, figure.chart.theme);
-    const int threads = figure.experiment->measures_time() ? 1 : cores();
-    const auto estimate = estimated_computation(figure, threads, stop);
     print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
                estimate.seconds, threads, threads == 1 ? "" : "s", roughly(units / estimate.seconds),
                figure.experiment->unit());
 }
 
+Json json_of(const PresetText& preset, const FigureCheck& check, Json warnings) {
+    const auto& [figure, units, threads, estimate] = check;
+    const auto layout = layout_of(figure.chart);
+    auto json = heading_json(preset, figure.title);
+    json["trials"] = figure.experiment->trials();
+    json["units"] = units;
+    json["unit"] = figure.experiment->unit();
+    json["size"] = {layout.picture.width, layout.picture.height};
+    json["width_pt"] = layout.width_pt;
+    json["format"] = name_of(figure.chart.format);
+    json["theme"] = figure.chart.theme;
+    json["threads"] = threads;
+    json["compute_s"] = estimate.seconds;
+    json["times_are_least"] = estimate.at_least;
+    json["warnings"] = std::move(warnings);
+    return json;
+}
+
+struct CheckOptions : PresetOptions {
+    bool as_json = false;
+};
+
+void check_presets(const CheckOptions& options) {
+    const auto& stop = watch_interrupts();
+    auto all = Json::array();
+    for (const auto& name : options.presets) {
+        const auto preset = find_preset(name, &stop);
+        auto warnings = Json::array();
+        if (const auto fault = schema_line_fault(preset)) warnings.push_back(*fault);
+        if (!options.as_json)
+            for (const auto& warning : warnings) print_line("{}", warning.get<std::string>());
+        if (is_figure(preset)) {
+            const auto figure = read_figure(preset, overrides_of(options), {}, stop);
+            const auto check = checked(figure, stop);
+            if (options.as_json)
+                all.push_back(json_of(preset, check, std::move(warnings)));
+            else
+                print_figure(check);
+        } else {
+            const auto scene = make_scene(read_preset(preset, overrides_of(options)), stop);
+            const auto check = checked(scene, stop);
+            if (options.as_json)
+                all.push_back(json_of(preset, check, std::move(warnings)));
+            else
+                print_scene(check);
+        }
+    }
+    if (options.as_json) print_json(all);
+}
+
 }  // namespace
 
 void add_check(CLI::App& app) {
-    auto options = std::make_shared<PresetOptions>();
+    auto options = std::make_shared<CheckOptions>();
     auto& command = *app.add_subcommand("check", "What a preset would run: models and why, errors, steps, time");
     command.footer(
         "Examples:\n"
         "  doppel check butterfly\n"
-        "  doppel check butterfly --set system.accuracy=1e-6    the cheapest way to that error, in rad, and how far it "
-        "holds\n"
-        "  doppel check flip-map                                what a figure would take");
+        "  doppel check butterfly --set system.accuracy=1e-6    the cheapest way to that error, in rad\n"
+        "  doppel check flip-map                                what a figure would take\n"
+        "  doppel check butterfly --json | jq '.[0].warnings'");
     add_preset_options(command, *options);
-    command.callback([options] {
-        const auto& stop = watch_interrupts();
-        for (const auto& name : options->presets) {
-            const auto preset = find_preset(name, &stop);
-            if (const auto fault = schema_line_fault(preset)) print_line("{}", *fault);
-            if (is_figure(preset))
-                print_figure(read_figure(preset, overrides_of(*options), {}, stop), stop);
-            else
-                print_scene(make_scene(read_preset(preset, overrides_of(*options)), stop), stop);
-        }
-    });
+    command.add_flag("--json", options->as_json,
+                     "The same as JSON, an array with an object a preset: see docs/files.md");
+    command.callback([options] { check_presets(*options); });
 }
 
 }  // namespace doppel

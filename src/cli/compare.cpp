@@ -90,16 +90,6 @@ std::set<std::string> png_names(const fs::path& folder) {
     return names;
 }
 
-/// The pictures that are compared.
-std::vector<fs::path> compared_files(const CompareOptions& options, bool folders) {
-    std::vector<fs::path> inputs;
-    for (const fs::path given : {options.expected, options.actual}) {
-        if (!folders) inputs.push_back(given);
-        for (const auto& name : folders ? png_names(given) : std::set<std::string>()) inputs.push_back(given / name);
-    }
-    return inputs;
-}
-
 /// Every picture that either folder has. One that cannot be compared does not keep the others from it.
 void compare_folders(Comparison& comparison, const fs::path& out, std::optional<Error>& first_fault) {
     const fs::path expected = comparison.expected, actual = comparison.actual;
@@ -122,31 +112,12 @@ void compare_folders(Comparison& comparison, const fs::path& out, std::optional<
 }
 
 /// A report that was asked for: its place is taken before the work, so that one that cannot be is said at once.
-class Report {
-public:
-    /// `start` = what such a report begins with, by which an older one is known.
-    Report(const std::string& file, std::string_view start, const std::vector<fs::path>& inputs) {
-        if (file.empty()) return;
-        const fs::path path = file;
-        if (!path.has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
-        parts_.emplace(path.has_parent_path() ? path.parent_path() : fs::path("."), path.filename().string(),
-                       std::string(), Replacing{.inputs = inputs});
-        const auto name = path.filename().string();
-        place_ = parts_->file(name);
-        if (fs::exists(path) && start_of_file(path, start.size()) != start)
-            throw io_failed("{} is there already, and no such report; give the name of another file", file);
-    }
-
-    void publish(void (*write)(const fs::path&, const Comparison&), const Comparison& comparison) {
-        if (!parts_) return;
-        write(*place_, comparison);
-        parts_->publish();
-    }
-
-private:
-    std::optional<Transaction> parts_;
-    std::optional<fs::path> place_;
-};
+/// `start` = what such a report begins with, by which an older one is known.
+std::optional<LoneFile> place_of_report(const std::string& file, std::string_view start) {
+    if (file.empty()) return std::nullopt;
+    if (!fs::path(file).has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
+    return std::optional<LoneFile>(std::in_place, file, start);
+}
 
 /// True if all pass. Throws Error where some could not be read, after the reports are written.
 bool compare(const CompareOptions& options) {
@@ -160,8 +131,8 @@ bool compare(const CompareOptions& options) {
                         folders ? options.expected : options.actual, folders ? options.actual : options.expected);
     const auto is_one_file = fs::path(options.junit).lexically_normal() == fs::path(options.html).lexically_normal();
     if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
-    const auto inputs = compared_files(options, folders);
-    Report junit(options.junit, junit_start, inputs), html(options.html, compare_page_start, inputs);
+    const auto junit = place_of_report(options.junit, junit_start);
+    const auto html = place_of_report(options.html, compare_page_start);
     Comparison comparison{options.expected, options.actual, {}};
     std::optional<Error> first_fault;
     if (folders) {
@@ -173,8 +144,10 @@ bool compare(const CompareOptions& options) {
         if (pair.match == Match::differs) print_line("{}", pair.message);
         comparison.pictures.push_back(std::move(pair));
     }
-    junit.publish(write_junit, comparison);
-    html.publish(write_compare_page, comparison);
+    if (junit) write_junit(junit->place(), comparison);
+    if (html) write_compare_page(html->place(), comparison);
+    for (const auto* report : {&junit, &html})
+        if (*report) (*report)->publish();
     if (!first_fault) return comparison.count(Match::passes) == std::ssize(comparison.pictures);
     if (!folders) throw Error(*first_fault);
     throw Error(first_fault->code(),
@@ -207,9 +180,8 @@ void add_compare(CLI::App& app, int& exit_code) {
         ->capture_default_str();
     refuse_dash(command.add_option("--junit", options->junit, "Also writes a report for test servers: JUnit's XML"))
         ->type_name("FILE");
-    refuse_dash(command.add_option(
-                    "--html", options->html,
-                    "Also writes a page that shows expected, actual and difference of what differs, with a slider"))
+    refuse_dash(command.add_option("--html", options->html,
+                                   "Also writes a page of what differs: expected, actual, difference, slider"))
         ->type_name("FILE");
     command.callback([options, &exit_code] {
         if (!compare(*options)) exit_code = static_cast<int>(ExitCode::differs);

@@ -72,22 +72,16 @@ std::vector<std::string> joined(const std::vector<std::string>& words) {
     return all;
 }
 
-bool is_figure_file(const std::string& path) {
-    return path.starts_with("presets/figures/");
-}
-
 /// Presets that are built in, and those that lie here, of the kind that the command takes.
 void add_presets(const std::string& command, Candidates& all) {
     const bool films = command != "figure", figures = command == "figure" || command == "check" || command == "show";
     if (command == "figure") all.push_back({"all", "every figure that is built in"});
-    const auto add = [&](const std::string& name, const std::string& path) {
-        if (is_figure_file(path) ? figures : films) all.push_back({name, is_figure_file(path) ? "figure" : "film"});
-    };
-    for (const auto& preset : builtin_presets()) add(preset.name, preset.path);
-    std::error_code ignored;
-    for (const auto* folder : {"presets", "presets/figures"})
-        for (const auto& file : fs::directory_iterator(folder, ignored))
-            if (file.path().extension() == ".toml") add(file.path().stem().string(), file.path().string());
+    auto files = preset_files_here();
+    for (const auto& preset : builtin_presets()) files.emplace_back(preset.path);
+    for (const auto& file : files) {
+        const bool is_figure = file.parent_path() == "presets/figures";
+        if (is_figure ? figures : films) all.push_back({file.stem().string(), is_figure ? "figure" : "film"});
+    }
 }
 
 /// Folders, and the files with that ending, that the word may go on to.

@@ -3,6 +3,7 @@
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "figure/run.hpp"
+#include "figure/tiles.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -59,14 +60,14 @@ std::optional<Shard> shard_of(const FigureCommandOptions& options) {
 /// Progress of several figures, of which the first to be computed and the last to be drawn may overlap.
 class Reports {
 public:
-    Reports(const std::vector<FigurePreset>& figures, ProgressStyle style)
-        : figures_(figures), style_(style), reports_(figures.size()) {}
+    Reports(const std::vector<FigurePreset>& figures, ProgressStyle style, std::string streamed)
+        : figures_(figures), style_(style), streamed_(std::move(streamed)), reports_(figures.size()) {}
 
     template <class Tell>
     void operator()(std::size_t figure, Tell&& tell) {
         const std::lock_guard hold(mutex_);
         auto& report = reports_[figure];
-        if (!report) report.emplace(style_, figures_[figure].name, figures_[figure].experiment->unit());
+        if (!report) report.emplace(style_, figures_[figure].name, figures_[figure].experiment->unit(), streamed_);
         tell(*report);
     }
 
@@ -78,9 +79,20 @@ public:
 private:
     const std::vector<FigurePreset>& figures_;
     ProgressStyle style_;
+    std::string streamed_;
     std::mutex mutex_;
     std::vector<std::optional<ProgressReport>> reports_;
 };
+
+/// What a figure's run writes into DIR/NAME/.
+std::vector<std::string> files_of(const FigurePreset& figure, const FigureCommandOptions& options) {
+    const auto& name = figure.name;
+    const auto shard = shard_of(options);
+    if (options.tiles && shard) return {name + ".tiles/"};
+    if (options.tiles) return {name + ".tiles/", name + ".html", name + ".tiles.json"};
+    if (shard) return {shard_name(header_of(figure, shard->number, shard->of))};
+    return {fmt::format("{}.{}", name, name_of(figure.chart.format)), name + ".csv", name + ".json"};
+}
 
 void make_figures(const FigureCommandOptions& options) {
     std::vector<FigurePreset> figures;
@@ -89,7 +101,19 @@ void make_figures(const FigureCommandOptions& options) {
         figures.push_back(read_figure(preset, overrides(options), {}, watch_interrupts()));
         replacing.inputs.emplace_back(preset.path);
     }
-    Reports reports(figures, progress_style(options.progress));
+    if (options.tiles)
+        for (const auto& figure : figures) demand_map(figure);
+    if (options.out == "-" && (options.tiles || options.merge || !options.shard.empty()))
+        throw bad_input("-o -: standard output takes one picture, and no {}", options.tiles ? "tiles"
+                                                                              : options.merge
+                                                                                  ? "merge of parts in a folder"
+                                                                                  : "part for a merge");
+    if (options.list_outputs) {
+        for (const auto& figure : figures) list_outputs(options, figure.name, files_of(figure, options));
+        return;
+    }
+    const Destination to(options.out, figures.size(), fmt::format(".{}", name_of(figures.front().chart.format)));
+    Reports reports(figures, progress_style(options.progress), to.streamed());
     const FigureReport report{
         [&](std::size_t k, const FigureProgress& progress) {
             reports(k, [&](auto& r) { r({std::lround(progress.done), std::lround(progress.total)}); });
@@ -99,7 +123,7 @@ void make_figures(const FigureCommandOptions& options) {
     outlive_readers();
     try {
         run_figures(figures,
-                    {.out = options.out,
+                    {.out = to.folder(),
                      .jobs = options.jobs,
                      .shard = shard_of(options),
                      .merge = options.merge,
@@ -117,21 +141,21 @@ void make_figures(const FigureCommandOptions& options) {
 
 void add_figure(CLI::App& app) {
     auto options = std::make_shared<FigureCommandOptions>();
-    auto& command = *app.add_subcommand(
-        "figure", "Draws figure presets: PNG, PDF or SVG, CSV and manifest; \"all\" draws every one");
+    auto& command =
+        *app.add_subcommand("figure", "Draws figures: PNG, PDF or SVG, CSV and manifest; \"all\" draws every one");
     command.footer(
         "Examples:\n"
         "  doppel figure fig2-right --set sweep.exponent=true\n"
+        "  doppel figure fig2-right -o - > fig2-right.png\n"
         "  doppel figure all --out figures --scale 2\n"
         "  doppel figure fig2-right --format pdf --set chart.width_cm=8.6\n"
         "  doppel figure flip-map --shard 3/8        # a part, on one of eight machines\n"
         "  doppel figure flip-map --merge            # all parts in DIR/flip-map/ together\n"
         "  doppel figure flip-map --tiles --set flip_map.columns=8192 --set flip_map.rows=8192\n"
         "A long figure that was interrupted goes on where it was when the same command is given again.");
-    add_run_options(command, *options, "Threads that compute; one a core where not given. The numbers stay the same");
-    command.add_option("--size", options->size, "Size of the layout, px; the preset's where not given")
-        ->type_name("WxH");
-    command.add_option("--format", options->format, "What the picture is written as; the preset's where not given")
+    add_run_options(command, *options, "Threads that compute, one a core where not given; the numbers stay");
+    command.add_option("--size", options->size, "Size of the layout, px")->type_name("WxH");
+    command.add_option("--format", options->format, "What the picture is written as")
         ->type_name("FORMAT")
         ->check(CLI::IsMember({"png", "pdf", "svg"}));
     command.add_option("--scale", options->scale, "Pixels of the picture to one of the layout: 2 for print")
@@ -141,7 +165,7 @@ void add_figure(CLI::App& app) {
     command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
     command.add_flag("--tiles", options->tiles,
-                     "Of a map: tiles with a pixel a cell and a page to pan and zoom, NAME.html; no picture, no table");
+                     "Of a map: tiles, a pixel a cell, and a page to pan and zoom, NAME.html");
     command.callback([options] { make_figures(*options); });
 }
 

@@ -11,9 +11,9 @@
 namespace doppel {
 namespace {
 
-struct FitCommandOptions {
+struct FitCommandOptions : OutOptions {
     std::vector<std::string> tracks;
-    std::string model = "auto", out = "out", progress = "auto", gl = "auto";
+    std::string model = "auto", gl = "auto";
     double every_s = 0;
     FitOptions fit;
 };
@@ -24,11 +24,18 @@ void fit(const FitCommandOptions& options) {
                          : options.model == "compound" ? Bodies::compound
                                                        : Bodies::automatic;
     fit_options.out = options.out;
+    fit_options.force = options.force;
     fit_options.gl = gl_named(options.gl);
     if (options.every_s > 0) fit_options.every_s = options.every_s;
     outlive_readers();
     const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
-    ProgressReport report(progress_style(options.progress), fit_name(files, fit_options), "models");
+    const auto name = fit_name(files, fit_options);
+    if (options.out == "-")
+        throw bad_input("-o -: a fit is several files, preset, residuals, page and numbers; give a folder");
+    if (options.list_outputs)
+        return list_outputs(options, name,
+                            {name + ".toml", name + ".residuals.csv", name + ".png", name + ".fit.json"});
+    ProgressReport report(progress_style(options.progress), name, "models");
     try {
         const auto done = run_fit(files, fit_options, watch_interrupts(), std::ref(report));
         for (const auto& sentence : done.sentences) report.note(sentence);
@@ -43,23 +50,19 @@ void fit(const FitCommandOptions& options) {
 
 void add_fit(CLI::App& app) {
     auto options = std::make_shared<FitCommandOptions>();
-    auto& command = *app.add_subcommand(
-        "fit", "Fits a double pendulum to a measured track: a preset, errors, and how far it predicts");
+    auto& command =
+        *app.add_subcommand("fit", "Fits a double pendulum to a track: a preset, errors, how far it predicts");
     command.footer(
-        "A track is CSV with time_s and theta1_rad, theta2_rad (from the downward vertical), or x0_px, y0_px, x1_px, "
-        "y1_px,\n"
-        "x2_px, y2_px (pivot, joint and end in a picture, y down); any rate, with gaps, in one or more pieces. Models "
-        "from\n"
-        "point masses without friction to bodies with viscous and dry friction and drag are fitted, and the smallest "
-        "is\n"
-        "chosen that predicts pieces left out as well as any. DIR/NAME/ gets NAME.toml, a preset; NAME.fit.json, all "
-        "numbers\n"
-        "with errors; NAME.residuals.csv, the residuals; NAME.png, a page to judge it by.\n"
+        "A track is CSV with time_s and theta1_rad, theta2_rad (from the downward vertical), or x0_px, y0_px,\n"
+        "x1_px, y1_px, x2_px, y2_px (pivot, joint and end in a picture, y down); any rate, with gaps, in one\n"
+        "or more pieces. Models from point masses without friction to bodies with viscous and dry friction\n"
+        "and drag are fitted, and the smallest is chosen that predicts pieces left out as well as any.\n"
+        "DIR/NAME/ gets NAME.toml, a preset; NAME.fit.json, all numbers with errors; NAME.residuals.csv, the\n"
+        "residuals; NAME.png, a page to judge it by.\n"
         "Examples:\n"
         "  doppel fit swing.csv\n"
         "  doppel fit piece-*.csv --name lab --out fits\n"
-        "  doppel fit piece-*.csv --every 5.334      pieces that begin so many seconds apart, each with a clock of its "
-        "own\n"
+        "  doppel fit piece-*.csv --every 5.334      each with a clock of its own, so many seconds apart\n"
         "  doppel fit swing.csv --gravity 9.81 --mass 0.138");
     command.add_option("TRACK", options->tracks, "CSV files, in the order of time")->required();
     command.add_option("--model", options->model, "Bodies: auto, point (masses on massless rods) or compound")
@@ -81,10 +84,10 @@ void add_fit(CLI::App& app) {
         ->type_name("KG")
         ->check(CLI::Range(1e-9, 1e9))
         ->capture_default_str();
-    add_out_options(command, options->out, options->progress, options->fit.force);
+    add_out_options(command, *options);
     command
         .add_option("-j,--jobs", options->fit.jobs,
-                    "Threads that compute; one a core where not given. The numbers stay the same")
+                    "Threads that compute, one a core where not given; the numbers stay")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
     add_gl_option(command, options->gl);

@@ -4,7 +4,7 @@
 #include "cli/terminal.hpp"
 #include "figure/kinds.hpp"
 #include "figure/preset.hpp"
-#include "output/transaction.hpp"
+#include "output/files.hpp"
 #include "scene/preset_fields.hpp"
 
 #include <CLI/CLI.hpp>
@@ -33,9 +33,13 @@ constexpr std::array<std::string_view, 9> used_keys{"title",     "duration_s",  
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> unused_keys{
     {{"section", "angle_deg"}, {"section", "omega_deg_per_s"}, {"flip-map", "angle_deg"}}};
 
+/// Which compare methods, and so give them.
+constexpr std::array<std::string_view, 2> exact_kinds{"convergence", "stability"};
+
 bool is_used(const FieldTable& table, std::string_view key, std::string_view kind) {
     if (table.name.starts_with("[[")) return key == "scene" || key == "column";
     if (key == "difference") return true;
+    if (table.key() == "system" && key == "accuracy") return std::ranges::find(exact_kinds, kind) == exact_kinds.end();
     return (table.key() == "scene" || table.key() == "system") &&
            std::ranges::find(used_keys, key) != used_keys.end() &&
            std::ranges::find(unused_keys, std::pair(kind, key)) == unused_keys.end();
@@ -46,6 +50,7 @@ std::string starting_value(const ListedField& field, std::string_view kind) {
     if (field.key == "column") return "\"distance\"";
     if (field.key == "scene") return "\"butterfly\"";
     if (field.key == "difference") return "0.003";  // degrees, as in the study
+    if (field.key == "accuracy") return "1e-3";
     auto value = field.example();
     if (kind != "links") return value;
     // of chains of one link, which the longer ones are made of
@@ -130,9 +135,9 @@ void write_preset(const fs::path& path, std::string_view kind) {
     outlive_readers();
     const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, ignored)) throw cannot(folder, "opened", ENOENT);
-    Transaction files(folder / "", path.filename().string());
-    write_file(files.file(path.filename().string()), preset.text);
-    files.publish();
+    const LoneFile file(path, "");
+    write_file(file.place(), preset.text);
+    file.publish();
     tell_of_files(on_one_line(fmt::format("{0}: edit it, then: doppel check {0}", path.string())) + "\n");
 }
 

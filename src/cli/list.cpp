@@ -3,6 +3,8 @@
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "figure/preset.hpp"
+#include "scene/preset_fields.hpp"
+#include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
 #include <CLI/CLI.hpp>
@@ -11,6 +13,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -18,16 +23,67 @@ namespace doppel {
 
 namespace {
 
-/// The films or the figures among the presets, and their titles.
-void list_presets(bool figures) {
-    std::vector<std::pair<std::string, std::string>> lines;
-    std::size_t width = 0;
-    for (const auto& preset : builtin_presets()) {
-        if (is_figure(preset) != figures) continue;
-        lines.emplace_back(preset.name, figures ? read_figure(preset).title : read_preset(preset).title);
-        width = std::max(width, preset.name.size());
+namespace fs = std::filesystem;
+
+struct Entry {
+    std::string name, title, kind;  // the kind is empty where the file cannot be read, and the title says why
+    std::string path;               // of a file here; empty where it is built in
+};
+
+Entry entry_of(const PresetText& preset, const std::string& path) {
+    try {
+        const auto kind = kind_of_preset(preset);
+        return {preset.name, kind == pair_kind ? read_preset(preset).title : read_figure(preset).title, kind, path};
+    } catch (const Error& fault) {
+        if (path.empty() || fault.code() != ExitCode::bad_input) throw;
+        return {preset.name, fault.what(), "", path};
     }
-    for (const auto& [name, title] : lines) print_line("{:<{}}  {}", name, width, title);
+}
+
+/// Presets by name: those that lie here, and those that are built in and have no file here.
+std::vector<Entry> all_presets() {
+    std::map<std::string, Entry> entries;
+    for (const auto& path : preset_files_here()) {
+        if (entries.contains(path.stem().string())) continue;
+        const auto preset = find_preset(path.string(), &watch_interrupts());
+        entries.emplace(preset.name, entry_of(preset, path.string()));
+    }
+    for (const auto& preset : builtin_presets())
+        if (!entries.contains(preset.name)) entries.emplace(preset.name, entry_of(preset, ""));
+    std::vector<Entry> all;
+    for (auto& [name, entry] : entries) all.push_back(std::move(entry));
+    return all;
+}
+
+void list_presets() {
+    const auto all = all_presets();
+    const auto print = [&](const char* heading, const std::function<bool(const Entry&)>& is_meant) {
+        std::size_t width = 0;
+        for (const auto& entry : all)
+            if (is_meant(entry)) width = std::max(width, entry.name.size());
+        if (width > 0 && *heading != 0) {
+            print_line("");
+            print_line("{}", heading);
+        }
+        for (const auto& entry : all)
+            if (is_meant(entry)) print_line("{:<{}}  {}", entry.name, width, entry.title);
+    };
+    print("", [](const Entry& entry) { return entry.kind == pair_kind; });
+    print("figures, for doppel figure:",
+          [](const Entry& entry) { return !entry.kind.empty() && entry.kind != pair_kind; });
+    print("cannot be read:", [](const Entry& entry) { return entry.kind.empty(); });
+}
+
+void list_as_json() {
+    auto list = Json::array();
+    for (const auto& [name, title, kind, path] : all_presets()) {
+        Json entry{{"name", name}, {"title", title}, {"kind", kind}, {"path", path}};
+        if (kind.empty())
+            entry = {{"name", name}, {"title", nullptr}, {"kind", nullptr}, {"path", path}, {"error", title}};
+        if (path.empty()) entry["path"] = nullptr;
+        list.push_back(std::move(entry));
+    }
+    print_json(list);
 }
 
 /// A table: value of `integrator`, order, step or tolerance, models, properties.
@@ -49,18 +105,37 @@ void show(const std::string& text) {
 
 }  // namespace
 
+std::vector<fs::path> preset_files_here() {
+    std::vector<fs::path> files;
+    std::error_code ignored;
+    for (const auto* folder : {"presets", "presets/figures"})
+        for (const auto& file : fs::directory_iterator(folder, ignored))
+            if (file.path().extension() == ".toml" && file.is_regular_file(ignored)) files.push_back(file.path());
+    return files;
+}
+
+void print_json(const Json& json) {
+    write_out(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
 void add_list(CLI::App& app) {
     auto what = std::make_shared<std::string>("presets");
+    auto as_json = std::make_shared<bool>(false);
     auto& command = *app.add_subcommand("list", "The presets and their titles; list methods: what steps them");
+    command.footer(
+        "Presets in presets/ and presets/figures/ here are listed, too.\n"
+        "--json: an array of {\"name\", \"title\", \"kind\": \"pair\" or that of a figure, \"path\"}; the path is "
+        "null\n"
+        "of what is built in. A preset that cannot be read has title and kind null, and \"error\".");
     command.add_option("WHAT", *what, "presets (films, then figures) or methods")
         ->check(CLI::IsMember({"presets", "methods"}))
         ->capture_default_str();
-    command.callback([what] {
+    command.add_flag("--json", *as_json, "The presets as JSON");
+    command.callback([what, as_json] {
+        if (*as_json && *what == "methods") throw bad_input("--json is of presets; list methods has none");
         if (*what == "methods") return list_methods();
-        list_presets(false);
-        print_line("");
-        print_line("figures, for doppel figure:");
-        list_presets(true);
+        if (*as_json) return list_as_json();
+        list_presets();
     });
 }
 
@@ -77,7 +152,6 @@ void add_show(CLI::App& app) {
 
 namespace {
 
-namespace fs = std::filesystem;
 constexpr std::string_view directive = "#:schema ", address_of_file = "file://";
 
 bool is_file(const fs::path& path) {
@@ -129,8 +203,7 @@ void add_schema(CLI::App& app) {
     auto& command = *app.add_subcommand("schema", "The JSON schema of presets, which editors of TOML read");
     command.footer(
         "Example:\n"
-        "  doppel schema > preset.schema.json    # for presets beside it that begin with #:schema "
-        "./preset.schema.json");
+        "  doppel schema > preset.schema.json    # beside presets that begin #:schema ./preset.schema.json");
     command.callback([] { write_out(preset_schema()); });
 }
 

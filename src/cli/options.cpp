@@ -2,20 +2,25 @@
 
 #include "base/error.hpp"
 #include "cli/terminal.hpp"
+#include "output/files.hpp"
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <system_error>
 
 namespace doppel {
 
 void add_preset_options(CLI::App& command, PresetOptions& options) {
-    command.add_option("PRESET", options.presets, "Names (see doppel list) or paths of TOML files")->required();
+    command.add_option("PRESET", options.presets, "Names (see doppel list) or TOML files")->required();
     command
         .add_option("--set", options.sets,
-                    "Another value for a key of the preset, in TOML:\n--set system.step_s='\"1/1000\"'")
-        ->type_name("TABLE.KEY=VALUE")
+                    "Another value for a key, in TOML; text needs no quotes:\n"
+                    "--set video.theme=light --set 'system.mass_kg[1]=2'\n"
+                    "--set system.force.NAME.length_m=1.2")
+        ->type_name("KEY=VALUE")
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -24,8 +29,8 @@ void add_preset_options(CLI::App& command, PresetOptions& options) {
 void add_beside_option(CLI::App& command, PresetOptions& options) {
     command
         .add_option("--beside", options.beside,
-                    "A measured track (CSV) in place of side a; side b starts as it does, fitted to its first two "
-                    "seconds, and runs as long")
+                    "A measured track (CSV) as side a; side b starts as it does, fitted to its\n"
+                    "first two seconds, and runs as long")
         ->type_name("TRACK");
 }
 
@@ -35,29 +40,74 @@ CLI::Option* refuse_dash(CLI::Option* option) {
     });
 }
 
-void add_out_options(CLI::App& command, std::string& out, std::string& progress, bool& force) {
-    refuse_dash(command.add_option("-o,--out", out, "Folder for the results; they go to DIR/NAME/"))
+void add_out_options(CLI::App& command, OutOptions& options) {
+    command.add_option("-o,--out", options.out, "Folder for the results, DIR/NAME/; - is standard output")
         ->type_name("DIR")
         ->capture_default_str();
-    command.add_option("--progress", progress, "How to show progress: auto, bar, plain, json or none")
+    command.add_flag("--list-outputs", options.list_outputs, "Only list the files that would be written, a line each");
+    command.add_option("--progress", options.progress, "How to show progress; warnings are always shown")
         ->type_name("STYLE")
         ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
         ->capture_default_str();
-    command.add_flag("--force", force,
-                     "Replace files of Doppel's of the same names even where somebody changed them, or where another "
-                     "kind of run wrote them");
+    command.add_flag("--force", options.force,
+                     "Replace files that somebody changed, or that another kind of run wrote");
+}
+
+Destination::Destination(const std::string& out, std::size_t runs, const std::string& ending) : folder_(out) {
+    if (out != "-") return;
+    if (runs != 1) throw bad_input("-o -: standard output takes one file; give one preset, not {}", runs);
+    if (ending != ".csv" && isatty(STDOUT_FILENO))
+        throw bad_input("-o -: standard output is a terminal, which shows no {}; send it on: -o - > FILE{}",
+                        ending.substr(1), ending);
+    auto place = (std::filesystem::temp_directory_path() / "doppel-XXXXXX").string();
+    if (!mkdtemp(place.data())) throw cannot(place, "made");
+    folder_ = place;
+    streamed_ = ending;
+}
+
+Destination::~Destination() {
+    std::error_code ignored;
+    if (!streamed_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+LoneFile::LoneFile(std::filesystem::path path, std::string_view start) : path_(std::move(path)) {
+    using Type = std::filesystem::file_type;
+    const auto type = type_of(path_);
+    if (type != Type::not_found && type != Type::regular)
+        throw io_failed("{} is {}; give the name of another file", path_.string(),
+                        type == Type::symlink ? "a symbolic link" : "no regular file");
+    if (type == Type::regular && (start.empty() || start_of_file(path_, start.size()) != start))
+        throw io_failed("{} was not written by Doppel for this; give the name of another file", path_.string());
+    const auto folder = path_.parent_path();
+    std::error_code error;
+    if (!folder.empty()) std::filesystem::create_directories(folder, error);
+    if (error) throw cannot(folder, "made", error.value());
+    place_ = folder / fmt::format(".doppel-{}-{}", path_.filename().string(), getpid());
+    write_file(place_, "");  // so that what cannot be written is said before the work
+}
+
+LoneFile::~LoneFile() {
+    std::error_code ignored;
+    std::filesystem::remove(place_, ignored);
+}
+
+void LoneFile::publish() const {
+    rename_file(place_, path_);
+}
+
+void list_outputs(const OutOptions& options, const std::string& name, const std::vector<std::string>& files) {
+    if (options.out == "-") return print_line("-");
+    for (const auto& file : files) print_line("{}", (std::filesystem::path(options.out) / name / file).string());
 }
 
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs) {
     add_preset_options(command, options);
-    add_out_options(command, options.out, options.progress, options.force);
+    add_out_options(command, options);
     command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
 }
 
 void add_columns_option(CLI::App& command, std::string& columns) {
-    command
-        .add_option("--columns", columns,
-                    "Only these columns of the CSV, such as time_s,a,distance; a and b are all of a side")
+    command.add_option("--columns", columns, "Only these columns of the CSV, time_s,a,distance; a, b: all of a side")
         ->type_name("LIST");
 }
 
@@ -69,7 +119,7 @@ std::vector<std::string> columns_of_option(const std::string& text) {
 }
 
 void add_gl_option(CLI::App& command, std::string& gl) {
-    command.add_option("--gl", gl, "What draws: osmesa, egl or auto: OSMesa, EGL where OSMesa is missing")
+    command.add_option("--gl", gl, "What draws; auto: OSMesa, EGL where that is missing")
         ->type_name("NAME")
         ->check(CLI::IsMember(gl_names()))
         ->capture_default_str();
@@ -142,11 +192,12 @@ std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& pre
 }
 
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+                 const std::string& streamed,
                  const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
     const auto style = progress_style(progress);
     outlive_readers();
     for (const auto& scene : scenes) {
-        ProgressReport report(style, scene.preset.name, unit);
+        ProgressReport report(style, scene.preset.name, unit, streamed);
         try {
             report.done(work(scene, std::ref(report)));
         } catch (...) {
@@ -160,7 +211,19 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
     run_options.replacing = {inputs_of(options.presets, scenes), options.force};
     const auto& stop = watch_interrupts();
     for (const auto& scene : scenes) check_run(scene, run_options);
-    work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples",
+    const auto& video = scenes.front().preset.video;
+    const bool is_sequence = run_options.pictures && video.format == FilmFormat::png;
+    if (options.out == "-" && is_sequence)
+        throw bad_input("-o -: a PNG sequence is many files; give --format apng, or use still for one picture");
+    if (options.list_outputs) {
+        for (const auto& scene : scenes)
+            list_outputs(options, scene.preset.name, run_files(scene, run_options.pictures));
+        return;
+    }
+    const Destination to(options.out, scenes.size(),
+                         run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
+    run_options.out = to.folder();
+    work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples", to.streamed(),
                 [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
 }
 

@@ -2,6 +2,7 @@
 
 #include "film/run.hpp"
 #include "scene/preset.hpp"
+#include "scene/resolved.hpp"
 
 #include <CLI/App.hpp>
 
@@ -21,11 +22,16 @@ struct PresetOptions {
     std::string beside = {};
 };
 
+/// What commands that write files have.
+struct OutOptions {
+    std::string out = "out", progress = "auto";
+    bool force = false, list_outputs = false;
+};
+
 /// What commands that run presets have besides.
-struct RunCommandOptions : PresetOptions {
-    std::string out = "out", progress = "auto", columns = {};
+struct RunCommandOptions : PresetOptions, OutOptions {
+    std::string columns = {};
     int jobs = 0;
-    bool force = false;
 };
 
 void add_preset_options(CLI::App& command, PresetOptions& options);
@@ -37,8 +43,8 @@ std::vector<Override> beside_overrides(const PresetText& text, const std::vector
                                        const std::string& track, const std::atomic<bool>& stop);
 /// Refuses "-" for an option that names a folder or a file, where people mean standard output.
 CLI::Option* refuse_dash(CLI::Option* option);
-/// --out, --progress and --force.
-void add_out_options(CLI::App& command, std::string& out, std::string& progress, bool& force);
+/// --out, --list-outputs, --progress and --force.
+void add_out_options(CLI::App& command, OutOptions& options);
 /// The same, and --jobs; `jobs` = what it counts, for the help.
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
 
@@ -67,15 +73,64 @@ std::vector<Override> overrides_of(const PresetOptions& options);
 /// The files that the scenes are read from: presets, tracks and fonts.
 std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets, const std::vector<Scene>& scenes);
 
+/// Where results go: the folder of --out; or for "-" one of its own, removed with this, from which one file goes to
+/// standard output.
+class Destination {
+public:
+    /// `ending` = of that file's name, ".csv". Throws Error: exit 2 where there are several runs, or a picture would go to
+    /// a terminal; exit 4.
+    Destination(const std::string& out, std::size_t runs, const std::string& ending);
+    ~Destination();
+    Destination(const Destination&) = delete;
+    Destination& operator=(const Destination&) = delete;
+
+    const std::filesystem::path& folder() const { return folder_; }
+    /// As ProgressReport has it.
+    const std::string& streamed() const { return streamed_; }
+
+private:
+    std::filesystem::path folder_;
+    std::string streamed_;
+};
+
+/// One file in a folder that may hold anything, which is made where it is missing. It is written under a hidden name and
+/// moved to its place when it is whole; destroyed before, it leaves nothing of it.
+class LoneFile {
+public:
+    /// Throws Error (exit 4) where the file could not be written, or is another's than the one that begins with `start`.
+    LoneFile(std::filesystem::path path, std::string_view start);
+    ~LoneFile();
+    LoneFile(const LoneFile&) = delete;
+    LoneFile& operator=(const LoneFile&) = delete;
+
+    /// Where to write it.
+    const std::filesystem::path& place() const { return place_; }
+    void publish() const;
+
+private:
+    std::filesystem::path path_, place_;
+};
+
+/// --list-outputs: the files of the run NAME, a line each; a folder ends in "/".
+void list_outputs(const OutOptions& options, const std::string& name, const std::vector<std::string>& files);
+
 /// The scene of each preset, all of them read before the first one runs. `more` = overrides from other options.
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});
 
-/// Calls work(scene, report) for one scene after the other and tells the person how far it is, in `unit`.
+/// Calls work(scene, report) for one scene after the other and tells the person how far it is, in `unit`. `streamed` is
+/// as ProgressReport has it.
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+                 const std::string& streamed,
                  const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work);
 
 /// Runs the scenes one after the other and tells the person how far they are.
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options);
+
+/// On standard output.
+void print_json(const Json& json);
+
+/// The presets that lie in presets/ and presets/figures/ here.
+std::vector<std::filesystem::path> preset_files_here();
 
 /// The first line of a preset in `folder`, "#:schema PATH\n": the schema in presets/ here, or else the one that is
 /// installed with the program; empty where there is neither.

@@ -75,10 +75,11 @@ int run_program(int argc, char** argv) {
         CLI::App app("Doppel films chaotic pendulums in pairs, a hair apart, and charts how they part.", "doppel");
         app.set_version_flag("--version", fmt::format("doppel {} ({})", version(), revision()));
         app.footer(
-            "doppel COMMAND --help tells more. Exit codes: 0 done, 1 compare found a difference, 2 bad usage or "
-            "input,\n"
-            "3 the method failed, 4 reading, writing or encoding failed, 130 interrupted.");
+            "doppel COMMAND --help tells more. Exit codes: 0 done, 1 compare found a difference, 2 bad usage\n"
+            "or input, 3 the method failed, 4 reading, writing or encoding failed, 75 the same, where trying\n"
+            "again may help, 130 interrupted, 143 terminated.");
         app.require_subcommand(1);
+        app.get_formatter()->column_width(26);
 
         int exit_code = 0;
         add_render(app);
@@ -111,9 +112,10 @@ int run_program(int argc, char** argv) {
         }
         return exit_code;
     } catch (const Error& fault) {
-        failed(fault.code(), fault.what());
+        const bool is_terminated = fault.code() == ExitCode::interrupted && was_terminated();
+        const int code = failed(is_terminated ? ExitCode::terminated : fault.code(), fault.what());
         for (const auto& line : fault.further()) failed(fault.code(), line);
-        return static_cast<int>(fault.code());
+        return code;
     } catch (const std::bad_alloc&) {
         return failed(ExitCode::io_failed, "there is not enough memory");
     } catch (const std::exception& fault) {

@@ -15,9 +15,8 @@ struct RenderOptions : RunCommandOptions {
     std::string frames, from, to, size, format, quality, gl = "auto";
 };
 
-struct StillOptions : PresetOptions {
-    std::string at, size, format = "png", out = "out", progress = "auto", gl = "auto";
-    bool force = false;
+struct StillOptions : PresetOptions, OutOptions {
+    std::string at, size, format = "png", gl = "auto";
 };
 
 /// The frames of --frames, or the times of --from and --to.
@@ -55,44 +54,32 @@ void add_render(CLI::App& app) {
         "Examples:\n"
         "  doppel render butterfly\n"
         "  doppel render calm --size 1280x720 --format png --frames 0:240\n"
-        "  doppel render butterfly --set scene.duration_s=10 --set 'video.theme=\"light\"' -o films\n"
+        "  doppel render butterfly --set scene.duration_s=10 --set video.theme=light -o films\n"
         "  doppel render butterfly --from 6.8 --to 9\n"
         "  doppel render butterfly --format gif --size 640x360\n"
         "  doppel render out/lab/lab.toml --beside track.csv\n"
-        "  doppel render butterfly --set 'video.layout=\"overlay\"' --set video.poster_s=14 --set "
-        "'video.contact_sheet=[4, 3]'");
-    add_run_options(command, *options,
-                    "Threads that compress PNGs, one a core where not given; films of other formats, and all bytes, do "
-                    "not depend on it");
+        "  doppel render butterfly --set video.layout=overlay --set 'video.contact_sheet=[4, 3]'\n"
+        "  doppel render calm --format webm -o - | mpv -");
+    add_run_options(command, *options, "Threads that compress PNGs, one a core where not given; the bytes stay");
     command
         .add_option("--frames", options->frames,
-                    "Only the frames A to B-1 of the motion, without cards and holds; the same pixels as in the whole")
+                    "Only the frames A to B-1 of the motion, with the pixels of the whole film")
         ->type_name("A:B");
-    command.add_option("--from", options->from, "Only from this time on, s; the same pixels as in the whole")
-        ->type_name("SECONDS");
-    command
-        .add_option("--to", options->to,
-                    "Only up to this time, s, itself left out: --to 20 makes 20 s; to the end, itself included, where "
-                    "not given")
-        ->type_name("SECONDS");
-    command.add_option("--size", options->size, "Size of the picture, px, even; the preset's where not given")
-        ->type_name("WxH");
-    command
-        .add_option("--format", options->format,
-                    "mp4, webm, gif, apng or png (a sequence); the preset's where not given")
+    command.add_option("--from", options->from, "Only from this time on, s")->type_name("SECONDS");
+    command.add_option("--to", options->to, "Only up to before this time, s: --to 20 makes 20 s")->type_name("SECONDS");
+    command.add_option("--size", options->size, "Size of the picture, px, even")->type_name("WxH");
+    command.add_option("--format", options->format, "Of the film; png: a sequence")
         ->type_name("FORMAT")
         ->check(CLI::IsMember(std::vector<std::string>(format_names.begin(), format_names.end())));
     command
-        .add_option("--quality", options->quality,
-                    "draft (a quarter of the pixels, fast), standard (what the preset says) or best (slow)")
+        .add_option("--quality", options->quality, "A quarter of the pixels, what the preset says, or slow and best")
         ->type_name("QUALITY")
         ->check(CLI::IsMember({"draft", "standard", "best"}));
     add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     add_gl_option(command, options->gl);
     command.callback([options] {
-        RunOptions run{.out = options->out,
-                       .pictures = true,
+        RunOptions run{.pictures = true,
                        .jobs = options->jobs,
                        .gl = gl_named(options->gl),
                        .columns = columns_of_option(options->columns)};
@@ -111,13 +98,13 @@ void add_still(CLI::App& app) {
         "Examples:\n"
         "  doppel still butterfly --at 14 --size 3840x2160\n"
         "  doppel still butterfly --at 14 --set video.transparent=true\n"
-        "  doppel still butterfly --at 14 --format pdf");
+        "  doppel still butterfly --at 14 --format pdf\n"
+        "  doppel still butterfly --at 14 -o - > butterfly.png");
     add_preset_options(command, *options);
     add_beside_option(command, *options);
     command.add_option("--at", options->at, "The time of the picture, s")->type_name("SECONDS")->required();
-    add_out_options(command, options->out, options->progress, options->force);
-    command.add_option("--size", options->size, "Size of the picture, px; the preset's where not given")
-        ->type_name("WxH");
+    add_out_options(command, *options);
+    command.add_option("--size", options->size, "Size of the picture, px")->type_name("WxH");
     command.add_option("--format", options->format, "What the picture is written as")
         ->type_name("FORMAT")
         ->check(CLI::IsMember({"png", "pdf", "svg"}))
@@ -129,12 +116,18 @@ void add_still(CLI::App& app) {
         if (!options->size.empty()) more.push_back(size_override("video.size", options->size));
         const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
-        const RunOptions run{.out = options->out,
+        for (const auto& scene : scenes) still_moment(scene, at);
+        if (options->list_outputs) {
+            for (const auto& scene : scenes)
+                list_outputs(*options, scene.preset.name, {still_name(scene, still_moment(scene, at), format)});
+            return;
+        }
+        const Destination to(options->out, scenes.size(), "." + options->format);
+        const RunOptions run{.out = to.folder(),
                              .gl = gl_named(options->gl),
                              .replacing = {inputs_of(options->presets, scenes), options->force}};
-        for (const auto& scene : scenes) still_moment(scene, at);
         const auto& stop = watch_interrupts();
-        work_on_all(scenes, options->progress, "samples", [&](const Scene& scene, const auto& report) {
+        work_on_all(scenes, options->progress, "samples", to.streamed(), [&](const Scene& scene, const auto& report) {
             return draw_still(scene, at, format, run, stop, report);
         });
     });
@@ -145,17 +138,15 @@ void add_simulate(CLI::App& app) {
     auto& command = *app.add_subcommand("simulate", "Runs presets without pictures: CSV and manifest, no OpenGL");
     command.footer(
         "Examples:\n"
-        "  doppel simulate butterfly --set 'system.integrator=\"rk4\"'\n"
-        "  doppel simulate butterfly --columns time_s,a_theta2_rad,distance");
+        "  doppel simulate butterfly --set system.integrator=rk4\n"
+        "  doppel simulate butterfly --columns time_s,a_theta2_rad,distance\n"
+        "  doppel simulate butterfly -o - | head");
     add_run_options(command, *options, "Has no effect on a table");
     add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     command.callback([options] {
         run_all(read_scenes(*options), *options,
-                {.out = options->out,
-                 .pictures = false,
-                 .jobs = options->jobs,
-                 .columns = columns_of_option(options->columns)});
+                {.pictures = false, .jobs = options->jobs, .columns = columns_of_option(options->columns)});
     });
 }
 

@@ -11,20 +11,25 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <vector>
 
 namespace doppel {
 
 namespace {
 
 // a signal can reach nothing but what is global; only this file sees it
-std::atomic<bool> stop_requested = false;
+std::atomic<bool> stop_requested = false, termination_requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 }  // namespace
 
 const std::atomic<bool>& watch_interrupts() {
     struct sigaction action {};
-    action.sa_handler = [](int) { stop_requested = true; };
+    action.sa_handler = [](int signal) {
+        termination_requested = signal == SIGTERM;
+        stop_requested = true;
+    };
     action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
@@ -32,6 +37,10 @@ const std::atomic<bool>& watch_interrupts() {
     struct sigaction before {};
     if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
     return stop_requested;
+}
+
+bool was_terminated() {
+    return termination_requested;
 }
 
 void outlive_readers() {
@@ -48,7 +57,7 @@ void write_out(std::string_view text) {
 }
 
 Error unwritten(const std::error_code& why) {
-    return io_failed("standard output cannot be written: {}", why.message());
+    return {code_of_errno(why.value()), fmt::format("standard output cannot be written: {}", why.message())};
 }
 
 namespace {
@@ -82,6 +91,18 @@ std::string file_line(const std::filesystem::path& file) {
     return (isatty(STDOUT_FILENO) ? on_one_line(file.string()) : file.string()) + more;
 }
 
+/// Copies it to standard output, for as long as somebody reads.
+void stream_file(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> bytes(1 << 20);
+    while (file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || file.gcount() > 0) {
+        const auto fault = try_write_out({bytes.data(), static_cast<std::size_t>(file.gcount())});
+        if (fault == std::errc::broken_pipe) return;
+        if (fault) throw unwritten(fault);
+    }
+    if (!file.eof()) throw io_failed("{}: cannot be read", path.string());
+}
+
 }  // namespace
 
 void tell_of_files(std::string_view text) {
@@ -97,8 +118,13 @@ ProgressStyle progress_style(const std::string& name) {
     return isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
 }
 
-ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::string unit)
-    : style_(style), name_(std::move(name)), unit_(std::move(unit)), start_(Clock::now()), shown_(start_) {}
+ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::string unit, std::string streamed)
+    : style_(style),
+      name_(std::move(name)),
+      unit_(std::move(unit)),
+      streamed_(std::move(streamed)),
+      start_(Clock::now()),
+      shown_(start_) {}
 
 void ProgressReport::operator()(const Progress& progress) {
     if (style_ == ProgressStyle::none || progress.total == 0) return;
@@ -148,8 +174,9 @@ void ProgressReport::warn(const std::string& sentence) {
 }
 
 void ProgressReport::tell(const nlohmann::ordered_json& event) {
-    const auto fault =
-        try_write_out(event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    const auto line = event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    if (!streamed_.empty()) return say(stderr, "{}", line);
+    const auto fault = try_write_out(line);
     const bool left = fault == std::errc::broken_pipe;  // of their own accord
     if (fault && !left) unheard_ = fault;
 }
@@ -162,11 +189,15 @@ void ProgressReport::clear() {
 void ProgressReport::done(const RunResult& result) {
     clear();
     for (const auto& warning : result.warnings) warn(warning);
+    if (!streamed_.empty())
+        for (const auto& file : result.files)
+            if (file.extension() == streamed_) stream_file(file);
     const long count = result.frames > 0 ? result.frames : result.samples;
     if (style_ == ProgressStyle::json) {
         nlohmann::ordered_json line = {
             {"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
-        for (const auto& file : result.files) line["files"].push_back(file.string());
+        for (const auto& file : result.files)
+            if (streamed_.empty()) line["files"].push_back(file.string());
         tell(line);
         if (unheard_) throw unwritten(unheard_);
         return;
@@ -177,6 +208,7 @@ void ProgressReport::done(const RunResult& result) {
     else if (style_ != ProgressStyle::none)
         say(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
             static_cast<double>(count) / result.wall_s, unit_);
+    if (!streamed_.empty()) return;
     std::string lines;
     for (const auto& file : result.files) lines += file_line(file) + "\n";
     tell_of_files(lines);

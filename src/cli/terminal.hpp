@@ -21,6 +21,9 @@ namespace doppel {
 /// it at once.
 const std::atomic<bool>& watch_interrupts();
 
+/// Whether it was SIGTERM: exit 143 in place of 130.
+bool was_terminated();
+
 /// From now on, whoever reads the progress may go away, and the work goes on.
 void outlive_readers();
 
@@ -52,7 +55,9 @@ ProgressStyle progress_style(const std::string& name);
 /// (on standard output; the others on standard error).
 class ProgressReport {
 public:
-    ProgressReport(ProgressStyle style, std::string name, std::string unit);
+    /// `streamed` = how the name of the one file ends that goes to standard output when the run is done, and nothing else
+    /// does; empty: none.
+    ProgressReport(ProgressStyle style, std::string name, std::string unit, std::string streamed = {});
 
     void operator()(const Progress& progress);
     /// A sentence of its own.
@@ -72,7 +77,7 @@ private:
     void tell(const nlohmann::ordered_json& event);
 
     ProgressStyle style_;
-    std::string name_, unit_;  // of what; "frames"
+    std::string name_, unit_, streamed_;  // of what; "frames"
     Clock::time_point start_, shown_;
     std::optional<long> before_;  // done when first heard of, by an earlier run
     bool on_screen_ = false;

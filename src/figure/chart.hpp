@@ -72,7 +72,9 @@ void chart_fields(Visit& visit, Chart& chart) {
            "",
            Only{!on_paper, "is of a size in pixels; with width_cm dpi says it"}},
           chart.scale);
-    visit({.key = "title", .help = "words in place of title and subtitle; `false`: neither", .is_drawn = true},
+    visit({.key = "title",
+           .help = "words in place of title and subtitle, one text or a list of both; `false`: neither",
+           .is_drawn = true},
           chart.title);
     visit({.key = "captions", .help = "words in place of those below the picture; `false`: none", .is_drawn = true},
           chart.captions);

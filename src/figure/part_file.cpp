@@ -159,7 +159,7 @@ void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) 
     std::vector<std::string> named;
     for (std::size_t i = 0; named.size() < std::min(missing, most_named); ++i)
         if (parts[i].empty()) named.push_back(fmt::format("{}/{}", i + 1, parts.size()));
-    throw bad_input("{}: missing parts: {}{}", folder.string(), fmt::join(named, ", "),
+    throw try_again("{}: missing parts: {}{}", folder.string(), fmt::join(named, ", "),
                     missing > most_named ? fmt::format(" … {} in all", missing) : "");
 }
 

@@ -75,7 +75,8 @@ private:
 };
 
 /// The numbers of a figure from its shards in `folder`, each of which must be there once, whole and of this figure.
-/// Throws Error: exit 2 where parts are missing, there twice or belong to something else, exit 4 where one cannot be
+/// Throws Error: exit 75 where parts are missing, exit 2 where they are there twice or belong to something else, exit 4
+/// where one cannot be
 /// read or is damaged, exit 130 soon after `stop` is set.
 KnownTrials merged_parts(const FigurePreset& figure, const std::filesystem::path& folder,
                          const std::atomic<bool>& stop);

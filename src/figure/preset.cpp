@@ -15,8 +15,10 @@ constexpr std::string_view film_introduction = R"(# Presets: all tables and keys
 
 A preset is a TOML file that describes two pendulums and the film of them, or a figure. Every key has a default; units
 are part of the key. `doppel init FILE.toml` writes one to start from (`doppel init --figure KIND` that of a figure),
-`doppel show NAME` prints one, `doppel check FILE` tells what it would run, and `--set TABLE.KEY=VALUE` sets a key from the command
-line. A key that is not in these tables is an error; all faults of a preset are told in one go, in the order of its lines.
+`doppel show NAME` prints one, `doppel check FILE` tells what it would run, and `--set KEY=VALUE` sets a key from the command line:
+`video.theme=light` (text needs no quotes), `system.angle_deg=[90, 60]`, `system.mass_kg[1]=2` (the second of a list),
+`system.force.NAME.length_m=1.2` (an entry by its `name`, or the only one of its `kind`).
+A key that is not in these tables is an error; all faults of a preset are told in one go, in the order of its lines.
 
 ```toml
 title = "Three thousandths of a degree"

@@ -34,7 +34,10 @@ Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
     if (!figure.erratum.empty()) page.captions.push_back("Erratum: " + figure.erratum);
     const auto &title = figure.chart.title, &captions = figure.chart.captions;
     if (!title.shown || title.own) page.title = page.subtitle = "";
-    if (title.own) page.title = fmt::format("{}", fmt::join(*title.own, " "));
+    if (title.own && !title.own->empty()) {
+        page.title = title.own->front();
+        page.subtitle = fmt::format("{}", fmt::join(title.own->begin() + 1, title.own->end(), " "));
+    }
     if (!captions.shown) page.captions.clear();
     if (captions.own) page.captions = *captions.own;
     return page;

@@ -37,7 +37,7 @@ struct FigureReport {
 /// same command goes on after an interruption.
 ///
 /// Files of a figure appear complete or not at all; those that are complete stay where a later one fails. Throws Error:
-/// exit 2 where parts are missing or belong to something else, exit 3, 4 or, soon after `stop` is set, 130.
+/// exit 2 where parts belong to something else, 75 where one is missing, 3, 4 or, soon after `stop` is set, 130.
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report);
 

@@ -138,7 +138,7 @@ public:
         for (int row = 0; row < pyramid_.down(pyramid_.levels); ++row)
             for (int column = 0; column < pyramid_.across(pyramid_.levels); ++column)
                 if (!is_there(pyramid_.levels, row, column))
-                    throw bad_input("{}: the tile {} is missing; compute all parts before the merge", figure_.name,
+                    throw try_again("{}: the tile {} is missing; compute all parts before the merge", figure_.name,
                                     (folder_.path() / Pyramid::name(pyramid_.levels, row, column)).string());
     }
 
@@ -146,6 +146,18 @@ public:
         if (!look_.low || !look_.high) fit_colors();
         return {figure_.title, figure_.subtitle, folder_.path().filename().string(), pyramid_, map_.frame(), look_,
                 theme_};
+    }
+    /// Whether no cell has a number; of tiles from an earlier run, by the one that shows all.
+    bool is_empty() {
+        if (drawn_) return false;
+        auto none = page().look;
+        none.columns = none.rows = 1;
+        none.values = {NAN};
+        const auto nothing = cell_picture(none, theme_), all = folder_.read(Pyramid::name(0, 0, 0));
+        for (std::size_t i = 0; i < all.rgba.size(); i += 4)
+            if (all.rgba[i + 3] == 255 && !std::equal(&all.rgba[i], &all.rgba[i] + 3, nothing.rgba.begin()))
+                return false;
+        return true;
     }
     const Pyramid& pyramid() const { return pyramid_; }
     double cells_computed() const { return computed_; }
@@ -181,7 +193,10 @@ private:
             throw_if_set(stop_);
             std::vector<TrialNumbers> numbers(cells.columns);
             map_.find(pyramid_.rows - 1 - top - y, left, numbers, stop_);
-            for (const auto& cell : numbers) cells.values.push_back(static_cast<float>(cell[0]));
+            for (const auto& cell : numbers) {
+                cells.values.push_back(static_cast<float>(cell[0]));
+                if (std::isfinite(cell[0])) drawn_ = true;
+            }
         }
         Picture picture({tile, tile});
         paste(cell_picture(cells, theme_), 0, 0, picture);
@@ -239,6 +254,7 @@ private:
     int jobs_;
     HeatMap look_;
     bool mirrors_ = false;
+    mutable std::atomic<bool> drawn_ = false;                   // a number, by this run
     mutable std::mutex mutex_;                                  // of all below
     double total_ = 0, done_ = 0, computed_ = 0, start_s_ = 0;  // cells, s
     bool told_ = false;
@@ -259,11 +275,15 @@ std::string Pyramid::name(int level, int row, int column) {
     return fmt::format("{}-{}-{}.png", level, row, column);
 }
 
-void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,
-                const ComputationReport& report, const std::function<void(const RunResult&)>& done) {
+void demand_map(const FigurePreset& figure) {
     if (!figure.experiment->map())
         throw bad_input("{}: --tiles are of maps, kind = \"map\" or \"flip-map\"; this is kind = \"{}\"", figure.name,
                         figure.kind);
+}
+
+void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,
+                const ComputationReport& report, const std::function<void(const RunResult&)>& done) {
+    demand_map(figure);
     const double start = seconds_of(CLOCK_MONOTONIC);
     const int jobs = options.jobs > 0 ? options.jobs : cores();
     const auto run = options.shard ? fmt::format("tiles-{}-of-{}", options.shard->number, options.shard->of) : "tiles";
@@ -279,6 +299,9 @@ void make_tiles(const FigurePreset& figure, const FigureOptions& options, const 
         if (options.merge) tiles.demand_finest();
         const double computed_s = tiles.seconds();
         tiles.combine();
+        if (tiles.is_empty())
+            throw method_failed("{}: none of the {} × {} cells has a number: there is nothing to draw", figure.name,
+                                grouped(tiles.pyramid().columns), grouped(tiles.pyramid().rows));
         const auto html = figure.name + ".html";
         write_tile_page(files.file(html), tiles.page());
         files.finished(html);

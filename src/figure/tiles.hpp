@@ -30,10 +30,12 @@ private:
 /// computes its share of the finest tiles alone; a merge makes the rest from them. No more than one tile a thread is in
 /// memory. Colours go by [map] color_range, or by the numbers of 4096 cells spread over the map.
 ///
-/// Errors: exit 2 where the figure is no map, or parts are missing at a merge; exit 3 as compute(); exit 4 where the
-/// folder of tiles is of another preset or version, or not Doppel's; exit 130 soon after `stop` is set, all tiles made so
-/// far kept.
+/// Errors: exit 2 where the figure is no map, 75 where parts are missing at a merge; exit 3 as compute(), or where no cell
+/// has a number; exit 4 where the folder of tiles is of another preset or version, or not Doppel's; exit 130 soon after
+/// `stop` is set, all tiles made so far kept.
 void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,
                 const ComputationReport& report, const std::function<void(const RunResult&)>& done);
+/// Throws Error (exit 2) where the figure is no map.
+void demand_map(const FigurePreset& figure);
 
 }  // namespace doppel

@@ -42,12 +42,16 @@ struct RunRecord {
     SideRecord a, b;
     double largest_distance = 0;
     Parting parting;
-    std::string failure;  // what ended the run, where something did
+    std::string failure;                // what ended the run, where something did
+    std::vector<std::string> warnings;  // sentences for the one who reads the results
 };
 
-/// What the one who reads the results should know: a side whose energy changed by more than 1 % of the potential range
-/// though its mechanics keep it. Sentences.
-std::vector<std::string> warnings_of(const Scene& scene, const RunRecord& record);
+/// Adds to the warnings: sides whose energy changed by more than 1 % of the potential range though their mechanics keep
+/// it, and from when on they are off by half a rad, where that is found in about the time that the run took.
+void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop);
+
+/// The model and method of a side, as manifests and `check --json` have it.
+Json method_json(const Scene& scene, const Side& side);
 
 /// Writes the manifest `name`; hashes the files that are finished. Throws Error (exit 4).
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record);

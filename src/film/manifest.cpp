@@ -1,5 +1,7 @@
+#include "base/clock.hpp"
 #include "film/film.hpp"
 #include "output/written.hpp"
+#include "scene/forecast.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <sstream>
 
 namespace doppel {
@@ -22,7 +25,9 @@ Json track_json(const Replay& replay, const TrackSpec& spec) {
     return {{"measured", measured}};
 }
 
-Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
+}  // namespace
+
+Json method_json(const Scene& scene, const Side& side) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
     if (side.method.adaptive) {
         json["tolerance"] = static_cast<double>(side.motion.tolerance);
@@ -37,6 +42,13 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
                             {"horizon_s", scene.time(side.choice->horizon)},
                             {"holds_to_the_end", side.choice->horizon == scene.samples},
                             {"verified_by", side.choice->reference->description()}};
+    return json;
+}
+
+namespace {
+
+Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
+    auto json = method_json(scene, side);
     json["steps"] = record.effort.steps;
     json["evaluations"] = record.effort.evaluations;
     json["smallest_step_s"] = record.effort.smallest_step;
@@ -70,18 +82,24 @@ Json fonts_json(const Preset& preset) {
 
 }  // namespace
 
-std::vector<std::string> warnings_of(const Scene& scene, const RunRecord& record) {
-    constexpr double most = 0.01;
-    std::vector<std::string> warnings;
+void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop) {
+    constexpr double most = 0.01, least_patience_s = 0.2, most_patience_s = 2;
     for (const auto& [name, side, seen] : {std::tuple('a', &scene.a, &record.a), {'b', &scene.b, &record.b}}) {
         const double error = seen->energy_change / scene.energy_range();
         if (side->has_energy_error && error > most)
-            warnings.push_back(fmt::format(
+            record.warnings.push_back(fmt::format(
                 "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse "
                 "for these {:g} s; accuracy = 1e-3 chooses what is not",
                 name, 100 * error, side->method.title, step_control_text(*side), scene.time(record.last_sample)));
     }
-    return warnings;
+    try {
+        const TimeLimit limit(std::clamp(record.wall_s, least_patience_s, most_patience_s), stop);
+        for (const auto& [name, side] : {std::pair('a', &scene.a), {'b', &scene.b}})
+            if (const auto words = early_error(scene, *side, record.last_sample, limit.reached()))
+                record.warnings.push_back(fmt::format("side {} is {}", name, *words));
+    } catch (const std::exception&) {
+        throw_if_set(stop);  // else it is not known: it takes too long, or there is no thread to watch the time
+    }
 }
 
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
@@ -98,7 +116,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"largest_distance", record.largest_distance},
         {"parted_s", record.parting.since() ? Json(*record.parting.since()) : Json(nullptr)},
         {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},
-        {"warnings", warnings_of(scene, record)},
+        {"warnings", record.warnings},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",
          {{"wall_s", record.wall_s},

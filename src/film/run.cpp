@@ -79,6 +79,7 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     throw_if_set(stop);
     record.failure = fmt::format("{}; {}", fault.what(), advice);
     record.last_sample = fault.sample - 1;
+    add_warnings(scene, record, stop);
     const auto csv = failed_name(name, ".csv"), manifest = failed_name(name, ".json");
     parts.keep_only(name + ".csv", csv);
     parts.finished(csv);
@@ -143,6 +144,19 @@ void check_run(const Scene& scene, const RunOptions& options) {
     columns_of(scene, options.columns);
 }
 
+std::vector<std::string> run_files(const Scene& scene, bool pictures) {
+    const auto& [name, video] = std::pair(scene.preset.name, scene.preset.video);
+    std::vector<std::string> files;
+    if (pictures)
+        files.push_back(video.format == FilmFormat::png ? "frames/"
+                                                        : fmt::format("{}.{}", name, name_of(video.format)));
+    files.push_back(name + ".csv");
+    if (pictures && video.poster_s) files.push_back(name + ".poster.png");
+    if (pictures && video.contact_sheet) files.push_back(name + ".contact.png");
+    files.push_back(name + ".json");
+    return files;
+}
+
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
@@ -198,6 +212,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         parts.finished(csv_name);
         record.simulate_cpu_s = simulation.cpu_s();
         record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+        add_warnings(scene, record, stop);
         record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
         record.encode_cpu_s =
             std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
@@ -212,7 +227,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             .frames = record.frames,
             .samples = samples,
             .wall_s = record.wall_s,
-            .warnings = warnings_of(scene, record)};
+            .warnings = record.warnings};
 }
 
 }  // namespace doppel

@@ -46,9 +46,14 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
 /// That of such a picture. Throws Error (exit 2) where the scene ends before.
 Moment still_moment(const Scene& scene, const Rational& time);
+/// "NAME.14s.png", of such a picture.
+std::string still_name(const Scene& scene, const Moment& moment, PictureFormat format);
 
 /// Throws Error (exit 2) where the scene has not all of the frames, or of the columns, that `options` ask for.
 void check_run(const Scene& scene, const RunOptions& options);
+
+/// What run() writes into OUT/NAME/, folders with "/".
+std::vector<std::string> run_files(const Scene& scene, bool pictures);
 
 /// Simulates, draws and writes; the three overlap through bounded queues. Files appear complete or not at all.
 /// Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.

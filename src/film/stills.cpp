@@ -37,12 +37,16 @@ Moment still_moment(const Scene& scene, const Rational& time) {
     return moment_at(time.value() * scene.preset.sample_hz.value());
 }
 
+std::string still_name(const Scene& scene, const Moment& moment, PictureFormat format) {
+    return fmt::format("{}.{}s.{}", scene.preset.name, seconds_text(scene.time(moment)), name_of(format));
+}
+
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
     const double start = seconds_of(CLOCK_MONOTONIC);
     const auto moment = still_moment(scene, time);
     const auto text = seconds_text(scene.time(moment));
-    const auto name = fmt::format("{}.{}s.{}", scene.preset.name, text, name_of(format));
+    const auto name = still_name(scene, moment, format);
     Transaction parts(options.out / scene.preset.name, "still", "film", options.replacing);
     const auto place = parts.file(name);
     Composer composer(scene, stop);

@@ -55,7 +55,7 @@ struct FitRun {
 FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions& options,
                const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
 
-/// Of the results of files.
+/// Of the results of files. Throws Error (exit 2) where it can be no folder's.
 std::string fit_name(const std::vector<std::filesystem::path>& files, const FitOptions& options);
 
 }  // namespace doppel

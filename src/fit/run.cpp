@@ -25,15 +25,16 @@ std::vector<std::string> sentences_of(const FitResult& result) {
 }  // namespace
 
 std::string fit_name(const std::vector<std::filesystem::path>& files, const FitOptions& options) {
-    return options.name.empty() ? files.front().stem().string() : options.name;
+    auto name = options.name.empty() ? files.front().stem().string() : options.name;
+    if (name.empty() || name.find('/') != std::string::npos)
+        throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
+    check_preset_name(options.name.empty() ? files.front().string() : "--name", name);
+    return name;
 }
 
 FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions& options,
                const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
     const auto name = fit_name(files, options);
-    if (name.empty() || name.find('/') != std::string::npos)
-        throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
-    check_preset_name(options.name.empty() ? files.front().string() : "--name", name);
     const double start = seconds_of(CLOCK_MONOTONIC);
     auto track = read_tracks(files, stop);
     Transaction parts(options.out / name, name, "fit", {files, options.force});

@@ -84,7 +84,8 @@ void write_file(const fs::path& path, std::string_view text) {
 }
 
 Error cannot(const fs::path& path, std::string_view what, int reason) {
-    return io_failed("{}: cannot be {}: {}", path.string(), what, std::generic_category().message(reason));
+    return {code_of_errno(reason),
+            fmt::format("{}: cannot be {}: {}", path.string(), what, std::generic_category().message(reason))};
 }
 
 }  // namespace doppel

@@ -249,7 +249,8 @@ void Spool::get(void* bytes, std::size_t count) {
 }
 
 void Spool::fail(const char* what) const {
-    throw io_failed("{}: its frames on the disk: {}: {}", path_.string(), what, std::generic_category().message(errno));
+    throw Error(code_of_errno(errno), fmt::format("{}: its frames on the disk: {}: {}", path_.string(), what,
+                                                  std::generic_category().message(errno)));
 }
 
 void check_gif_filters() {

@@ -76,7 +76,8 @@ void check_libav(int result, const std::string& name, std::string_view what) {
     std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
     av_strerror(result, reason.data(), reason.size());
     const auto error = take_libav_error();
-    throw io_failed("{}: {}: {}{}{}", name, what, error, error.empty() ? "" : ": ", reason.data());
+    throw Error(code_of_errno(AVUNERROR(result)),
+                fmt::format("{}: {}: {}{}{}", name, what, error, error.empty() ? "" : ": ", reason.data()));
 }
 
 Libav<AVFrame> make_frame(Size size, AVPixelFormat pixels) {

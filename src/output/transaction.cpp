@@ -104,7 +104,8 @@ void Transaction::make_folders() {
             if (fs::create_directory(way, error)) made_.push_back(way);
             if (!error) continue;
             demand_type(way, true);
-            throw io_failed("{}: the folder cannot be made: {}", way.string(), error.message());
+            throw Error(code_of_errno(error.value()),
+                        fmt::format("{}: the folder cannot be made: {}", way.string(), error.message()));
         }
     }
 }
@@ -131,7 +132,7 @@ bool Transaction::lock() {
     auto process = start_of_file(path, 64);
     process = process.empty() ? "" : fmt::format(", process {},", process.substr(0, process.find('\n')));
     if (fault == EWOULDBLOCK)
-        throw io_failed("{}: another run{} is writing there; wait for it, or give another folder with --out",
+        throw try_again("{}: another run{} is writing there; wait for it, or give another folder with --out",
                         folder_.string(), process);
     throw io_failed(
         "{}: another run{} may be writing there: the file system has no locks ({}), so nobody can tell; remove {} if "

@@ -2,6 +2,8 @@
 
 #include "analysis/reference.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -90,6 +92,20 @@ Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<boo
     if (reference.failure.empty())
         seen.limit = limit_of(ends_of_fine_runs(side, reference, scene.samples, stop), scene, seen);
     return seen;
+}
+
+std::string off_words(const Side& side, double from_s) {
+    return fmt::format("off by half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", from_s);
+}
+
+std::optional<std::string> early_error(const Scene& scene, const Side& side, long last, const std::atomic<bool>& stop) {
+    if (side.replay || (side.choice && side.choice->horizon >= last)) return std::nullopt;
+    if (side.choice) return fmt::format("within the accuracy up to {:.3g} s", scene.time(side.choice->horizon));
+    const auto history =
+        error_history(side.motion, reference_trajectory(side.motion, last, side.reach, off, stop, 0), off, stop);
+    if (history.error.empty() || !(history.error.back() > off)) return std::nullopt;
+    const long first = static_cast<long>(history.error.size()) - 1;
+    return first <= last ? std::optional(off_words(side, scene.time(first))) : std::nullopt;
 }
 
 }  // namespace doppel

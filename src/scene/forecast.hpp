@@ -4,6 +4,7 @@
 #include "scene/scene.hpp"
 
 #include <optional>
+#include <string>
 
 namespace doppel {
 
@@ -32,5 +33,12 @@ struct Forecast {
 /// allows, each of which rounds in its own way.
 /// Errors  exit 130 soon after `stop` is set; exit 3 where the method breaks down at once.
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop);
+
+/// "off by half a rad from 11 s on".
+std::string off_words(const Side& side, double from_s);
+
+/// Such words of a side whose run is off at a sample up to `last`, or whose accuracy does not hold so far; nothing where
+/// neither is. Errors as forecast_of().
+std::optional<std::string> early_error(const Scene& scene, const Side& side, long last, const std::atomic<bool>& stop);
 
 }  // namespace doppel

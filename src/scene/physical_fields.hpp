@@ -11,13 +11,15 @@ namespace doppel {
 
 // The keys of chains that are more than point masses, as in scene/preset_fields.hpp.
 
+inline constexpr double most_hz = 1e6;  // of a drive: far above what a pendulum follows
+
 /// [system.pivot]
 template <class Visit, class Pivot>
 void pivot_fields(Visit& visit, Pivot& pivot) {
     visit({"direction_deg", "of the motion, from the x axis: 90 = up", "deg", angle_bounds}, pivot.direction_deg);
     visit({"amplitude_m", "half the way to and fro; 0 = the pivot stays where it is", "m", not_negative},
           pivot.amplitude_m);
-    visit({"frequency_hz", "swings a second", "Hz", positive}, pivot.frequency_hz);
+    visit({"frequency_hz", "swings a second", "Hz", {.low = 0, .high = most_hz, .is_open = true}}, pivot.frequency_hz);
     visit({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, pivot.phase_deg);
 }
 
@@ -28,7 +30,7 @@ void part_fields(Visit& visit, Torque& torque) requires std::is_same_v<std::remo
            from_to(1, 10'000)},
           torque.joint);
     visit({"amplitude_N_m", "torque", "N m"}, torque.amplitude_N_m);
-    visit({"frequency_hz", "swings a second", "Hz", not_negative}, torque.frequency_hz);
+    visit({"frequency_hz", "swings a second", "Hz", from_to(0, most_hz)}, torque.frequency_hz);
     visit({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, torque.phase_deg);
 }
 

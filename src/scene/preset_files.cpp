@@ -83,6 +83,7 @@ PresetText find_preset(const std::string& name_or_path, const std::atomic<bool>*
         if (preset.name == name_or_path) return preset;
         names.push_back(preset.name);
     }
+    if (fs::is_regular_file(name_or_path, ignored)) return read_file(name_or_path, name_or_path, stop);
     const auto meant = nearest(name_or_path, names);
     throw bad_input(
         "there is no preset \"{}\"; {}", name_or_path,

@@ -1,10 +1,13 @@
 #include "base/text.hpp"
+#include "numeric/rational.hpp"
+#include "scene/field_table.hpp"
 #include "scene/toml_reader.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <iterator>
 #include <sstream>
 #include <utility>
@@ -76,36 +79,179 @@ toml::table parse(const std::string& text, const std::string& path, TomlTexts& t
     }
 }
 
-/// The value of `change`, in a table of its own.
-toml::table given_by(const Override& change, TomlTexts& texts) {
-    const auto& text = texts.insert_or_assign(change.origin, TomlText("value = " + change.value)).first->second.text();
+/// `value`, which `change` gives, in a table of its own.
+toml::table parsed_value(const Override& change, const std::string& value, TomlTexts& texts) {
+    const auto& text = texts.insert_or_assign(change.origin, TomlText("value = " + value)).first->second.text();
     bound_keys(text, change.origin);
+    auto given = toml::parse(text, change.origin);
+    if (given.size() != 1) throw bad_input("{}: \"{}\" is more than one value", change.origin, change.value);
+    return given;
+}
+
+bool is_toml(const std::string& value) {
     try {
-        return toml::parse(text, change.origin);
-    } catch (const toml::parse_error& fault) {
-        throw bad_input("{}: \"{}\" is no TOML value ({}); strings want quotes: '{}=\"{}\"'", change.origin,
-                        change.value, fault.description(), change.key, change.value);
+        static_cast<void>(toml::parse("value = " + value));
+        return true;
+    } catch (const toml::parse_error&) {
+        return false;
     }
+}
+
+/// Text as one types it without quotes: "light", "1/1000", "#ff8800", "fonts/mine.ttf".
+bool is_bare_text(std::string_view value) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (value.empty() || value.find_first_of("\"'[]{}=,\\\n\r\t") != std::string_view::npos) return false;
+    const bool is_fraction = parse_rational(std::string(value)).has_value();
+    return is_fraction || !(is_digit(value[0]) || value[0] == '-' || value[0] == '+' || value[0] == '.');
+}
+
+/// The same of the value as it was typed.
+toml::table given_by(const Override& change, TomlTexts& texts) {
+    try {
+        return parsed_value(change, change.value, texts);
+    } catch (const toml::parse_error& fault) {
+        if (is_bare_text(change.value)) return parsed_value(change, toml_text(change.value), texts);
+        const auto list = fmt::format("[{}]", change.value);
+        const bool lacks_brackets = change.value.find(',') != std::string::npos && is_toml(list);
+        throw bad_input("{}: \"{}\" is no TOML value ({}); {}", change.origin, change.value, fault.description(),
+                        lacks_brackets ? fmt::format("a list wants brackets: '{}={}'", change.key, list)
+                                       : fmt::format("strings want quotes: '{}=\"{}\"'", change.key, change.value));
+    }
+}
+
+/// "mass_kg[1]" → "mass_kg" and 1.
+std::optional<std::size_t> take_element(std::string& key, const Override& change) {
+    const auto bracket = key.find('[');
+    if (bracket == std::string::npos) return std::nullopt;
+    std::size_t element = 0;
+    const char *first = key.data() + bracket + 1, *end = key.data() + key.size();
+    const auto [after, fault] = std::from_chars(first, end, element);
+    if (fault != std::errc() || after + 1 != end || *after != ']')
+        throw bad_input("{}: an element of a list is written like system.mass_kg[1], the second", change.origin);
+    key.resize(bracket);
+    return element;
+}
+
+std::string text_in(const toml::table& table, std::string_view key) {
+    return table[key].value_or(std::string());
+}
+
+/// The literals of a list of numbers; of a single one, which holds for all links, as often as there are links.
+std::vector<std::string> literals_of(const toml::node& node, std::size_t links, const Override& change,
+                                     const TomlTexts& texts) {
+    const auto literal = [&](const toml::node& number) {
+        const auto& source = number.source();
+        const auto text = source.path ? texts.find(*source.path) : texts.end();
+        if (!number.is_number() || text == texts.end())
+            throw bad_input("{}: an element is set of a list of numbers; {}", change.origin, found(node));
+        return text->second.literal_at(source.begin.line, source.begin.column);
+    };
+    std::vector<std::string> literals;
+    if (const auto* array = node.as_array())
+        for (const auto& element : *array) literals.push_back(literal(element));
+    else
+        literals.assign(links, literal(node));
+    return literals;
+}
+
+/// The literal of each number of a list of [system] where the preset has none; empty where there is none.
+std::string default_literal(std::string_view key) {
+    for (const auto& table : film_tables())
+        for (const auto& field : table.fields)
+            if (const auto value = field.default_value(); table.key() == "system" && field.key == key)
+                return value.starts_with('[') ? value.substr(1, value.find_first_of(",]") - 1) : "";
+    return {};
+}
+
+/// The list that `key` of a table has, with another number at `element`. What [a] or [b] does not say is as in [system].
+std::string list_with(const toml::table& root, const toml::table& table, const std::string& key, std::size_t element,
+                      const Override& change, const TomlTexts& texts) {
+    const auto* system = root["system"].as_table();
+    const bool is_of_side = &table == root["a"].as_table() || &table == root["b"].as_table();
+    const auto* node = table.get(key);
+    if (!node && is_of_side && system) node = system->get(key);
+    auto links = table["links"].value<long>();
+    if (!links && system) links = (*system)["links"].value<long>();
+    const auto count = static_cast<std::size_t>(std::clamp(links.value_or(2), 1L, 10'000L));
+    const bool has_default = &table == system || is_of_side;
+    const auto by_default = node || !has_default ? "" : default_literal(key);
+    if (!node && by_default.empty())
+        throw bad_input("{}: the preset has no {}; give all of it: '{}=[…]'", change.origin, key,
+                        change.key.substr(0, change.key.find('[')));
+    auto literals = node ? literals_of(*node, count, change, texts) : std::vector(count, by_default);
+    if (element >= literals.size())
+        throw bad_input("{}: {} has {} elements, whose last is [{}]", change.origin, key, literals.size(),
+                        literals.size() - 1);
+    literals[element] = change.value;
+    return fmt::format("[{}]", fmt::join(literals, ", "));
+}
+
+/// The entry of that name, or else the only one of that kind. An entry of [system] that a side says nothing of gets a
+/// table there. `key` = "system.force".
+toml::table& entry_named(const toml::table& root, toml::array& entries, std::string_view key, const std::string& name,
+                         const Override& change) {
+    std::vector<toml::table*> of_kind;
+    std::vector<std::string> names;
+    for (auto& entry : entries) {
+        auto* table = entry.as_table();
+        if (!table) continue;
+        if (text_in(*table, "name") == name) return *table;
+        if (text_in(*table, "kind") == name) of_kind.push_back(table);
+        if (auto own = text_in(*table, "name"); !own.empty()) names.push_back(std::move(own));
+    }
+    if (of_kind.size() == 1) return *of_kind.front();
+    const auto table = key.substr(key.find('.') + 1);
+    if (const auto* of_both = root["system"][table].as_array(); of_both && of_both != &entries)
+        for (const auto& entry : *of_both)
+            if (entry.is_table() && text_in(*entry.as_table(), "name") == name) {
+                entries.push_back(toml::parse("name = " + toml_text(name), change.origin));
+                return *entries.back().as_table();
+            }
+    throw bad_input("{}: [[{}]] has {} \"{}\"; {}", change.origin, key,
+                    of_kind.empty() ? "no entry" : "several entries of kind", name,
+                    names.empty() ? "give the entry that is meant a name in the preset"
+                                  : fmt::format("there are {}", fmt::join(names, ", ")));
+}
+
+/// Where the key of `change` leads: the innermost table, and `key` ← what is left of it.
+toml::table& table_of(toml::table& root, const Override& change, std::string& key) {
+    toml::table* table = &root;
+    std::string way;
+    for (auto dot = key.find('.'); dot != std::string::npos; dot = key.find('.')) {
+        const auto head = key.substr(0, dot);
+        key = key.substr(dot + 1);
+        const auto inside = key.rfind('.');
+        const bool is_of_side = way == "a" || way == "b";
+        way += (way.empty() ? "" : ".") + head;
+        if (is_of_side && inside != std::string::npos && !table->contains(head) && root["system"][head].is_array())
+            table->insert(head, toml::array());
+        if (auto* entries = table->get_as<toml::array>(head); entries && inside != std::string::npos) {
+            auto& entry = entry_named(root, *entries, way, key.substr(0, inside), change);
+            key = key.substr(inside + 1);
+            return entry;
+        }
+        if (!table->contains(head)) table->insert(head, toml::parse("", change.origin));  // knows its origin
+        table = table->get_as<toml::table>(head);
+        if (!table) throw bad_input("{}: \"{}\" is no table", change.origin, head);
+    }
+    return *table;
 }
 
 /// Puts the value of `change` into the tables of `root`, in place of what is there.
 void apply(toml::table& root, const Override& change, TomlTexts& texts) {
-    auto dot = change.key.find('.');
-    toml::table* table = &root;
     std::string key = change.key;
-    for (; dot != std::string::npos; dot = key.find('.')) {
-        const auto head = key.substr(0, dot);
-        if (!table->contains(head)) table->insert(head, toml::parse("", change.origin));  // knows its origin
-        table = table->get_as<toml::table>(head);
-        if (!table) throw bad_input("{}: \"{}\" is no table", change.origin, head);
-        key = key.substr(dot + 1);
-    }
+    auto& table = table_of(root, change, key);
+    const auto element = take_element(key, change);
     auto given = given_by(change, texts);
-    if (given.size() != 1) throw bad_input("{}: \"{}\" is more than one value", change.origin, change.value);
+    if (element) {
+        if (const auto& value = *given.get("value"); !value.is_number())
+            throw bad_input("{}: an element must be a number; {}", change.origin, found(value));
+        given = parsed_value(change, list_with(root, table, key, *element, change, texts), texts);
+    }
     // moved, not copied: a copy would forget where it comes from
     std::move(*given.get("value")).visit([&]<class Node>(Node&& node) {
-        table->erase(key);
-        table->insert(key, std::forward<Node>(node));
+        table.erase(key);
+        table.insert(key, std::forward<Node>(node));
     });
 }
 
@@ -116,7 +262,7 @@ void apply(toml::table& root, const std::vector<Override>& overrides, TomlTexts&
             const auto& before = overrides[j];
             if (change.key == before.key)
                 throw bad_input("{} is given twice: {} and {}", change.key, before.origin, change.origin);
-            if (before.key.starts_with(change.key + "."))
+            if (before.key.starts_with(change.key + ".") || before.key.starts_with(change.key + "["))
                 throw bad_input("{}: would drop {}, which was given before it; give the table first", change.origin,
                                 before.origin);
         }

@@ -17,6 +17,21 @@ std::string listed(std::span<const std::string_view> choices) {
     return text;
 }
 
+/// Given on the command line: there, one number or text is a list of one.
+bool is_typed(const toml::node& node) {
+    const auto& origin = node.source().path;
+    return origin && origin->starts_with("--");
+}
+
+/// Whether the file gives a hidden key, and the command line another value of what hides it: then that is no error.
+bool is_ruled_out(const Field& field, const toml::table* table) {
+    const auto* node = table ? table->get(field.key) : nullptr;
+    if (!node || is_typed(*node)) return false;
+    return std::any_of(table->begin(), table->end(), [&](const auto& entry) {
+        return (field.only.beside.empty() || entry.first.str() == field.only.beside) && is_typed(entry.second);
+    });
+}
+
 std::string index_text(std::initializer_list<std::size_t> element) {
     std::string text;
     for (const auto index : element) text += fmt::format("[{}]", index);
@@ -35,7 +50,10 @@ std::string significant_digits(std::string_view decimal) {
 
 bool TomlReader::counts(const Field& field) {
     const auto& only = field.only;
-    if (only.hides && !only.holds) hidden_.emplace(field.key, only.beside);
+    if (only.hides && !only.holds) {
+        hidden_.emplace(field.key, only.beside);
+        if (is_ruled_out(field, table_)) known_.emplace(field.key);
+    }
     if (only.hides || only.holds || only.fault.empty()) return only.hides ? only.holds : true;
     if (has(field.key) && (!only.drops || from_command_line(field.key)))
         throw fault(field.key, "{}", only.fault).with(beside(only.beside));
@@ -159,6 +177,10 @@ void TomlReader::read(const Field& field, const toml::node& node, std::span<doub
 }
 
 void TomlReader::read(const Field& field, const toml::node& node, std::vector<double>& into) {
+    if (node.is_number() && is_typed(node)) {
+        into.resize(1);
+        return read(field, node, into[0]);
+    }
     const auto* array = node.as_array();
     if (!array || array->empty() || array->size() > field.most)
         throw fault(field.key, "must be an array of 1 to {} numbers; {}", field.most, found(node));
@@ -174,20 +196,25 @@ void TomlReader::read(const Field& field, const toml::node& node, Members& into)
         throw fault(field.key, "must be a whole number, or 2 to {} lists of angles; {}", Members::most_releases,
                     found(node));
     for (const auto& release : *releases) {
-        const auto* angles = release.as_array();
-        if (!angles || angles->empty())
+        auto& angles = into.angles_deg.emplace_back();
+        const auto add = [&](const toml::node& angle) {
+            const Element element{into.angles_deg.size() - 1, angles.size()};
+            angles.push_back(number(field.key, element, angle, Quad()));
+            check({.key = field.key, .bounds = {.low = -1e6, .high = 1e6}}, element, angles.back());
+        };
+        const auto* list = release.as_array();
+        if (release.is_number() && is_typed(node))
+            add(release);
+        else if (!list || list->empty())
             throw fault(field.key, "must be a whole number, or 2 to {} lists of angles; {} is {}",
                         Members::most_releases, shown(release), kind_of(release));
-        auto& read_angles = into.angles_deg.emplace_back();
-        for (const auto& angle : *angles) {
-            const Element element{into.angles_deg.size() - 1, read_angles.size()};
-            read_angles.push_back(number(field.key, element, angle, Quad()));
-            check({.key = field.key, .bounds = {.low = -1e6, .high = 1e6}}, element, read_angles.back());
-        }
+        else
+            for (const auto& angle : *list) add(angle);
     }
 }
 
 std::vector<std::string> TomlReader::texts_in(const Field& field, const toml::node& node) const {
+    if (const auto* text = node.as_string(); text && is_typed(node)) return {text->get()};
     const auto* array = node.as_array();
     if (!array) throw fault(field.key, "must be an array of strings; {}", found(node));
     std::vector<std::string> texts;

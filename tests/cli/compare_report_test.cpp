@@ -143,6 +143,19 @@ TEST(CompareReports, ReplaceNoInputAndNoOtherFileOfDoppels) {
         }
 }
 
+TEST(CompareReports, DoNotReadTheManifestsOfTheirFolder) {
+    const auto folder = fresh_folder();
+    make(folder / "one.png", plain(10));
+    // a file system that keeps the times of access notes that the first reader came
+    ASSERT_EQ(test::shell(folder, "echo '{}' >other.json; touch -a -d 2001-01-01 other.json").code, 0);
+    const auto result = test::shell(folder,
+                                    "\"$DOPPEL\" compare one.png one.png --junit r.xml --html r.html && "
+                                    "\"$DOPPEL\" init mine.toml && stat -c %x other.json");
+    EXPECT_NE(result.out.find("\n2001-01-01"), std::string::npos) << result.out << result.err;
+    const auto refused = doppel(folder, {"compare", "one.png", "one.png", "--junit", "other.json"});
+    EXPECT_EQ(refused.err, "doppel: other.json was not written by Doppel for this; give the name of another file\n");
+}
+
 TEST(CompareReports, AreNotForStandardOutput) {
     const auto folder = fresh_folder();
     make(folder / "one.png", plain(10));

@@ -3,6 +3,8 @@
 #include "output/png.hpp"
 
 #include <fstream>
+#include <map>
+#include <regex>
 
 namespace doppel {
 namespace golden_script_test {
@@ -17,7 +19,8 @@ TEST(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
     const auto run = [&](const std::string& more) {
         return shell(folder,
                      "export PROGRAM=\"$DOPPEL\" GOLDEN=golden OUT='drawn here' FRAMES=0:2 SIZE=160x90 "
-                     "GITHUB_STEP_SUMMARY=summary SETS='scene.duration_s=0.5\n  video.layout=\"overlay\"\n' " +
+                     "GITHUB_STEP_SUMMARY=summary FILM_SETS='scene.duration_s=0.5\n  video.layout=\"overlay\"\n' "
+                     "FIGURE_SETS=scene.duration_s=0.5 " +
                          more + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
     };
     const auto film = run("PRESETS='\n  calm '");
@@ -35,14 +38,50 @@ TEST(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
     const auto junit = test::XmlReader(bytes_of(folder / "drawn here/calm.xml")).document();
     EXPECT_EQ(junit["tests"] + junit["failures"], "21");
 
-    // the layout is no key of a figure; without it, the figure is drawn
-    EXPECT_EQ(run("PRESETS=calm FIGURES=fig6").code, 2);
-    EXPECT_EQ(run("FIGURES=fig6 SETS=scene.duration_s=0.5").code, 2);
+    EXPECT_EQ(run("FIGURES=fig6 FIGURE_SETS='video.layout=\"overlay\"'").code, 2);  // no key of a figure
+    EXPECT_EQ(run("FIGURES=fig6").code, 2);
     fs::copy(folder / "drawn here/actual/fig6/fig6.png", folder / "golden/fig6.png");
-    EXPECT_EQ(run("FIGURES=fig6 SETS=scene.duration_s=0.5").code, 0);
+    EXPECT_EQ(run("PRESETS=calm FIGURES=fig6").code, 1);  // the film alone differs
     const auto summary = bytes_of(folder / "summary");
-    for (const char* line : {"| calm | passes |", "| calm | differs |", "| fig6 | failed (exit code 2) |"})
+    for (const char* line :
+         {"| calm | passes |", "| calm | differs |", "| fig6 | failed (exit code 2) |", "| fig6 | passes |"})
         EXPECT_NE(summary.find(line), std::string::npos) << summary;
+}
+
+/// What `pattern` has in its first brackets and in its second, at each place where it fits.
+std::map<std::string, std::string> pairs_in(const std::string& text, const std::regex& pattern) {
+    std::map<std::string, std::string> found;
+    for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
+        found.emplace((*match)[1], (*match)[2]);
+    return found;
+}
+
+TEST(GoldenScript, TheExampleOfTheDocumentationPasses) {
+    const fs::path source(DOPPEL_SOURCE_DIR);
+    const auto page = bytes_of(source / "docs/ci.md"), action = bytes_of(source / "action.yml");
+    const auto example =
+        page.substr(page.find("```yaml"), page.find("```\n", page.find("```yaml")) - page.find("```yaml"));
+    const auto given = pairs_in(example, std::regex("    ([a-z-]+): \"?([^\" \n]+)"));
+    const auto defaults =
+        pairs_in(action, std::regex("  ([a-z-]+):\n    description: [^\n]*\n    default: ([^\n\"]*)"));
+    std::string variables;
+    for (const auto& [variable, input] : pairs_in(action, std::regex("([A-Z_]+): \\$\\{\\{ inputs.([a-z-]+) \\}\\}"))) {
+        const auto value = given.contains(input) ? given.at(input) : defaults.contains(input) ? defaults.at(input) : "";
+        variables += " " + variable + "='" + value + "'";
+    }
+    ASSERT_EQ(given.size(), 6u) << example;
+    const auto folder = test::fresh_folder();
+    const auto after = page.find("```sh", page.find("The goldens are"));
+    const auto commands = page.substr(after + 5, page.find("```\n", after) - after - 5);
+    const auto made = shell(folder,
+                            "set -e; doppel() { \"$DOPPEL\" \"$@\"; }; mkdir presets; "
+                            "doppel init presets/mine.toml" +
+                                commands);
+    ASSERT_EQ(made.code, 0) << made.err;
+    const auto result =
+        shell(folder, "export PROGRAM=\"$DOPPEL\"" + variables + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
+    EXPECT_EQ(result.code, 0) << variables << result.out << result.err;
+    EXPECT_TRUE(fs::exists(folder / "doppel-golden/fig6.html") && fs::exists(folder / "doppel-golden/mine.html"));
 }
 
 TEST(GoldenScript, SaysWhatItCannotDrawAndSkipsNothing) {

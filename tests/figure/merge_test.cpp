@@ -53,9 +53,9 @@ TEST_F(Merge, JoinsWhatIsThereAndComputesNothing) {
 
 TEST_F(Merge, NamesThePartsThatAreMissing) {
     fs::remove(part(2));
-    expect_refused(ExitCode::bad_input, {"missing", "2/3"}, small_sweep());
+    expect_refused(ExitCode::try_again, {"missing", "2/3"}, small_sweep());
     fs::remove(part(3));
-    expect_refused(ExitCode::bad_input, {"missing", "2/3, 3/3"}, small_sweep());
+    expect_refused(ExitCode::try_again, {"missing", "2/3, 3/3"}, small_sweep());
     fs::remove(part(1));
     expect_refused(ExitCode::bad_input, {"holds no part of fig2-right", "--shard"}, small_sweep());
 }

@@ -82,8 +82,8 @@ TEST(Csv, RowsHaveTheCellsOfTheHeader) {
 
 TEST(Csv, AFullDiskIsAnErrorWithItsReason) {
     const std::filesystem::path full = "/dev/full", none = "/none/x.csv";
-    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [&] { Csv(full, {"x"}).finish(); });
-    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [&] {
+    expect_error(ExitCode::try_again, {"/dev/full", "No space left on device"}, [&] { Csv(full, {"x"}).finish(); });
+    expect_error(ExitCode::try_again, {"/dev/full", "No space left on device"}, [&] {
         Csv csv(full, {"x"});
         for (long k = 0; k < 100'000; ++k) csv.add(k), csv.end_row();
     });
@@ -93,7 +93,7 @@ TEST(Csv, AFullDiskIsAnErrorWithItsReason) {
 TEST(OutputFile, SaysAtOnceWhatAFlushCouldNotWrite) {
     OutputFile full(std::filesystem::path("/dev/full")), file(fresh_folder() / "x");
     full.write("x");
-    expect_error(ExitCode::io_failed, {"/dev/full", "No space left on device"}, [&] { full.flush(); });
+    expect_error(ExitCode::try_again, {"/dev/full", "No space left on device"}, [&] { full.flush(); });
     file.write("x");
     file.flush();
     EXPECT_EQ(test::bytes_of(file.path()), "x");

@@ -82,7 +82,7 @@ TEST(Png, SizesMayChangeFromPictureToPicture) {
         const Picture picture = noise(size, 5);
         write_png(folder / "x.png", picture);
         ASSERT_EQ(read_png(folder / "x.png").rgba, picture.rgba) << size.width;
-        expect_error(ExitCode::io_failed, {"/dev/full"}, [&] { write_png(full_disk, picture); });
+        expect_error(ExitCode::try_again, {"/dev/full"}, [&] { write_png(full_disk, picture); });
     }
 }
 
@@ -114,7 +114,7 @@ TEST(Png, ErrorsNameThePathAndTheReason) {
     expect_error(ExitCode::io_failed, {"half.png"}, [&] { read_png(folder / "half.png"); });
 
     const Picture picture = noise({64, 64}, 6);
-    expect_error(ExitCode::io_failed, {"/dev/full", "No space left"}, [&] { write_png(full_disk, picture); });
+    expect_error(ExitCode::try_again, {"/dev/full", "No space left"}, [&] { write_png(full_disk, picture); });
     expect_error(ExitCode::io_failed, {"none/x.png", "No such file"},
                  [&] { write_png(folder / "none/x.png", picture); });
 }

@@ -277,7 +277,7 @@ TEST(Transaction, AFolderThatCannotBeMadeIsNamed) {
     const auto out = fresh_folder();
     Transaction files(out);
     watch_calls([](const std::string& call) { return call == "mkdir" ? ENOSPC : 0; });
-    expect_error(ExitCode::io_failed,
+    expect_error(ExitCode::try_again,
                  {(out / ".doppel-run/frames").string() + ": cannot be made: No space left on device"},
                  [&] { files.directory("frames"); });
     watch_calls({});

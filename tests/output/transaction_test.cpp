@@ -385,7 +385,7 @@ TEST(Transaction, HoldTheFolderForOneRunAtATime) {
     const auto pid = std::to_string(getpid());
     {
         Transaction files(out / "a");
-        expect_error(ExitCode::io_failed, {(out / "a").string() + ": ", "another run, process " + pid, "--out"},
+        expect_error(ExitCode::try_again, {(out / "a").string() + ": ", "another run, process " + pid, "--out"},
                      [&] { Transaction(out / "a"); });
         Transaction shard(out / "a", "shard-1-of-2");  // of another name
         EXPECT_EQ(listing(out / "a"), (Names{hidden, lock, ".doppel-shard-1-of-2", ".doppel-shard-1-of-2/.lock"}));

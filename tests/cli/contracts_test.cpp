@@ -1,0 +1,219 @@
+// What other programs rely on: JSON, --list-outputs, -o -, exit codes.
+#include "cli/sandbox.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+namespace doppel {
+namespace contracts_test {
+
+namespace fs = std::filesystem;
+using namespace test;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+Words lines_of(const std::string& text) {
+    std::istringstream stream(text);
+    Words lines;
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+Words keys_of(const Json& object) {
+    Words keys;
+    for (const auto& [key, value] : object.items()) keys.push_back(key);
+    return keys;
+}
+
+TEST(Contracts, ListIsJson) {
+    const auto folder = fresh_folder();
+    fs::create_directories(folder / "presets/figures");
+    write_bytes(folder / "presets/mine.toml", "title = \"Mine\"\n");
+    write_bytes(folder / "presets/broken.toml", "title = 3\n");
+    write_bytes(folder / "presets/figures/sea.toml", "[scene]\nkind = \"section\"\n");
+    const auto result = doppel(folder, {"list", "--json"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    const auto list = Json::parse(result.out);
+    const auto entry = [&](const std::string& name) {
+        return *std::find_if(list.begin(), list.end(), [&](const Json& one) { return one["name"] == name; });
+    };
+    EXPECT_EQ(entry("mine"),
+              Json({{"name", "mine"}, {"title", "Mine"}, {"kind", "pair"}, {"path", "presets/mine.toml"}}));
+    EXPECT_EQ(entry("sea")["kind"], "section");
+    EXPECT_EQ(entry("sea")["path"], "presets/figures/sea.toml");
+    EXPECT_EQ(entry("butterfly")["title"], "Three thousandths of a degree");
+    EXPECT_TRUE(entry("butterfly")["path"].is_null());
+    EXPECT_TRUE(entry("broken")["kind"].is_null() && entry("broken")["title"].is_null());
+    EXPECT_NE(entry("broken")["error"].get<std::string>().find("presets/broken.toml:1:1"), std::string::npos);
+
+    const auto words = doppel(folder, {"list"}).out;
+    for (const char* line : {"\nmine               Mine\n", "\nfigures, for doppel figure:\n", "\nsea ",
+                             "\ncannot be read:\nbroken  presets/broken.toml:1:1: "})
+        EXPECT_NE(words.find(line), std::string::npos) << line << words;
+}
+
+TEST(Contracts, CheckIsJson) {
+    const auto folder = fresh_folder();
+    const auto result = doppel(folder, {"check", "butterfly", "fig6", "measured", "--json"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto all = Json::parse(result.out);
+    ASSERT_EQ(all.size(), 3u);
+    const auto& film = all[0];
+    const Json expected({{"name", "butterfly"},
+                         {"title", "Three thousandths of a degree"},
+                         {"kind", "pair"},
+                         {"path", nullptr},
+                         {"duration_s", 30},
+                         {"sample_hz", 120},
+                         {"samples", 3601},
+                         {"steps", 1'800'000},
+                         {"steps_are_exact", true},
+                         {"frames", 3601},
+                         {"fps", 120},
+                         {"size", {1920, 1080}},
+                         {"format", "mp4"},
+                         {"times_are_least", false},
+                         {"horizon_s", nullptr}});
+    for (const auto& [key, value] : expected.items()) EXPECT_EQ(film[key], value) << key;
+    EXPECT_GT(film["render_s"], film["simulate_s"]);
+    const auto& a = film["a"];
+    EXPECT_EQ(a["integrator"], "euler");
+    EXPECT_EQ(a["step_s"], "1/30000");
+    EXPECT_EQ(a["precision"], "double");
+    EXPECT_NEAR(a["forecast"]["off_from_s"].get<double>(), 11, 0.1);  // measured 10.98
+    EXPECT_EQ(a["forecast"]["motion"], "chaotic");
+    EXPECT_EQ(film["warnings"][0], "side a: off by half a rad from 11 s on");
+    EXPECT_EQ(keys_of(all[1]), (Words{"compute_s", "format", "kind", "name", "path", "size", "theme", "threads",
+                                      "times_are_least", "title", "trials", "unit", "units", "warnings", "width_pt"}));
+    EXPECT_EQ(all[2]["a"]["model"], "track");
+
+    const auto exact = Json::parse(doppel(folder, {"check", "calm", "--json", "--set", "system.accuracy=1e-6"}).out)[0];
+    EXPECT_EQ(exact["a"]["accuracy"]["asked_rad"], 1e-6);
+    EXPECT_TRUE(exact["a"].contains("tolerance"));
+    EXPECT_FALSE(exact["steps_are_exact"]);
+    EXPECT_EQ(exact["a"]["other_accuracies"].size(), 2u);
+}
+
+TEST(Contracts, TheOutputsThatAreListedAreThoseThatAreWritten) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "sheet.toml", "[scene]\nduration_s = 0.1\n[video]\nposter_s = 0.1\ncontact_sheet = [2, 1]\n");
+    write_bytes(folder / "map.toml",
+                "[scene]\nkind = \"flip-map\"\n[flip_map]\nduration_s = 1\ncolumns = 8\nrows = 8\n");
+    const Words brief{"--set", "scene.duration_s=0.1"}, small{"--size", "160x90"};
+    doppel(folder, {"--version"});  // makes the files that it writes to
+    const std::vector<Words> commands{with({"simulate", "calm", "triple"}, brief),
+                                      with(with({"render", "calm"}, brief), small),
+                                      with({"render", "sheet.toml", "-o", "films/of mine"}, small),
+                                      with({"render", "sheet.toml", "--format", "png"}, small),
+                                      with({"still", "calm", "--at", "0.5", "--format", "svg"}, {}),
+                                      with(with({"figure", "fig6", "--format", "pdf"}, brief), small),
+                                      with({"figure", "fig6", "--shard", "2/3"}, brief),
+                                      {"figure", "map.toml", "--tiles"}};
+    for (const auto& command : commands) {
+        const auto before = listing(folder);
+        const auto listed = doppel(folder, with(command, {"--list-outputs"}));
+        EXPECT_EQ(listed.code, 0) << listed.err;
+        EXPECT_EQ(listing(folder), before) << command[1];
+        auto written = lines_of(doppel(folder, with(command, {"--progress", "none"})).out);
+        for (auto& line : written) line = line.substr(0, line.find(" ("));
+        if (command.back() == "--tiles") written.insert(written.begin(), "out/map/map.tiles/");
+        EXPECT_EQ(lines_of(listed.out), written) << command[0] << command[1];
+    }
+    EXPECT_EQ(doppel(folder, {"figure", "fig6", "--tiles", "--list-outputs"}).code, 2);
+    EXPECT_EQ(doppel(folder, {"simulate", "calm", "-o", "-", "--list-outputs"}).out, "-\n");
+    EXPECT_EQ(doppel(folder, {"fit", "a/swing.csv", "--list-outputs"}).out,
+              "out/swing/swing.toml\nout/swing/swing.residuals.csv\nout/swing/swing.png\nout/swing/swing.fit.json\n");
+}
+
+TEST(Contracts, OneFileGoesToStandardOutputAndNothingElse) {
+    const auto folder = fresh_folder();
+    const Words brief{"--set", "scene.duration_s=0.1"}, small{"--size", "160x90"};
+    struct Case {
+        Words command;
+        std::string file;
+    };
+    for (const auto& [command, file] :
+         {Case{with({"simulate", "calm"}, brief), "calm/calm.csv"},
+          {with(with({"render", "calm", "--format", "gif"}, brief), small), "calm/calm.gif"},
+          {{"still", "calm", "--at", "0.5", "--format", "svg"}, "calm/calm.0.5s.svg"},
+          {with(with({"figure", "fig6"}, brief), small), "fig6/fig6.png"}})
+        for (const char* style : {"none", "plain", "json"}) {
+            fs::remove_all(folder / "out");
+            fs::create_directory(folder / "tmp");
+            doppel(folder, {"--version"});  // makes the files that it writes to
+            const auto before = listing(folder);
+            const auto streamed =
+                doppel(folder, with(command, {"-o", "-", "--progress", style}), [] { setenv("TMPDIR", "tmp", 1); });
+            EXPECT_EQ(streamed.code, 0) << streamed.err;
+            EXPECT_EQ(listing(folder), before) << command[0];
+            EXPECT_EQ(streamed.err.empty(), std::string(style) == "none") << streamed.err;
+            ASSERT_EQ(doppel(folder, with(command, {"--progress", "none"})).code, 0);
+            EXPECT_TRUE(streamed.out == bytes_of(folder / "out" / file)) << command[0];
+            fs::remove(folder / "tmp");
+        }
+}
+
+TEST(Contracts, StandardOutputTakesOneFileAlone) {
+    const auto folder = fresh_folder();
+    for (const auto& [command, words] : std::vector<std::pair<Words, std::string>>{
+             {{"simulate", "calm", "triple"}, "standard output takes one file; give one preset, not 2"},
+             {{"render", "calm", "--format", "png"}, "a PNG sequence is many files; give --format apng"},
+             {{"figure", "flip-map", "--tiles"}, "standard output takes one picture, and no tiles"},
+             {{"figure", "flip-map", "--merge"}, "no merge of parts in a folder"},
+             {{"figure", "flip-map", "--shard", "1/2"}, "no part for a merge"},
+             {{"fit", "swing.csv"}, "a fit is several files"}}) {
+        const auto refused = doppel(folder, with(command, {"-o", "-"}));
+        EXPECT_EQ(refused.code, 2) << command[0];
+        EXPECT_TRUE(one_line(refused.err) && refused.err.find(words) != std::string::npos) << refused.err;
+    }
+    const auto failed = doppel(folder, {"simulate", "butterfly", "-o", "-", "--set", "system.step_s=0.1", "--set",
+                                        "scene.sample_hz=10", "--set", "system.omega_deg_per_s=9e9"});
+    EXPECT_EQ(failed.code, 3) << failed.err;
+    EXPECT_EQ(failed.out, "");
+    const auto quick = std::string("\"$DOPPEL\" simulate calm -o - --progress none --set scene.duration_s=1 ");
+    EXPECT_EQ(shell(folder, quick + ">/dev/full").code, 75);
+    EXPECT_EQ(shell(folder, quick + ">&-").code, 4);
+    EXPECT_EQ(shell(folder, "(" + quick + "--set scene.sample_hz=1000; echo $? >code) | head -n 1 >/dev/null").code, 0);
+    EXPECT_EQ(bytes_of(folder / "code"), "0\n");
+}
+
+TEST(Contracts, HelpFitsAScreen) {
+    const auto folder = fresh_folder();
+    for (const char* command : {"", "render", "simulate", "still", "figure", "fit", "compare", "list", "show", "check",
+                                "init", "schema", "completion"}) {
+        auto line = Words{"--help"};
+        if (*command != 0) line.insert(line.begin(), command);
+        const auto lines = lines_of(doppel(folder, line).out);
+        EXPECT_LE(lines.size(), 42u) << command;
+        for (const auto& text : lines)
+            EXPECT_TRUE(text.size() <= 100 || text.starts_with("  --figure TEXT:{")) << command << ": " << text;
+    }
+}
+
+TEST(Contracts, APresetsFileNeedsNoEnding) {
+    const auto folder = fresh_folder();
+    write_bytes(folder / "swing.txt", "title = \"Swing\"\n[scene]\nduration_s = 0.1\n");
+    EXPECT_EQ(doppel(folder, {"simulate", "swing.txt", "--progress", "none"}).code, 0);
+    EXPECT_TRUE(fs::exists(folder / "out/swing/swing.csv"));
+    write_bytes(folder / "notes.txt", "hello\n");
+    EXPECT_TRUE(doppel(folder, {"check", "notes.txt"}).err.starts_with("doppel: notes.txt:1:6: "));
+}
+
+TEST(Contracts, RunsSayFromWhenOnTheyAreOffAsCheckDoes) {
+    const auto folder = fresh_folder();
+    const auto run = doppel(folder, {"simulate", "butterfly", "--progress", "none"});
+    EXPECT_EQ(run.err,
+              "butterfly: side a is off by half a rad from 11 s on\n"
+              "butterfly: side b is off by half a rad from 11 s on\n");
+    const auto manifest = Json::parse(bytes_of(folder / "out/butterfly/butterfly.json"));
+    EXPECT_EQ(manifest["warnings"][1], "side b is off by half a rad from 11 s on");
+    const auto brief = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "scene.duration_s=10"});
+    EXPECT_EQ(brief.err, "");
+    const auto lost = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.accuracy=1e-3"});
+    EXPECT_NE(lost.err.find("side a is within the accuracy up to 2"), std::string::npos) << lost.err;
+}
+
+}  // namespace contracts_test
+}  // namespace doppel

@@ -1,0 +1,125 @@
+// What --set takes: values without quotes, elements of lists, entries by their names.
+#include "scene/resolved.hpp"
+#include "scene/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace set_test {
+
+using Texts = std::vector<std::string>;
+
+Preset with(const std::string& text, const Texts& given) {
+    return read_preset({"x", "x.toml", text, "x.toml"}, sets(given));
+}
+
+const std::string mechanism = R"(
+[[system.particle]]
+name = "left"
+mass_kg = 1
+position_m = [1, 0]
+[[system.constraint]]
+kind = "rod"
+from = "left"
+to = [0, 0]
+length_m = 1
+[[system.force]]
+name = "tie"
+kind = "spring"
+from = "left"
+to = [2, 0]
+stiffness_N_per_m = 6
+length_m = 1
+[b]
+gravity_m_per_s2 = 9
+)";
+
+TEST(Set, IsTheSameAsTheLongForm) {
+    struct Case {
+        const char* preset;
+        Texts brief, whole;
+    };
+    const std::vector<Case> cases{
+        {"", {"video.theme=light"}, {"video.theme=\"light\""}},
+        {"", {"system.step_s=1/2400"}, {"system.step_s=\"1/2400\""}},
+        {"", {"title=Two of them"}, {"title=\"Two of them\""}},
+        {"",
+         {"video.layout=portrait", "video.panels=pendulums"},
+         {"video.layout=\"portrait\"", "video.panels=[\"pendulums\"]"}},
+        {"[system]\nlinks = 1\n[video]\nlayout = \"ensemble\"",
+         {"video.members=[30, 60, 90]"},
+         {"video.members=[[30], [60], [90]]"}},
+        {"[system]\nmass_kg = [1, 1]", {"system.mass_kg[1]=2"}, {"system.mass_kg=[1, 2]"}},
+        {"", {"system.mass_kg[0]=2", "system.mass_kg[1]=3"}, {"system.mass_kg=[2, 3]"}},
+        {"[system]\nmass_kg = 5", {"system.mass_kg[1]=2"}, {"system.mass_kg=[5, 2]"}},
+        {"[system]\nlinks = 3", {"system.angle_deg[2]=10"}, {"system.angle_deg=[90, 90, 10]"}},
+        {"[system]\nmass_kg = [1.5, 2.5]", {"b.mass_kg[0]=2"}, {"b.mass_kg=[2, 2.5]"}},
+        {"[system]\nprecision = \"quad\"\nangle_deg = [0.1234567890123456789012345678, 1]",
+         {"system.angle_deg[1]=2"},
+         {"system.angle_deg=[0.1234567890123456789012345678, 2]"}},
+    };
+    for (const auto& [preset, brief, whole] : cases)
+        EXPECT_EQ(resolved_toml(with(preset, brief)), resolved_toml(with(preset, whole))) << brief[0];
+}
+
+TEST(Set, ReachesEntriesByTheirNamesOrTheOnlyOneOfAKind) {
+    for (const auto* key : {"system.force.tie", "system.force.spring"}) {
+        const auto preset = with(mechanism, {std::string(key) + ".stiffness_N_per_m=3"});
+        EXPECT_NE(resolved_toml(preset).find("stiffness_N_per_m = 3\n"), std::string::npos) << key;
+    }
+    EXPECT_EQ(with(mechanism, {"system.particle.left.mass_kg=2"}).b.particles.at(0).mass_kg, 2);
+    EXPECT_EQ(with(mechanism, {"system.particle.left.position_m[1]=0.5"}).a.particles.at(0).position_m[1], 0.5);
+    const auto b = with(mechanism, {"b.particle.left.mass_kg=2"});
+    EXPECT_EQ(b.a.particles.at(0).mass_kg, 1);
+    EXPECT_EQ(b.b.particles.at(0).mass_kg, 2);
+}
+
+TEST(Set, ErrorsNameWhatWouldBeRight) {
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"system.angle_deg=60,60", "a list wants brackets: 'system.angle_deg=[60,60]'"},
+        {"video.theme=blue", "[video] theme must be \"dark\", \"light\" or \"high-contrast\"; it is \"blue\""},
+        {"scene.duration_s=long",
+         "[scene] duration_s must be a number or a fraction such as \"1/30000\"; it is \"long\""},
+        {"scene.duration_s=9s", "\"9s\" is no TOML value"},
+        {"title=a \"b", "strings want quotes"},
+        {"system.mass_kg[2]=1", "mass_kg has 2 elements, whose last is [1]"},
+        {"system.mass_kg[x]=1", "is written like system.mass_kg[1], the second"},
+        {"system.mass_kg[0]=a", "an element must be a number; it is a string (\"a\")"},
+        {"system.mass_kg[0]=-1", "[system] mass_kg[0] must be > 0; it is -1"},
+        {"system.center_m[0]=1", "the preset has no center_m; give all of it: 'system.center_m=[…]'"},
+        {"video.size[0]=1", "the preset has no size; give all of it: 'video.size=[…]'"},
+        {"system.model[0]=1", "an element is set of a list of numbers; it is a string (\"angles\")"},
+    };
+    for (const auto& [given, words] : cases) {
+        const auto& set = given;  // clang 14 captures no structured binding
+        const auto [code, message] = error_of([&] { with("[system]\nmodel = \"angles\"", {set}); });
+        EXPECT_EQ(code, ExitCode::bad_input) << set;
+        EXPECT_NE(message.find(words), std::string::npos) << message;
+    }
+    for (const auto& [given, words] : std::vector<std::pair<std::string, std::string>>{
+             {"system.force.rope.length_m=1", "[[system.force]] has no entry \"rope\"; there are tie"},
+             {"system.constraint.rope.length_m=1",
+              "[[system.constraint]] has no entry \"rope\"; give the entry that is meant a name in the preset"},
+             {"b.force.rope.length_m=1", "[[b.force]] has no entry \"rope\""},
+             {"system.force.tie.stiffnes_N_per_m=1",
+              "has no \"stiffnes_N_per_m\"; did you mean \"stiffness_N_per_m\"?"}}) {
+        const auto& set = given;
+        const auto [code, message] = error_of([&] { with(mechanism, {set}); });
+        EXPECT_EQ(code, ExitCode::bad_input) << set;
+        EXPECT_NE(message.find(words), std::string::npos) << message;
+    }
+    // a list that is given whole drops what was given of it
+    const auto twice = error_of([&] { with("", {"system.mass_kg[0]=2", "system.mass_kg=[1, 1]"}); }).second;
+    EXPECT_NE(twice.find("would drop --set system.mass_kg[0]"), std::string::npos) << twice;
+}
+
+TEST(Set, DrivesHaveFrequenciesThatAPendulumFollows) {
+    for (const auto* set :
+         {"system.pivot.frequency_hz=1e300", "system.torque=[{amplitude_N_m = 1, frequency_hz = 1e300}]"}) {
+        const auto message = error_of([&] { with("[system.pivot]\namplitude_m = 0.1", {set}); }).second;
+        EXPECT_NE(message.find("1000000 Hz; it is 1e+300"), std::string::npos) << message;
+    }
+}
+
+}  // namespace set_test
+}  // namespace doppel
