@@ -78,6 +78,7 @@ Json value_schema(const ListedField& field) {
     if (is(type_words<QuadPair>()) || is(type_words<Range>())) return pair;
     if (is(type_words<ChosenText>()))
         return {{"anyOf", {{{"type", "boolean"}}, text_schema(field), list_schema(text_schema(field), 0, texts)}}};
+    if (is(type_words<TomlValues>())) return list_schema(Json::object(), 1, field.most);
     if (is(type_words<EndSpec>())) return {{"anyOf", {text_schema(field), pair}}};
     if (is(type_words<Size>())) return list_schema(whole, 2, 2);
     if (is(type_words<Color>())) return color;

@@ -261,9 +261,9 @@ std::string Pyramid::name(int level, int row, int column) {
 
 void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,
                 const ComputationReport& report, const std::function<void(const RunResult&)>& done) {
-    if (!figure.experiment->map())
-        throw bad_input("{}: --tiles are of maps, kind = \"map\" or \"flip-map\"; this is kind = \"{}\"", figure.name,
-                        figure.kind);
+    const auto* map = figure.experiment->map();
+    if (!map || map->frame().panels > 1)
+        throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
     const double start = seconds_of(CLOCK_MONOTONIC);
     const int jobs = options.jobs > 0 ? options.jobs : cores();
     const auto run = options.shard ? fmt::format("tiles-{}-of-{}", options.shard->number, options.shard->of) : "tiles";

@@ -60,9 +60,11 @@ std::string ListedField::example() const {
     if (is(type_words<std::array<Color, 2>>())) return "[\"#ff9f40\", \"#4fc3f7\"]";
     if (is(type_words<Range>())) return bounds.is_open ? "[1e-6, 10]" : "[0, 10]";
     if (is(type_words<QuadPair>())) return "[0, 0]";
+    if (is(type_words<TomlValues>())) return "[0, 90]";
     if (is(type_words<Size>())) return "[4, 3]";
     if (is(type_words<Rational>())) return bounds.is_open ? "60" : "1";
     if (unit == "cm") return "8.6";  // a column of a journal
+    if (is(type_words<int>())) return fmt::format("{}", bounds.has_low() ? bounds.low : 1);
     if (is(type_words<double>())) return bounds.is_open ? "1e-6" : "1";
     if (is(type_words<std::vector<Quad>>())) return "1";
     return "\"\"";

@@ -24,6 +24,7 @@ constexpr std::string_view type_words() {
     if constexpr (std::is_same_v<T, Members>) return "whole number, or angles of 2 to 8 pendulums";
     if constexpr (std::is_same_v<T, ChosenText>) return "`true`, `false`, text or list of text";
     if constexpr (std::is_same_v<T, EndSpec>) return "text or [x, y]";
+    if constexpr (std::is_same_v<T, TomlValues>) return "values that the key takes";
     if constexpr (std::is_same_v<T, Size> || std::is_same_v<T, std::array<int, 2>>) return "two whole numbers";
     if constexpr (std::is_same_v<T, Range>) return "two numbers";
     if constexpr (std::is_same_v<T, Color>) return "\"#rrggbb\"";
