@@ -145,13 +145,13 @@ void add_figure(CLI::App& app) {
         *app.add_subcommand("figure", "Draws figures: PNG, PDF or SVG, CSV and manifest; \"all\" draws every one");
     command.footer(
         "Examples:\n"
-        "  doppel figure fig2-right --set sweep.exponent=true\n"
+        "  doppel figure fig2-right --set grid.right=exponent\n"
         "  doppel figure fig2-right -o - > fig2-right.png\n"
         "  doppel figure all --out figures --scale 2\n"
         "  doppel figure fig2-right --format pdf --set chart.width_cm=8.6\n"
         "  doppel figure flip-map --shard 3/8        # a part, on one of eight machines\n"
         "  doppel figure flip-map --merge            # all parts in DIR/flip-map/ together\n"
-        "  doppel figure flip-map --tiles --set flip_map.columns=8192 --set flip_map.rows=8192\n"
+        "  doppel figure flip-map --tiles --set grid.x.points=8192 --set grid.y.points=8192\n"
         "A long figure that was interrupted goes on where it was when the same command is given again.");
     add_run_options(command, *options, "Threads that compute, one a core where not given; the numbers stay");
     command.add_option("--size", options->size, "Size of the layout, px")->type_name("WxH");

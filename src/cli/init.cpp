@@ -30,8 +30,8 @@ constexpr std::array<std::string_view, 9> used_keys{"title",     "duration_s",  
                                                     "angle_deg", "omega_deg_per_s", "gravity_m_per_s2"};
 
 /// Of [system], what such figures give themselves.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> unused_keys{
-    {{"section", "angle_deg"}, {"section", "omega_deg_per_s"}, {"flip-map", "angle_deg"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 2> unused_keys{
+    {{"section", "angle_deg"}, {"section", "omega_deg_per_s"}}};
 
 /// Which compare methods, and so give them.
 constexpr std::array<std::string_view, 2> exact_kinds{"convergence", "stability"};
@@ -46,32 +46,27 @@ bool is_used(const FieldTable& table, std::string_view key, std::string_view kin
 }
 
 /// The value that a starting preset gives a key.
-std::string starting_value(const ListedField& field, std::string_view kind) {
+std::string starting_value(const ListedField& field) {
     if (field.key == "column") return "\"distance\"";
     if (field.key == "scene") return "\"butterfly\"";
     if (field.key == "difference") return "0.003";  // degrees, as in the study
     if (field.key == "accuracy") return "1e-3";
-    auto value = field.example();
-    if (kind != "links") return value;
-    // of chains of one link, which the longer ones are made of
-    if (field.key == "links") return "1";
-    if (value.starts_with('[') && field.type.schema == numbers_schema) return value.substr(0, value.find(',')) + "]";
-    return value;
+    return field.example();
 }
 
 /// "# help (number, > 0; unit s; default: none)", then the key, as a comment where it is seldom used.
-std::string key_lines(const ListedField& field, const std::string& prefix, bool is_live, std::string_view kind) {
+std::string key_lines(const ListedField& field, const std::string& prefix, bool is_live) {
     auto text = fmt::format("# {} ({}", field.help, plain_words(field.takes()));
     if (!field.unit.empty()) text += fmt::format("; unit {}", field.unit);
     if (field.default_value().empty()) text += fmt::format("; default: {}", plain_words(field.by_default));
-    return fmt::format("{})\n{}{}{} = {}\n", text, is_live ? "" : "#", prefix, field.key, starting_value(field, kind));
+    return fmt::format("{})\n{}{}{} = {}\n", text, is_live ? "" : "#", prefix, field.key, starting_value(field));
 }
 
 std::string table_lines(const FieldTable& table, std::string_view kind, const std::string& prefix = "") {
     std::string text;
     for (const auto& field : table.fields)
         if (field.key != kind_field.key)
-            text += key_lines(field, prefix, prefix.empty() && is_used(table, field.key, kind), kind);
+            text += key_lines(field, prefix, prefix.empty() && is_used(table, field.key, kind));
     for (const auto& inner : table.tables) text += table_lines(inner, kind, fmt::format("{}{}.", prefix, inner.key()));
     return text;
 }
@@ -88,8 +83,8 @@ std::string first_lines(const fs::path& file, std::string_view kind) {
 /// [a] or [b].
 std::string side_lines(std::string_view side, std::string_view kind) {
     auto text = fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", side);
-    // the twins of a sweep or map differ in its parameter
-    if (side == "b" && kind != "sweep" && kind != "map") text += "angle_deg = [90.003, 90]\n";
+    // the twins of a grid differ in the key of x
+    if (side == "b" && kind != "grid") text += "angle_deg = [90.003, 90]\n";
     return kind == pair_kind ? text + table_lines(side_text_table(), kind) : text;
 }
 
@@ -104,7 +99,7 @@ std::string starting_preset(const fs::path& file, std::string_view kind) {
         if (key.empty()) {
             text += fmt::format("\n# shown above the pictures\ntitle = {}\n", toml_text(file.stem().string()));
             for (const auto& field : table.fields)
-                if (field.key != title_field.key) text += key_lines(field, "", false, kind);
+                if (field.key != title_field.key) text += key_lines(field, "", false);
         } else if (key == "a" || key == "b") {
             text += side_lines(key, kind);
         } else {

@@ -29,14 +29,24 @@ public:
             writer_.add(field.key, toml_text(into.text()));
     }
 
-    /// "[table]" and its keys. Throws as TomlReader::finish() does.
+    /// The keys of [NAME.key], and no others.
+    template <class Visit>
+    void table(std::string_view key, const Visit& visit) {
+        SettingsReader inside(inner(read_table(key), fmt::format("[{}.{}]", bare_name(), key)));
+        visit(inside);
+        const auto text = inside.finish();
+        if (!inside.writer_.text().empty()) tables_ += text;
+    }
+
+    /// "[table]" and its keys, then the tables inside it. Throws as TomlReader::finish() does.
     std::string finish() const {
         TomlReader::finish();
-        return fmt::format("\n[{}]\n{}", bare_name(), writer_.text());
+        return fmt::format("\n[{}]\n{}{}", bare_name(), writer_.text(), tables_);
     }
 
 private:
     TomlWriter writer_;
+    std::string tables_;
 };
 
 /// A preset being read: each kind of figure takes the tables that are its own.
@@ -105,9 +115,10 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
 /// `varied`  what is not the same in all pairs and so is left out
 /// `apart`   what else sets the sides of all pairs apart, "twins 0.003° apart"; then it is not part of `scene`
 struct Varied {
-    std::vector<std::size_t> angles;  // of release: links, from 0
-    bool step = false;                // and how finely to step
-    std::string method = {};          // in place of the preset's, where the figure itself steps
+    std::vector<std::size_t> angles;     // of release: links, from 0
+    bool step = false;                   // and how finely to step
+    std::vector<std::string> keys = {};  // "system.integrator": whose values are words
+    std::string method = {};             // in place of the preset's, where the figure itself steps
 };
 std::string pair_subtitle(const Scene& scene, const Varied& varied = {}, const std::string& apart = "");
 
@@ -160,7 +171,7 @@ constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
 std::span<const FigureKind> figure_kinds();
 
 // One file each.
-extern const FigureKind sweep_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, bifurcation_kind,
-    map_kind, flip_map_kind, links_kind, work_precision_kind, stability_kind, drift_kind;
+extern const FigureKind grid_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, work_precision_kind,
+    stability_kind, drift_kind;
 
 }  // namespace doppel

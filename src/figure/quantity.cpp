@@ -1,6 +1,7 @@
 #include "figure/quantity.hpp"
 
 #include "analysis/difference.hpp"
+#include "base/clock.hpp"
 #include "figure/kinds.hpp"
 #include "numeric/roots.hpp"
 #include "scene/captions.hpp"
@@ -13,18 +14,21 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-QuantityWords words_of(Quantity quantity, const std::string& seconds) {
+QuantityWords words_of(Quantity quantity, const std::string& seconds, const StroboscopeSpec& stroboscope) {
     switch (quantity) {
         case Quantity::divergence:
             return {.label = fmt::format("average of ln(d/d₀) over {} s", seconds),
                     .columns = {"average_log_ratio"},
                     .none = "broke down",
-                    .none_is_bad = true};
+                    .none_is_bad = true,
+                    .short_label = "average of ln(d/d₀)"};
         case Quantity::exponent:
             return {.label = "largest Lyapunov exponent, 1/s",
-                    .columns = {"exponent_per_s", "exponent_uncertainty_per_s", "exponent_unsettled"},
+                    .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
                     .is_of_side_a = true,
-                    .method = "tangent equations by Dormand–Prince 8"};
+                    .method = "tangent equations by Dormand–Prince 8",
+                    .short_label = "Lyapunov exponent",
+                    .last_column = "exponent_unsettled"};
         case Quantity::flip_time:
             return {.label = "time to the first flip, s",
                     .columns = {"flip_time_s"},
@@ -34,6 +38,12 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
         case Quantity::distance_at_end:
             return {.label = fmt::format("distance after {} s", seconds),
                     .columns = {"distance_at_end"},
+                    .logarithmic = true,
+                    .none = "broke down",
+                    .none_is_bad = true};
+        case Quantity::greatest_distance:
+            return {.label = fmt::format("greatest distance within {} s", seconds),
+                    .columns = {"greatest_distance"},
                     .logarithmic = true,
                     .none = "broke down",
                     .none_is_bad = true};
@@ -50,12 +60,49 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds) {
                     .none = "broke down",
                     .none_is_bad = true,
                     .is_of_side_a = true};
+        case Quantity::period:
+            return {.label = "period, s",
+                    .columns = {"period_s"},
+                    .none = fmt::format("no whole period within {} s", seconds),
+                    .is_of_side_a = true};
+        case Quantity::stroboscopic:
+            return {.label = fmt::format("rate ω{} once a period of the drive, rad/s",
+                                         subscript(static_cast<std::size_t>(stroboscope.link))),
+                    .columns = {"theta_rad", "omega_rad_per_s"},
+                    .is_of_side_a = true,
+                    .rows = static_cast<std::size_t>(stroboscope.periods),
+                    .counted = "period",
+                    .first_row = stroboscope.transient_periods};
+        case Quantity::step_cost:
+            return {.label = "CPU time of an Euler step, ns",
+                    .columns = {"angles_step_ns", "constraints_step_ns"},
+                    .curves = {"in angles", "in constraints"},
+                    .is_of_side_a = true,
+                    .method = "explicit Euler"};
         case Quantity::parting_time:
             return {.label = "time at which the two part, s",
                     .columns = {"parting_time_s"},
                     .none = fmt::format("together for {} s", seconds)};
     }
     return {};
+}
+
+/// CPU time of a step of explicit Euler in double, ns, in angles and in constraints: the least of some rounds in turn, so
+/// that other load on the machine does not count.
+TrialNumbers step_costs(const SideSpec& side, const std::atomic<bool>& stop) {
+    constexpr int rounds = 12;
+    std::vector<std::unique_ptr<Motion>> motions;
+    for (const auto model : {Model::angles, Model::constraints})
+        motions.push_back(make_motion({.chain = chain_of(side), .model = model}));
+    TrialNumbers least(motions.size(), std::numeric_limits<double>::max());
+    for (int round = 0; round < rounds; ++round)
+        for (std::size_t i = 0; i < motions.size(); ++i) {
+            const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+            motions[i]->advance(stop);
+            const double spent = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+            least[i] = std::min(least[i], 1e9 * spent / static_cast<double>(MotionSpec().steps_per_sample));
+        }
+    return least;
 }
 
 /// How all pairs are stepped in lanes, where they can be: plain chains in double by the methods of Batch.
@@ -77,12 +124,14 @@ public:
     explicit DistanceWatch(Quantity quantity) : quantity_(quantity) {}
     void add(double time, double distance) {
         last_ = distance;
+        if (!(distance <= greatest_)) greatest_ = distance;  // NaN stays
         if (quantity_ == Quantity::divergence) mean_.add(distance);
         if (quantity_ == Quantity::parting_time) parting_.add(time, distance);
     }
     double value() const {
         if (quantity_ == Quantity::divergence) return mean_.value();
         if (!std::isfinite(last_)) return NAN;
+        if (quantity_ == Quantity::greatest_distance) return greatest_;
         return quantity_ == Quantity::distance_at_end ? last_ : parting_.since().value_or(NAN);
     }
 
@@ -90,33 +139,47 @@ private:
     Quantity quantity_;
     AverageLogRatio mean_;
     Parting parting_;
-    double last_ = NAN;
+    double last_ = NAN, greatest_ = 0;
 };
 
-/// The first flip of any link, from the samples of a motion; between two of them an angle is a cubic.
+/// The first flip of any link, or the period of the one link, from the samples of a motion; between two of them an angle
+/// is a cubic.
 class FlipWatch {
 public:
-    /// The time, if one flips by then.
+    /// The time of a flip, if one flips by then.
     std::optional<double> add(double time, const Bobs<double>& bobs) {
         double first = never;
         for (std::size_t i = 0; i < bobs.size() && before_.size() == bobs.size(); ++i)
-            for (const double sense : {1.0, -1.0}) first = std::min(first, flip(time, before_[i], bobs[i], sense));
+            for (const double sense : {1.0, -1.0}) first = std::min(first, rise(time, before_[i], bobs[i], sense, pi));
         for (const auto& bob : bobs)
             if (before_.empty() && std::abs(bob.theta) > pi) first = 0;
-        before_ = bobs;
-        before_s_ = time;
+        keep(time, bobs);
         return first < never ? std::optional(first) : std::nullopt;
     }
+    /// Takes note of the times at which the link passes the downward vertical to the right.
+    void add_swing(double time, const Bobs<double>& bobs) {
+        const double passed = before_.empty() ? never : rise(time, before_[0], bobs[0], 1, 0);
+        if (passed < never && passes_++ == 0) first_pass_s_ = passed;
+        if (passed < never) last_pass_s_ = passed;
+        keep(time, bobs);
+    }
+    /// The mean over all whole periods; NaN where there is none.
+    double period() const { return passes_ < 2 ? NAN : (last_pass_s_ - first_pass_s_) / (passes_ - 1); }
 
 private:
-    double flip(double time, const Bob<double>& from, const Bob<double>& to, double sense) const {
-        const double h = time - before_s_, p = sense * from.theta - pi, v = sense * from.omega;
-        const double q = sense * to.theta - pi, w = sense * to.omega;
+    void keep(double time, const Bobs<double>& bobs) {
+        before_ = bobs;
+        before_s_ = time;
+    }
+    /// When the angle times `sense` rises through `level`.
+    double rise(double time, const Bob<double>& from, const Bob<double>& to, double sense, double level) const {
+        const double h = time - before_s_, p = sense * from.theta - level, v = sense * from.omega;
+        const double q = sense * to.theta - level, w = sense * to.omega;
         const auto rises = Bernstein{{p, p + h / 3 * v, q - h / 3 * w, q}, h}.rises();
         if (rises.empty()) return never;
         const double second = (3 * (q - p) / h - 2 * v - w) / h, third = (v + w - 2 * (q - p) / h) / (h * h);
         struct Beyond {
-            double value, rate;  // rad beyond the upright, rad/s
+            double value, rate;  // rad beyond the level, rad/s
         };
         return before_s_ + root(rises.front(), [&](double t) {
                    return Beyond{p + t * (v + t * (second + t * third)), v + t * (2 * second + t * 3 * third)};
@@ -125,9 +188,15 @@ private:
 
     Bobs<double> before_;
     double before_s_ = 0;
+    int passes_ = 0;
+    double first_pass_s_ = 0, last_pass_s_ = 0;
 };
 
 }  // namespace
+
+std::string seconds_text(const Preset& pair) {
+    return fmt::format("{:.10g}", pair.duration_s.value());
+}
 
 std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
                                          const std::string& pairs, const std::string& seconds) {
@@ -147,30 +216,35 @@ std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords&
 }
 
 Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
-                         bool alike, double exponent_duration_s)
+                         bool alike, const QuantityOptions& options)
     : quantity_(quantity),
-      words_(words_of(quantity, pair.duration_s.text())),
-      exponent_{.duration_s = exponent_duration_s},
-      flip_{pair.duration_s.value(), flip_tolerance(pair.duration_s.value())} {
+      words_(words_of(quantity, seconds_text(pair), options.stroboscope)),
+      exponent_{.duration_s = options.exponent_duration_s},
+      stroboscope_(options.stroboscope),
+      flip_{pair.duration_s.value(), options.flip_tolerance.value_or(flip_tolerance(pair.duration_s.value()))} {
+    if (words_.short_label.empty()) words_.short_label = words_.label.substr(0, words_.label.rfind(", "));
     const auto& a = pair.a;
-    if (quantity == Quantity::exponent && a.is_mechanism())
+    const bool is_of_chain = quantity == Quantity::exponent || quantity == Quantity::step_cost;
+    if (is_of_chain && (a.is_mechanism() || (quantity == Quantity::step_cost && !a.physical.is_none())))
         throw table.fault(key, "is that of a plain chain, without forces and constraints of its own");
     if (quantity == Quantity::exponent && a.physical.has_coulomb())
         throw table.fault(key,
                           "is that of a smooth motion; joints with joint_coulomb_N_m come to rest and let go again");
-    if (quantity == Quantity::deviation && !a.particles.empty())
-        throw table.fault(key, "\"deviation\" is of a chain, whose rods have angles");
-    if (quantity == Quantity::flip_time && !a.particles.empty())
-        throw table.fault(key, "\"flip_time\" is of a chain, whose rods have angles");
+    const bool is_of_angles =
+        quantity == Quantity::deviation || quantity == Quantity::flip_time || quantity == Quantity::period;
+    if (is_of_angles && !a.particles.empty())
+        throw table.fault(key, "\"{}\" is of a chain, whose rods have angles", name_of(quantity));
+    if (quantity == Quantity::period && a.links() != 1)
+        throw table.fault(key, "\"period\" is of one link; there are {}", a.links());
     if (is_of_distance(quantity) && differ_in_kind(a, pair.b))
         throw table.fault(key, "\"{}\" takes sides of as many masses", name_of(quantity));
+    if (quantity == Quantity::stroboscopic) demand_drive(table, key, stroboscope_, a);
     const auto scene = make_scene(pair);
     if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
         throw table.fault(key, "\"energy_error\" takes a system that keeps its energy; a spring is damped");
     flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.physical.is_none() && a.links() == 2;
     if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));
-    if (alike && quantity != Quantity::exponent && quantity != Quantity::flip_time && quantity != Quantity::deviation)
-        run_ = lanes_of(scene);
+    if (alike && (is_of_distance(quantity) || quantity == Quantity::energy_error)) run_ = lanes_of(scene);
     if (run_ && !is_of_distance(quantity)) run_->b = run_->a;
 }
 
@@ -182,49 +256,60 @@ std::size_t Measurement::together(bool shared) const {
     return twins_block() / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
 }
 
-void Measurement::append(std::span<const Preset> pairs, std::span<TrialNumbers> into,
-                         const std::atomic<bool>& stop) const {
-    if (flips_in_lanes_) return append_flips(pairs, into, stop);
-    if (run_) return append_in_lanes(pairs, into, stop);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (quantity_ != Quantity::exponent) {
-            into[i].push_back(watched(pairs[i], stop));
+void Measurement::append(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const {
+    if (flips_in_lanes_) return append_flips(pair, into, stop);
+    if (run_) return append_in_lanes(pair, into, stop);
+    for (std::size_t i = 0; i < into.size(); ++i) {
+        if (quantity_ == Quantity::stroboscopic || quantity_ == Quantity::step_cost) {
+            const auto numbers = quantity_ == Quantity::step_cost
+                                     ? step_costs(pair(i).a, stop)
+                                     : stroboscope(make_scene(pair(i), stop), stroboscope_, stop);
+            into[i].insert(into[i].end(), numbers.begin(), numbers.end());
             continue;
         }
-        const auto& a = pairs[i].a;
+        if (quantity_ != Quantity::exponent) {
+            into[i].push_back(watched(pair(i), stop));
+            continue;
+        }
+        const auto& a = pair(i).a;
         const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), exponent_, stop)
                                                    : largest_exponent(physical_of(a).cast<double>(), exponent_, stop);
         into[i].insert(into[i].end(), {exponent.value, exponent.uncertainty, exponent.is_settled ? 0.0 : 1.0});
     }
 }
 
-void Measurement::append_flips(std::span<const Preset> pairs, std::span<TrialNumbers> into,
-                               const std::atomic<bool>& stop) const {
+void Measurement::append_flips(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const {
     std::vector<Pendulum<double>> chains;
-    for (const auto& pair : pairs) chains.push_back(chain_of(pair.a).cast<double>());
-    std::vector<double> times(pairs.size());
+    for (std::size_t i = 0; i < into.size(); ++i) {
+        const auto& side = pair(i).a;
+        auto& chain = chains.emplace_back(chain_of(side).cast<double>());
+        // as the cells of a map stand, in double: mirror images have exactly opposite angles
+        for (std::size_t k = 0; k < side.links(); ++k) chain.angle[k] = radians(static_cast<double>(side.angle_deg[k]));
+    }
+    std::vector<double> times(into.size());
     first_flips(chains, flip_, times, stop);
-    for (std::size_t i = 0; i < pairs.size(); ++i) into[i].push_back(times[i]);
+    for (std::size_t i = 0; i < into.size(); ++i) into[i].push_back(times[i]);
 }
 
-void Measurement::append_in_lanes(std::span<const Preset> pairs, std::span<TrialNumbers> into,
+void Measurement::append_in_lanes(const PairAt& pair, std::span<TrialNumbers> into,
                                   const std::atomic<bool>& stop) const {
     std::vector<Twins> twins;
-    for (const auto& pair : pairs) {
-        const auto a = chain_of(pair.a).cast<double>();
-        twins.push_back({a, is_of_distance(quantity_) ? chain_of(pair.b).cast<double>() : a});
+    for (std::size_t i = 0; i < into.size(); ++i) {
+        const auto& sides = pair(i);
+        const auto a = chain_of(sides.a).cast<double>();
+        twins.push_back({a, is_of_distance(quantity_) ? chain_of(sides.b).cast<double>() : a});
     }
     if (is_of_distance(quantity_)) {
-        std::vector<DistanceWatch> watches(pairs.size(), DistanceWatch(quantity_));
+        std::vector<DistanceWatch> watches(into.size(), DistanceWatch(quantity_));
         const double interval = run_->a.sample_interval.value();
         const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>& b) {
             watches[i].add(static_cast<double>(n) * interval, state_space_distance(a, b));
         };
         step_twins(twins, *run_, watch, stop);
-        for (std::size_t i = 0; i < pairs.size(); ++i) into[i].push_back(watches[i].value());
+        for (std::size_t i = 0; i < into.size(); ++i) into[i].push_back(watches[i].value());
         return;
     }
-    std::vector<double> start(pairs.size()), worst(pairs.size());
+    std::vector<double> start(into.size()), worst(into.size());
     const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>&) {
         const double now = energy(a, twins[i].a.gravity);
         if (n == 0) start[i] = now;
@@ -232,7 +317,7 @@ void Measurement::append_in_lanes(std::span<const Preset> pairs, std::span<Trial
         if (!(error <= worst[i])) worst[i] = error;  // NaN stays
     };
     step_twins(twins, *run_, watch, stop);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::size_t i = 0; i < into.size(); ++i) {
         const double error = worst[i] / twins[i].a.potential_range();
         into[i].push_back(std::isfinite(error) ? error : NAN);
     }
@@ -258,10 +343,12 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
             for (std::size_t i = 0; i < start.size(); ++i)
                 furthest = std::max(furthest, std::abs(seen.bobs[i].theta - start[i].theta));
             worst = std::max(worst, std::abs(seen.energy_change));
+            if (quantity_ == Quantity::period) flips.add_swing(scene.time(n), seen.bobs);
             if (quantity_ != Quantity::flip_time) continue;
             if (const auto time = flips.add(scene.time(n), seen.bobs)) return *time;
         }
         if (quantity_ == Quantity::deviation) return furthest * (180 / pi);
+        if (quantity_ == Quantity::period) return flips.period();
         return quantity_ == Quantity::flip_time ? never : worst / scene.a.energy_unit;
     } catch (const BreakDown&) {
         return NAN;
@@ -270,7 +357,8 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
 
 bool Measurement::fits(std::span<const double> numbers) const {
     if (numbers.size() != this->numbers()) return false;
-    if (quantity_ == Quantity::exponent) return all_finite(numbers);
+    if (quantity_ == Quantity::exponent || quantity_ == Quantity::step_cost) return all_finite(numbers);
+    if (quantity_ == Quantity::stroboscopic) return finite_or_none(numbers);
     if (quantity_ == Quantity::flip_time) return !(numbers[0] < 0);  // broken down: NaN
     return !std::isinf(numbers[0]);
 }

@@ -276,9 +276,9 @@ std::string Pyramid::name(int level, int row, int column) {
 }
 
 void demand_map(const FigurePreset& figure) {
-    if (!figure.experiment->map())
-        throw bad_input("{}: --tiles are of maps, kind = \"map\" or \"flip-map\"; this is kind = \"{}\"", figure.name,
-                        figure.kind);
+    const auto* map = figure.experiment->map();
+    if (!map || map->frame().panels > 1)
+        throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
 }
 
 void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,

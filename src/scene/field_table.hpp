@@ -38,6 +38,7 @@ Json color_schema(const ListedField& field);
 Json colors_schema(const ListedField& field);
 Json speed_schema(const ListedField& field);
 Json members_schema(const ListedField& field);
+Json values_schema(const ListedField& field);
 
 /// That of a member that is a T.
 template <class T>
@@ -57,6 +58,7 @@ constexpr ValueType value_type() {
     if constexpr (is_same_v<T, Members>) return {"whole number, or angles of 2 to 8 pendulums", members_schema};
     if constexpr (is_same_v<T, ChosenText>) return {"`true`, `false`, text or list of text", chosen_text_schema};
     if constexpr (is_same_v<T, EndSpec>) return {"text or [x, y]", end_schema, "\"\""};
+    if constexpr (is_same_v<T, TomlValues>) return {"values that the key takes", values_schema, "[0, 90]"};
     if constexpr (is_same_v<T, Size> || is_same_v<T, std::array<int, 2>>)
         return {"two whole numbers", whole_pair_schema, "[4, 3]"};
     if constexpr (is_same_v<T, Range>) return {"two numbers", pair_schema, "[0, 10]", "[1e-6, 10]"};

@@ -40,6 +40,11 @@ struct ChosenText {
 
 using QuadPair = std::array<Quad, 2>;  // x and y
 
+/// Values that any key may take, each as TOML writes it: `90`, `"rk4"`, `[90, 0]`.
+struct TomlValues {
+    std::vector<std::string> texts;
+};
+
 /// An end of a rod or a spring: the name of a particle, or a fixed place, m.
 using EndSpec = std::variant<std::string, QuadPair>;
 

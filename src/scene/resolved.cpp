@@ -54,6 +54,10 @@ std::string toml_value(const ChosenText& text) {
     return text.own ? toml_value(*text.own) : toml_value(text.shown);
 }
 
+std::string toml_value(const TomlValues& values) {
+    return fmt::format("[{}]", fmt::join(values.texts, ", "));
+}
+
 std::string toml_value(const Members& members) {
     return members.angles_deg.empty() ? toml_value(members.count) : toml_value(members.angles_deg);
 }

@@ -24,6 +24,7 @@ std::string toml_value(const Panels& panels);
 std::string toml_value(const Speed& speed);
 std::string toml_value(const Members& members);
 std::string toml_value(const ChosenText& text);
+std::string toml_value(const TomlValues& values);
 template <class T>
 std::string toml_value(const T& value) {
     if constexpr (std::is_same_v<T, std::string>) {

@@ -293,8 +293,6 @@ Override parse_set(const std::string& argument) {
     return {key, argument.substr(equals + 1), "--set " + key};
 }
 
-namespace {
-
 std::string written(const toml::node& node) {
     if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
     if (const auto* array = node.as_array()) {
@@ -306,8 +304,6 @@ std::string written(const toml::node& node) {
     node.visit([&](const auto& n) { out << toml::toml_formatter{n, toml::format_flags::none}; });
     return out.str();
 }
-
-}  // namespace
 
 TomlText::TomlText(std::string text) : text_(std::move(text)) {
     constexpr std::size_t apart = 256;

@@ -57,7 +57,8 @@ inline const Typeface built_in_typeface;
 // Words for errors.
 
 std::string kind_of(const toml::node& node);  // "a whole number"
-std::string shown(const toml::node& node);    // the value as TOML writes it, on one line and not too long
+std::string written(const toml::node& node);  // the value as TOML writes it
+std::string shown(const toml::node& node);    // the same on one line and not too long
 std::string found(const toml::node& node);    // "it is a whole number (3)"
 
 /// Reads one table of a preset key by key: reader(field, member). A key that is absent leaves its member alone; one of
@@ -198,7 +199,8 @@ private:
     void read(const Field& field, const toml::node& node, Speed& into);
     void read(const Field& field, const toml::node& node, Members& into);
     void read(const Field& field, const toml::node& node, ChosenText& into);
-    void read(const Field& field, const toml::node& node, Color& into);  // "#rrggbb"
+    void read(const Field& field, const toml::node& node, TomlValues& into);  // 1 to `most`
+    void read(const Field& field, const toml::node& node, Color& into);       // "#rrggbb"
     void read(const Field& field, const toml::node& node, std::array<Color, 2>& into);
     std::vector<std::string> texts_in(const Field& field, const toml::node& node) const;
     std::string subject(std::string_view key) const;

@@ -246,6 +246,15 @@ void TomlReader::read(const Field& field, const toml::node& node, ChosenText& in
     read(field, node, into.own.emplace());
 }
 
+void TomlReader::read(const Field& field, const toml::node& node, TomlValues& into) {
+    const auto* array = node.as_array();
+    if (!array || array->empty() || array->size() > field.most)
+        throw fault(field.key, "must be an array of 1 to {} values; {}", field.most, found(node));
+    into.texts.clear();
+    for (const auto& element : *array)
+        into.texts.push_back(element.is_number() ? text_of(number(field.key, {}, element, Quad())) : written(element));
+}
+
 void TomlReader::read(const Field& field, const toml::node& node, std::span<Quad> into) {
     if (node.is_array()) return read_array(field, node, into);
     if (!node.is_number())

@@ -125,4 +125,8 @@ Json members_schema(const ListedField& field) {
     return {{"anyOf", {integer_schema(field), list_schema(release, 2, Members::most_releases)}}};
 }
 
+Json values_schema(const ListedField& field) {
+    return list_schema(Json::object(), 1, field.most);
+}
+
 }  // namespace doppel

@@ -107,10 +107,11 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     EXPECT_EQ(completed(folder, "simulate calm --columns di"), Lines{"distance"});
     EXPECT_EQ(completed(folder, "render calm --columns = di"), Lines{"distance"});
     // of a figure: those of its kind
-    EXPECT_EQ(completed(folder, "figure fig2-right --set sweep.exponent ="), (Lines{"false", "true"}));
+    EXPECT_EQ(completed(folder, "figure fig2-right --set grid.x.spacing ="),
+              (Lines{"\\\"linear\\\"", "\\\"logarithmic\\\""}));
     EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
-    EXPECT_EQ(completed(folder, "check flip-map --set flip_map.col"), Lines{"flip_map.columns="});
-    EXPECT_EQ(completed(folder, "init --figure fl"), Lines{"flip-map"});
+    EXPECT_EQ(completed(folder, "check flip-map --set grid.x.poi"), Lines{"grid.x.points="});
+    EXPECT_EQ(completed(folder, "init --figure gr"), Lines{"grid"});
     EXPECT_TRUE(has(completed(folder, "figure --set ''"), "poincare.orbits=") ||
                 has(completed(folder, "figure --set ''"), "section.orbits="));
 }
@@ -143,7 +144,7 @@ TEST(Completion, IsSoonThere) {
     double best = 10;
     for (int i = 0; i < 5; ++i) {
         const double before = spent_by_children();
-        EXPECT_EQ(doppel(folder, {"complete", "bash", "figure", "fig2-right", "--set", "sweep."}).code, 0);
+        EXPECT_EQ(doppel(folder, {"complete", "bash", "figure", "fig2-right", "--set", "grid."}).code, 0);
         best = std::min(best, spent_by_children() - before);
     }
     EXPECT_LT(best, most);

@@ -32,7 +32,7 @@ TEST(FewThreads, AreEnoughOrItSaysSoAndLeavesNothing) {
         film({"--format", "webm", "--set", "video.codec=\"av1\""}),
         film({"--format", "webm", "--set", "video.codec=\"av1\"", "--set", "video.pixel_format=\"yuv444p\""}),
         {"simulate", "butterfly", "--set", "scene.duration_s=0.1", "--progress", "none"},
-        {"figure", "fig2-right", "--set", "sweep.step=30", "--jobs", "4", "--progress", "none"},
+        {"figure", "fig2-right", "--set", "grid.x.step=30", "--jobs", "4", "--progress", "none"},
     };
     for (const auto& line : lines)
         for (const int count : {0, 1, 4, 12, 1000}) {

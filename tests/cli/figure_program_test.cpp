@@ -23,13 +23,13 @@ using test::start;
 using test::wait_for;
 using test::with;
 
-const std::vector<std::string> small{"--set",  "sweep.to=9", "--set",      "scene.duration_s=0.5",
-                                     "--size", "320x180",    "--progress", "none"};
+const std::vector<std::string> small{"--set",  "grid.x.to=9", "--set",      "scene.duration_s=0.5",
+                                     "--size", "320x180",     "--progress", "none"};
 
 /// A map of some 2 to 10 s of one core.
 const std::vector<std::string> long_map{
-    "figure", "flip-map", "--set", "flip_map.columns=900", "--set", "flip_map.rows=900", "--set", "flip_map.checked=0",
-    "--size", "320x320"};
+    "figure",         "flip-map", "--set",  "grid.x.points=900", "--set", "grid.y.points=900", "--set",
+    "grid.checked=0", "--size",   "320x320"};
 
 /// Waits for a file.
 bool appears(const fs::path& file) {
@@ -61,7 +61,7 @@ TEST(FigureProgram, IsListedCheckedAndExplained) {
     EXPECT_TRUE(contains(doppel(folder, {"list"}).out, "fig2-right"));
     const auto shown = doppel(folder, {"show", "fig6"}).out;
     EXPECT_TRUE(bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/figures/fig6.toml").ends_with("\n" + shown));
-    const auto check = doppel(folder, with({"check", "fig2-right"}, {"--set", "sweep.to=9"}));
+    const auto check = doppel(folder, with({"check", "fig2-right"}, {"--set", "grid.x.to=9"}));
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_TRUE(contains(check.out, "10 pairs")) << check.out;
     // a row of exponents takes more than the second that it may take
@@ -74,14 +74,14 @@ TEST(FigureProgram, IsListedCheckedAndExplained) {
 
 TEST(FigureProgram, ExitsWith2OnBadUsageAndWritesNothing) {
     const auto folder = fresh_folder();
-    test::write_bytes(folder / "bad.toml", "[scene]\nkind = \"sweep\"\n[sweep]\nstep = 0\n");
+    test::write_bytes(folder / "bad.toml", "[scene]\nkind = \"grid\"\n[grid.x]\nstep = 0\n");
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
         {{"figure"}, "PRESET is required"},
         {{"figure", "fig2-rihgt"}, "there is no preset \"fig2-rihgt\"; did you mean \"fig2-right\"?"},
         {{"figure", "butterfly"}, "doppel render butterfly"},
         {{"render", "fig2-right"}, "doppel figure fig2-right"},
         {{"simulate", "fig2-right"}, "doppel figure fig2-right"},
-        {{"figure", "bad.toml"}, "bad.toml:4:1: [sweep] step must be > 0; it is 0"},
+        {{"figure", "bad.toml"}, "bad.toml:4:1: [grid.x] step must be > 0; it is 0"},
         {{"figure", "fig6", "fig6"}, "would both be written to fig6/"},
         {{"figure", "all", "fig6"}, "would both be written to fig6/"},
         {{"figure", "fig6", "--shard", "0/3"}, "--shard wants I/N"},
@@ -113,7 +113,7 @@ TEST(FigureProgram, ExitsWith2OnBadUsageAndWritesNothing) {
 
 TEST(FigureProgram, ReportsProgressAsJson) {
     const auto folder = fresh_folder();
-    const auto result = doppel(folder, {"figure", "fig2-right", "--set", "sweep.to=9", "--set", "scene.duration_s=0.5",
+    const auto result = doppel(folder, {"figure", "fig2-right", "--set", "grid.x.to=9", "--set", "scene.duration_s=0.5",
                                         "--size", "320x180", "--progress", "json"});
     EXPECT_EQ(result.code, 0);
     EXPECT_EQ(result.err, "");
@@ -220,7 +220,7 @@ TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
     expect_record_alone();
     // another preset does not, and leaves it as it is
     const auto bytes = bytes_of(folder_ / record_);
-    const auto other = doppel(folder_, with(long_map, {"--set", "flip_map.duration_s=0.1", "--progress", "plain"}));
+    const auto other = doppel(folder_, with(long_map, {"--set", "scene.duration_s=0.1", "--progress", "plain"}));
     EXPECT_EQ(other.code, 0) << other.err;
     EXPECT_TRUE(contains(other.err, "leaves " + record_ + " alone, of another preset or version")) << other.err;
     EXPECT_EQ(bytes_of(folder_ / record_), bytes);
@@ -228,7 +228,7 @@ TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
 
 // Commands of README.md and docs/figures.md, as shells run them.
 
-const std::string settings = " --set sweep.to=20 --set scene.duration_s=0.5 --size 320x180 --progress none";
+const std::string settings = " --set grid.x.to=20 --set scene.duration_s=0.5 --size 320x180 --progress none";
 
 void expect_merged(const fs::path& folder) {
     const auto merge = shell(folder, "\"$DOPPEL\" figure fig2-right --merge" + settings);

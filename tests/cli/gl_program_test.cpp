@@ -20,8 +20,8 @@ using test::with;
 
 const std::vector<std::string> film{"--set", "scene.duration_s=0.1", "--size", "160x90", "--format",
                                     "png",   "--progress",           "none"};
-const std::vector<std::string> chart{"--set",  "sweep.to=9", "--set",      "scene.duration_s=0.5",
-                                     "--size", "320x180",    "--progress", "none"};
+const std::vector<std::string> chart{"--set",  "grid.x.to=9", "--set",      "scene.duration_s=0.5",
+                                     "--size", "320x180",     "--progress", "none"};
 
 /// What drew, by the manifest of OUT/NAME/.
 std::string drawn_by(const fs::path& out, const std::string& name) {
@@ -74,7 +74,7 @@ TEST(GlProgram, NeedsNoLibraryWhereNothingIsDrawn) {
              {"list"},
              {"check", "calm"},
              {"simulate", "calm", "--set", "scene.duration_s=1", "--progress", "none"},
-             {"figure", "fig2-right", "--set", "sweep.to=9", "--shard", "1/2", "--progress", "none"}}) {
+             {"figure", "fig2-right", "--set", "grid.x.to=9", "--shard", "1/2", "--progress", "none"}}) {
         const auto result = doppel(folder, command, spoilt);
         EXPECT_EQ(result.code, 0) << command[0] << ": " << result.err;
         EXPECT_EQ(result.err, "");

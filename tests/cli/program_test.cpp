@@ -177,7 +177,7 @@ TEST(Program, TheLongestNameLeavesRoomForEveryEnding) {
                  "scene.duration_s=3000", "--set", "system.model=\"constraints\"", "--progress", "none"});
     EXPECT_EQ(failed.code, 3) << failed.err;
     write_bytes(folder / (name + ".toml"),
-                "title = \"long\"\n[scene]\nkind = \"sweep\"\nduration_s = 0.1\n[sweep]\ndifference = 0.01\n");
+                "title = \"long\"\n[scene]\nkind = \"grid\"\nduration_s = 0.1\n[grid]\ndifference = 0.01\n");
     for (const auto& shard : {std::vector<std::string>{"--shard", "100000/100000"}, {}}) {
         const auto result =
             doppel(folder, with({"figure", name + ".toml", "--progress", "none", "--out", "figures"}, shard));

@@ -39,7 +39,8 @@ TEST(Streams, WhatCannotBePrintedIsExit4) {
 TEST(Streams, NamesOfFilesThatCannotBePrintedAreExit75) {
     const auto folder = fresh_folder();
     write_bytes(folder / "map.toml",
-                "[scene]\nkind = \"flip-map\"\n[flip_map]\nduration_s = 1\ncolumns = 8\nrows = 8\n");
+                "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"flip_time\"\n[grid.x]\npoints = 8\n"
+                "[grid.y]\nkey = \"theta2_deg\"\npoints = 8\n");
     const std::vector<std::pair<std::string, std::string>> cases{
         {"simulate butterfly" + quick, "butterfly/butterfly.csv"},
         {"render butterfly --size 64x64" + quick, "butterfly/butterfly.mp4"},
@@ -163,7 +164,7 @@ TEST(Streams, APresetsWordsAreShownAndNotObeyed) {
     // refused where they would be drawn; quoted in a message all the same
     const std::string evil = "\\u001b]0;owned\\u0007\\u009b31m\\u202e";
     write_bytes(folder / "film.toml", "title = \"" + evil + "\"\n");
-    write_bytes(folder / "figure.toml", "title = \"" + evil + "\"\n[scene]\nkind = \"sweep\"\n");
+    write_bytes(folder / "figure.toml", "title = \"" + evil + "\"\n[scene]\nkind = \"grid\"\n");
     write_bytes(folder / "key.toml", "\"" + evil + "\" = 1\n");
     write_bytes(folder / "choice.toml", "[system]\nmodel = \"" + evil + "\"\n");
     write_bytes(folder / "parts.toml",

@@ -31,18 +31,18 @@ Lines faults_of(const std::string& kind, const std::string& text, const std::vec
 
 TEST(AllFaultsOfAFigure, StandInTheOrderOfTheFileAndThenOfTheCommandLine) {
     EXPECT_EQ(
-        faults_of("sweep",
-                  "duration_s = \"long\"\n[chart]\nscale = 9\nsice = 1\n[sweep]\nto = inf\nstep = 0\n[b]\nlabel = "
+        faults_of("grid",
+                  "duration_s = \"long\"\n[chart]\nscale = 9\nsice = 1\n[grid.x]\nto = inf\nstep = 0\n[b]\nlabel = "
                   "\"x\"\n[system]\nmodel = 1\n",
-                  {"sweep.frm=1"}),
+                  {"grid.x.frm=1"}),
         (Lines{"3:1: [scene] duration_s ", "5:1: [chart] scale must ", "6:1: [chart] has no \"sic",
-               "8:1: [sweep] to must be ", "9:1: [sweep] step must b", "11:1: [b] has no \"label\"",
-               "13:1: [system] model mus", "--set sweep.frm: [sweep]"}));
+               "8:1: [grid.x] to must be", "9:1: [grid.x] step must ", "11:1: [b] has no \"label\"",
+               "13:1: [system] model mus", "--set grid.x.frm: [grid."}));
 }
 
 TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
-    const auto figures = {"sweep",    "curves", "convergence", "spectrum",  "section",
-                          "flip-map", "links",  "drift",       "stability", "work-precision"};
+    const auto figures = {"grid",    "curves", "convergence", "spectrum",
+                          "section", "drift",  "stability",   "work-precision"};
     for (const auto* kind : figures) {
         std::string table = kind;
         for (auto& letter : table)
@@ -55,11 +55,11 @@ TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
 }
 
 TEST(AllFaultsOfAFigure, LeaveOutWhatMayFollowFromAnother) {
-    EXPECT_EQ(faults_of("sweep", "[sweep]\nexponent = 1\nexponent_duration_s = 3\n"),
-              (Lines{"4:1: [sweep] exponent mu"}));
-    EXPECT_EQ(faults_of("sweep", "[sweep]\nfrom = 10\nto = 5\nstep = \"x\"\n"), (Lines{"6:1: [sweep] step must b"}));
+    EXPECT_EQ(faults_of("grid", "[grid]\nquantity = 1\nexponent_duration_s = 3\n"),
+              (Lines{"4:1: [grid] quantity mus"}));
+    EXPECT_EQ(faults_of("grid", "[grid.x]\nfrom = 10\nto = 5\nstep = \"x\"\n"), (Lines{"6:1: [grid.x] step must "}));
     EXPECT_EQ(faults_of("spectrum", "[system]\nlinks = 5\n[chart]\nscale = 0\n"), (Lines{"6:1: [chart] scale must "}));
-    EXPECT_EQ(faults_of("sweeep", "[sweep]\nfoo = 1\n"), (Lines{"2:1: [scene] kind must b"}));
+    EXPECT_EQ(faults_of("grit", "[grid]\nfoo = 1\n"), (Lines{"2:1: [scene] kind must b"}));
 }
 
 }  // namespace all_figure_faults_test

@@ -68,15 +68,15 @@ TEST(Chart, WordsMayGoOrBeOnesOwn) {
     const auto has = [](const std::vector<std::string>& all, std::string_view start) {
         return std::any_of(all.begin(), all.end(), [&](const auto& text) { return text.starts_with(start); });
     };
-    const auto as_is = labels_of(figure_of("fig2-right", {"sweep.to=9", "scene.duration_s=0.5"}));
+    const auto as_is = labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5"}));
     EXPECT_TRUE(has(as_is, "How far twins part"));
     EXPECT_TRUE(has(as_is, "two links"));
     EXPECT_TRUE(has(as_is, "Erratum"));
     const auto bare = labels_of(
-        figure_of("fig2-right", {"sweep.to=9", "scene.duration_s=0.5", "chart.title=false", "chart.captions=false"}));
+        figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=false", "chart.captions=false"}));
     EXPECT_FALSE(has(bare, "How far twins part") || has(bare, "two links") || has(bare, "Erratum"));
     EXPECT_EQ(bare.size(), as_is.size() - 3);
-    const auto own = labels_of(figure_of("fig2-right", {"sweep.to=9", "scene.duration_s=0.5", "chart.title=\"Mine\"",
+    const auto own = labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=\"Mine\"",
                                                         "chart.captions=[\"One\", \"Two\"]"}));
     EXPECT_TRUE(has(own, "Mine") && has(own, "One") && has(own, "Two"));
     EXPECT_FALSE(has(own, "two links") || has(own, "Erratum"));

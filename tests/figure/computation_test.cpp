@@ -93,7 +93,7 @@ TEST(Computation, LeavesARecordOfSomethingElseAlone) {
 /// A kill at any moment, and a line that rotted: what is whole before is kept, all else is computed anew.
 TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
     const auto record = fresh_folder() / "x.resume";
-    const auto figure = figure_of("fig2-right", {"sweep.to=3", "scene.duration_s=0.05"});
+    const auto figure = figure_of("fig2-right", {"grid.x.to=3", "scene.duration_s=0.05"});
     const auto expected = computed(figure);
     PartWriter(record, header_of(figure), expected).close();
     const auto bytes = bytes_of(record);

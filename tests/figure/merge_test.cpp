@@ -108,8 +108,8 @@ TEST_F(Merge, ReadsRegularFilesAlone) {
 }
 
 TEST_F(Merge, RefusesPartsOfAnotherPreset) {
-    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"sweep.difference=0.004"}));
-    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"sweep.step=0.5"}));
+    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"grid.difference=0.004"}));
+    expect_refused(ExitCode::bad_input, {part(1).string(), "preset"}, small_sweep({"grid.x.step=0.5"}));
 }
 
 TEST_F(Merge, RefusesPartsOfAnotherVersionOrRevision) {

@@ -46,12 +46,13 @@ TEST_P(Numbers, FitWhereTheyWereComputedAndNoneElse) {
 INSTANTIATE_TEST_SUITE_P(
     Figures, Numbers,
     testing::Values(
-        Case{"fig2-right", {"sweep.step=60", "scene.duration_s=1"}, true},
+        Case{"fig2-right", {"grid.x.step=60", "scene.duration_s=1"}, true},
         Case{"fig2-right",
-             {"sweep.step=60", "scene.duration_s=1", "sweep.exponent=true", "sweep.exponent_duration_s=5"},
+             {"grid.x.step=60", "scene.duration_s=1", "grid.right=\"exponent\"", "grid.exponent_duration_s=5"},
              false},
         // explicit Euler breaks down at once in some trials
-        Case{"fig2-right", {"sweep.step=30", "scene.duration_s=6", "scene.sample_hz=5", "system.step_s=\"1/5\""}, true},
+        Case{
+            "fig2-right", {"grid.x.step=30", "scene.duration_s=6", "scene.sample_hz=5", "system.step_s=\"1/5\""}, true},
         Case{"fig2-left", {"scene.duration_s=1"}, true}, Case{"fig6", {"scene.duration_s=1"}, false},
         Case{"why-they-part",
              {"scene.duration_s=0.5", "convergence.methods=[\"euler\", \"dop853\"]", "convergence.halvings=2",
@@ -59,10 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
              false},
         Case{"lyapunov-spectrum", {"spectrum.duration_s=5", "spectrum.samples=4"}, false},
         Case{"poincare", {"section.energy_J=[9.8]", "section.orbits=2", "section.crossings=5"}, false},
-        Case{"flip-map",
-             {"flip_map.columns=8", "flip_map.rows=8", "flip_map.duration_s=3", "flip_map.checked=15"},
-             true},
-        Case{"links", {"links.to=3", "links.duration_s=5"}, false},
+        Case{"flip-map", {"grid.x.points=8", "grid.y.points=8", "scene.duration_s=3", "grid.checked=15"}, true},
+        Case{"links", {"grid.x.to=3", "grid.exponent_duration_s=5"}, false},
         Case{
             "drift", {"drift.duration_s=20", "drift.methods=[\"rk4\", \"rattle\"]", "drift.projected=[\"rk4\"]"}, true},
         Case{"drift", {"drift.duration_s=20", "drift.methods=[\"euler\"]", "drift.evaluations_per_s=20"}, true},

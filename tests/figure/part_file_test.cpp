@@ -296,7 +296,7 @@ TEST(PartHeader, PartsAreAllOfItAndDiffByATrialAtMost) {
 TEST(PartHeader, IsThatOfTheNumbersAlone) {
     const auto figure = figure_of("fig2-right"),
                drawn = figure_of("fig2-right", {"chart.theme=\"dark\"", "title=\"x\""}),
-               other = figure_of("fig2-right", {"sweep.difference=0.004"});
+               other = figure_of("fig2-right", {"grid.difference=0.004"});
     EXPECT_EQ(header_of(figure), header_of(drawn));
     EXPECT_NE(header_of(figure).preset, header_of(other).preset);
     EXPECT_NE(header_of(figure, 1, 2), header_of(figure));

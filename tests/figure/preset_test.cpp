@@ -40,14 +40,9 @@ TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
     EXPECT_EQ(spectrum.second.rfind("presets/x.toml:4:1: [system] joint_coulomb_N_m is not for Lyapunov exponents", 0),
               0u)
         << spectrum.second;
-    for (const std::string table : {"sweep", "map"}) {
-        const auto fault = error_of([&] {
-            figure_from(system + "[scene]\nkind = \"" + table + "\"\n[" + table + "]\nquantity = \"exponent\"\n" +
-                        (table == "map"
-                             ? "x_parameter = \"theta1_deg\"\ny_parameter = \"system.length_m\"\ny_from = 1\n"
-                               "y_to = 2\n"
-                             : ""));
-        });
+    for (const std::string y : {"", "[grid.y]\nkey = \"system.length_m\"\nfrom = 1\nto = 2\npoints = 2\n"}) {
+        const auto fault =
+            error_of([&] { figure_from(system + "[scene]\nkind = \"grid\"\n[grid]\nquantity = \"exponent\"\n" + y); });
         EXPECT_EQ(fault.first, ExitCode::bad_input);
         EXPECT_NE(fault.second.find("quantity is that of a smooth motion"), std::string::npos) << fault.second;
     }
@@ -95,8 +90,9 @@ TEST(FigurePreset, ResolvedReadsBackToTheSame) {
 
 TEST(FigurePreset, ResolvedKeepsEveryDigitAndCharacter) {
     const auto figure = figure_from(
-        "title = \"a \\\"b\\\" \\\\ ½ ü\"\ncaptions = [\"x, y\", \"\"]\n[scene]\nkind = \"sweep\"\n[sweep]\n"
-        "from = 0.1234567890123456789012345678901\nto = 0.1234567890123456789012345678901\ndifference = 0.003\n");
+        "title = \"a \\\"b\\\" \\\\ ½ ü\"\ncaptions = [\"x, y\", \"\"]\n[scene]\nkind = \"grid\"\n[grid]\n"
+        "difference = 0.003\n[grid.x]\nfrom = 0.1234567890123456789012345678901\n"
+        "to = 0.1234567890123456789012345678901\n");
     const auto again = read_figure({"x", "again", figure.resolved()});
     EXPECT_EQ(again.title, "a \"b\" \\ ½ ü");  // of others: PresetText.EveryCharacterComesBackFromTheResolvedPreset
     EXPECT_EQ(again.captions, (std::vector<std::string>{"x, y", ""}));
@@ -123,7 +119,7 @@ TEST(FigurePreset, IsCalledAsItWasGiven) {
     // a preset of one's own is no name that doppel knows
     const auto film = error_of([] { read_figure({"base", "base.toml", "", "base.toml"}); });
     EXPECT_NE(film.second.find("doppel render base.toml"), std::string::npos) << film.second;
-    const auto figure = error_of([] { read_preset({"x", "my/x.toml", "[scene]\nkind = \"links\"", "my/x.toml"}); });
+    const auto figure = error_of([] { read_preset({"x", "my/x.toml", "[scene]\nkind = \"grid\"", "my/x.toml"}); });
     EXPECT_NE(figure.second.find("doppel figure my/x.toml"), std::string::npos) << figure.second;
 }
 
@@ -147,9 +143,9 @@ TEST(FigurePreset, OfASweepSaysWhatItIs) {
 
 TEST(FigurePreset, OfASweepSaysWhatWasSet) {
     for (const auto& [set, words] : std::vector<std::pair<std::string, std::string>>{
-             {"sweep.difference=0.25", "two links in angles, θ₂ = 0, twins 0.25° apart; explicit"},
-             {"sweep.difference=-0.25", ", twins 0.25° apart; explicit"},
-             {"sweep.quantity=\"energy_error\"", "two links in angles, θ₂ = 0; explicit Euler, 1/30 000 s"},
+             {"grid.difference=0.25", "two links in angles, θ₂ = 0, twins 0.25° apart; explicit"},
+             {"grid.difference=-0.25", ", twins 0.25° apart; explicit"},
+             {"grid.quantity=\"energy_error\"", "two links in angles, θ₂ = 0; explicit Euler, 1/30 000 s"},
              {"system.angle_deg=[0, 30.5]", "two links in angles, θ₂ = 30.5°, twins"},
              {"system.omega_deg_per_s=[0, 5]", ", θ₂ = 0, ω = 0/5 °/s, twins"},
              {"system.integrator=\"rk4\"", "; "},
@@ -158,7 +154,7 @@ TEST(FigurePreset, OfASweepSaysWhatWasSet) {
              {"b.model=\"constraints\"", "two links, θ₂ = 0, twins 0.003° apart, angles against constraints; explicit"},
              {"b.length_m=[1, 2]", ", l₂ = 1 m against l₂ = 2 m; explicit"},
              {"b.integrator=\"rk4\"", "twins 0.003° apart, explicit Euler against "},
-             {"sweep.parameter=\"theta2_deg\"", "two links in angles, θ₁ = 0, twins 0.003° apart"},
+             {"grid.x.key=\"theta2_deg\"", "two links in angles, θ₁ = 0, twins 0.003° apart"},
              {"subtitle=\"mine\"", "mine"}})
         EXPECT_NE(subtitle_of("fig2-right", {set}).find(words), std::string::npos)
             << set << ": " << subtitle_of("fig2-right", {set});
@@ -224,9 +220,9 @@ TEST(FigureErrors, MethodsThatDoNotServeAreToldAtOnce) {
 }
 
 TEST(FigureErrors, OfTheCommandLineNameTheOption) {
-    const auto [code, message] = error_of([] { figure_of("fig2-right", {"sweep.step=0"}); });
+    const auto [code, message] = error_of([] { figure_of("fig2-right", {"grid.x.step=0"}); });
     EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_EQ(message, "--set sweep.step: [sweep] step must be > 0; it is 0");
+    EXPECT_EQ(message, "--set grid.x.step: [grid.x] step must be > 0; it is 0");
     EXPECT_EQ(error_of([] { figure_of("poincare", {"system.integrator=\"rk4\""}); }).first, ExitCode::bad_input);
 }
 

@@ -34,17 +34,17 @@ TEST(FigureRun, WritesPictureTableAndManifest) {
 
 TEST(FigureRun, ManifestTellsWhatTheFigureIs) {
     const auto out = fresh_folder();
-    const auto figure = small_sweep({"sweep.exponent=true", "sweep.exponent_duration_s=10"});
+    const auto figure = small_sweep({"grid.right=\"exponent\"", "grid.exponent_duration_s=10"});
     run_figure(figure, {.out = out, .jobs = 2});
     const auto manifest = manifest_of(out, "fig2-right");
     EXPECT_EQ(manifest["figure"], "fig2-right");
-    EXPECT_EQ(manifest["kind"], "sweep");
+    EXPECT_EQ(manifest["kind"], "grid");
     EXPECT_EQ(manifest["title"], figure.title);
     EXPECT_EQ(manifest["erratum"], figure.erratum);
     EXPECT_FALSE(figure.erratum.empty());
     EXPECT_EQ(manifest["trials"], 10);
     EXPECT_EQ(manifest["threads"], 2);
-    EXPECT_EQ(manifest["resolved_preset"]["sweep"]["to"], 9);
+    EXPECT_EQ(manifest["resolved_preset"]["grid"]["x"]["to"], 9);
     EXPECT_EQ(manifest["resolved_preset"]["a"]["integrator"], "euler");
     EXPECT_FALSE(manifest["doppel"]["version"].get<std::string>().empty());
     EXPECT_FALSE(manifest["libraries"]["gl"].get<std::string>().empty());
@@ -74,8 +74,8 @@ TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
 TEST(FigureRun, ManifestHasNullForWhatIsNoNumber) {
     const auto out = fresh_folder();
     // every pair breaks down, and exponents are drawn
-    run_figure(figure_of("fig2-right", {"sweep.from=60", "sweep.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
-                                        "system.step_s=1", "sweep.exponent=true", "sweep.exponent_duration_s=10"}),
+    run_figure(figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
+                                        "system.step_s=1", "grid.right=\"exponent\"", "grid.exponent_duration_s=10"}),
                {.out = out});
     EXPECT_TRUE(manifest_of(out, "fig2-right")["findings"]["greatest_average_log_ratio"].is_null());
 }
@@ -123,7 +123,7 @@ TEST(FigureRun, LeavesTheFilesOfARunBeforeWhereItFails) {
     const auto table = bytes_of(out / "fig2-right/fig2-right.csv");
     Said said;
     const std::atomic<bool> stop = true;
-    EXPECT_THROW(run_figures({small_sweep({"sweep.step=3"})}, {.out = out}, stop, said.run_report()), Error);
+    EXPECT_THROW(run_figures({small_sweep({"grid.x.step=3"})}, {.out = out}, stop, said.run_report()), Error);
     EXPECT_EQ(bytes_of(out / "fig2-right/fig2-right.csv"), table);
     EXPECT_EQ(names_in(out / "fig2-right").size(), 3u);
 }
@@ -139,16 +139,16 @@ TEST(FigureRun, FailsWhereAMethodBreaksDown) {
 TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
     const auto out = fresh_folder() / "out";
     for (const char* method : {"euler", "rk4"}) {  // both in lanes
-        const auto figure = figure_of(
-            "fig2-right", {"sweep.from=60", "sweep.to=80", "sweep.step=5", "scene.sample_hz=1", "scene.duration_s=3000",
-                           "system.step_s=1", fmt::format("system.integrator=\"{}\"", method)});
+        const auto figure = figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=80", "grid.x.step=5",
+                                                     "scene.sample_hz=1", "scene.duration_s=3000", "system.step_s=1",
+                                                     fmt::format("system.integrator=\"{}\"", method)});
         expect_error(ExitCode::method_failed, {"fig2-right: every one of the 5 pairs broke down", "a finer step"},
                      [&] { run_figure(figure, {.out = out}); });
         EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
     }
     // by the films' loop, and joined from parts
     const auto alone =
-        figure_of("fig2-right", {"sweep.from=60", "sweep.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
+        figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
                                  "system.step_s=1", "system.model=\"mechanism\""});
     expect_error(ExitCode::method_failed, {"every one of the 3 pairs broke down"},
                  [&] { run_figure(alone, {.out = out}); });
@@ -160,7 +160,7 @@ TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
 
 TEST(FigureRun, DrawsASweepOfWhichSomeBreakDown) {
     const auto out = fresh_folder();
-    const auto figure = figure_of("fig2-right", {"sweep.step=30", "scene.sample_hz=5", "scene.duration_s=6",
+    const auto figure = figure_of("fig2-right", {"grid.x.step=30", "scene.sample_hz=5", "scene.duration_s=6",
                                                  "system.step_s=\"1/5\"", "chart.size=[320, 180]"});
     run_figure(figure, {.out = out});
     const auto broken = manifest_of(out, "fig2-right")["findings"]["trials_broken_down"].get<double>();
@@ -176,26 +176,25 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
                            "\"\nduration_s = \"1/2\"\n[system]\nangle_deg = [0, 0]\n[b]\ngravity_m_per_s2 = 9\n" +
                            keys);
     };
-    const std::string over_lengths = "parameter = \"system.length_m\"\n",
-                      cells = "columns = 3\nrows = 3\nx_from = 1\nx_to = 2\ny_from = 1\ny_to = 2\n";
+    const std::string over_lengths = "[grid.x]\nkey = \"system.length_m\"\nfrom = 1\nto = 3\npoints = 3\n",
+                      over_masses = "[grid.y]\nkey = \"system.mass_kg\"\nfrom = 1\nto = 2\npoints = 3\n";
     const std::vector<std::pair<FigurePreset, std::string>> all{
         {at_rest("curves", "[curves]\nlogarithmic = true\n"), "nothing is greater than 0"},
         {at_rest("convergence", "[convergence]\nmethods = [\"rk4\"]\nhalvings = 1\nquad_halvings = 1\n"),
          "the two sides never part"},
-        {at_rest("sweep", "[sweep]\nfrom = 1\nto = 3\nquantity = \"distance_at_end\"\n" + over_lengths),
+        {at_rest("grid", "[grid]\nquantity = \"distance_at_end\"\n" + over_lengths),
          "none of the 3 pairs has a distance_at_end above 0"},
-        {at_rest("sweep", "[sweep]\nfrom = 1\nto = 3\nquantity = \"energy_error\"\n" + over_lengths),
+        {at_rest("grid", "[grid]\nquantity = \"energy_error\"\n" + over_lengths),
          "none of the 3 pairs has an energy_error above 0"},
-        {at_rest("map",
-                 "[map]\nquantity = \"energy_error\"\nx_parameter = \"system.length_m\"\ny_parameter = "
-                 "\"system.mass_kg\"\n" +
-                     cells),
+        {at_rest("grid", "[grid]\nquantity = \"energy_error\"\n" + over_lengths + over_masses),
          "none of the 3 × 3 pairs has an energy_error above 0"},
-        {at_rest("map", "[map]\nx_to = 10\nx_from = -10\ny_to = 10\ny_from = -10\ncolumns = 3\nrows = 3\n"),
-         "none of the 3 × 3 pairs has a flip_time: no flip within 1/2 s"},
-        {figure_of("flip-map", {"flip_map.columns=4", "flip_map.rows=4", "flip_map.theta1_range_deg=[-30, 30]",
-                                "flip_map.theta2_range_deg=[-30, 30]", "flip_map.checked=0"}),
-         "none of the 4 × 4 releases flips within 20 s"},
+        {at_rest("grid",
+                 "[grid]\nquantity = \"flip_time\"\n[grid.x]\nfrom = -10\nto = 10\npoints = 3\n[grid.y]\nkey = "
+                 "\"theta2_deg\"\nfrom = -10\nto = 10\npoints = 3\n"),
+         "none of the 3 × 3 pairs has a flip_time: no flip within 0.5 s"},
+        {figure_of("flip-map", {"grid.x.points=4", "grid.y.points=4", "grid.x.from=-30", "grid.x.to=30",
+                                "grid.y.from=-30", "grid.y.to=30", "grid.checked=0"}),
+         "none of the 4 × 4 pairs has a flip_time: no flip within 20 s"},
         {figure_of("stability", {"stability.methods=[\"euler\"]", "stability.rows=2", "stability.columns=2",
                                  "stability.step_from_s=0.5", "stability.step_to_s=1"}),
          "every release blows up"},
@@ -242,7 +241,7 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     const auto out = fresh_folder();
     const auto folder = out / "fig2-right";
     fs::create_directory(folder);
-    const auto large = small_sweep({"sweep.step=0.5"});
+    const auto large = small_sweep({"grid.x.step=0.5"});
     const auto record = folder / resume_name(header_of(large)), other = folder / resume_name(header_of(large, 2, 3));
     for (const auto& path : {record, other}) PartWriter(path, header_of(large), KnownTrials(19, {1})).close();
     const auto bytes = bytes_of(record);

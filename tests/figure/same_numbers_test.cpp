@@ -87,20 +87,25 @@ TEST_P(SameNumbers, FromTheResolvedPreset) {
 INSTANTIATE_TEST_SUITE_P(
     Figures, SameNumbers,
     testing::Values(
-        Case{"fig2-right", {"sweep.step=15", "scene.duration_s=2"}},
-        Case{"true-fig2-right", {"sweep.step=5", "scene.duration_s=2"}},
-        Case{"fig3-right", {"sweep.to=0.19", "scene.duration_s=2"}}, Case{"fig6", {"scene.duration_s=2"}},
-        Case{"flip-map", {"flip_map.columns=40", "flip_map.rows=41", "flip_map.duration_s=3", "flip_map.checked=15"}},
-        Case{"bifurcation", {"bifurcation.points=6", "bifurcation.transient_periods=3", "bifurcation.periods=4"}},
-        Case{"kapitza-map", {"map.columns=5", "map.rows=4", "scene.duration_s=1"}},
-        Case{"parting-map", {"map.columns=17", "map.rows=5", "scene.duration_s=1"}},
+        Case{"fig2-right", {"grid.x.step=15", "scene.duration_s=2"}},
+        Case{"true-fig2-right", {"grid.x.step=5", "scene.duration_s=2"}},
+        Case{"fig3-right", {"grid.x.to=0.19", "scene.duration_s=2"}}, Case{"fig6", {"scene.duration_s=2"}},
+        Case{"flip-map", {"grid.x.points=40", "grid.y.points=41", "scene.duration_s=3", "grid.checked=15"}},
+        Case{"bifurcation", {"grid.x.points=6", "grid.transient_periods=3", "grid.periods=4"}},
+        Case{"kapitza-map", {"grid.x.points=5", "grid.y.points=4", "scene.duration_s=1"}},
+        Case{"parting-map", {"grid.x.points=17", "grid.y.points=5", "scene.duration_s=1"}},
         Case{"fig4-right",
-             {"sweep.points=7", "sweep.parameter=\"system.mass_kg[1]\"", "sweep.spacing=\"logarithmic\"",
-              "sweep.from=0.1", "sweep.to=10", "system.angle_deg=[100, 30]", "sweep.quantity=\"flip_time\"",
-              "sweep.difference=0", "scene.duration_s=6"}},
+             {"grid.x.points=7", "grid.x.key=\"system.mass_kg[1]\"", "grid.x.spacing=\"logarithmic\"",
+              "grid.x.from=0.1", "grid.x.to=10", "system.angle_deg=[100, 30]", "grid.quantity=\"flip_time\"",
+              "grid.difference=0", "scene.duration_s=6"}},
         Case{"fig5-right",
-             {"sweep.points=5", "sweep.quantity=\"energy_error\"", "system.integrator=\"taylor\"",
+             {"grid.x.points=5", "grid.quantity=\"energy_error\"", "system.integrator=\"taylor\"",
               "system.model=\"angles\"", "scene.duration_s=1"}},
+        Case{"parting-map",
+             {"grid.x.points=5", "grid.y.points=3", "scene.duration_s=1", "grid.panel.key=\"system.integrator\"",
+              "grid.panel.values=[\"rk4\", \"dop853\"]"}},
+        Case{"fig3-right",
+             {"grid.x.to=0.05", "scene.duration_s=1", "grid.color.key=\"theta2_deg\"", "grid.color.values=[10, 20]"}},
         Case{"poincare",
              {"section.energy_J=[9.8, 20]", "section.orbits=3", "section.crossings=10",
               "section.exponent_duration_s=50"}},
@@ -110,18 +115,18 @@ INSTANTIATE_TEST_SUITE_P(
              {"scene.duration_s=0.5", "convergence.methods=[\"euler\", \"dop853\"]", "convergence.halvings=4",
               "convergence.quad_halvings=2", "convergence.decades=4", "convergence.quad_decades=3"}}),
     [](const auto& parameter) {
-        std::string name = parameter.param.name;
+        std::string name = fmt::format("{}_{}", parameter.param.name, parameter.index);
         std::replace(name.begin(), name.end(), '-', '_');
         return name;
     });
 
 /// The mirror image of a row is not computed: with a push that is none, every row is, and says the same.
 TEST(FlipMap, MirroredRowsAreThoseComputed) {
-    const std::vector<std::string> small{"flip_map.columns=16", "flip_map.rows=15", "flip_map.duration_s=4",
-                                         "flip_map.checked=0"};
+    const std::vector<std::string> small{"grid.x.points=16", "grid.y.points=15", "scene.duration_s=4",
+                                         "grid.checked=0"};
     const auto figure = figure_of("flip-map", small);
     auto pushed = small;
-    pushed.emplace_back("system.omega_deg_per_s=[1e-300, 0]");
+    pushed.insert(pushed.end(), {"system.omega_deg_per_s=[1e-300, 0]", "grid.overlay=\"none\""});
     const auto whole = figure_of("flip-map", pushed);
     EXPECT_EQ(figure.experiment->trials(), 8u);
     EXPECT_EQ(whole.experiment->trials(), 15u);

@@ -121,11 +121,11 @@ TEST(Schema, AgreesWithTheReaderOnMutations) {
 
 TEST(Schema, KeepsKindsApart) {
     EXPECT_TRUE(accepts(""));
-    EXPECT_TRUE(accepts("[scene]\nkind = \"links\""));
+    EXPECT_TRUE(accepts("[scene]\nkind = \"drift\""));
     EXPECT_FALSE(accepts("[links]"));
-    EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[video]"));
-    EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[sweep]"));
-    EXPECT_FALSE(accepts("[scene]\nkind = \"links\"\n[chart]\ncost = \"time\""));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"drift\"\n[video]"));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"drift\"\n[grid]"));
+    EXPECT_FALSE(accepts("[scene]\nkind = \"drift\"\n[chart]\ncost = \"time\""));
     EXPECT_TRUE(accepts("[scene]\nkind = \"work-precision\"\n[chart]\ncost = \"time\""));
     EXPECT_FALSE(accepts("[scene]\nkind = \"work-precision\"\n[system]"));
 }

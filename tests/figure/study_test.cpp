@@ -10,9 +10,9 @@ namespace study_test {
 // The figures of the study: check values of an independent program, to the digits given (Kao 2022, re-run).
 
 FigurePreset narrowed(const std::string& preset, int from, int to, int step, std::vector<std::string> more = {}) {
-    more.push_back(fmt::format("sweep.from={}", from));
-    more.push_back(fmt::format("sweep.to={}", to));
-    more.push_back(fmt::format("sweep.step={}", step));
+    more.push_back(fmt::format("grid.x.from={}", from));
+    more.push_back(fmt::format("grid.x.to={}", to));
+    more.push_back(fmt::format("grid.x.step={}", step));
     return figure_of(preset, more);
 }
 
@@ -42,14 +42,14 @@ TEST(Study, SweepsOfTwinsThatDifferInMass) {
 }
 
 TEST(Study, SweepsOverTheMassRatio) {
-    const auto figure = figure_of("fig3-right", {"sweep.from=0.5", "sweep.to=0.57", "sweep.step=0.01",
+    const auto figure = figure_of("fig3-right", {"grid.x.from=0.5", "grid.x.to=0.57", "grid.x.step=0.01",
                                                  "scene.duration_s=2", "system.angle_deg=[20, 0]"});
     const auto table = table_of(figure);
     EXPECT_EQ(table.columns, (std::vector<std::string>{"mass_ratio", "average_log_ratio"}));
     ASSERT_EQ(table.rows.size(), 8u);
     EXPECT_EQ(table.rows[7][0], 0.57);  // 0.5 + 7 · 0.01 in double is not
     // one point of it as a pair of its own
-    const auto alone = figure_of("fig3-left", {"sweep.from=20", "sweep.to=20", "scene.duration_s=2",
+    const auto alone = figure_of("fig3-left", {"grid.x.from=20", "grid.x.to=20", "scene.duration_s=2",
                                                "a.mass_kg=[0.52, 1]", "b.mass_kg=[0.53, 1]"});
     EXPECT_EQ(table.rows[2][1], table_of(alone).rows[0][1]);
 }
@@ -69,7 +69,7 @@ TEST(Study, ColumnsAreThoseAgreedUpon) {
         {"fig6", "sample,time_s,distance_45,distance_50"}, {"fig7", "sample,time_s,distance"},
         {"fig8", "theta1_deg,average_log_ratio"},          {"droplet", "sample,time_s,distance_79_79,distance_90_90"}};
     for (const auto& [name, columns] : tables) EXPECT_EQ(header_line(figure_of(name)), columns) << name;
-    const auto exponents = header_line(figure_of("fig2-right", {"sweep.exponent=true"}));
+    const auto exponents = header_line(figure_of("fig2-right", {"grid.right=\"exponent\""}));
     EXPECT_EQ(exponents.rfind("theta1_deg,average_log_ratio,exponent_per_s", 0), 0u) << exponents;
 }
 
@@ -150,11 +150,11 @@ TEST(Sweep, IsTheSameByEveryPath) {
 
 TEST(Sweep, GoesOverEveryParameter) {
     const auto theta2 =
-        table_of(narrowed("fig2-right", 10, 30, 10, {"sweep.parameter=\"theta2_deg\"", "scene.duration_s=1"}));
+        table_of(narrowed("fig2-right", 10, 30, 10, {"grid.x.key=\"theta2_deg\"", "scene.duration_s=1"}));
     EXPECT_EQ(theta2.columns.front(), "theta2_deg");
     const auto length = table_of(
-        figure_of("fig2-right", {"sweep.parameter=\"length_ratio\"", "sweep.from=0.5", "sweep.to=1.5", "sweep.step=0.5",
-                                 "sweep.difference=0.01", "scene.duration_s=1", "system.angle_deg=[20, 10]"}));
+        figure_of("fig2-right", {"grid.x.key=\"length_ratio\"", "grid.x.from=0.5", "grid.x.to=1.5", "grid.x.step=0.5",
+                                 "grid.difference=0.01", "scene.duration_s=1", "system.angle_deg=[20, 10]"}));
     EXPECT_EQ(length.columns.front(), "length_ratio");
     for (const auto* table : {&theta2, &length}) {
         ASSERT_EQ(table->rows.size(), 3u);
@@ -163,7 +163,7 @@ TEST(Sweep, GoesOverEveryParameter) {
     }
     // one link, and the lower link's angle as an upper one's
     const auto lone =
-        figure_of("fig2-right", {"system.links=1", "system.angle_deg=[0]", "sweep.to=2", "scene.duration_s=1"});
+        figure_of("fig2-right", {"system.links=1", "system.angle_deg=[0]", "grid.x.to=2", "scene.duration_s=1"});
     EXPECT_EQ(table_of(lone).rows.size(), 3u);
 }
 
@@ -171,16 +171,15 @@ TEST(Sweep, EndsWhereItWasTold) {
     for (const auto& [to, step, rows] :
          {std::tuple{"0.3", "0.1", 4u}, {"1", "0.1", 11u}, {"0", "1", 1u}, {"2", "0.01", 201u}}) {
         const auto figure =
-            figure_of("fig2-right", {fmt::format("sweep.to={}", to), fmt::format("sweep.step={}", step)});
+            figure_of("fig2-right", {fmt::format("grid.x.to={}", to), fmt::format("grid.x.step={}", step)});
         EXPECT_EQ(figure.experiment->trials(), rows) << to << " by " << step;
     }
 }
 
 TEST(Sweep, LeavesOutTwinsThatAreOne) {
     // at 1 kg neither an angle nor a mass differs: no ratio to take a logarithm of, and nothing broke down
-    const auto figure =
-        figure_of("fig2-right", {"sweep.parameter=\"b.mass_kg[0]\"", "sweep.difference=0", "sweep.from=1", "sweep.to=2",
-                                 "system.angle_deg=[90, 0]", "scene.duration_s=1"});
+    const auto figure = figure_of("fig2-right", {"grid.x.key=\"b.mass_kg[0]\"", "grid.difference=0", "grid.x.from=1",
+                                                 "grid.x.to=2", "system.angle_deg=[90, 0]", "scene.duration_s=1"});
     const auto trials = computed(figure);
     const Table table(table_text(figure, trials));
     ASSERT_EQ(table.rows.size(), 2u);
@@ -190,8 +189,8 @@ TEST(Sweep, LeavesOutTwinsThatAreOne) {
 }
 
 TEST(Sweep, ExponentTellsRegularFromChaotic) {
-    const auto table = table_of(figure_of(
-        "fig2-right", {"sweep.exponent=true", "sweep.exponent_duration_s=200", "sweep.step=60", "scene.duration_s=1"}));
+    const auto table = table_of(figure_of("fig2-right", {"grid.right=\"exponent\"", "grid.exponent_duration_s=200",
+                                                         "grid.x.step=60", "scene.duration_s=1"}));
     ASSERT_EQ(table.rows.size(), 4u);
     ASSERT_GE(table.columns.size(), 4u);
     EXPECT_EQ(table.columns[2], "exponent_per_s");

@@ -92,7 +92,7 @@ inline std::string header_line(const FigurePreset& figure) {
 }
 
 /// Ten trials of half a second.
-inline const std::vector<std::string> small_chart{"sweep.to=9", "scene.duration_s=0.5", "chart.size=[320, 180]"};
+inline const std::vector<std::string> small_chart{"grid.x.to=9", "scene.duration_s=0.5", "chart.size=[320, 180]"};
 inline FigurePreset small_sweep(std::vector<std::string> more = {}) {
     more.insert(more.end(), small_chart.begin(), small_chart.end());
     return figure_of("fig2-right", more);

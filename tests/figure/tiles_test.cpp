@@ -18,10 +18,11 @@ namespace tiles_test {
 namespace fs = std::filesystem;
 
 const std::string flips =
-    "title = \"<b> & more</script>\"\n[scene]\nkind = \"flip-map\"\n[flip_map]\nduration_s = 0.6\nchecked = 0\n";
+    "title = \"<b> & more</script>\"\n[scene]\nkind = \"grid\"\nduration_s = 0.6\n[grid]\nquantity = \"flip_time\"\n"
+    "[grid.x]\nfrom = -180\n[grid.y]\nkey = \"theta2_deg\"\nfrom = -180\n";
 
-FigurePreset small(const std::string& size = "columns = 600\nrows = 300\n") {
-    return figure_from(flips + size);
+FigurePreset small(int columns = 600, int rows = 300) {
+    return figure_from(flips, {fmt::format("grid.x.points={}", columns), fmt::format("grid.y.points={}", rows)});
 }
 
 struct TileRun {
@@ -115,7 +116,7 @@ TEST(Tiles, AreTheSameInPartsAndFromMoreThreads) {
 
 TEST(Tiles, OfAMirroredMapAreComputedOnce) {
     TileRun mirrored;
-    const auto square = small("columns = 512\nrows = 512\n");
+    const auto square = small(512, 512);
     ASSERT_TRUE(square.experiment->map()->frame().is_mirrored);
     const auto result = mirrored(square);
     EXPECT_EQ(result.samples, 512 * 512);
@@ -159,7 +160,7 @@ std::pair<ExitCode, std::string> refusal(TileRun& run, const FigurePreset& figur
 TEST(Tiles, LeaveOtherFilesAlone) {
     TileRun run;
     run(small());
-    auto [code, message] = refusal(run, small("columns = 600\nrows = 301\n"));
+    auto [code, message] = refusal(run, small(600, 301));
     EXPECT_EQ(code, ExitCode::io_failed);
     EXPECT_NE(message.find("belongs to another preset or version"), std::string::npos) << message;
     fs::remove_all(run.out);
@@ -217,11 +218,11 @@ TEST(Tiles, OfAnotherSizeOrKindAreRefused) {
 TEST(Tiles, OfAnotherThemeOrScaleAreAnothers) {
     TileRun run;
     const std::string map =
-        "title = \"x\"\n[scene]\nkind = \"map\"\nduration_s = 0.5\n[map]\ncolumns = 6\nrows = 4\nquantity = "
-        "\"divergence\"\ndifference = 0.01\n";
+        "title = \"x\"\n[scene]\nkind = \"grid\"\nduration_s = 0.5\n[grid]\ndifference = 0.01\n[grid.x]\npoints = 6\n"
+        "[grid.y]\nkey = \"theta2_deg\"\npoints = 4\n";
     run(figure_from(map));
-    for (const std::string other : {"[chart]\ntheme = \"dark\"\n", "color_range = [0.3, 0.5]\n"}) {
-        const auto [code, message] = refusal(run, figure_from(map + other));
+    for (const std::string other : {"chart.theme=\"dark\"", "grid.color_range=[0.3, 0.5]"}) {
+        const auto [code, message] = refusal(run, figure_from(map, {other}));
         EXPECT_EQ(code, ExitCode::io_failed) << other;
         EXPECT_NE(message.find("belongs to another preset or version"), std::string::npos) << message;
     }
@@ -229,37 +230,33 @@ TEST(Tiles, OfAnotherThemeOrScaleAreAnothers) {
 }
 
 TEST(Tiles, CountCellsNotPixels) {
-    for (const auto& [size, cells] :
-         {std::pair("columns = 20\nrows = 20\n", 400), {"columns = 16\nrows = 16\n", 256}, {"", 256 * 256}}) {
+    for (const int side : {20, 4, 256}) {  // a tile is its own image
         TileRun run;
-        const auto figure = small(*size ? size : "columns = 256\nrows = 256\n");  // the last is its own image
-        const auto result = run(figure);
-        EXPECT_EQ(result.samples, cells) << size;
+        EXPECT_EQ(run(small(side, side)).samples, side * side);
     }
 }
 
 TEST(Tiles, GoOnWhereTheMarkWasCutShort) {
     TileRun run;
-    run(small("columns = 20\nrows = 20\n"));
+    run(small(20, 20));
     const auto mark = test::bytes_of(run.tiles() / "pyramid.json");
     fs::remove_all(run.tiles());
     fs::create_directories(run.tiles());
     test::write_bytes(run.tiles() / "pyramid.json", "");
-    run(small("columns = 20\nrows = 20\n"));
+    run(small(20, 20));
     EXPECT_EQ(test::bytes_of(run.tiles() / "pyramid.json"), mark);
     // but not where somebody's tiles are there
     test::write_bytes(run.tiles() / "pyramid.json", "");
-    EXPECT_EQ(refusal(run, small("columns = 20\nrows = 20\n")).first, ExitCode::io_failed);
+    EXPECT_EQ(refusal(run, small(20, 20)).first, ExitCode::io_failed);
     // nor without an end
     fs::remove(run.tiles() / "pyramid.json");
     fs::create_symlink("/dev/zero", run.tiles() / "pyramid.json");
-    EXPECT_EQ(refusal(run, small("columns = 20\nrows = 20\n")).first, ExitCode::io_failed);
+    EXPECT_EQ(refusal(run, small(20, 20)).first, ExitCode::io_failed);
 }
 
 TEST(Tiles, OfAMapWithoutANumberAreAFailureTheSecondTimeToo) {
     TileRun run;
-    const auto still = figure_from(
-        "[scene]\nkind = \"flip-map\"\n[flip_map]\nduration_s = 0.01\nchecked = 0\ncolumns = 300\nrows = 260\n");
+    const auto still = figure_from(flips, {"scene.duration_s=\"1/120\"", "grid.x.points=300", "grid.y.points=260"});
     for (int again = 0; again < 2; ++again) {
         const auto [code, message] = refusal(run, still);
         EXPECT_EQ(code, ExitCode::method_failed);
@@ -272,7 +269,7 @@ TEST(Tiles, AreOfMapsAndOfAllParts) {
     TileRun run;
     auto [code, message] = refusal(run, figure_of("fig2-right"));
     EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_NE(message.find("kind = \"sweep\""), std::string::npos) << message;
+    EXPECT_NE(message.find("--tiles are of one map"), std::string::npos) << message;
     run(small(), {.shard = Shard{1, 2}});
     std::tie(code, message) = refusal(run, small(), {.merge = true});
     EXPECT_EQ(code, ExitCode::try_again);
@@ -284,10 +281,10 @@ TEST(Tiles, AreOfMapsAndOfAllParts) {
 TEST(Map, OfMoreCellsThanMemoryHoldsIsRefusedBeforeItStarts) {
     const auto out = fs::path(DOPPEL_TEST_OUTPUT) / "tiles" / "too-large";
     fs::remove_all(out);
-    const std::string all = "columns = 1048576\nrows = 1048576\n";
+    constexpr int all = 1'048'576;
     std::string message;
     try {
-        run_figures({small(all)}, {.out = out}, false, {});
+        run_figures({small(all, all)}, {.out = out}, false, {});
     } catch (const Error& fault) {
         EXPECT_EQ(fault.code(), ExitCode::bad_input);
         message = fault.what();
@@ -296,7 +293,7 @@ TEST(Map, OfMoreCellsThanMemoryHoldsIsRefusedBeforeItStarts) {
     EXPECT_FALSE(fs::exists(out));
     // and tiles where the disk is too small for them
     TileRun run;
-    EXPECT_EQ(refusal(run, small(all)).first, ExitCode::bad_input);
+    EXPECT_EQ(refusal(run, small(all, all)).first, ExitCode::bad_input);
 }
 
 TEST(TilePage, SaysWhatItShowsAndNothingThatTheTitleMeans) {

@@ -61,8 +61,8 @@ const std::map<std::string, FigurePreset>& figures() {
     static const auto all = [] {
         std::map<std::string, FigurePreset> made;
         const std::vector<std::pair<const char*, std::vector<const char*>>> presets{
-            {"fig2-right", {"sweep.to=2", "scene.duration_s=0.1", "sweep.exponent=true"}},
-            {"fig3-right", {"sweep.to=0.03", "scene.duration_s=0.1"}},
+            {"fig2-right", {"grid.x.to=2", "scene.duration_s=0.1", "grid.right=\"exponent\""}},
+            {"fig3-right", {"grid.x.to=0.03", "scene.duration_s=0.1"}},
             {"fig2-left", {"scene.duration_s=0.05"}},
             {"fig6", {"scene.duration_s=0.05", "curves.logarithmic=true"}},
             {"why-they-part",
@@ -70,8 +70,8 @@ const std::map<std::string, FigurePreset>& figures() {
               "convergence.quad_halvings=1"}},
             {"lyapunov-spectrum", {"spectrum.samples=2"}},
             {"poincare", {"section.energy_J=[9.8]", "section.orbits=2", "section.crossings=3"}},
-            {"flip-map", {"flip_map.columns=3", "flip_map.rows=4", "flip_map.checked=3"}},
-            {"links", {"links.to=3"}},
+            {"flip-map", {"grid.x.points=3", "grid.y.points=4", "grid.checked=3"}},
+            {"links", {"grid.x.to=3"}},
             {"drift", {"drift.duration_s=10", "drift.methods=[\"rk4\"]", "drift.points_per_decade=2"}},
             {"stability", {"stability.rows=2", "stability.columns=2", "stability.methods=[\"rk4\", \"taylor\"]"}},
             {"speed-accuracy",

@@ -1,0 +1,587 @@
+#include "figure/flip_checks.hpp"
+#include "figure/grid_axis.hpp"
+#include "figure/map_figure.hpp"
+#include "figure/overlay.hpp"
+#include "figure/quantity.hpp"
+#include "scene/captions.hpp"
+#include "scene/method_choice.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+constexpr std::string_view key_help =
+    "what the pairs differ in: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
+    "theta1_deg, theta2_deg, mass_ratio, length_ratio, links";
+
+/// Throws Error (exit 2), of the table's `difference` or `quantity`, where a quantity that compares the two of a pair has
+/// nothing to compare in the first and the last pair: they are one in all pairs, or `difference` is lost in rounding in
+/// one of them, or `divergence` has no first distance.
+void demand_apart(const TomlReader& table, Quantity quantity, const GridAxis& x, const Quad& difference,
+                  const std::array<Scene, 2>& ends) {
+    if (!is_of_distance(quantity)) return;
+    const auto name = name_of(quantity);
+    const auto same = std::count_if(ends.begin(), ends.end(), are_one);
+    const bool are_all = same == std::ssize(ends);
+    if (are_all && x.is_of_one_side)
+        throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
+                          name);
+    if (are_all || (difference != 0 && same > 0))
+        throw table.fault(
+            "difference", "must set the two of a pair apart, which \"{}\" compares; {}: give {}grid.difference", name,
+            difference == 0 ? "it is 0, and both sides are the same" : text_of(difference) + " is lost in rounding",
+            difference == 0 ? "" : "a greater ");
+    const auto start = [](const Scene& scene) -> double {
+        try {
+            return PairRun(scene).next(false).distance;
+        } catch (const BreakDown&) {  // told when it is run
+            return NAN;
+        }
+    };
+    if (quantity == Quantity::divergence &&
+        std::all_of(ends.begin(), ends.end(), [&](const Scene& scene) { return start(scene) == 0; }))
+        throw table.fault(
+            "quantity",
+            "\"divergence\" takes sides that are released differently: there is no ratio to a distance of "
+            "0; \"distance_at_end\" and \"parting_time\" need none");
+}
+
+/// Whether some of the line lies inside the axes of the map.
+bool shows(const Plot& plot, const Curve& line) {
+    for (std::size_t i = 0; i < line.x.size(); ++i)
+        if (line.x[i] > *plot.x.low && line.x[i] < *plot.x.high && line.y[i] > *plot.y.low && line.y[i] < *plot.y.high)
+            return true;
+    return false;
+}
+
+/// A quantity of pairs over the values of one to four keys: curves over x, of several colours; maps over x and y; panels of
+/// either. A trial is a value of x of a curve, or a row of a map's cells from below; of a mirrored map the lower half of
+/// them. The trials after those check times to the first flip.
+class Grid final : public Experiment, public MapFigure {
+public:
+    static constexpr std::string_view table_key = "grid";
+    Grid() { x_.key = "theta1_deg"; }
+    explicit Grid(FigureReader& reader) : Grid() {
+        pair_ = reader.pair();
+        auto table = reader.settings(*this);
+        find_axes(reader);
+        settings_ = resolved_pair(pair_) + table.finish();
+        check(table);
+        for (std::size_t p = 0; p < panel_.count; ++p)
+            for (std::size_t c = 0; c < color_.count; ++c) add_group(reader, table, p, c);
+        for (const auto& measurement : measurements()) cell_numbers_ += measurement.numbers();
+        if (is_map()) make_map(table);
+        make_subtitle();
+    }
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({"quantity", quantity_help}, quantity_);
+        visit({.key = "right",
+               .help = "a second quantity of curves, on an axis at the right",
+               .names = names_of<Quantity>},
+              right_);
+        visit({"difference", "of the key of x between the two of a pair"}, difference_);
+        const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
+        visit({"exponent_duration_s",
+               "of the motion that an exponent is found by",
+               "s",
+               positive,
+               "",
+               {.holds = has(Quantity::exponent), .hides = true}},
+              options_.exponent_duration_s);
+        const Only of_flips{has(Quantity::flip_time), "is of flip_time"};
+        visit({"flip_tolerance",
+               "of the Taylor series that find flips of two links: what the last terms of a step may amount to",
+               "rad/s",
+               {.low = 1e-15, .is_positive = true},
+               "1e-8 up to 20 s, for longer times less",
+               of_flips},
+              options_.flip_tolerance);
+        visit({"checked", "random releases of a map of flip_time that are compared with a reference", "",
+               from_to(0, 100'000), "", of_flips},
+              checked_);
+        const Only strobed{.holds = quantity_ == Quantity::stroboscopic, .hides = true};
+        auto& strobe = options_.stroboscope;
+        visit({"link", "whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
+        visit({"transient_periods", "of the drive, that pass first", "", from_to(0, 1'000'000), "", strobed},
+              strobe.transient_periods);
+        visit({"periods", "of the drive, shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
+        visit({"overlay",
+               "lines of theory on a map: where a shaken pivot holds one link upright, or where two links released at "
+               "rest have the energy to flip"},
+              overlay_);
+        visit({"color_range", "of the colours of a map, [lowest, highest]", "", {}, "that of the numbers"},
+              color_range_);
+        visit.table("x", [&](auto& table) { x_.fields(table, key_help); });
+        visit.table("y", [&](auto& table) { y_.fields(table, "the same upwards: a map, of cells"); });
+        visit.table("color", [&](auto& table) { color_.fields(table, "a curve for each value"); });
+        visit.table("panel", [&](auto& table) { panel_.fields(table, "a panel for each value"); });
+    }
+
+    std::size_t trials() const override { return cell_trials() + (checks_ ? checks_->trials() : 0); }
+    std::size_t together() const override {
+        const bool is_shared = difference_ == x_.step && !x_.points && !x_.values;
+        return is_map() ? 1 : measurements().front().together(is_shared);
+    }
+    std::string unit() const override { return "pairs"; }
+    double units(std::size_t trial) const override {
+        if (trial >= cell_trials() || !is_map()) return trial < cell_trials() ? 1 : 0;
+        const auto row = trial % trials_of_group();
+        return static_cast<double>(x_.count * (frame_.is_mirrored && row != y_.count - 1 - row ? 2 : 1));
+    }
+    std::string subtitle() const override { return subtitle_; }
+    const MapFigure* map() const override { return is_map() ? this : nullptr; }
+
+    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
+        constexpr std::size_t most = 512;  // cells of a row
+        for (std::size_t done = 1; !numbers.empty(); first += done, numbers = numbers.subspan(done)) {
+            const auto group = first / trials_of_group(), place = first % trials_of_group();
+            done = 1;
+            if (first >= cell_trials()) {
+                numbers[0] = checks_->compute(first - cell_trials(), stop);
+            } else if (!is_map()) {
+                done = std::min(numbers.size(), trials_of_group() - place);
+                find_cells({group, 0, place}, numbers.first(done), stop);
+            }
+            for (std::size_t column = 0; is_map() && first < cell_trials() && column < x_.count; column += most) {
+                std::vector<TrialNumbers> cells(std::min(most, x_.count - column));
+                find_cells({group, place, column}, cells, stop);
+                for (const auto& cell : cells) numbers[0].insert(numbers[0].end(), cell.begin(), cell.end());
+            }
+        }
+    }
+    void find(int row, int column, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const override {
+        find_cells({0, static_cast<std::size_t>(row), static_cast<std::size_t>(column)}, cells, stop);
+    }
+
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        if (trial >= cell_trials()) return checks_->fits(trial - cell_trials(), numbers);
+        if (numbers.size() != cell_numbers_ * (is_map() ? x_.count : 1)) return false;
+        while (!numbers.empty())
+            for (const auto& measurement : measurements()) {
+                if (!measurement.fits(numbers.first(measurement.numbers()))) return false;
+                numbers = numbers.subspan(measurement.numbers());
+            }
+        return true;
+    }
+
+    std::vector<std::string> columns() const override {
+        std::vector<std::string> names, last;
+        for (const auto* axis : {&panel_, &color_, &x_, &y_})
+            if (axis->is_there()) names.push_back(axis->key);
+        if (!words().counted.empty()) names.push_back(words().counted);
+        for (const auto& measurement : measurements()) {
+            const auto& of = measurement.words();
+            names.insert(names.end(), of.columns.begin(), of.columns.end());
+            if (!of.last_column.empty()) last.push_back(of.last_column);
+        }
+        names.insert(names.end(), last.begin(), last.end());
+        return names;
+    }
+
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        for_each_cell([&](const Cell& cell) {
+            for (std::size_t row = 0; row < words().rows; ++row) {
+                panel_.write(cell.group / color_.count, table);
+                color_.write(cell.group % color_.count, table);
+                x_.write(cell.column, table);
+                y_.write(cell.row, table);
+                if (!words().counted.empty()) table.add(words().first_row + static_cast<long>(row));
+                std::vector<double> last;
+                auto rest = at(numbers, cell);
+                for (const auto& measurement : measurements()) {
+                    const auto in_row = measurement.words().columns.size();
+                    for (const double number : rest.subspan(row * in_row, in_row))
+                        table.add_or_empty(std::isfinite(number) ? number : NAN);
+                    if (!measurement.words().last_column.empty()) last.push_back(rest[in_row]);
+                    rest = rest.subspan(measurement.numbers());
+                }
+                for (const double number : last) table.add(number);
+                table.end_row();
+            }
+        });
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        figure.shares_axes = panel_.is_there() && is_map();
+        for (std::size_t p = 0; p < panel_.count; ++p) {
+            auto& plot = figure.panels.emplace_back(Plot{.x = x_.plot_axis()});
+            if (panel_.is_there()) plot.title = panel_.words(p);
+            if (is_map()) {
+                plot.y = y_.plot_axis();
+                plot.square = x_.angle && y_.angle;
+                plot.map = heat_map(numbers, p);
+                plot.curves = overlay_curves(overlay_, groups_[p].pair.a);
+            }
+            for (std::size_t c = 0; c < color_.count && !is_map(); ++c)
+                draw_curves(numbers, p * color_.count + c, plot, figure);
+        }
+        if (is_map()) finish_maps(numbers, figure);
+        if (quantity_ == Quantity::stroboscopic)
+            figure.captions.push_back(fmt::format("{} periods of the drive each, after {} that pass first.",
+                                                  grouped(options_.stroboscope.periods),
+                                                  grouped(options_.stroboscope.transient_periods)));
+    }
+
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        if (right_) return std::nullopt;
+        Drawn drawn;
+        for_each_cell([&](const Cell& cell) { drawn.add(at(numbers, cell)[0]); });
+        if (quantity_ == Quantity::stroboscopic && !drawn.any) return "the motion broke down at every value";
+        const auto pairs = fmt::format("{}{}", x_.count, is_map() ? fmt::format(" × {}", y_.count) : "");
+        return nothing_drawn(quantity_, words(), drawn, pairs, seconds_text(pair_));
+    }
+
+    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
+        if (quantity_ == Quantity::stroboscopic) return period_findings(numbers);
+        const auto& column = words().columns.front();
+        double least = NAN, most = NAN, regular = 0, missing = 0, forbidden = 0;
+        const bool is_bounded = overlay_ == Overlay::energy_bound;
+        auto released = is_bounded ? chain_of(pair_.a).cast<double>() : Pendulum<double>();
+        for_each_cell([&](const Cell& cell) {
+            const auto of_cell = at(numbers, cell);
+            if (std::isfinite(of_cell[0])) least = std::fmin(least, of_cell[0]), most = std::fmax(most, of_cell[0]);
+            missing += is_missing(cell, of_cell[0]);
+            if (const auto place = exponent_place()) regular += is_regular({of_cell[*place], of_cell[*place + 1]});
+            if (!is_bounded) return;
+            released.angle = {radians(static_cast<double>(x_.value(cell.column))),
+                              radians(static_cast<double>(y_.value(cell.row)))};
+            forbidden += flip_is_forbidden(released);
+        });
+        std::vector<Finding> all{{"least_" + column, least}, {"greatest_" + column, most}};
+        const auto cells = static_cast<double>(groups_.size() * x_.count * y_.count);
+        if (is_map()) all.push_back({"share_without", missing / cells});
+        if (!is_map() && missing > 0)
+            all.push_back({words().none_is_bad ? "trials_broken_down" : "trials_without", missing});
+        if (is_bounded) all.push_back({"share_forbidden_by_energy", forbidden / cells});
+        if (exponent_place()) all.push_back({"regular_trials", regular});
+        if (checks_)
+            for (auto& finding : checks_->findings(numbers.subspan(cell_trials()))) all.push_back(std::move(finding));
+        return all;
+    }
+
+private:
+    /// The pairs of one panel and colour, which differ along x and y alone.
+    struct Group {
+        Preset pair;
+        std::vector<Measurement> measurements;  // of the quantity, and of the one at the right
+    };
+    struct Cell {
+        std::size_t group, row, column;
+    };
+
+    void find_axes(FigureReader& reader) {
+        x_.are_cells = y_.are_cells = is_map();
+        auto table = reader.document.table(reader.top, table_key);
+        for (const auto& [role, axis] : {std::pair("x", &x_), {"y", &y_}, {"color", &color_}, {"panel", &panel_}})
+            axis->find(reader, table.inner(table.read_table(role), fmt::format("[{}.{}]", table_key, role)), pair_);
+    }
+
+    /// What the axes, and other keys beside them, say together.
+    void check(const TomlReader& table) const {
+        std::vector<std::string_view> names;
+        for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
+            if (axis->is_there() && std::find(names.begin(), names.end(), axis->key) != names.end())
+                throw table.fault("x", "and the other axes must have different keys; \"{}\" is there twice", axis->key);
+            names.push_back(axis->key);
+        }
+        for (const auto& [role, axis] : {std::pair("x", &x_), {"y", &y_}})
+            if (!axis->levels.empty())
+                throw table.fault(role, "takes numbers; \"{}\" is for panel or color", axis->key);
+        if (x_.is_of_one_side && difference_ != 0)
+            throw table.fault("difference", "must be 0 for {}, which both sides do not differ in", x_.key);
+        for (const auto& end : {x_.value(0), x_.value(x_.count - 1)})
+            x_.demand(table, "difference", Quad(end + difference_));
+        if (is_map() && color_.is_there())
+            throw table.fault("color", "is of curves; the colours of a map are its numbers");
+        if (is_map() && right_) throw table.fault("right", "is of curves; a map has one quantity");
+        if (right_ == name_of(quantity_) || right_ == name_of(Quantity::stroboscopic))
+            throw table.fault("right", "must be another quantity, of one number a pair; it is \"{}\"", *right_);
+        if (quantity_ == Quantity::stroboscopic && (is_map() || right_))
+            throw table.fault("quantity", "\"stroboscopic\" has many numbers, which are points over x alone");
+        if (!is_map() && color_range_) throw table.fault("color_range", "is of maps, which have [grid.y]");
+        check_overlay(table);
+    }
+
+    void check_overlay(const TomlReader& table) const {
+        const auto& a = pair_.a;
+        const bool is_shaken = x_.key == "system.pivot.frequency_hz" && y_.key == "system.pivot.amplitude_m" &&
+                               a.particles.empty() && a.links() == 1 && a.physical.pivot.direction_deg == 90;
+        if (overlay_ == Overlay::energy_bound && !(is_of_releases() && is_zero(a.omega_deg_per_s)))
+            throw table.fault("overlay",
+                              "\"energy-bound\" is of two ideal links released at rest, theta2_deg over theta1_deg");
+        if ((overlay_ == Overlay::kapitza || overlay_ == Overlay::mathieu) && !is_shaken)
+            throw table.fault("overlay",
+                              "is of one link whose pivot moves up and down, over system.pivot.frequency_hz and "
+                              "system.pivot.amplitude_m");
+    }
+
+    void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c) {
+        std::vector<TomlReader> levels;
+        for (const auto& [axis, i] : {std::pair(&panel_, p), {&color_, c}})
+            if (!axis->levels.empty()) levels.push_back(axis->levels[i].top());
+        std::vector<TomlReader*> more;
+        for (auto& level : levels) more.push_back(&level);
+        auto& group = groups_.emplace_back(Group{levels.empty() ? pair_ : reader.pair(more), {}});
+        panel_.put(group.pair, p);
+        color_.put(group.pair, c);
+        const auto number = groups_.size() - 1;
+        if (!x_.is_of_method && !y_.is_of_method) step_all_alike(group.pair, pair_at({number, 0, 0}), reader.stop);
+        const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, x_.count - 1});
+        const auto measure = [&](std::string_view key, Quantity quantity) {
+            group.measurements.emplace_back(table, key, quantity, first, x_.keeps_method && y_.keeps_method, options_);
+            demand_apart(table, quantity, x_, difference_, {make_scene(first), make_scene(last)});
+            if (quantity == Quantity::stroboscopic) demand_drive(table, key, options_.stroboscope, last.a);
+        };
+        measure("quantity", quantity_);
+        if (right_) measure("right", value_named<Quantity>(*right_));
+        const auto spec = group.measurements.front().flips_in_lanes();
+        if (options_.flip_tolerance && !spec)
+            throw table.fault("flip_tolerance", "is of flips of two ideal links; other flips go by the integrator");
+        if (checked_ == 0) return;
+        if (!spec || !is_of_releases() || panel_.is_there())
+            throw table.fault("checked", "takes one map of flips of two links, theta2_deg over theta1_deg");
+        const auto x = x_.cells(), y = y_.cells();
+        checks_.emplace(checked_, chain_of(pair_.a).cast<double>(), *spec, Range{x.from, x.to}, Range{y.from, y.to});
+    }
+
+    void make_map(const TomlReader& table) {
+        frame_ = {.x = x_.cells(), .y = y_.cells(), .x_axis = x_.plot_axis(), .y_axis = y_.plot_axis()};
+        frame_.numbers = cell_numbers_;
+        frame_.panels = groups_.size();
+        frame_.look = {.label = words().label,
+                       .none_label = words().none,
+                       .none_is_bad = words().none_is_bad,
+                       .logarithmic = words().logarithmic,
+                       .shares_bar = panel_.is_there()};
+        if (quantity_ == Quantity::flip_time) frame_.look.high = pair_.duration_s.value();
+        const auto is_even = [](const CellRange& cells) { return !cells.is_logarithmic() && cells.from == -cells.to; };
+        frame_.is_mirrored = measurements().front().flips_in_lanes() && is_of_releases() && is_even(frame_.x) &&
+                             is_even(frame_.y) && is_zero(pair_.a.omega_deg_per_s);
+        if (!color_range_) return;
+        if (words().logarithmic && !(color_range_->low > 0))
+            throw table.fault("color_range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]",
+                              name_of(quantity_), color_range_->low, color_range_->high);
+        frame_.look.low = color_range_->low;
+        frame_.look.high = color_range_->high;
+    }
+
+    /// What moves, how it is stepped and how far twins are apart, of pairs that are alike but for the axes.
+    void make_subtitle() {
+        Varied varied{.method = words().method};
+        auto pair = groups_.front().pair;
+        if (words().is_of_side_a) pair.b = pair.a;
+        for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
+            axis->put_both(pair);  // the difference of all twins is named on its own
+            if (axis->angle) varied.angles.push_back(*axis->angle);
+            varied.step |= axis->is_of_method;
+            if (!axis->levels.empty() || axis->key.ends_with("links")) varied.keys.push_back(axis->key);
+        }
+        subtitle_ = pair_subtitle(make_scene(pair), varied, words().is_of_side_a ? "" : x_.apart(difference_));
+    }
+
+    bool is_map() const { return y_.is_there(); }
+    bool is_of_releases() const {
+        return x_.key == "theta1_deg" && y_.key == "theta2_deg" && !pair_.a.is_mechanism() &&
+               pair_.a.physical.is_none() && pair_.a.links() == 2;
+    }
+    std::size_t rows_computed() const { return frame_.is_mirrored ? (y_.count + 1) / 2 : y_.count; }
+    std::size_t trials_of_group() const { return is_map() ? rows_computed() : x_.count; }
+    std::size_t cell_trials() const { return groups_.size() * trials_of_group(); }
+    const std::vector<Measurement>& measurements() const { return groups_.front().measurements; }
+    const QuantityWords& words() const { return measurements().front().words(); }
+    /// Of an exponent's first number among those of a curve's value.
+    std::optional<std::size_t> exponent_place() const {
+        if (!is_map() && quantity_ == Quantity::exponent) return 0;
+        return right_ == name_of(Quantity::exponent) ? std::optional(measurements().front().numbers()) : std::nullopt;
+    }
+
+    void put(const Cell& cell, Preset& pair) const {
+        pair = groups_[cell.group].pair;
+        y_.put(pair, cell.row);
+        x_.put(pair, cell.column, difference_);
+    }
+    Preset pair_at(const Cell& cell) const {
+        Preset pair;
+        put(cell, pair);
+        return pair;
+    }
+
+    /// Of cells side by side.
+    void find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const {
+        const auto& all = groups_[first.group].measurements;
+        const std::size_t most = std::max(together(), all.front().together(false));
+        Preset pair;
+        for (; !cells.empty(); cells = cells.subspan(std::min(most, cells.size())), first.column += most) {
+            const auto at = [&](std::size_t i) -> const Preset& {
+                put({first.group, first.row, first.column + i}, pair);
+                return pair;
+            };
+            for (const auto& measurement : all) measurement.append(at, cells.first(std::min(most, cells.size())), stop);
+        }
+    }
+
+    /// The numbers of a cell, computed or those of its mirror image.
+    std::span<const double> at(std::span<const TrialNumbers> numbers, const Cell& cell) const {
+        if (!is_map()) return numbers[cell.group * x_.count + cell.column];
+        const bool is_there = cell.row < rows_computed();
+        const auto row = is_there ? cell.row : y_.count - 1 - cell.row;
+        const auto column = is_there ? cell.column : x_.count - 1 - cell.column;
+        return std::span(numbers[cell.group * trials_of_group() + row]).subspan(column * cell_numbers_, cell_numbers_);
+    }
+
+    template <class Visit>
+    void for_each_cell(const Visit& visit) const {
+        for (std::size_t group = 0; group < groups_.size(); ++group)
+            for (std::size_t row = 0; row < y_.count; ++row)
+                for (std::size_t column = 0; column < x_.count; ++column) visit(Cell{group, row, column});
+    }
+
+    /// Of two that are one there is no ratio to their first distance: of a curve it is not missing.
+    bool is_missing(const Cell& cell, double number) const {
+        if (std::isfinite(number) || is_map() || quantity_ != Quantity::divergence) return !std::isfinite(number);
+        const auto pair = pair_at(cell);
+        return !released_alike(pair.a, pair.b);
+    }
+
+    Curve curve(std::span<const TrialNumbers> numbers, std::size_t group, std::size_t column) const {
+        const bool is_one = words().rows == 1;
+        const auto in_row = words().columns.size();
+        Curve made{.mark = is_one ? Mark::line : Mark::points};
+        for (std::size_t i = 0; i < x_.count; ++i) {
+            const auto all = at(numbers, {group, 0, i});
+            const auto value = static_cast<double>(x_.value(i));
+            if (is_one) add_point(made, value, all[column]);
+            for (std::size_t n = in_row - 1; !is_one && n < all.size(); n += in_row) add_point(made, value, all[n]);
+        }
+        return made;
+    }
+
+    /// The curves of one panel and colour: of the quantity, and of the one at the right.
+    void draw_curves(std::span<const TrialNumbers> numbers, std::size_t group, Plot& plot, Figure& figure) const {
+        std::size_t column = 0;
+        for (const auto& measurement : groups_[group].measurements) {
+            const auto& of = measurement.words();
+            const bool is_right = column > 0;
+            (is_right ? plot.right.emplace() : plot.y) = {.label = of.label, .logarithmic = of.logarithmic};
+            for (std::size_t i = 0; i < std::max<std::size_t>(1, of.curves.size()); ++i) {
+                auto drawn = curve(numbers, group, column + i);
+                drawn.right = is_right;
+                drawn.hue = static_cast<int>(color_.is_there() ? group % color_.count : plot.curves.size());
+                drawn.dashed = color_.is_there() && column + i > 0;
+                if (color_.is_there())
+                    drawn.label = drawn.dashed ? "" : color_.words(group % color_.count);
+                else if (!of.curves.empty() || right_)
+                    drawn.label = of.curves.empty() ? of.short_label : of.curves[i];
+                if (measurement.quantity() == Quantity::exponent) {
+                    drawn.uncertainty = curve(numbers, group, column + 1).y;
+                    figure.captions.push_back(group_words(group) +
+                                              exponent_words(drawn, curve(numbers, group, column + 2).y));
+                }
+                plot.curves.push_back(std::move(drawn));
+            }
+            column += measurement.numbers();
+        }
+    }
+
+    /// "rk4, θ₂ = 30°: "; empty where there is one group.
+    std::string group_words(std::size_t group) const {
+        std::string said;
+        if (panel_.is_there()) said = panel_.words(group / color_.count) + (color_.is_there() ? ", " : ": ");
+        return color_.is_there() ? said + color_.words(group % color_.count) + ": " : said;
+    }
+
+    /// Counts the regular releases, and takes equilibria out of the curve: their exponent is not that of a motion.
+    std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled) const {
+        long regular = 0, changing = 0;
+        bool contracts = false;
+        std::string equilibria;
+        for (std::size_t i = 0; i < x_.count; ++i) {
+            const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
+            regular += is_regular({exponent, uncertainty});
+            changing += !is_regular({exponent, uncertainty}) && unsettled[i] != 0;
+            contracts = contracts || exponent < -1.5 * uncertainty;
+            if (exponent == 0 || uncertainty != 0) continue;
+            equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i],
+                                      x_.angle ? "°" : "", exponent > 0 ? "an unstable" : "a stable", exponent);
+            exponents.y[i] = NAN;
+        }
+        return fmt::format("{} of {} releases are {}. Its band holds two of three runs four times as long{}.{}",
+                           regular, x_.count,
+                           contracts ? "regular or settle: their exponent is not above 0"
+                                     : "regular: their exponent cannot be told from 0",
+                           changing == 0 ? ""
+                                         : fmt::format(", but not for {} whose stretches differ by more than chance (a "
+                                                       "transient, or orbits that stick): there it is too narrow",
+                                                       changing),
+                           equilibria);
+    }
+
+    HeatMap heat_map(std::span<const TrialNumbers> numbers, std::size_t group) const {
+        HeatMap map = frame_.look;
+        map.columns = x_.count, map.rows = y_.count;
+        map.x_low = frame_.x.from, map.x_high = frame_.x.to, map.y_low = frame_.y.from, map.y_high = frame_.y.to;
+        map.values.reserve(map.columns * map.rows);
+        for (std::size_t row = 0; row < map.rows; ++row)
+            for (std::size_t column = 0; column < map.columns; ++column) {
+                const double number = at(numbers, {group, row, column})[0];
+                map.values.push_back(static_cast<float>(std::isfinite(number) ? number : NAN));
+            }
+        return map;
+    }
+
+    /// What all panels have in common: one scale of colours, and words for cells without a number; then the captions.
+    void finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) const {
+        HeatMap all = frame_.look;
+        for (const auto& plot : figure.panels)
+            all.values.insert(all.values.end(), plot.map->values.begin(), plot.map->values.end());
+        if (std::none_of(all.values.begin(), all.values.end(), [](float cell) { return std::isnan(cell); }))
+            all.none_label = "";
+        const auto spec = measurements().front().flips_in_lanes();
+        long broken = 0;  // flips; where there is none the number is infinite
+        if (spec) for_each_cell([&](const Cell& cell) { broken += std::isnan(at(numbers, cell)[0]); });
+        if (broken > 0) all.none_label += ", or broken down";
+        const auto scale = color_range(all);
+        for (auto& plot : figure.panels) {
+            plot.map->none_label = all.none_label;
+            if (figure.panels.size() > 1) plot.map->low = scale[0], plot.map->high = scale[1];
+        }
+        const auto& plot = figure.panels.front();
+        const bool has_outline = overlay_ == Overlay::energy_bound && shows(plot, plot.curves.front());
+        if (spec)
+            figure.captions.push_back(fmt::format(
+                "{} × {} releases{}.{} Taylor series of order 16 in SIMD lanes at tolerance {}{}.", x_.count, y_.count,
+                is_zero(pair_.a.omega_deg_per_s) ? " from rest" : "",
+                has_outline ? " Inside the line no rod has the energy to flip." : "", scientific(spec->tolerance),
+                checks_ ? checks_->words(numbers.subspan(cell_trials())) : ""));
+        if (broken > 0)
+            figure.captions.push_back(fmt::format(
+                "{} of the releases broke down (no step of 10⁻⁹ s met the tolerance): their cells are empty, as those "
+                "without a flip.",
+                broken));
+    }
+
+    Preset pair_;
+    GridAxis x_, y_, color_, panel_;
+    Quantity quantity_ = Quantity::divergence;
+    std::optional<std::string> right_;
+    Quad difference_ = 0;
+    QuantityOptions options_;
+    int checked_ = 0;
+    Overlay overlay_ = Overlay::none;
+    std::optional<Range> color_range_;
+    std::vector<Group> groups_;  // panel by panel, of each its colours
+    std::size_t cell_numbers_ = 0;
+    std::optional<FlipChecks> checks_;
+    std::string subtitle_;
+};
+
+}  // namespace
+
+const FigureKind grid_kind = kind_of<Grid>("grid", FigureKind::System::pair);
+
+}  // namespace doppel

@@ -1,0 +1,206 @@
+#include "figure/grid_axis.hpp"
+
+#include "scene/side_keys.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace doppel {
+namespace {
+
+constexpr std::array<std::string_view, 4> of_releases{"theta1_deg", "theta2_deg", "mass_ratio", "length_ratio"};
+
+bool is_number(const std::string& text) {
+    return text.find_first_not_of("0123456789+-.eE") == std::string::npos;
+}
+
+/// "rk4" of "\"rk4\"".
+std::string unquoted(const std::string& text) {
+    return text[0] == '"' || text[0] == '\'' ? text.substr(1, text.size() - 2) : text;
+}
+
+/// One side may say otherwise what the key says of both. A resolved preset has all keys in both.
+void demand_last_word(FigureReader& reader, const TomlReader& table, const std::string& path) {
+    const auto key = path.substr(path.find('.') + 1);
+    const auto has = [&](const char* side) { return reader.document.table(reader.top, side).has(key); };
+    for (const auto* side : {"a", "b"})
+        if (path.starts_with("system.") && has(side) && has("a") != has("b"))
+            throw table.fault("key", "\"{}\" is in [{}] as well, which has the last word; vary {}.{} or take it out",
+                              path, side, side, key);
+}
+
+}  // namespace
+
+void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset& pair) {
+    if (!is_there()) return;
+    if (values && !std::all_of(values->texts.begin(), values->texts.end(), is_number)) return find_texts(reader, table);
+    find_number(reader, table, pair);
+    find_values(table);
+}
+
+void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
+    if (key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
+    demand_last_word(reader, table, key);
+    label = words_of_key(key.substr(key.find('.') + 1));
+    keeps_method = false;
+    count = values->texts.size();
+    const auto origin = fmt::format("{}: {} values", table.place("values"), key);
+    for (const auto& text : values->texts) {
+        table.demand_drawable("values", text);
+        auto keys = fmt::format("{} = {}\n", key, text);
+        if (key.starts_with("system."))  // the sides have the last word
+            keys = fmt::format("a.{0} = {1}\nb.{0} = {1}\n", key.substr(7), text);
+        levels.push_back(parse_document({"", origin, keys, ""}, {}));
+    }
+}
+
+void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const Preset& pair) {
+    pair_ = pair;
+    if (std::find(of_releases.begin(), of_releases.end(), key) == of_releases.end()) {
+        const auto& number = number_.emplace(table, "key", key == "links" ? "system.links" : key, pair);
+        table.demand_drawable("key", number.label);  // an entry's name may have other letters
+        if (!number.element && number.inside.find('.') == std::string::npos)
+            demand_last_word(reader, table, number.path);
+        label = number.label;
+        bounds_ = number.bounds;
+        is_of_method = !number.keeps_method && !number.is_whole;
+        keeps_method = number.keeps_method;
+        is_of_one_side = number.sides != NumericKey::Sides::both || number.is_step;
+        if (number.inside == "angle_deg") angle = number.element;
+        return;
+    }
+    release_ = &release_parameter(key);
+    if (pair.a.links() < release_->links || pair.b.links() < release_->links || !pair.a.particles.empty() ||
+        !pair.b.particles.empty())
+        throw table.fault("key", "\"{}\" takes a chain of {} links", key, release_->links);
+    constexpr double most_degrees = 1e6;  // as of [system] angle_deg
+    label = release_->label;
+    bounds_ = release_->is_ratio ? positive : from_to(-most_degrees, most_degrees);
+    is_of_one_side = false;
+    if (!release_->is_ratio) angle = release_->links - 1;
+}
+
+void GridAxis::find_values(const TomlReader& table) {
+    if (are_cells && values)
+        throw table.fault("values", "are of curves and panels; the cells of a map go from `from` to `to`");
+    if (values) {
+        for (const auto& text : values->texts) demand(table, "values", numbers_.emplace_back(parse_quad(text)));
+        count = numbers_.size();
+        return;
+    }
+    if (are_cells ? !(from < to) : to < from)
+        throw table.fault("to", "must {} from ({}); it is {}", are_cells ? "be above" : "not be below", text_of(from),
+                          text_of(to));
+    if (are_cells && number_ && number_->is_whole)
+        throw table.fault("key", "\"{}\" takes whole numbers alone, and no cells of a map", key);
+    const bool is_logarithmic = spacing == Spacing::logarithmic;
+    if (is_logarithmic && !points) throw table.fault("spacing", "\"logarithmic\" takes points, the number of values");
+    if (is_logarithmic && !(from > 0))
+        throw table.fault("from", "must be > 0 for equal ratios; it is {}", text_of(from));
+    count = points ? static_cast<std::size_t>(*points) : even_steps(table) + (are_cells ? 0 : 1);
+    demand(table, "from", are_cells ? value(0) : from);
+    demand(table, "to", are_cells ? value(count - 1) : to);
+}
+
+std::size_t GridAxis::even_steps(const TomlReader& table) const {
+    constexpr int most_steps = 10'000'000;
+    const Quad steps = (to - from) / step;
+    if (!(steps < most_steps))
+        throw table.fault("to", "must be at most {} steps from \"from\"; it is {}", most_steps, text_of(to));
+    const long whole = std::lround(static_cast<double>(steps));
+    constexpr double slack = 1e-12;  // of decimals that are no whole number of steps by rounding alone
+    if (std::abs(static_cast<double>(steps - Quad(static_cast<double>(whole)))) > slack)
+        throw table.fault("step", "must divide the way from {} to {}; it is {}", text_of(from), text_of(to),
+                          text_of(step));
+    if (number_ && number_->is_whole && step != round(step))
+        throw table.fault("step", "must be a whole number, as {} is; it is {}", key, text_of(step));
+    return static_cast<std::size_t>(whole);
+}
+
+Quad GridAxis::value(std::size_t i) const {
+    const Quad number(static_cast<double>(i));
+    const auto even = [&]() -> Quad {
+        if (!numbers_.empty()) return numbers_[i];
+        if (are_cells) return Quad(cells().middle(static_cast<int>(i)));
+        if (!points) return from + step * number;
+        if (i + 1 == count) return to;
+        const Quad share = number / Quad(static_cast<double>(count - 1));
+        if (spacing == Spacing::linear) return from + (to - from) * share;
+        return from * Quad(std::pow(static_cast<double>(Quad(to / from)), static_cast<double>(share)));
+    };
+    return number_ ? number_->taken(even(), pair_) : even();
+}
+
+std::string GridAxis::words(std::size_t i) const {
+    if (!levels.empty()) return unquoted(values->texts[i]);
+    const auto comma = label.rfind(", ");
+    auto what = label.substr(0, comma);
+    // a symbol stands for its words: "θ₁" of "release angle θ₁"
+    const auto last = what.substr(what.rfind(' ') + 1);
+    if (std::any_of(last.begin(), last.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
+        what = last;
+    const auto unit = comma == std::string::npos ? "" : label.substr(comma + 2);
+    return fmt::format("{} = {:.6g}{}{}", what, static_cast<double>(value(i)), unit.empty() || unit == "°" ? "" : " ",
+                       unit);
+}
+
+void GridAxis::write(std::size_t i, Csv& table) const {
+    if (!levels.empty())
+        table.add(std::string_view(unquoted(values->texts[i])));
+    else if (is_there())
+        table.add(static_cast<double>(value(i)));
+}
+
+void GridAxis::put(Preset& pair, std::size_t i, const Quad& difference) const {
+    if (number_) number_->set(pair, value(i), difference);
+    if (!release_) return;
+    release_->set(pair.a, value(i));
+    release_->set(pair.b, value(i) + difference);
+}
+
+void GridAxis::put_both(Preset& pair) const {
+    auto of_both = *this;
+    if (number_) of_both.number_->sides = NumericKey::Sides::both;
+    of_both.put(pair, 0);
+}
+
+PlotAxis GridAxis::plot_axis() const {
+    PlotAxis axis{.label = label, .logarithmic = spacing == Spacing::logarithmic};
+    const auto [least, most] = std::minmax_element(numbers_.begin(), numbers_.end());
+    axis.low = static_cast<double>(numbers_.empty() ? from : *least);
+    axis.high = static_cast<double>(numbers_.empty() ? to : *most);
+    constexpr double turn = 360;  // degrees
+    if (angle) axis.every = *axis.high - *axis.low < turn ? 30 : 45;
+    if (number_ && number_->is_whole) axis.every = 1;
+    return axis;
+}
+
+std::string GridAxis::apart(const Quad& difference) const {
+    if (difference == 0) return "";
+    const auto far = text_of(difference < 0 ? Quad(-difference) : difference);
+    if (angle) return fmt::format("twins {}° apart", far);
+    const auto comma = label.rfind(", ");
+    if (comma == std::string::npos) {
+        auto ratios = label;  // "mass ratio m₁/m₂"
+        if (const auto ratio = ratios.find(" ratio"); ratio != std::string::npos) ratios.insert(ratio + 6, "s");
+        return fmt::format("{} apart by {}", ratios, far);
+    }
+    return fmt::format("{} apart by {} {}", label.substr(0, comma), far, label.substr(comma + 2));
+}
+
+void GridAxis::demand(const TomlReader& table, std::string_view of, const Quad& number) const {
+    if (number_ && number_->is_whole && number != round(number))
+        throw table.fault(of, "must be a whole number, as {} is; it is {}", key, text_of(number));
+    const bool is_above = bounds_.is_open || bounds_.is_positive;
+    const bool too_low = bounds_.has_low() && (is_above ? number <= bounds_.low : number < bounds_.low);
+    if (!too_low && !(bounds_.has_high() && number > bounds_.high)) return;
+    const auto low = fmt::format("{} {}", is_above ? ">" : "at least", bounds_.low);
+    const auto range = !bounds_.has_high() ? low
+                       : bounds_.is_open   ? fmt::format("{} and at most {}", low, bounds_.high)
+                                           : fmt::format("from {} to {}", bounds_.low, bounds_.high);
+    if (of == "difference") throw table.fault(of, "must keep {} {}; one would be {}", key, range, text_of(number));
+    throw table.fault(of, "must be {}, as {} is; it is {}", range, key, text_of(number));
+}
+
+}  // namespace doppel

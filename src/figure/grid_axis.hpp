@@ -1,0 +1,100 @@
+#pragma once
+
+#include "figure/kinds.hpp"
+#include "figure/spacing.hpp"
+#include "scene/numeric_key.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// An axis of a grid: [grid.x], [grid.y], [grid.color] or [grid.panel]. Without a key there is no such axis, and its one value
+/// changes nothing.
+struct GridAxis {
+    std::string key;                   // what the pairs differ in; the column of the table
+    std::optional<TomlValues> values;  // in place of what follows
+    Quad from = 0, to = 180, step = 1;
+    Spacing spacing = Spacing::linear;
+    std::optional<int> points;
+
+    // made of them
+    std::size_t count = 1;
+    std::string label;                 // of a chart's axis, with the unit
+    bool are_cells = false;            // each value is the middle of a cell of a map
+    bool is_of_method = false;         // a step, a tolerance or an accuracy
+    bool keeps_method = true;          // pairs that differ in it have one method and as many links
+    bool is_of_one_side = true;        // the two of a pair cannot differ by it
+    std::optional<std::size_t> angle;  // the link, from 0, whose release it is
+    std::vector<TomlDocument> levels;  // where it is of text: what each value puts on top of the preset's tables
+
+    bool is_there() const { return !key.empty(); }
+    template <class Visit>
+    void fields(Visit& visit, std::string_view help);
+
+    /// `table` = that of the axis. Throws Error (exit 2) where the pair has no such key, or cannot take a value.
+    void find(FigureReader& reader, const TomlReader& table, const Preset& pair);
+
+    Quad value(std::size_t i) const;
+    /// "θ₁ = 30°", "rk4"
+    std::string words(std::size_t i) const;
+    void write(std::size_t i, Csv& table) const;
+    /// Puts value i in place, of side b `difference` more. Nothing where it is of text.
+    void put(Preset& pair, std::size_t i, const Quad& difference = 0) const;
+    /// The same of both sides, whichever it belongs to.
+    void put_both(Preset& pair) const;
+    PlotAxis plot_axis() const;
+    CellRange cells() const { return {static_cast<double>(from), static_cast<double>(to), int(count), spacing}; }
+    /// What two of a pair are called that are so much apart: "twins 0.003° apart"; empty for 0.
+    std::string apart(const Quad& difference) const;
+    /// Throws Error (exit 2), of the table's key `of`, where the number is out of range.
+    void demand(const TomlReader& table, std::string_view of, const Quad& number) const;
+
+private:
+    void find_texts(FigureReader& reader, const TomlReader& table);
+    void find_number(FigureReader& reader, const TomlReader& table, const Preset& pair);
+    void find_values(const TomlReader& table);
+    std::size_t even_steps(const TomlReader& table) const;
+
+    const ReleaseParameter* release_ = nullptr;
+    std::optional<NumericKey> number_;
+    std::vector<Quad> numbers_;  // of `values`
+    Bounds bounds_;
+    Preset pair_;
+};
+
+template <class Visit>
+void GridAxis::fields(Visit& visit, std::string_view help) {
+    constexpr int most_points = 1'048'576;
+    constexpr std::size_t most_values = 1000;
+    visit({.key = "key",
+           .help = help,
+           .absent = is_there() ? "" : "no such axis",
+           .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|(system|a|b)\..+)$)"},
+          key);
+    visit({.key = "values",
+           .help = "one by one: numbers, or of any other key what it takes",
+           .absent = "as `from`, `to` and `step` say",
+           .only = {is_there(), "is of an axis, which needs a key"},
+           .most = most_values},
+          values);
+    const bool are_even = is_there() && !values;
+    const Only even{are_even,
+                    is_there() ? "is for even values; give it, or values" : "is of an axis, which needs a key"};
+    visit({.key = "from", .help = "the first value; of a map the lower edge", .only = even}, from);
+    visit({.key = "to", .help = "the last; of a map the upper edge", .only = even}, to);
+    visit({.key = "spacing", .help = spacing_help, .only = even}, spacing);
+    visit({.key = "points",
+           .help = "how many values; of a map how many cells, each at its middle",
+           .bounds = from_to(2, most_points),
+           .absent = "as `step` says",
+           .only = even},
+          points);
+    visit({"step", "between two values; from `from` to `to` a whole number of them", "", positive, "",
+           Only{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
+                visit.from_command_line("points") || visit.from_command_line("spacing")}},
+          step);
+}
+
+}  // namespace doppel

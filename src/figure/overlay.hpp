@@ -1,0 +1,29 @@
+#pragma once
+
+#include "plot/plot.hpp"
+#include "scene/field.hpp"
+#include "scene/preset.hpp"
+
+#include <array>
+#include <vector>
+
+namespace doppel {
+
+/// Lines of theory on a map.
+enum class Overlay { none, kapitza, mathieu, energy_bound };
+template <>
+inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none", "kapitza", "mathieu",
+                                                                           "energy-bound"});
+
+/// `kapitza`, `mathieu`: where a pivot that moves up and down begins to hold one link upright, and where it shakes it over:
+/// the amplitude a, m, over the frequency, Hz. With l = J/(m c) the length of the ideal pendulum that swings alike, and
+/// ν = 2π f,
+///     Kapitza    a² ν² = 2 g l ,    for a much less than l
+///     Mathieu    −4 g / (l ν²) = a₀(q) and b₁(q) ,   q = 2 a / l ,
+/// from the power series of the characteristic values, good to 1e-3 for q ≤ 1.2.
+/// `energy_bound`: where a double pendulum released at rest has just the energy for a flip: θ2 over θ1, degrees, with
+///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
+/// Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
+std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side);
+
+}  // namespace doppel

@@ -1,0 +1,292 @@
+#include "analysis/difference.hpp"
+#include "analysis/exponent.hpp"
+#include "figure/map_figure.hpp"
+#include "figure/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace doppel {
+namespace grid_test {
+
+const std::string twins = R"(
+[scene]
+kind = "grid"
+duration_s = 12
+[system]
+angle_deg = [120, 80]
+[b]
+angle_deg = [120.01, 80]
+[grid.x]
+key = "system.mass_kg[1]"
+from = 0.5
+to = 2
+step = 0.5
+)";
+
+/// The pair of trial i as a film has it.
+Scene film(double mass) {
+    auto preset = read_preset({"x", "x.toml",
+                               "[scene]\nduration_s = 12\n[system]\nangle_deg = [120, 80]\n"
+                               "[b]\nangle_deg = [120.01, 80]\n"});
+    preset.a.mass_kg[1] = preset.b.mass_kg[1] = Quad(mass);
+    return make_scene(preset);
+}
+
+TEST(Grid, InLanesFindsWhatAFilmShows) {
+    const auto distances = table_of(figure_from(twins, {"grid.quantity=\"distance_at_end\""})),
+               partings = table_of(figure_from(twins, {"grid.quantity=\"parting_time\""})),
+               errors = table_of(figure_from(twins, {"grid.quantity=\"energy_error\""}));
+    EXPECT_EQ(distances.columns, (std::vector<std::string>{"system.mass_kg[1]", "distance_at_end"}));
+    ASSERT_EQ(distances.rows.size(), 4u);
+    long parted = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto scene = film(distances.rows[i][0]);
+        PairRun run(scene);
+        Parting parting;
+        double last = 0, worst = 0;
+        for (long n = 0; n <= scene.samples; ++n) {
+            const auto state = run.next(false);
+            last = state.distance;
+            parting.add(scene.time(n), last);
+            worst = std::max(worst, std::abs(state.a.energy_change));
+        }
+        EXPECT_EQ(distances.rows[i][1], last) << i;
+        EXPECT_NEAR(errors.rows[i][1], worst / scene.a.energy_unit, 1e-25) << i;  // the same
+        parted += parting.since().has_value();
+        if (parting.since()) {
+            EXPECT_EQ(partings.rows[i][1], *parting.since()) << i;
+        } else {
+            EXPECT_TRUE(std::isnan(partings.rows[i][1])) << i;
+        }
+    }
+    EXPECT_GT(parted, 0);
+}
+
+TEST(Grid, OneByOneFindsWhatLanesFind) {
+    // a spring next to none makes it a mechanism
+    const std::string spring =
+        "[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]\nstiffness_N_per_m = 1e-12\n";
+    for (const char* quantity : {"flip_time", "energy_error", "divergence"}) {
+        const std::vector<std::string> sets{fmt::format("grid.quantity=\"{}\"", quantity), "scene.duration_s=4",
+                                            "system.integrator=\"rk4\""};
+        const auto lanes = table_of(figure_from(twins, sets)), alone = table_of(figure_from(twins + spring, sets));
+        for (std::size_t i = 0; i < lanes.rows.size(); ++i)
+            if (std::isfinite(lanes.rows[i][1]) || std::isfinite(alone.rows[i][1])) {
+                EXPECT_NEAR(lanes.rows[i][1], alone.rows[i][1], 1e-8) << quantity << ' ' << i;  // measured 1.8e-10
+            }
+    }
+}
+
+TEST(Grid, OfEqualRatiosHasItsEndsAndTheStepsThatAreTaken) {
+    const auto table = table_of(figure_from(
+        "[scene]\nkind = \"grid\"\nduration_s = 2\n[system]\nintegrator = \"rk4\"\nangle_deg = [60, 60]\n[grid]\n"
+        "quantity = \"energy_error\"\n[grid.x]\nkey = \"system.step_s\"\nfrom = 0.0001\nto = 0.008\npoints = 9\n"
+        "spacing = \"logarithmic\"\n"));
+    ASSERT_EQ(table.rows.size(), 9u);
+    EXPECT_EQ(table.rows[0][0], 1.0 / (120 * 83));
+    EXPECT_EQ(table.rows[8][0], 1.0 / 120);
+    // of order 4
+    const double slope = std::log(table.rows[8][1] / table.rows[5][1]) / std::log(table.rows[8][0] / table.rows[5][0]);
+    EXPECT_NEAR(slope, 4, 0.1);  // measured 3.98
+}
+
+TEST(Grid, SaysOfItselfByWhatItIsFound) {
+    const auto subtitle = [](const std::string& quantity, const std::vector<std::string>& sets = {}) {
+        auto all = sets;
+        all.insert(all.end(),
+                   {"grid.x.points=4", "grid.y.points=3", "scene.duration_s=1", "grid.quantity=\"" + quantity + "\""});
+        return figure_of("parting-map", all).subtitle;
+    };
+    EXPECT_EQ(subtitle("divergence"), "two links in angles, θ₂ = 0, twins 0.001° apart; Runge–Kutta 4, 1/480 s");
+    EXPECT_EQ(subtitle("energy_error"), "two links in angles, θ₂ = 0; Runge–Kutta 4, 1/480 s");
+    EXPECT_EQ(subtitle("exponent"), "two links in angles, θ₂ = 0; tangent equations by Dormand–Prince 8");
+    EXPECT_EQ(subtitle("flip_time"), "two links in angles, θ₂ = 0; Taylor series, tolerance 1.0 × 10⁻⁸");
+    // what is varied is no number of all
+    EXPECT_EQ(subtitle("energy_error",
+                       {"grid.x.key=\"system.step_s\"", "grid.x.from=0.0001", "grid.x.to=0.002", "grid.difference=0"}),
+              "two links in angles, 90°/0°; Runge–Kutta 4");
+}
+
+TEST(Grid, HasTheNumbersOfSweeps) {
+    const auto map = table_of(figure_from(
+        "[scene]\nkind = \"grid\"\nduration_s = 3\n[system]\nangle_deg = [0, 100]\n[grid]\ndifference = 0.01\n"
+        "[grid.x]\nkey = \"system.angle_deg[0]\"\nfrom = 5\nto = 175\npoints = 17\n"
+        "[grid.y]\nkey = \"mass_ratio\"\nfrom = 0.1\nto = 10\nspacing = \"logarithmic\"\npoints = 5\n"));
+    ASSERT_EQ(map.rows.size(), 17u * 5);
+    EXPECT_EQ(map.columns, (std::vector<std::string>{"system.angle_deg[0]", "mass_ratio", "average_log_ratio"}));
+    const std::size_t row = 3;
+    const double ratio = map.rows[row * 17][1];
+    EXPECT_NEAR(ratio, std::pow(10, -1 + 2 * 3.5 / 5), 1e-14);
+    const auto sweep = table_of(figure_from(fmt::format(
+        "[scene]\nkind = \"grid\"\nduration_s = 3\n[system]\nangle_deg = [0, 100]\nmass_kg = [{:.17g}, 1]\n[grid]\n"
+        "difference = 0.01\n[grid.x]\nfrom = 10\nto = 170\nstep = 10\n",
+        ratio)));
+    for (std::size_t i = 0; i < 17; ++i) {
+        EXPECT_EQ(map.rows[row * 17 + i][0], sweep.rows[i][0]);
+        EXPECT_NEAR(map.rows[row * 17 + i][2], sweep.rows[i][1], 1e-9) << i;  // the ratio is rounded
+    }
+}
+
+/// A map of flips.
+FigurePreset flips(int columns, int rows, const std::array<int, 4>& ends = {-180, 180, -180, 180}) {
+    return figure_of("flip-map", {"scene.duration_s=8", "grid.checked=20", fmt::format("grid.x.points={}", columns),
+                                  fmt::format("grid.y.points={}", rows), fmt::format("grid.x.from={}", ends[0]),
+                                  fmt::format("grid.x.to={}", ends[1]), fmt::format("grid.y.from={}", ends[2]),
+                                  fmt::format("grid.y.to={}", ends[3])});
+}
+
+TEST(FlipMap, OfAPartHasTheCellsOfTheWhole) {
+    const auto whole = table_of(flips(16, 16)), part = table_of(flips(8, 4, {0, 180, -90, 0}));
+    ASSERT_EQ(part.rows.size(), 32u);
+    for (std::size_t r = 0; r < 4; ++r)
+        for (std::size_t c = 0; c < 8; ++c)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double one = part.rows[8 * r + c][k], other = whole.rows[16 * (r + 4) + c + 8][k];
+                EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other))) << r << ' ' << c << ' ' << k;
+            }
+    // where no release has the energy to flip, checks come to an end
+    const auto still = table_of(flips(4, 4, {-1, 1, -1, 1}));
+    for (const auto& row : still.rows) EXPECT_TRUE(std::isnan(row[2]));
+}
+
+/// Twins over the mass ratio, at three angles.
+const std::string three_angles = R"(
+[scene]
+kind = "grid"
+duration_s = 2
+[grid]
+difference = 0.01
+[grid.x]
+key = "mass_ratio"
+from = 0.5
+to = 2
+step = 0.5
+[grid.color]
+key = "theta1_deg"
+values = [30, 60, 120.5]
+)";
+
+TEST(Grid, HasACurveForEachColor) {
+    const auto figure = figure_from(three_angles);
+    const auto trials = computed(figure);
+    const Table table(table_text(figure, trials));
+    EXPECT_EQ(table.columns, (std::vector<std::string>{"theta1_deg", "mass_ratio", "average_log_ratio"}));
+    ASSERT_EQ(table.rows.size(), 12u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double angle = table.rows[4 * i][0];
+        const auto alone = table_of(figure_from(three_angles, {fmt::format("grid.color.values=[{}]", angle)}));
+        for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(table.rows[4 * i + k], alone.rows[k]) << i << k;
+    }
+    Figure page;
+    figure.experiment->draw(trials, page);
+    ASSERT_EQ(page.panels.size(), 1u);
+    ASSERT_EQ(page.panels[0].curves.size(), 3u);
+    EXPECT_EQ(page.panels[0].curves[2].label, "θ₁ = 120.5°");
+    EXPECT_EQ(page.panels[0].curves[2].hue, 2);
+    EXPECT_EQ(figure.subtitle,
+              "two links in angles, θ₂ = 90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s");
+}
+
+TEST(Grid, HasAPanelForEachMethodWithTheNumbersOfItAlone) {
+    const auto figure =
+        figure_from(three_angles, {"grid.panel.key=\"system.integrator\"", "grid.panel.values=[\"rk4\", \"taylor\"]"});
+    const auto text = table_text(figure, computed(figure));
+    EXPECT_TRUE(text.starts_with("system.integrator,theta1_deg,mass_ratio,average_log_ratio\r\nrk4,30,0.5,")) << text;
+    for (const std::string method : {"rk4", "taylor"}) {
+        const auto single = figure_from(three_angles, {"system.integrator=\"" + method + "\""});
+        std::istringstream lines(table_text(single, computed(single)));
+        std::string line;
+        for (std::getline(lines, line); std::getline(lines, line);)
+            EXPECT_NE(text.find(method + "," + line), std::string::npos) << method << ' ' << line;
+    }
+    Figure page;
+    figure.experiment->draw(computed(figure), page);
+    ASSERT_EQ(page.panels.size(), 2u);
+    EXPECT_EQ(page.panels[1].title, "taylor");
+    EXPECT_EQ(figure.subtitle, "two links, θ₂ = 90°, mass ratios m₁/m₂ apart by 0.01");
+    // a value that the key does not take
+    const auto [code, message] = error_of([] {
+        figure_from(three_angles, {"grid.panel.key=\"system.integrator\"", "grid.panel.values=[\"rk4\", \"rk5\"]"});
+    });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("system.integrator values"), std::string::npos) << message;
+    EXPECT_NE(message.find("did you mean \"rk4\"?"), std::string::npos) << message;
+}
+
+TEST(Grid, TakesAnyKeyForPanelsOfMaps) {
+    const auto figure = figure_from(
+        "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"energy_error\"\n[grid.x]\nkey = "
+        "\"system.length_m[1]\"\nfrom = 0.5\nto = 2\npoints = 3\n[grid.y]\nkey = \"mass_ratio\"\nfrom = 0.1\nto = 10\n"
+        "spacing = \"logarithmic\"\npoints = 2\n[grid.panel]\nkey = \"system.angle_deg\"\nvalues = [[90, 0], [45.5, "
+        "0]]");
+    EXPECT_EQ(figure.experiment->trials(), 4u);
+    const auto trials = computed(figure);
+    EXPECT_NE(table_text(figure, trials).find("\r\n\"[45.5, 0]\",0.75,"), std::string::npos);
+    Figure page;
+    figure.experiment->draw(trials, page);
+    ASSERT_EQ(page.panels.size(), 2u);
+    EXPECT_TRUE(page.shares_axes);
+    for (const auto& panel : page.panels) {
+        EXPECT_TRUE(panel.map->shares_bar);
+        EXPECT_EQ(panel.map->low, page.panels[0].map->low);
+        EXPECT_EQ(panel.map->high, page.panels[0].map->high);
+    }
+    EXPECT_NE(page.panels[0].map->values, page.panels[1].map->values);
+    EXPECT_EQ(figure.subtitle, "two links in angles; explicit Euler, 1/30 000 s");
+}
+
+TEST(Grid, GreatestDistancesAreThoseOfAFilm) {
+    const auto table = table_of(figure_from(twins, {"grid.quantity=\"greatest_distance\"", "scene.duration_s=6"}));
+    const auto scene = film(table.rows[1][0]);
+    PairRun run(scene);
+    double most = 0;
+    for (long n = 0; n <= scene.samples / 2; ++n) most = std::max(most, run.next(false).distance);
+    EXPECT_EQ(table.rows[1][1], most);
+}
+
+TEST(Grid, PeriodsAreThoseOfTheEllipticIntegral) {
+    const auto table = table_of(
+        figure_from("[scene]\nkind = \"grid\"\nduration_s = 40\n[system]\nlinks = 1\nangle_deg = 10\nintegrator = "
+                    "\"taylor\"\ntolerance = 1e-14\n[grid]\nquantity = \"period\"\n[grid.x]\nvalues = [0.5, 90, 175]"));
+    ASSERT_EQ(table.rows.size(), 3u);
+    for (const auto& row : table.rows) {
+        const double period = 4 * std::sqrt(1 / 9.8) * std::comp_ellint_1(std::sin(row[0] * pi / 360));
+        EXPECT_NEAR(row[1], period, 1e-8) << row[0];
+    }
+    // none within a time too short, and none of one that hangs
+    const auto none = figure_from(
+        "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nlinks = 1\nangle_deg = 1\n[grid]\nquantity = \"period\"\n"
+        "[grid.x]\nvalues = [0, 90]");
+    EXPECT_EQ(none.experiment->nothing_to_draw(computed(none)),
+              "none of the 2 pairs has a period: no whole period within 1 s");
+}
+
+/// The exponents of longer and longer chains, each as largest_exponent() finds it; and what their steps cost.
+TEST(Grid, OfLinksHasTheExponentsOfTheChains) {
+    const auto figure = figure_of("links", {"grid.x.to=4", "grid.exponent_duration_s=10", "system.mass_kg=2"});
+    const auto table = table_of(figure);
+    EXPECT_EQ(table.columns, (std::vector<std::string>{"links", "exponent_per_s", "exponent_uncertainty_per_s",
+                                                       "angles_step_ns", "constraints_step_ns", "exponent_unsettled"}));
+    ASSERT_EQ(table.rows.size(), 3u);
+    for (const auto& row : table.rows) {
+        SideSpec side;
+        side.set_links(static_cast<std::size_t>(row[0]));
+        side.mass_kg.assign(side.links(), 2);
+        const auto exponent = largest_exponent(chain_of(side).cast<double>(), {.duration_s = 10}, false);
+        EXPECT_EQ(row[1], exponent.value);
+        EXPECT_EQ(row[2], exponent.uncertainty);
+        EXPECT_GT(row[3], 0);
+        EXPECT_GT(row[4], 0);
+    }
+}
+
+TEST(Grid, TheChoiceOfItsMethodHeedsAnInterruption) {
+    const std::atomic<bool> stop = true;
+    const PresetText preset{"x", "presets/x.toml",
+                            "[scene]\nkind = \"grid\"\n[system]\nlinks = 6\naccuracy = 1e-6\n"
+                            "model = \"constraints\"\n[grid]\ndifference = 0.01\n"};
+    test::expect_error(ExitCode::interrupted, {"interrupted"}, [&] { read_figure(preset, {}, {}, stop); });
+}
+
+}  // namespace grid_test
+}  // namespace doppel
