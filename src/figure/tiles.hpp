@@ -28,7 +28,7 @@ private:
 ///
 /// Each tile appears whole or not at all, and stays; the same command goes on with those that are missing. A shard
 /// computes its share of the finest tiles alone; a merge makes the rest from them. No more than one tile a thread is in
-/// memory. Colours go by [map] color_range, or by the numbers of 4096 cells spread over the map.
+/// memory. Colours go by [grid] color_range, or by the numbers of 4096 cells spread over the map.
 ///
 /// Errors: exit 2 where the figure is no map, 75 where parts are missing at a merge; exit 3 as compute(), or where no cell
 /// has a number; exit 4 where the folder of tiles is of another preset or version, or not Doppel's; exit 130 soon after

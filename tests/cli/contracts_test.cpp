@@ -100,7 +100,8 @@ TEST(Contracts, TheOutputsThatAreListedAreThoseThatAreWritten) {
     const auto folder = fresh_folder();
     write_bytes(folder / "sheet.toml", "[scene]\nduration_s = 0.1\n[video]\nposter_s = 0.1\ncontact_sheet = [2, 1]\n");
     write_bytes(folder / "map.toml",
-                "[scene]\nkind = \"flip-map\"\n[flip_map]\nduration_s = 1\ncolumns = 8\nrows = 8\n");
+                "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"flip_time\"\n[grid.x]\npoints = "
+                "8\n[grid.y]\nkey = \"theta2_deg\"\npoints = 8\n");
     const Words brief{"--set", "scene.duration_s=0.1"}, small{"--size", "160x90"};
     doppel(folder, {"--version"});  // makes the files that it writes to
     const std::vector<Words> commands{with({"simulate", "calm", "triple"}, brief),

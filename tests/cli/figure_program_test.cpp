@@ -65,7 +65,7 @@ TEST(FigureProgram, IsListedCheckedAndExplained) {
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_TRUE(contains(check.out, "10 pairs")) << check.out;
     // a row of exponents takes more than the second that it may take
-    const auto map = doppel(folder, {"check", "parting-map", "--set", "map.quantity=\"exponent\""});
+    const auto map = doppel(folder, {"check", "parting-map", "--set", "grid.quantity=exponent"});
     EXPECT_TRUE(contains(map.out, "takes  about ")) << map.out << map.err;
     const auto help = doppel(folder, {"figure", "--help"}).out;
     for (const char* words : {"--shard", "--merge", "--scale", "--jobs"}) EXPECT_TRUE(contains(help, words)) << words;

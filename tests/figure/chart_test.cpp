@@ -81,16 +81,16 @@ TEST(Chart, WordsMayGoOrBeOnesOwn) {
     EXPECT_TRUE(has(own, "Mine") && has(own, "One") && has(own, "Two"));
     EXPECT_FALSE(has(own, "two links") || has(own, "Erratum"));
     const auto both =
-        labels_of(figure_of("fig2-right", {"sweep.to=9", "scene.duration_s=0.5", "chart.title=[\"A\", \"B\"]"}));
+        labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=[\"A\", \"B\"]"}));
     EXPECT_TRUE(std::ranges::find(both, "A") != both.end() && std::ranges::find(both, "B") != both.end());
 }
 
 TEST(Chart, AnotherQuantityFromTheCommandLineDropsTheKeysOfTheFiles) {
-    const std::string text = "[scene]\nkind = \"map\"\n[map]\nquantity = \"exponent\"\nexponent_duration_s = 99\n";
+    const std::string text = "[scene]\nkind = \"grid\"\n[grid]\nquantity = \"exponent\"\nexponent_duration_s = 99\n";
     const PresetText preset{"x", "x.toml", text, "x.toml"};
-    EXPECT_NO_THROW(read_figure(preset, {parse_set("map.quantity=flip_time")}));
-    expect_error(ExitCode::bad_input, {"--set map.exponent_duration_s", "has no \"exponent_duration_s\""}, [&] {
-        read_figure(preset, {parse_set("map.quantity=flip_time"), parse_set("map.exponent_duration_s=3")});
+    EXPECT_NO_THROW(read_figure(preset, {parse_set("grid.quantity=flip_time")}));
+    expect_error(ExitCode::bad_input, {"--set grid.exponent_duration_s", "has no \"exponent_duration_s\""}, [&] {
+        read_figure(preset, {parse_set("grid.quantity=flip_time"), parse_set("grid.exponent_duration_s=3")});
     });
 }
 
