@@ -36,7 +36,7 @@ double make_brief(Scene& scene, Side& side) {
 }
 
 SimulationEstimate estimated_side(Scene scene, Side Scene::*which, char name, const std::atomic<bool>& stop) {
-    constexpr double look_s = 0.025, patience_s = 1;
+    constexpr double look_s = 0.025, patience_s = 0.3;
     auto& side = scene.*which;
     const double whole_samples = static_cast<double>(scene.samples);
     const double steps = whole_samples * static_cast<double>(side.motion.steps_per_sample);
@@ -129,11 +129,11 @@ FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>
 
 /// Of one frame: what many take more than few. The run is that of few.
 FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
-    constexpr double enough_s = 0.1;
+    constexpr double enough_s = 0.1, slow_s = 0.5;
     constexpr long most = 128;
     const auto few = cost_of_frames(scene, 2, stop);
     FrameCost cost{1, few.wall_s, few.cpu_s, few.run_s};
-    for (long count = 8; count <= most; count *= 4) {
+    for (long count = 8; count <= most && few.wall_s < slow_s; count *= 4) {
         const auto many = cost_of_frames(scene, count, stop);
         if (many.frames <= few.frames) break;
         const double more = many.frames - few.frames, wall_s = many.wall_s - few.wall_s;
