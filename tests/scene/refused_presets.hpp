@@ -134,7 +134,7 @@ inline const std::vector<RefusedPreset> refused_rates{
                   "presets/x.toml:2:1: [scene] duration_s must be at most 100000000 samples; it is 120000000000000"},
     RefusedPreset{
         "[scene]\nkind = \"trio\"",
-        R"(presets/x.toml:2:1: [scene] kind must be "pair", "grid", "curves", "convergence", "spectrum", "section", "work-precision", "stability" or "drift"; it is "trio")"},
+        R"(presets/x.toml:2:1: [scene] kind must be "pair", "grid", "curves", "convergence", "spectrum", "section", "work-precision", "stability" or "drift"; it is "trio"; did you mean "grid"?)"},
     RefusedPreset{
         "[video]\nfps = 50",
         "presets/x.toml:2:1: [video] fps must divide sample_hz · speed = 120, so that each frame is a sample; it "
