@@ -21,7 +21,7 @@ using test::with;
 const std::vector<std::string> film{"--set", "scene.duration_s=0.1", "--size", "160x90", "--format",
                                     "png",   "--progress",           "none"};
 const std::vector<std::string> chart{"--set",  "grid.x.to=9", "--set",      "scene.duration_s=0.5",
-                                     "--size", "320x180",    "--progress", "none"};
+                                     "--size", "320x180",     "--progress", "none"};
 
 /// What drew, by the manifest of OUT/NAME/.
 std::string drawn_by(const fs::path& out, const std::string& name) {
