@@ -327,8 +327,12 @@ private:
         std::vector<TomlReader*> more;
         for (auto& level : levels) more.push_back(&level);
         auto& group = groups_.emplace_back(Group{levels.empty() ? pair_ : reader.pair(more), {}});
+        panel_.demand_in(table, "panel", group.pair);
         panel_.put(group.pair, p);
+        color_.demand_in(table, "color", group.pair);
         color_.put(group.pair, c);
+        x_.demand_in(table, "x", group.pair);
+        y_.demand_in(table, "y", group.pair);
         const auto number = groups_.size() - 1;
         if (!x_.is_of_method && !y_.is_of_method) step_all_alike(group.pair, pair_at({number, 0, 0}), reader.stop);
         const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, x_.count - 1});
@@ -400,28 +404,28 @@ private:
         return right_ == name_of(Quantity::exponent) ? std::optional(measurements().front().numbers()) : std::nullopt;
     }
 
-    void put(const Cell& cell, Preset& pair) const {
-        pair = groups_[cell.group].pair;
+    Preset pair_at(const Cell& cell) const {
+        auto pair = groups_[cell.group].pair;
         y_.put(pair, cell.row);
         x_.put(pair, cell.column, difference_);
-    }
-    Preset pair_at(const Cell& cell) const {
-        Preset pair;
-        put(cell, pair);
         return pair;
     }
 
     /// Of cells side by side.
     void find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const {
-        const auto& all = groups_[first.group].measurements;
-        const std::size_t most = std::max(together(), all.front().together(false));
-        Preset pair;
+        const auto& group = groups_[first.group];
+        const std::size_t most = std::max(together(), group.measurements.front().together(false));
+        auto pair = group.pair;
         for (; !cells.empty(); cells = cells.subspan(std::min(most, cells.size())), first.column += most) {
             const auto at = [&](std::size_t i) -> const Preset& {
-                put({first.group, first.row, first.column + i}, pair);
+                pair.a = group.pair.a;
+                if (right_ || !words().is_of_side_a) pair.b = group.pair.b;  // else nothing is found of it
+                y_.put(pair, first.row);
+                x_.put(pair, first.column + i, difference_);
                 return pair;
             };
-            for (const auto& measurement : all) measurement.append(at, cells.first(std::min(most, cells.size())), stop);
+            for (const auto& measurement : group.measurements)
+                measurement.append(at, cells.first(std::min(most, cells.size())), stop);
         }
     }
 

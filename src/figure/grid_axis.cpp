@@ -36,7 +36,7 @@ void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset&
     if (!is_there()) return;
     if (values && !std::all_of(values->texts.begin(), values->texts.end(), is_number)) return find_texts(reader, table);
     find_number(reader, table, pair);
-    find_values(table);
+    find_values(table, pair);
 }
 
 void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
@@ -56,7 +56,6 @@ void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
 }
 
 void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const Preset& pair) {
-    pair_ = pair;
     if (std::find(of_releases.begin(), of_releases.end(), key) == of_releases.end()) {
         const auto& number = number_.emplace(table, "key", key == "links" ? "system.links" : key, pair);
         table.demand_drawable("key", number.label);  // an entry's name may have other letters
@@ -71,9 +70,7 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
         return;
     }
     release_ = &release_parameter(key);
-    if (pair.a.links() < release_->links || pair.b.links() < release_->links || !pair.a.particles.empty() ||
-        !pair.b.particles.empty())
-        throw table.fault("key", "\"{}\" takes a chain of {} links", key, release_->links);
+    demand_in(table, "key", pair);
     constexpr double most_degrees = 1e6;  // as of [system] angle_deg
     label = release_->label;
     bounds_ = release_->is_ratio ? positive : from_to(-most_degrees, most_degrees);
@@ -81,14 +78,28 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
     if (!release_->is_ratio) angle = release_->links - 1;
 }
 
-void GridAxis::find_values(const TomlReader& table) {
+void GridAxis::demand_in(const TomlReader& table, std::string_view of, const Preset& pair) const {
+    if (number_) NumericKey(table, of, number_->path, pair);
+    if (!release_) return;
+    for (const auto* side : {&pair.a, &pair.b})
+        if (side->links() < release_->links || !side->particles.empty())
+            throw table.fault(of, "\"{}\" takes a chain of {} links", key, release_->links);
+}
+
+void GridAxis::find_values(const TomlReader& table, const Preset& pair) {
     if (are_cells && values)
         throw table.fault("values", "are of curves and panels; the cells of a map go from `from` to `to`");
     if (values) {
         for (const auto& text : values->texts) demand(table, "values", numbers_.emplace_back(parse_quad(text)));
         count = numbers_.size();
-        return;
+    } else {
+        find_even_values(table);
     }
+    if (number_)
+        for (auto& number : numbers_) number = number_->taken(number, pair);
+}
+
+void GridAxis::find_even_values(const TomlReader& table) {
     if (are_cells ? !(from < to) : to < from)
         throw table.fault("to", "must {} from ({}); it is {}", are_cells ? "be above" : "not be below", text_of(from),
                           text_of(to));
@@ -99,8 +110,9 @@ void GridAxis::find_values(const TomlReader& table) {
     if (is_logarithmic && !(from > 0))
         throw table.fault("from", "must be > 0 for equal ratios; it is {}", text_of(from));
     count = points ? static_cast<std::size_t>(*points) : even_steps(table) + (are_cells ? 0 : 1);
-    demand(table, "from", are_cells ? value(0) : from);
-    demand(table, "to", are_cells ? value(count - 1) : to);
+    demand(table, "from", are_cells ? even_value(0) : from);
+    demand(table, "to", are_cells ? even_value(count - 1) : to);
+    for (std::size_t i = 0; i < count; ++i) numbers_.push_back(even_value(i));
 }
 
 std::size_t GridAxis::even_steps(const TomlReader& table) const {
@@ -118,18 +130,14 @@ std::size_t GridAxis::even_steps(const TomlReader& table) const {
     return static_cast<std::size_t>(whole);
 }
 
-Quad GridAxis::value(std::size_t i) const {
+Quad GridAxis::even_value(std::size_t i) const {
     const Quad number(static_cast<double>(i));
-    const auto even = [&]() -> Quad {
-        if (!numbers_.empty()) return numbers_[i];
-        if (are_cells) return Quad(cells().middle(static_cast<int>(i)));
-        if (!points) return from + step * number;
-        if (i + 1 == count) return to;
-        const Quad share = number / Quad(static_cast<double>(count - 1));
-        if (spacing == Spacing::linear) return from + (to - from) * share;
-        return from * Quad(std::pow(static_cast<double>(Quad(to / from)), static_cast<double>(share)));
-    };
-    return number_ ? number_->taken(even(), pair_) : even();
+    if (are_cells) return Quad(cells().middle(static_cast<int>(i)));
+    if (!points) return from + step * number;
+    if (i + 1 == count) return to;
+    const Quad share = number / Quad(static_cast<double>(count - 1));
+    if (spacing == Spacing::linear) return from + (to - from) * share;
+    return from * Quad(std::pow(static_cast<double>(Quad(to / from)), static_cast<double>(share)));
 }
 
 std::string GridAxis::words(std::size_t i) const {
@@ -168,8 +176,8 @@ void GridAxis::put_both(Preset& pair) const {
 PlotAxis GridAxis::plot_axis() const {
     PlotAxis axis{.label = label, .logarithmic = spacing == Spacing::logarithmic};
     const auto [least, most] = std::minmax_element(numbers_.begin(), numbers_.end());
-    axis.low = static_cast<double>(numbers_.empty() ? from : *least);
-    axis.high = static_cast<double>(numbers_.empty() ? to : *most);
+    axis.low = static_cast<double>(values ? *least : from);
+    axis.high = static_cast<double>(values ? *most : to);
     constexpr double turn = 360;  // degrees
     if (angle) axis.every = *axis.high - *axis.low < turn ? 30 : 45;
     if (number_ && number_->is_whole) axis.every = 1;

@@ -36,7 +36,7 @@ struct GridAxis {
     /// `table` = that of the axis. Throws Error (exit 2) where the pair has no such key, or cannot take a value.
     void find(FigureReader& reader, const TomlReader& table, const Preset& pair);
 
-    Quad value(std::size_t i) const;
+    const Quad& value(std::size_t i) const { return numbers_[i]; }
     /// "θ₁ = 30°", "rk4"
     std::string words(std::size_t i) const;
     void write(std::size_t i, Csv& table) const;
@@ -48,20 +48,23 @@ struct GridAxis {
     CellRange cells() const { return {static_cast<double>(from), static_cast<double>(to), int(count), spacing}; }
     /// What two of a pair are called that are so much apart: "twins 0.003° apart"; empty for 0.
     std::string apart(const Quad& difference) const;
-    /// Throws Error (exit 2), of the table's key `of`, where the number is out of range.
+    /// Throws Error (exit 2), of the table's key `of`, where a pair has no such key.
+    void demand_in(const TomlReader& table, std::string_view of, const Preset& pair) const;
+    /// The same where the number is out of range.
     void demand(const TomlReader& table, std::string_view of, const Quad& number) const;
 
 private:
     void find_texts(FigureReader& reader, const TomlReader& table);
     void find_number(FigureReader& reader, const TomlReader& table, const Preset& pair);
-    void find_values(const TomlReader& table);
+    void find_values(const TomlReader& table, const Preset& pair);
+    void find_even_values(const TomlReader& table);
+    Quad even_value(std::size_t i) const;
     std::size_t even_steps(const TomlReader& table) const;
 
     const ReleaseParameter* release_ = nullptr;
     std::optional<NumericKey> number_;
-    std::vector<Quad> numbers_;  // of `values`
+    std::vector<Quad> numbers_;  // all values
     Bounds bounds_;
-    Preset pair_;
 };
 
 template <class Visit>

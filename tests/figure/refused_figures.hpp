@@ -193,6 +193,11 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   "[grid.y]\nkey = \"theta2_deg\"\n[grid.color]\nkey = \"mass_ratio\"\nvalues = [1]",
                   ":5:7: [grid] color",
                   {"is of curves"}},
+    RefusedFigure{"grid",
+                  "[grid]\nquantity = \"energy_error\"\n[grid.x]\nkey = \"system.mass_kg[1]\"\nfrom = 1\n"
+                  "[grid.color]\nkey = \"links\"\nvalues = [2, 1]",
+                  ":5:7: [grid] x",
+                  {"beyond the array, whose last is [0]"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"stroboscopic\"", ":4:1: [grid] quantity", {"that is driven"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"period\"", ":4:1: [grid] quantity", {"of one link; there are 2"}},
     RefusedFigure{"fractal", "", ":2:1: [scene] kind", {"\"grid\"", "it is \"fractal\""}}};
