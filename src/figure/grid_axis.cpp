@@ -42,7 +42,7 @@ void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset&
 void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
     if (key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
     demand_last_word(reader, table, key);
-    label = words_of_key(key.substr(key.find('.') + 1));
+    label = caption_of({.key = std::string_view(key).substr(key.find('.') + 1)});
     keeps_method = false;
     count = values->texts.size();
     const auto origin = fmt::format("{}: {} values", table.place("values"), key);
