@@ -110,7 +110,8 @@ toml::table given_by(const Override& change, TomlTexts& texts) {
     try {
         return parsed_value(change, change.value, texts);
     } catch (const toml::parse_error& fault) {
-        if (is_bare_text(change.value)) return parsed_value(change, toml_text(change.value), texts);
+        if (const auto quoted = toml_text(change.value); is_bare_text(change.value) && is_toml(quoted))  // UTF-8
+            return parsed_value(change, quoted, texts);
         const auto list = fmt::format("[{}]", change.value);
         const bool lacks_brackets = change.value.find(',') != std::string::npos && is_toml(list);
         throw bad_input("{}: \"{}\" is no TOML value ({}); {}", change.origin, change.value, fault.description(),

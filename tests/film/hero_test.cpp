@@ -57,7 +57,7 @@ void expect_words_in_place(const Scene& scene, const Layout& layout, const std::
     const auto labels = labels_of(scene, std::min(scene.samples, 240L));
     expect_apart(labels, scene.preset.video.size, what);
     for (const auto& label : labels) {
-        EXPECT_GE(label.size, 0.6f * layout.text * 21) << what << ": " << label.text;
+        EXPECT_GE(label.size, 0.58f * layout.text * 21) << what << ": " << label.text;
         for (const auto& panel : layout.panels)
             EXPECT_FALSE(meets(box_of(label), panel.center, layout.reach)) << what << ": " << label.text;
     }

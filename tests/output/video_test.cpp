@@ -125,12 +125,13 @@ TEST(Mp4, OnlyWhatChangedNeedsToBeTaken) {
 
 TEST(Mp4, WhatCannotBeEncodedIsRefused) {
     const auto path = fresh_folder() / "x.mp4";
-    expect_error(ExitCode::bad_input, {"H.264 needs even sizes; 641x360 is not; 642x360 would do"}, [&] {
-        make_video_sink(path, {.size = {641, 360}});
-    });
+    expect_error(ExitCode::bad_input,
+                 {"size must be even, as H.264 needs it in yuv420p; it is [641, 360]; [642, 360] would do"}, [&] {
+                     make_video_sink(path, {.size = {641, 360}});
+                 });
     expect_error(ExitCode::bad_input, {"\"swift\"", "veryfast"},
                  [&] { make_video_sink(path, {.size = small, .preset = "swift"}); });
-    expect_error(ExitCode::bad_input, {"crf of H.264 must be 0 … 51; it is 52"},
+    expect_error(ExitCode::bad_input, {"crf must be from 0 to 51; it is 52"},
                  [&] { make_video_sink(path, {.size = small, .crf = 52}); });
     EXPECT_FALSE(fs::exists(path));
     expect_error(ExitCode::io_failed, {"none/x.mp4", "No such file"},

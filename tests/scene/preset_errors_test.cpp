@@ -56,7 +56,7 @@ TEST(Overrides, NameTheOptionInPlaceOfALine) {
     EXPECT_EQ(fault({"system.links=3", "system={}"}),
               "--set system: would drop --set system.links, which was given before it; give the table first");
     EXPECT_EQ(fault({"title.x=1"}), R"(--set title.x: "title" is no table)");
-    EXPECT_NE(fault({"video.theme=dark"}).find("strings want quotes: 'video.theme=\"dark\"'"), std::string::npos);
+    EXPECT_NE(fault({"video.theme=2dark"}).find("strings want quotes: 'video.theme=\"2dark\"'"), std::string::npos);
     EXPECT_EQ(fault({"video.crf=1\nx=2"}), "--set video.crf: \"1 x=2\" is more than one value");
 }
 

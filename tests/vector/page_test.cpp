@@ -184,7 +184,7 @@ TEST(Page, APdfHasTextLinesAndTheFontsItNeeds) {
     ASSERT_TRUE(std::regex_search(all, box, std::regex(R"(/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \])")));
     EXPECT_NEAR(std::stod(box[1]), 180, 1e-3);
     EXPECT_NEAR(std::stod(box[2]), 120, 1e-3);
-    for (const auto* part : {"Tj", "BT", "/FontFile2", "/ToUnicode", "(Pendulums)", "+DejaVuSans ", "+DejaVuSans-Bold "})
+    for (const auto* part : {"Tj", "BT", "/FontFile2", "/ToUnicode", "(Pendulums)", "+DejaVuSans\n", "+DejaVuSans-Bold\n"})
         EXPECT_NE(all.find(part), std::string::npos) << part;
     EXPECT_LT(pdf.size(), 20'000u) << "of the font only what is needed: they have 82 and 79 kB";
     EXPECT_EQ(all.find("CreationDate"), std::string::npos);
