@@ -184,7 +184,8 @@ TEST(Page, APdfHasTextLinesAndTheFontsItNeeds) {
     ASSERT_TRUE(std::regex_search(all, box, std::regex(R"(/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \])")));
     EXPECT_NEAR(std::stod(box[1]), 180, 1e-3);
     EXPECT_NEAR(std::stod(box[2]), 120, 1e-3);
-    for (const auto* part : {"Tj", "BT", "/FontFile2", "/ToUnicode", "(Pendulums)", "+DejaVuSans\n", "+DejaVuSans-Bold\n"})
+    for (const auto* part :
+         {"Tj", "BT", "/FontFile2", "/ToUnicode", "(Pendulums)", "+DejaVuSans\n", "+DejaVuSans-Bold\n"})
         EXPECT_NE(all.find(part), std::string::npos) << part;
     EXPECT_LT(pdf.size(), 20'000u) << "of the font only what is needed: they have 82 and 79 kB";
     EXPECT_EQ(all.find("CreationDate"), std::string::npos);
@@ -194,11 +195,11 @@ TEST(Page, APdfHasTextLinesAndTheFontsItNeeds) {
 
 TEST(Page, AnSvgHasTextAsText) {
     const auto svg = svg_page(poster, {size, 180, {{"title", "A < B"}}});
-    for (const auto* part : {R"(width="180pt" height="120pt" viewBox="0 0 240 160")", "<title>A &lt; B</title>",
-                             "font-weight=\"bold\">Tom &amp; &quot;θ₁&quot; &lt; 5</text>",
-                             "font-weight: normal; src: url(data:font/ttf;base64,",
-                             "font-weight: bold; src: url(data:font/ttf;base64,",
-                             R"(<path d="M10 10L90 90" fill="none" stroke="#c04000" stroke-width="2"/>)"})
+    for (const auto* part :
+         {R"(width="180pt" height="120pt" viewBox="0 0 240 160")", "<title>A &lt; B</title>",
+          "font-weight=\"bold\">Tom &amp; &quot;θ₁&quot; &lt; 5</text>",
+          "font-weight: normal; src: url(data:font/ttf;base64,", "font-weight: bold; src: url(data:font/ttf;base64,",
+          R"(<path d="M10 10L90 90" fill="none" stroke="#c04000" stroke-width="2"/>)"})
         EXPECT_NE(svg.find(part), std::string::npos) << part;
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
 }
