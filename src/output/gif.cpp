@@ -188,9 +188,7 @@ private:
     }
 
     /// When frame k starts, 1/100 s.
-    std::int64_t time_of(long k) const {
-        return av_rescale(k, 100 * options_.fps_denominator, options_.fps_numerator);
-    }
+    std::int64_t time_of(long k) const { return av_rescale(k, 100 * options_.fps_denominator, options_.fps_numerator); }
 
     const VideoOptions options_;
     Encoder encoder_;

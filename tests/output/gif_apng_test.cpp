@@ -143,8 +143,8 @@ TEST(Gif, TheSameFramesGiveTheSameBytes) {
 }
 
 TEST(Gif, FramesThatWaitTakeNoMemory) {
-    const auto sink = make_video_sink(fresh_folder() / "x.gif",
-                                      {.format = FilmFormat::gif, .size = {320, 180}, .fps_numerator = 25});
+    const auto sink =
+        make_video_sink(fresh_folder() / "x.gif", {.format = FilmFormat::gif, .size = {320, 180}, .fps_numerator = 25});
     const auto take = [&](long from, long to) {
         for (long k = from; k < to; ++k) sink->take(moving_scene({320, 180}, k % 8), whole({320, 180}));
         const auto memory = mallinfo2();
@@ -170,9 +170,8 @@ TEST(Gif, EndsInItsCommentWhereThereIsOne) {
     // GIF89a, 24 and 27: 21 FE, blocks of at most 255 bytes after their lengths, a block of none; then 3B
     const auto folder = fresh_folder();
     const auto ends_as = [&](const Metadata& metadata, const std::string& end) {
-        const auto path =
-            film(folder / "x.gif",
-                 {.format = FilmFormat::gif, .size = small, .fps_numerator = 25, .metadata = metadata}, 2);
+        const auto path = film(
+            folder / "x.gif", {.format = FilmFormat::gif, .size = small, .fps_numerator = 25, .metadata = metadata}, 2);
         const auto bytes = bytes_of(path);
         return bytes.substr(bytes.size() - std::min(end.size(), bytes.size())) == end;
     };
