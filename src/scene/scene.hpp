@@ -23,7 +23,7 @@ struct Moment {
     long sample = 0;
     double share = 0;
 
-    friend auto operator<=>(const Moment&, const Moment&) = default;
+    friend auto operator<=>(const Moment&, const Moment&) = default;  // NOLINT(modernize-use-nullptr): as in faults.hpp
 };
 /// So many samples from the start; at a sample where it is within 1e-6 of one.
 Moment moment_at(double samples);
