@@ -154,7 +154,9 @@ TEST_P(Formats, HaveTheFramesTimesTagsWordsAndLooksAskedFor) {
     }
     // SVT-AV1 4.2 (beside FFmpeg 9) spends less at the same crf than 1.4: measured 42.3 and 47.1 dB, 8 and 10 bits
     const bool is_newer_av1 = std::string_view(kind.codec) == "av1" && avcodec_version() >= AV_VERSION_INT(62, 0, 0);
-    EXPECT_GT(worst, kind.psnr - (is_newer_av1 ? 7.0 : 1.0));
+    // palettegen of libavfilter 10 finds other colours than that of 8: measured 58.9 dB
+    const double allowed = is_newer_av1 ? 7.0 : kind.format == FilmFormat::gif ? 3.5 : 1.0;
+    EXPECT_GT(worst, kind.psnr - allowed);
     const double alpha_floor = !kind.transparent ? 0.0 : kind.format == FilmFormat::apng ? 1e8 : 46.0;  // measured 48.2
     EXPECT_GT(worst_alpha, alpha_floor);
 }
