@@ -2,13 +2,11 @@
 
 #include "base/error.hpp"
 #include "cli/terminal.hpp"
-#include "output/files.hpp"
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include <charconv>
-#include <cstdlib>
 #include <system_error>
 
 namespace doppel {
@@ -59,15 +57,8 @@ Destination::Destination(const std::string& out, std::size_t runs, const std::st
     if (ending != ".csv" && isatty(STDOUT_FILENO))
         throw bad_input("-o -: standard output is a terminal, which shows no {}; send it on: -o - > FILE{}",
                         ending.substr(1), ending);
-    auto place = (std::filesystem::temp_directory_path() / "doppel-XXXXXX").string();
-    if (!mkdtemp(place.data())) throw cannot(place, "made");
-    folder_ = place;
+    folder_ = own_.emplace().path();
     streamed_ = ending;
-}
-
-Destination::~Destination() {
-    std::error_code ignored;
-    if (!streamed_.empty()) std::filesystem::remove_all(folder_, ignored);
 }
 
 LoneFile::LoneFile(std::filesystem::path path, std::string_view start) : path_(std::move(path)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "film/run.hpp"
+#include "output/files.hpp"
 #include "scene/preset.hpp"
 #include "scene/resolved.hpp"
 
@@ -80,15 +81,13 @@ public:
     /// `ending` = of that file's name, ".csv". Throws Error: exit 2 where there are several runs, or a picture would go to
     /// a terminal; exit 4.
     Destination(const std::string& out, std::size_t runs, const std::string& ending);
-    ~Destination();
-    Destination(const Destination&) = delete;
-    Destination& operator=(const Destination&) = delete;
 
     const std::filesystem::path& folder() const { return folder_; }
     /// As ProgressReport has it.
     const std::string& streamed() const { return streamed_; }
 
 private:
+    std::optional<TemporaryFolder> own_;
     std::filesystem::path folder_;
     std::string streamed_;
 };

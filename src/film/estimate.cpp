@@ -10,8 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 namespace doppel {
 namespace {
@@ -58,25 +56,6 @@ SimulationEstimate estimated_side(Scene scene, Side Scene::*which, char name, co
     const double share = samples / std::max(done, 1.0);
     return {elapsed * share, side.method.adaptive ? static_cast<double>(run.effort().steps) * share : steps, done < 1};
 }
-
-/// A new folder for files that nobody keeps.
-class TemporaryFolder {
-public:
-    TemporaryFolder() : path_((std::filesystem::temp_directory_path() / "doppel-check-XXXXXX").string()) {
-        if (!mkdtemp(path_.data())) throw cannot(path_, "made");
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::string& path() const { return path_; }
-
-private:
-    std::string path_;
-};
 
 /// The motion of an ensemble's members, s a sample.
 double seconds_of_members(const Scene& scene, const std::atomic<bool>& stop) {

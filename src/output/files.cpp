@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <system_error>
 
 namespace doppel {
@@ -81,6 +82,17 @@ void write_file(const fs::path& path, std::string_view text) {
     OutputFile file(path);
     file.write(text);
     file.close();
+}
+
+TemporaryFolder::TemporaryFolder() {
+    auto place = (fs::temp_directory_path() / "doppel-XXXXXX").string();
+    if (!mkdtemp(place.data())) throw cannot(place, "made");
+    path_ = place;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
 }
 
 Error cannot(const fs::path& path, std::string_view what, int reason) {

@@ -59,6 +59,20 @@ private:
 /// The same of a text.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
+/// A new folder for files that nobody keeps, removed with this. Throws Error (exit 4).
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
 /// "PATH: cannot be WHAT: the system's reason", exit 4.
 Error cannot(const std::filesystem::path& path, std::string_view what, int reason = errno);
 
