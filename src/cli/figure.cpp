@@ -16,7 +16,7 @@ namespace doppel {
 namespace {
 
 struct FigureCommandOptions : RunCommandOptions {
-    std::string size, format, shard, gl = "auto";
+    std::string size, format, shard;
     double scale = 0;
     bool merge = false, tiles = false;
 };
@@ -128,7 +128,6 @@ void make_figures(const FigureCommandOptions& options) {
                      .shard = shard_of(options),
                      .merge = options.merge,
                      .tiles = options.tiles,
-                     .gl = gl_named(options.gl),
                      .replacing = std::move(replacing)},
                     watch_interrupts(), report);
     } catch (...) {
@@ -161,7 +160,6 @@ void add_figure(CLI::App& app) {
     command.add_option("--scale", options->scale, "Pixels of the picture to one of the layout: 2 for print")
         ->type_name("N")
         ->check(CLI::Range(0.25, 8.0));
-    add_gl_option(command, options->gl);
     command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
     command.add_flag("--tiles", options->tiles,

@@ -13,7 +13,7 @@ namespace {
 
 struct FitCommandOptions : OutOptions {
     std::vector<std::string> tracks;
-    std::string model = "auto", gl = "auto";
+    std::string model = "auto";
     double every_s = 0;
     FitOptions fit;
 };
@@ -25,7 +25,6 @@ void fit(const FitCommandOptions& options) {
                                                        : Bodies::automatic;
     fit_options.out = options.out;
     fit_options.force = options.force;
-    fit_options.gl = gl_named(options.gl);
     if (options.every_s > 0) fit_options.every_s = options.every_s;
     outlive_readers();
     const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
@@ -90,7 +89,6 @@ void add_fit(CLI::App& app) {
                     "Threads that compute, one a core where not given; the numbers stay")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
-    add_gl_option(command, options->gl);
     command.callback([options] { fit(*options); });
 }
 

@@ -10,9 +10,7 @@
 #include "output/png.hpp"
 #include "output/transaction.hpp"
 #include "output/workers.hpp"
-#include "render/renderer.hpp"
 #include "scene/resolved.hpp"
-#include "vector/page.hpp"
 
 #include <fmt/ranges.h>
 
@@ -49,7 +47,7 @@ const Theme& theme_named(const std::string& name) {
 
 }  // namespace
 
-DisplayList compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
+Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
     const auto layout = layout_of(figure.chart);
     return compose(page_of(figure, trials), layout.picture, theme_named(figure.chart.theme), layout.scale, layout.unit);
 }
@@ -68,7 +66,6 @@ struct FigureRecord {
     int jobs = 1;
     double compute_wall_s = 0, compute_cpu_s = 0;  // other figures may have been computed meanwhile
     double draw_cpu_s = 0;                         // picture and table
-    std::string gl;
 };
 
 void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
@@ -89,7 +86,7 @@ void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownT
         {"trials", trials.size()},
         {"threads", record.jobs},
         {"register_width", register_widths().back()},
-        {"libraries", {{"gl", record.gl}, {"compiler", __VERSION__}}},
+        {"libraries", {{"drawing", page_library()}, {"compiler", __VERSION__}}},
         {"time",
          {{"compute_wall_s", record.compute_wall_s},
           {"compute_cpu_s", record.compute_cpu_s},
@@ -98,18 +95,11 @@ void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownT
     doppel::write_manifest(parts, figure.name + ".json", std::move(manifest));
 }
 
-/// Draws and writes figures whose numbers are known; the renderer serves all pictures of one size.
+/// Draws and writes figures whose numbers are known.
 class FigureWriter {
 public:
     FigureWriter(const FigureOptions& options, int jobs, const std::atomic<bool>& stop)
         : options_(options), jobs_(jobs), stop_(stop) {}
-
-    /// Makes the renderer for the first picture while the numbers are computed.
-    void prepare(const FigurePreset& figure) {
-        const auto size = layout_of(figure.chart).picture;
-        if (!options_.shard && figure.chart.format == PictureFormat::png)
-            renderer_for(size).draw(compose({.title = "0"}, size, themes[0]), stop_);
-    }
 
     RunResult write(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials,
                     FigureRecord record, Transaction& files) {
@@ -119,9 +109,12 @@ public:
         }
         record.jobs = jobs_;
         const auto csv = figure.name + ".csv";
+        std::vector<std::string> warnings;
         const auto finish = [&] {
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-            write_picture(figure, compose_figure(figure, trials), record, files);
+            const auto page = compose_figure(figure, trials);
+            write_picture(figure, page, files);
+            for (const auto& note : page.notes) warnings.push_back(fmt::format("{}: {}", figure.name, note));
             check_stop();
             Csv table(files.file(csv), figure.experiment->columns());
             figure.experiment->write_rows(trials, table);
@@ -133,41 +126,30 @@ public:
             check_stop();
             return files.publish();
         };
-        return {.files = files.keeping_finished(finish)};
+        auto written = files.keeping_finished(finish);
+        return {.files = std::move(written), .warnings = std::move(warnings)};
     }
 
 private:
-    void write_picture(const FigurePreset& figure, const DisplayList& list, FigureRecord& record, Transaction& files) {
+    void write_picture(const FigurePreset& figure, const Page& drawn, Transaction& files) {
         const auto format = figure.chart.format;
-        const auto layout = layout_of(figure.chart);
+        const double width_pt = layout_of(figure.chart).width_pt;
         const auto name = fmt::format("{}.{}", figure.name, name_of(format));
         const auto metadata =
             metadata_of(figure.title, figure.name, fmt::format("how it was made is in {}.json", figure.name));
-        if (format == PictureFormat::png) {
-            auto& renderer = renderer_for(layout.picture);
-            const auto picture = renderer.draw(list, stop_);
-            check_stop();
-            write_png(files.file(name), picture,
-                      {.metadata = metadata, .dpi = 72 * layout.picture.width / layout.width_pt}, stop_);
-            record.gl = renderer.description();
-        } else {
-            write_page(files.file(name), list, {layout.picture, layout.width_pt, metadata}, format);
-        }
+        if (format == PictureFormat::png)
+            write_png(files.file(name), picture_of(drawn, stop_),
+                      {.metadata = metadata, .dpi = 72 * drawn.size.width / width_pt}, stop_);
+        else
+            write_file(files.file(name), page_file(drawn, format, width_pt, metadata));
         files.finished(name);
     }
 
     void check_stop() const { throw_if_set(stop_); }
-    Renderer& renderer_for(Size size) {
-        if (!renderer_ || size_ != size) renderer_.emplace(size, DisplayList{}, options_.gl, stop_);
-        size_ = size;
-        return *renderer_;
-    }
 
     const FigureOptions& options_;
     int jobs_;
     const std::atomic<bool>& stop_;
-    std::optional<Renderer> renderer_;
-    Size size_;
 };
 
 PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) {
@@ -279,7 +261,6 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
             files.back()->demand(fmt::format("{}.{}", figure.name, ending));
     }
     Scheduler scheduler(figures, options, jobs, files, stop, report);
-    if (!figures.empty()) writer.prepare(figures.front());
     while (const auto k = scheduler.next()) {
         auto& computation = scheduler.computation(*k);
         FigureRecord record{.compute_cpu_s = computation.cpu_s()};

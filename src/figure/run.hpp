@@ -2,7 +2,6 @@
 
 #include "figure/computation.hpp"
 #include "film/run.hpp"
-#include "render/renderer.hpp"
 
 #include <functional>
 #include <optional>
@@ -20,7 +19,6 @@ struct FigureOptions {
     std::optional<Shard> shard;         // compute this part alone, into a file for a merge
     bool merge = false;                 // compute nothing: merge the parts
     bool tiles = false;                 // of maps: a pyramid of tiles in place of picture and table (figure/tiles.hpp)
-    Gl gl = Gl::automatic;              // what draws
     Replacing replacing = {};
 };
 
@@ -43,6 +41,6 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
 
 /// Numbers and picture of a figure, without files.
 KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atomic<bool>& stop);
-DisplayList compose_figure(const FigurePreset& figure, const KnownTrials& trials);
+Page compose_figure(const FigurePreset& figure, const KnownTrials& trials);
 
 }  // namespace doppel

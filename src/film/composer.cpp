@@ -31,12 +31,7 @@ constexpr float card_words = 400;
 
 /// All as opaque as the card.
 DisplayList faded(DisplayList list, float alpha) {
-    for (auto& item : list)
-        std::visit(
-            [&](auto& shape) {
-                if constexpr (!std::is_same_v<std::decay_t<decltype(shape)>, Image>) shape.color.a *= alpha;
-            },
-            item);
+    for (auto& item : list) std::visit([&](auto& shape) { shape.color.a *= alpha; }, item);
     return list;
 }
 

@@ -103,14 +103,11 @@ void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, cons
         layout.words.push_back(label(said[side].heading, {side == 0 ? panel.left : panel.right, base}, size,
                                      layout.style.theme.text, side == 0 ? Align::left : Align::right, Weight::bold));
     }
-    constexpr int shades = 256;
-    Picture colors({shades, 1});
-    for (int i = 0; i < shades; ++i) {
-        const auto bytes = bytes_of(member_color(layout.style, static_cast<double>(i) / (shades - 1)));
-        std::copy(bytes.begin(), bytes.end(), colors.at(i, 0));
-    }
-    layout.words.push_back(Image{panel.left + width[0] + gap, base - 0.6f * size, panel.right - width[1] - gap, base,
-                                 std::make_shared<const Picture>(std::move(colors))});
+    const float left = std::round(panel.left + width[0] + gap), right = std::round(panel.right - width[1] - gap);
+    const float top = std::round(base - 0.6f * size), bottom = std::round(base);
+    for (float x = left; x < right; ++x)  // each up to the end, so that no seam shows on paper
+        layout.words.push_back(
+            Box{x, top, right, bottom, 0, member_color(layout.style, double{x - left} / double{right - left - 1})});
 }
 
 /// What tells the listed members apart, "120.01°", by member; what is said before them, "θ₁ =".

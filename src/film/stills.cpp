@@ -5,10 +5,10 @@
 #include "image/picture.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
+#include "plot/page.hpp"
 #include "render/typeface.hpp"
 #include "scene/captions.hpp"
 #include "scene/resolved.hpp"
-#include "vector/page.hpp"
 
 #include <fmt/format.h>
 
@@ -71,7 +71,8 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
         auto list = composer.backdrop();
         const auto frame = composer.frame();
         list.insert(list.end(), frame.begin(), frame.end());
-        write_page(place, list, {video.size, pt_per_px * video.size.width, metadata, video.typeface}, format);
+        write_file(place, page_file({.size = video.size, .items = page_list(list), .typeface = video.typeface}, format,
+                                    pt_per_px * video.size.width, metadata));
     }
     parts.finished(name);
     auto files = parts.keeping_finished([&] {

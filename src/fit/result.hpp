@@ -14,7 +14,6 @@ struct FitOptions {
     std::filesystem::path out = "out";  // the files go to OUT/NAME/
     std::string name;                   // of the result; that of the first file where it is empty
     int jobs = 0;                       // threads that compute; 0 = one a core
-    Gl gl = Gl::automatic;              // what draws
     bool force = false;                 // as Replacing has it
 };
 

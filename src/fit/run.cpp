@@ -48,9 +48,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
         write_residuals(result, table);
         parts.finished(name + ".residuals.csv");
         throw_if_set(stop);
-        const auto list = compose(fit_page(result, name), page_size, light);
-        Renderer renderer(page_size, DisplayList{}, options.gl, stop);
-        const auto picture = renderer.draw(list, stop);
+        const auto picture = picture_of(compose(fit_page(result, name), page_size, light), stop);
         throw_if_set(stop);
         write_png(page, picture,
                   {.metadata = metadata_of(name, name, fmt::format("how it was made is in {}.fit.json", name))}, stop);
@@ -58,7 +56,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
         auto manifest = fit_json(result);
         manifest["threads"] = options.jobs > 0 ? options.jobs : cores();
         manifest["time"] = {{"models_cpu_s", result.models_cpu_s}, {"fit_cpu_s", result.cpu_s}};
-        manifest["libraries"] = {{"gl", renderer.description()}, {"compiler", __VERSION__}};
+        manifest["libraries"] = {{"drawing", page_library()}, {"compiler", __VERSION__}};
         write_manifest(parts, name + ".fit.json", std::move(manifest));
         throw_if_set(stop);
         return parts.publish();

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -44,6 +46,10 @@ struct Picture {
     /// Whether nothing shines through.
     bool is_opaque() const;
 };
+
+/// A file's metadata: keys and texts, UTF-8. Every format stores "title", "comment", "description", "artist",
+/// "copyright" and "date"; all but mp4 (where libav names itself) also "encoder", the program that made the file.
+using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// Undoes a background: from the same picture on black and on white, within the rectangle, the colours with their
 /// opacity (not premultiplied) that give both back where a viewer lays them over it in sRGB. Exact on black, and on

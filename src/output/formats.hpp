@@ -55,10 +55,6 @@ inline constexpr std::array film_formats{
 /// The row of the codec, or the first of the format: of its usual codec.
 const FormatRow& format_row(FilmFormat format, std::string_view codec);
 
-/// A file's metadata: keys and texts, UTF-8. Every format stores "title", "comment", "description", "artist",
-/// "copyright" and "date"; all but mp4 (where libav names itself) also "encoder", the program that made the file.
-using Metadata = std::vector<std::pair<std::string, std::string>>;
-
 struct VideoOptions {
     FilmFormat format = FilmFormat::mp4;
     std::string codec = {};    // "h264" (mp4), "vp9" or "av1" (webm); empty = h264, vp9

@@ -49,7 +49,7 @@ bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle&
 }
 
 void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& held, bool words,
-                 const PlotStyle& style, DisplayList& list) {
+                 const PlotStyle& style, PageList& list) {
     const float em = style.tick, baseline = area.bottom + 1.45f * em;
     for (const Tick& tick : x_ticks(x, plot.x, style)) {
         const float at = x.at(tick.value);
@@ -74,7 +74,7 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
 
 /// A vertical axis: its ticks point to `side`, −1 or 1, from `at`.
 void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, const Area& area, bool grid, bool words,
-                 Color color, const PlotStyle& style, DisplayList& list) {
+                 Color color, const PlotStyle& style, PageList& list) {
     const float em = style.tick;
     for (const Tick& tick : y_ticks(y, asked, style)) {
         const float place = y.at(tick.value), out = at + side * (tick.text.empty() ? 0.18f : 0.34f) * em;
@@ -110,7 +110,7 @@ std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotSty
 }
 
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
-               const AxisWords& words, const PlotStyle& style, DisplayList& list) {
+               const AxisWords& words, const PlotStyle& style, PageList& list) {
     const Theme& theme = style.theme;
     draw_x_axis(plot, x, area, held, words.x, style, list);
     draw_y_axis(y, plot.y, area.left, -1, area, !plot.map, words.y, theme.quiet_text, style, list);
@@ -131,7 +131,7 @@ float axis_labels_height(const Plot& plot, float width, const AxisWords& words, 
 }
 
 void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
-                   const AxisWords& words, const PlotStyle& style, DisplayList& list) {
+                   const AxisWords& words, const PlotStyle& style, PageList& list) {
     // above the panel, and above the words beside it that are its own
     const bool own_words = plot.right || (plot.map && !plot.map->shares_bar);
     const float width = held.width(), left = words.y ? held.left : area.left;

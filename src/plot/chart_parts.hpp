@@ -3,7 +3,6 @@
 #include "image/color.hpp"
 #include "plot/axis.hpp"
 #include "plot/plot.hpp"
-#include "render/display_list.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +12,11 @@ namespace doppel {
 /// What all parts of a figure share: colours, sizes of text (px an em) and of lines (px).
 struct PlotStyle {
     const Theme& theme;
-    float unit;   // of a picture of 1600 × 900, px
-    float scale;  // pixels that one px becomes in the end: what images are drawn for
+    float unit;             // of a picture of 1600 × 900, px
+    float scale;            // pixels that one px becomes in the end: what images are drawn for
+    bool on_paper = false;  // small, with text of the size that was asked for: the title is little larger
 
-    float title = 37 * unit, subtitle = 21 * unit, heading = 24 * unit;
+    float title = (on_paper ? 26 : 37) * unit, subtitle = 21 * unit, heading = 24 * unit;
     float axis = 20 * unit, tick = 18.5f * unit, text = 20 * unit, caption = 18 * unit;
     float hairline = unit > 0.9f ? unit : 1, line = std::max(1.0f, std::round(hairline));  // line: of whole pixels
     float curve = unit > 0.47f ? 3.2f * unit : 1.5f, thin = unit > 0.5f ? 2 * unit : 1;
@@ -49,7 +49,7 @@ struct AxisWords {
 
 /// The grid, the axes, their ticks with labels, and the x axis's label. No text leaves `held`; `right` may be null.
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
-               const AxisWords& words, const PlotStyle& style, DisplayList& list);
+               const AxisWords& words, const PlotStyle& style, PageList& list);
 
 /// px that the labels above a panel `width` px wide take: one line if all fit side by side, else one each.
 float axis_labels_height(const Plot& plot, float width, const AxisWords& words, const PlotStyle& style);
@@ -57,22 +57,20 @@ float axis_labels_height(const Plot& plot, float width, const AxisWords& words, 
 /// The panel's title in the uppermost `title` px of `held`; in the `labels` px below, the labels of the vertical axes
 /// and of the map's bar.
 void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
-                   const AxisWords& words, const PlotStyle& style, DisplayList& list);
+                   const AxisWords& words, const PlotStyle& style, PageList& list);
 
-/// The map's cells in `area` as seen through the axes, a pixel a cell where all are shown: crisp where they are larger than pixels, else averaged, the
-/// logarithm where the scale is logarithmic. Below zero on such a scale is as good as no value.
-Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
-                Color none, float scale);
+/// The map's cells as seen through the axes.
+MapCells map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
 
 /// px that the colour bar of a map and its labels take on the right of a panel `height` px high.
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
 
 /// The bar beside `area`, from `left` on: colours with ticks, and below them what stands for no value.
-void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
+void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list);
 
 /// The same for a bar that maps share, with its label above it.
 float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
-void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list);
+void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list);
 
 /// The colour of what has no value.
 Color none_color(const HeatMap& map, const Theme& theme);
@@ -93,7 +91,7 @@ Gutters united(const Gutters& a, const Gutters& b);
 
 /// The panel in its cell. Nothing where the labels leave it no room.
 void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
-                const AxisWords& words, const PlotStyle& style, DisplayList& list);
+                const AxisWords& words, const PlotStyle& style, PageList& list);
 
 /// Of panels.
 struct Grid {
@@ -104,7 +102,7 @@ struct Grid {
 Grid grid_of(const Figure& figure, const Area& body);
 
 /// All panels of the figure, and the bar that they share.
-void draw_panels(const Figure& figure, Area body, const PlotStyle& style, DisplayList& list);
+void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list);
 
 /// A curve in pixels, cut to its panel.
 struct DrawnCurve {
@@ -122,26 +120,18 @@ Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map);
 
 /// The band of its uncertainty, if it has one.
 void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
-               DisplayList& list);
+               PageList& list);
 
 /// Lines and marks.
 void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
-                DisplayList& list);
+                PageList& list);
 
 /// From one place to another, with gaps if it is dashed, as all curves are.
 void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,
-               const PlotStyle& style, DisplayList& list);
+               const PlotStyle& style, PageList& list);
 
-// Parts of a chart that are cheaper, or only possible, pixel by pixel: images for the pixels that `scale` makes of each
-// px.
-
-/// Discs around many points, which do not add up where they overlap; cut off at the edges of `area`.
+/// Discs around many points as an image for the pixels that `scale` makes of each px: cheaper than paths. They do not add
+/// up where they overlap, and are cut off at the edges of `area`.
 Image scatter_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale);
-
-/// The area between low[i] and high[i] over x[i], px; where one is NaN there is a gap.
-struct Band {
-    std::vector<double> x, low, high;
-};
-Image band_image(const Band& band, Color color, const Area& area, float scale);
 
 }  // namespace doppel

@@ -102,48 +102,9 @@ double pixel(const Axis& axis, double value) {
     return axis.from + (static_cast<double>(axis.to) - axis.from) * axis.share(value);
 }
 
-/// A path with gaps, as one stroke: over a gap it runs without ink.
-class Pen {
-public:
-    explicit Pen(Stroke& stroke) : path_(stroke.vertices) {}
-    void down(Point at) {
-        if (!path_.empty()) path_.push_back({at, 0});
-        path_.push_back({at, 1});
-    }
-    void draw(Point to) { path_.push_back({to, 1}); }
-    void up() {
-        if (!path_.empty()) path_.push_back({path_.back().at, 0});
-    }
-
-private:
-    std::vector<Stroke::Vertex>& path_;
-};
-
-void draw_dashes(const std::vector<Point>& line, float dash, float gap, Pen& pen) {
-    float left = dash;
-    bool ink = true;
-    pen.down(line.front());
-    for (std::size_t i = 1; i < line.size(); ++i) {
-        const Point from = line[i - 1], to = line[i];
-        const float length = distance(from, to);
-        float gone = 0;
-        while (length - gone > left) {
-            gone += left;
-            const Point at{from.x + gone / length * (to.x - from.x), from.y + gone / length * (to.y - from.y)};
-            if (ink) pen.draw(at), pen.up();
-            ink = !ink;
-            if (ink) pen.down(at);
-            left = ink ? dash : gap;
-        }
-        left -= length - gone;
-        if (ink) pen.draw(to);
-    }
-    if (ink) pen.up();
-}
-
 /// A line for the others to lie on.
 void draw_background(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
-                     DisplayList& list) {
+                     PageList& list) {
     std::vector<std::vector<Point>> lines;
     Clipper clipper(area, lines);
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -195,41 +156,46 @@ Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
 }
 
 void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
-               DisplayList& list) {
+               PageList& list) {
     if (curve.background != Background::none) draw_background(curve, x, y, area, style, list);
     if (curve.uncertainty.empty()) return;
-    Band band;
+    Polylines band{.lines = {}, .color = curve_color(curve, style, false).with_alpha(0.2f), .within = area};
+    const auto place = [](double at_x, double at_y) {
+        constexpr double far = 1e5;  // px: beyond any panel, and within what Cairo counts to
+        return Point{static_cast<float>(std::clamp(at_x, -far, far)), static_cast<float>(std::clamp(at_y, -far, far))};
+    };
+    std::vector<Point> above, below;
+    const auto end = [&] {
+        above.insert(above.end(), below.rbegin(), below.rend());
+        if (below.size() > 1) band.lines.push_back(std::move(above));
+        above.clear(), below.clear();
+    };
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         const double wide = std::abs(curve.uncertainty[i]);
         double low = curve.y[i] - wide;
         // on a logarithmic axis a band that reaches zero reaches the end of the axis
         if (y.logarithmic && low <= 0 && curve.y[i] > 0) low = std::min(y.low, y.high);
-        band.x.push_back(pixel(x, curve.x[i]));
-        band.low.push_back(pixel(y, low));
-        band.high.push_back(pixel(y, curve.y[i] + wide));
+        const double at = pixel(x, curve.x[i]), lower = pixel(y, low), upper = pixel(y, curve.y[i] + wide);
+        if (!std::isfinite(at + lower + upper)) {
+            end();
+            continue;
+        }
+        above.push_back(place(at, upper));
+        below.push_back(place(at, lower));
     }
-    list.push_back(band_image(band, curve_color(curve, style, false).with_alpha(0.2f), area, style.scale));
+    end();
+    list.push_back(std::move(band));
 }
 
 void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,
-               const PlotStyle& style, DisplayList& list) {
-    Stroke stroke{.vertices = {}, .width = width, .color = color};
-    Pen pen(stroke);
-    const float dash = std::max(9 * style.unit, 5.0f) + width, gap = std::max(7 * style.unit, 4.0f) + width;
-    for (const std::vector<Point>& line : lines) {
-        if (dashed) {
-            draw_dashes(line, dash, gap, pen);
-            continue;
-        }
-        pen.down(line.front());
-        for (std::size_t i = 1; i < line.size(); ++i) pen.draw(line[i]);
-        pen.up();
-    }
-    if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
+               const PlotStyle& style, PageList& list) {
+    if (lines.empty()) return;
+    const float dash = dashed ? std::max(9 * style.unit, 5.0f) + width : 0;
+    list.push_back(Polylines{lines, width, color, dash, std::max(7 * style.unit, 4.0f) + width});
 }
 
 void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
-                DisplayList& list) {
+                PageList& list) {
     const Color color = curve_color(curve, style, over_map), edge = rgb(0x0b0e13).with_alpha(0.75f);
     const bool thin = (curve.quiet && !over_map) || curve.x.size() > many;
     const float width = thin ? style.thin : style.curve;

@@ -83,7 +83,7 @@ Grid grid_of(const Figure& figure, const Area& body) {
     return best;
 }
 
-void draw_panels(const Figure& figure, Area body, const PlotStyle& style, DisplayList& list) {
+void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list) {
     const Grid grid = grid_of(figure, body);
     if (const HeatMap* map = sharing_map(figure)) {
         const float gutter = shared_bar_gutter(*map, body.height(), style);

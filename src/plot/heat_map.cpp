@@ -63,46 +63,6 @@ float below_heading(const HeatMap& map, float height, const PlotStyle& style) {
     return std::max(height - bar_heading(map, style).height() - style.tick, 1.0f);
 }
 
-/// Which cells each pixel of one axis shows: from…to, half open, in cells; empty outside the map.
-struct Span {
-    double from, to;
-};
-
-/// Of pixels `step` px long.
-std::vector<Span> spans(const Axis& axis, float first, int pixels, float step, double low, double high,
-                        std::size_t cells) {
-    std::vector<Span> made;
-    const auto cell_at = [&](float px) {
-        const double share = (static_cast<double>(px) - axis.from) / (static_cast<double>(axis.to) - axis.from);
-        const double part =
-            axis.logarithmic ? std::log(axis.low / low * std::pow(axis.high / axis.low, share)) / std::log(high / low)
-                             : (axis.low + share * (axis.high - axis.low) - low) / (high - low);
-        return part * static_cast<double>(cells);
-    };
-    const auto count = static_cast<double>(cells);
-    for (int i = 0; i < pixels; ++i) {
-        const float begin = first + static_cast<float>(i) * step, end = first + static_cast<float>(i + 1) * step;
-        const double a = cell_at(begin), b = cell_at(end), middle = cell_at((begin + end) / 2);
-        if (!(middle >= 0 && middle < count)) {
-            made.push_back({0, 0});
-        } else if (std::abs(b - a) < 1.001) {
-            // a cell as large as the pixel or larger: the one below its centre
-            made.push_back({std::floor(middle), std::floor(middle) + 1});
-        } else {
-            made.push_back({std::clamp(std::min(a, b), 0.0, count), std::clamp(std::max(a, b), 0.0, count)});
-        }
-    }
-    return made;
-}
-
-/// How many pixels an image has along the axis, `px` long: a cell each where all cells are shown, no less than a pixel
-/// long; else one each.
-int image_pixels(const Axis& axis, double low, double high, std::size_t cells, float px) {
-    const bool shows_all = std::min(axis.low, axis.high) == low && std::max(axis.low, axis.high) == high;
-    const int pixels = std::max(1, static_cast<int>(std::lround(px)));
-    return shows_all ? std::min(pixels, static_cast<int>(cells)) : pixels;
-}
-
 }  // namespace
 
 std::array<double, 2> color_range(const HeatMap& map) {
@@ -124,47 +84,13 @@ Picture cell_picture(const HeatMap& map, const Theme& theme) {
     return picture;
 }
 
-Image map_image(const HeatMap& map, const Axis& scale_of_colors, const Axis& x, const Axis& y, const Area& area,
-                Color none, float scale) {
-    const Size size{image_pixels(x, map.x_low, map.x_high, map.columns, area.width() * scale),
-                    image_pixels(y, map.y_low, map.y_high, map.rows, area.height() * scale)};
-    // what is averaged
-    std::vector<float> values = map.values;
-    if (map.logarithmic)
-        for (float& value : values) value = std::log(value);
-    const Axis shares{.low = map.logarithmic ? std::log(scale_of_colors.low) : scale_of_colors.low,
-                      .high = map.logarithmic ? std::log(scale_of_colors.high) : scale_of_colors.high};
-    const auto across = spans(x, area.left, size.width, area.width() / static_cast<float>(size.width), map.x_low,
-                              map.x_high, map.columns);
-    const auto down = spans(y, area.top, size.height, area.height() / static_cast<float>(size.height), map.y_low,
-                            map.y_high, map.rows);
-    auto pixels = std::make_shared<Picture>(size);
-    for (int row = 0; row < size.height; ++row) {
-        for (int column = 0; column < size.width; ++column) {
-            const Span& h = across[static_cast<std::size_t>(column)];
-            const Span& v = down[static_cast<std::size_t>(row)];
-            if (h.from == h.to || v.from == v.to) continue;
-            // the mean of what has a value; where most has none, none
-            double sum = 0, weight = 0, blank = 0;
-            for (auto j = static_cast<std::size_t>(v.from); static_cast<double>(j) < v.to; ++j) {
-                const auto top = static_cast<double>(j);
-                const double tall = std::min(top + 1, v.to) - std::max(top, v.from);
-                for (auto i = static_cast<std::size_t>(h.from); static_cast<double>(i) < h.to; ++i) {
-                    const auto left = static_cast<double>(i);
-                    const double part = tall * (std::min(left + 1, h.to) - std::max(left, h.from));
-                    const auto value = static_cast<double>(values[j * map.columns + i]);
-                    if (std::isfinite(value)) {
-                        sum += part * value;
-                        weight += part;
-                    } else {
-                        blank += part;
-                    }
-                }
-            }
-            set_pixel(*pixels, column, row, weight > blank ? map_color(shares.share(sum / weight)) : none);
-        }
-    }
-    return {area.left, area.top, area.right, area.bottom, std::move(pixels)};
+MapCells map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
+    const auto place = [](const Axis& axis, double value) {
+        return static_cast<float>(axis.from + (axis.to - axis.from) * axis.share(value));
+    };
+    return {{place(x, map.x_low), place(y, map.y_high), place(x, map.x_high), place(y, map.y_low)},
+            area,
+            std::make_shared<Picture>(cell_picture(map, theme))};
 }
 
 Color none_color(const HeatMap& map, const Theme& theme) {
@@ -176,7 +102,7 @@ float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style
                                         make_bar(map, below_heading(map, height, style), style).width);
 }
 
-void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
+void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list) {
     bar_heading(map, style).draw({std::round(left + 1.2f * style.tick), area.top}, list);
     Area below = area;
     below.top = std::round(area.bottom - below_heading(map, area.height(), style));
@@ -187,7 +113,7 @@ float bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
     return 1.2f * style.tick + make_bar(map, height, style).width;
 }
 
-void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, DisplayList& list) {
+void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list) {
     const Bar bar = make_bar(map, area.height(), style);
     const float em = style.tick, start = std::round(left + 1.2f * em), ticks_left = start + bar.thickness;
     list.push_back(colors(bar, start, area.top, style.scale));

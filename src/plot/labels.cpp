@@ -30,7 +30,7 @@ struct Found {
 };
 
 /// A label; on a map with a dark box behind it.
-void write(const Label& label, bool over_map, DisplayList& list) {
+void write(const Label& label, bool over_map, PageList& list) {
     if (over_map) {
         const Area box = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
         list.push_back(
@@ -142,7 +142,7 @@ LabelText text_for(const Curve& curve, float size, const PlotStyle& style, bool 
 }  // namespace
 
 void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
-                 LabelPlacer& placer, DisplayList& list) {
+                 LabelPlacer& placer, PageList& list) {
     const Area& area = placer.area();
     for (const Rule& rule : rules) {
         if (rule.label.empty()) continue;
@@ -223,7 +223,7 @@ Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>&
 }  // namespace
 
 void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  const LabelPlacer& placer, DisplayList& list) {
+                  const LabelPlacer& placer, PageList& list) {
     constexpr int many = 10;  // curves that leave little room beside each
     const auto& curves = plot.curves;
     const bool over_map = plot.map.has_value();

@@ -53,16 +53,16 @@ std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vecto
                                     const PlotStyle& style, const LabelPlacer& placer);
 
 void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
-                 DisplayList& list);
+                 PageList& list);
 
 /// Writes the rules' labels beside them, where they hide least.
 void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
-                 LabelPlacer& placer, DisplayList& list);
+                 LabelPlacer& placer, PageList& list);
 
 /// Labels the curves: at the line where a label touches nothing, smaller if need be, else in a legend in the emptiest
 /// place; where curves are many, or a legend would cover them, on their lines. Curve i has drawn in `placer` as number i.
 void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  const LabelPlacer& placer, DisplayList& list);
+                  const LabelPlacer& placer, PageList& list);
 
 /// Where the ink of a line of text may be, with the tallest accents and the deepest tails of the font.
 Area text_area(const Label& label);
@@ -88,7 +88,7 @@ struct TextBlock {
     float line_height() const { return 1.36f * size; }
     float height() const { return line_height() * static_cast<float>(lines.size()); }
     /// With its top left corner at `at`.
-    void draw(Point at, DisplayList& list) const;
+    void draw(Point at, PageList& list) const;
 };
 
 /// One line in as much as `width` px: shrunk to three quarters, but not below 9 px, if need be, then broken.

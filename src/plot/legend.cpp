@@ -32,7 +32,7 @@ std::optional<Point> emptiest(float width, float height, float margin, const Lab
 
 /// A short piece of the curve.
 void draw_sample(const Curve& curve, float left, float right, float y, const PlotStyle& style, bool over_map,
-                 DisplayList& list) {
+                 PageList& list) {
     DrawnCurve sample;
     const float middle = (left + right) / 2;
     if (curve.mark != Mark::points) sample.lines.push_back({{left, y}, {right, y}});
@@ -59,7 +59,7 @@ std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vecto
 }
 
 void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
-                 DisplayList& list) {
+                 PageList& list) {
     const auto& [which, box, size] = legend;
     const Color background = over_map ? rgb(0x0b0e13).with_alpha(0.7f) : style.theme.background.with_alpha(0.88f);
     list.push_back(Box{box.left, box.top, box.right, box.bottom, 0.3f * size, background});

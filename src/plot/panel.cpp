@@ -30,7 +30,7 @@ Panel make_panel(const Plot& plot, const PlotRanges& ranges, const Area& area) {
 }
 
 /// Rules, dashed.
-void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, DisplayList& list) {
+void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, PageList& list) {
     for (const Rule& rule : panel.plot.rules) {
         const bool level = rule.orientation == Rule::Orientation::horizontal;
         const double share = (level ? panel.y : panel.x).share(rule.at);
@@ -44,7 +44,7 @@ void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer,
     }
 }
 
-void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, DisplayList& list) {
+void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, PageList& list) {
     const auto& curves = panel.plot.curves;
     const bool over_map = panel.plot.map.has_value();
     std::vector<DrawnCurve> all;
@@ -100,7 +100,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
 }
 
 void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
-                const AxisWords& words, const PlotStyle& style, DisplayList& list) {
+                const AxisWords& words, const PlotStyle& style, PageList& list) {
     Area area{std::round(cell.left + around.left), std::round(cell.top + around.top(style)),
               std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
     Area held = cell;
@@ -114,8 +114,7 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
     if (area.width() < 8 || area.height() < 8) return;
     const Panel panel = make_panel(plot, ranges, area);
     if (plot.map) {
-        list.push_back(map_image(*plot.map, fitted_scale(*plot.map), panel.x, panel.y, area,
-                                 none_color(*plot.map, style.theme), style.scale));
+        list.push_back(map_cells(*plot.map, panel.x, panel.y, area, style.theme));
         const float after =
             plot.right ? 0.55f * style.tick + widest(y_ticks(panel.right, *plot.right, style), style.tick) : 0;
         if (!plot.map->shares_bar) draw_bar(*plot.map, area, area.right + after, style, list);

@@ -2,7 +2,7 @@
 
 #include "image/color.hpp"
 #include "image/picture.hpp"
-#include "render/display_list.hpp"
+#include "plot/page.hpp"
 
 #include <array>
 #include <optional>
@@ -90,7 +90,6 @@ Picture cell_picture(const HeatMap& map, const Theme& theme);
 /// as a picture of half the size, for print. Text of labels is 20 px times `unit` and scale, the rest in proportion; by the
 /// size where it is not given. Text never overlaps: what does not fit is shrunk, moved to the legend or left out (tick
 /// labels).
-DisplayList compose(const Figure& figure, Size size, const Theme& theme, float scale = 1,
-                    std::optional<float> unit = {});
+Page compose(const Figure& figure, Size size, const Theme& theme, float scale = 1, std::optional<float> unit = {});
 
 }  // namespace doppel

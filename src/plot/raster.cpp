@@ -59,31 +59,4 @@ Image scatter_image(const std::vector<Point>& points, float radius, Color color,
     return coverage.image(color, scale);
 }
 
-Image band_image(const Band& band, Color color, const Area& area, float scale) {
-    CoverageRaster coverage(area, scale);
-    for (std::size_t i = 0; i + 1 < band.x.size(); ++i) {
-        const std::size_t a = band.x[i] <= band.x[i + 1] ? i : i + 1, b = 2 * i + 1 - a;
-        const double from = band.x[a] * scale - coverage.left, to = band.x[b] * scale - coverage.left;
-        const double sum = from + to + band.low[a] + band.low[b] + band.high[a] + band.high[b];
-        if (!std::isfinite(sum)) continue;
-        const int end = static_cast<int>(std::min(std::ceil(to - 0.5), static_cast<double>(coverage.size.width)));
-        for (int column = static_cast<int>(std::ceil(std::clamp(from - 0.5, 0.0, 1e9))); column < end; ++column) {
-            // both edges at the middle of the pixel's column
-            const double part = to > from ? (column + 0.5 - from) / (to - from) : 0;
-            const auto edge = [&](const std::vector<double>& y) {
-                const double at = std::lerp(y[a], y[b], part) * scale - coverage.top;
-                return static_cast<float>(std::clamp(at, 0.0, static_cast<double>(coverage.size.height)));
-            };
-            const float low = edge(band.low), high = edge(band.high);
-            const float upper = std::min(low, high), lower = std::max(low, high);
-            for (int row = static_cast<int>(upper);
-                 row < std::min(static_cast<int>(std::ceil(lower)), coverage.size.height); ++row) {
-                const auto pixel = static_cast<float>(row);
-                coverage.cover(column, row, std::min(lower, pixel + 1) - std::max(upper, pixel));
-            }
-        }
-    }
-    return coverage.image(color, scale);
-}
-
 }  // namespace doppel

@@ -120,7 +120,7 @@ float widest(const std::vector<Tick>& ticks, float size) {
     return width;
 }
 
-void TextBlock::draw(Point at, DisplayList& list) const {
+void TextBlock::draw(Point at, PageList& list) const {
     float baseline = at.y + 0.98f * size;
     for (const std::string& line : lines) {
         list.push_back(Label{line, {at.x, baseline}, size, Align::left, weight, color});

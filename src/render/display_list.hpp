@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -102,15 +101,8 @@ inline Label label(std::string text, Point anchor, float size, Color color, Alig
     return {std::move(text), anchor, size, align, weight, color};
 }
 
-/// A picture stretched over a rectangle, whose edges are rounded to whole pixels; nearest neighbour. Lists share the
-/// pixels, which must not change.
-struct Image {
-    float left = 0, top = 0, right = 0, bottom = 0;  // px
-    std::shared_ptr<const Picture> pixels;           // with opacity
-};
-
 /// What to draw, back to front.
-using Item = std::variant<Box, Capsule, Ring, Stroke, Label, Image>;
+using Item = std::variant<Box, Capsule, Ring, Stroke, Label>;
 using DisplayList = std::vector<Item>;
 
 /// A rectangle of a picture, px.

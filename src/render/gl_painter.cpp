@@ -12,12 +12,6 @@ constexpr std::size_t most_quads = 16384;  // of one call: what 16-bit indices r
 constexpr const char* inputs[6] = {"vertex_position", "vertex_frame",    "vertex_shape",
                                    "vertex_params",   "vertex_parabola", "vertex_tint"};
 
-/// The texture that is bound shows its texels as they are.
-void set_crisp() {
-    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-}
-
 /// The corners of a primitive that turns, one after another.
 std::array<Point, 4> outline(const Primitive& primitive) {
     const float room = 0.05f;  // px, so that rounding loses none
@@ -33,10 +27,10 @@ std::array<Point, 4> outline(const Primitive& primitive) {
 
 Painter::Painter(Size size)
     : programs_{Program("quad.vert", "shape.frag", inputs), Program("quad.vert", "glyph.frag", inputs),
-                Program("quad.vert", "mask.frag", inputs), Program("quad.vert", "image.frag", inputs)},
+                Program("quad.vert", "mask.frag", inputs)},
       cover_("quad.vert", "cover.frag", inputs) {
     // the same for good: pixels from the top left, and the corners of each quad make two triangles
-    for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &programs_[3], &cover_}) {
+    for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &cover_}) {
         UseProgram(*program);
         Uniform2f(GetUniformLocation(*program, "picture"), static_cast<float>(size.width),
                   static_cast<float>(size.height));
@@ -67,7 +61,8 @@ Painter::Painter(Size size)
     input(5, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
 
     BindTexture(GL_TEXTURE_2D, atlas_);
-    set_crisp();
+    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     check_errors("the shaders and the buffers of their input");
 }
@@ -87,7 +82,6 @@ void Painter::paint(const RenderList& items, const std::vector<Rect>& regions, c
     }
     upload_vertices();
     upload(atlas);
-    upload(items.images);
     for (std::size_t r = 0; r < used_batches_; ++r) draw(batches_[r]);
 }
 
@@ -98,19 +92,16 @@ void Painter::make_batches(const RenderList& items, const std::vector<Rect>& reg
     for (std::size_t p = 0; p < items.parts.size(); ++p) {
         const RenderList::Part& part = items.parts[p];
         if (std::none_of(regions.begin(), regions.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
-        const Picture* image = items.primitives[part.begin].image;
         std::size_t home = used_batches_;
         for (std::size_t r = used_batches_; r-- > 0;) {
             const bool met = meet(batches_[r].bounds, part.bounds);
             // the masks of two strokes must not mix
-            if (batches_[r].kind == part.kind && batches_[r].image == image && !(met && part.kind == Kind::mask))
-                home = r;
+            if (batches_[r].kind == part.kind && !(met && part.kind == Kind::mask)) home = r;
             if (met || used_batches_ - r > 16) break;
         }
         if (home == used_batches_) {
             if (++used_batches_ > batches_.size()) batches_.emplace_back();
             batches_[home].kind = part.kind;
-            batches_[home].image = image;
             batches_[home].bounds = {};
             batches_[home].parts.clear();
         }
@@ -183,30 +174,6 @@ void Painter::upload(const GlyphAtlas& atlas) {
     atlas_glyphs_ = atlas.count();
 }
 
-void Painter::upload(const std::vector<std::shared_ptr<const Picture>>& images) {
-    std::erase_if(images_, [&](const Loaded& loaded) {
-        return std::find(images.begin(), images.end(), loaded.pixels) == images.end();
-    });
-    GLint most = 0;
-    GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-    for (const auto& pixels : images) {
-        const auto is_it = [&](const Loaded& loaded) { return loaded.pixels == pixels; };
-        if (std::any_of(images_.begin(), images_.end(), is_it)) continue;
-        const Size size = pixels->size;
-        if (size.width > most || size.height > most) {
-            throw io_failed("OpenGL takes images of up to {} px a side; {} × {} px is too large", most, size.width,
-                            size.height);
-        }
-        PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-        images_.push_back({pixels, std::make_unique<Texture>()});
-        BindTexture(GL_TEXTURE_2D, *images_.back().texture);
-        set_crisp();
-        TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                   pixels->rgba.data());
-        check_errors(fmt::format("an image of {} × {} px", size.width, size.height));
-    }
-}
-
 void Painter::draw(const Batch& batch) {
     const auto draw_quads = [&](const Program& program) {
         UseProgram(program);
@@ -217,9 +184,6 @@ void Painter::draw(const Batch& batch) {
         }
     };
     if (batch.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
-    for (const Loaded& loaded : images_) {
-        if (loaded.pixels.get() == batch.image) BindTexture(GL_TEXTURE_2D, *loaded.texture);
-    }
     if (batch.kind == Kind::mask) {
         BlendEquation(GL_MIN);
         ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);

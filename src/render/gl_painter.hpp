@@ -16,8 +16,7 @@ class Painter {
 public:
     explicit Painter(Size size);
 
-    /// Draws the render list within the `regions`, which must not overlap. Throws Error where an image is larger than
-    /// OpenGL takes.
+    /// Draws the render list within the `regions`, which must not overlap.
     void paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas);
 
 private:
@@ -31,15 +30,9 @@ private:
     /// Parts drawn together.
     struct Batch {
         Kind kind;
-        const Picture* image;
         Rect bounds;             // of all its parts
         std::size_t begin, end;  // in quads
         std::vector<std::size_t> parts;
-    };
-    /// An image among OpenGL's textures.
-    struct Loaded {
-        std::shared_ptr<const Picture> pixels;
-        std::unique_ptr<Texture> texture;
     };
 
     void make_batches(const RenderList& items, const std::vector<Rect>& regions);
@@ -47,17 +40,15 @@ private:
     void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);
-    void upload(const std::vector<std::shared_ptr<const Picture>>& images);
     void draw(const Batch& batch);
 
-    std::array<Program, 4> programs_;  // by kind
+    std::array<Program, 3> programs_;  // by kind
     Program cover_;
     VertexArray vertex_array_;
     Buffer vertex_buffer_, index_buffer_;
     std::size_t vertex_room_ = 0;  // in the buffer, bytes
     Texture atlas_;
     std::size_t atlas_glyphs_ = 0;
-    std::vector<Loaded> images_;
     std::vector<Vertex> vertices_;
     std::vector<Point> outline_, clipped_;  // of what is added
     std::vector<Batch> batches_;            // kept for their memory; those in use come first

@@ -107,20 +107,6 @@ public:
         }
     }
 
-    void operator()(const Image& image) {
-        const Point corner{std::round(image.left), std::round(image.top)};
-        const Point end{std::round(image.right), std::round(image.bottom)};
-        if (!(end.x > corner.x && end.y > corner.y) || !image.pixels || image.pixels->rgba.empty()) return;
-        const Size texels = image.pixels->size;
-        begin(Kind::image);
-        add({.origin = corner,
-             .shape = {static_cast<float>(texels.width) / (end.x - corner.x),
-                       static_cast<float>(texels.height) / (end.y - corner.y)},
-             .image = image.pixels.get()},
-            corner, end);
-        made_.images.push_back(image.pixels);
-    }
-
 private:
     /// A piece of a stroke.
     struct Segment {
@@ -199,14 +185,13 @@ private:
 bool operator==(const Primitive& a, const Primitive& b) {
     return a.origin.x == b.origin.x && a.origin.y == b.origin.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
            a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.params == b.params &&
-           a.parabola == b.parabola && a.tint == b.tint && a.image == b.image;
+           a.parabola == b.parabola && a.tint == b.tint;
 }
 
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made) {
     made.parts.clear();
     made.primitives.clear();
     made.bounds.clear();
-    made.images.clear();
     RenderListMaker maker(size, atlas, made);
     for (const Item& item : list) std::visit(maker, item);
 }

@@ -17,12 +17,11 @@ struct Primitive {
     std::array<float, 4> params{};       // likewise
     std::array<float, 2> parabola{};     // likewise
     std::array<std::uint8_t, 4> tint{};  // sRGB and opacity
-    const Picture* image = nullptr;      // one of RenderList::images
     friend bool operator==(const Primitive&, const Primitive&);
 };
 
 /// The fragment shaders. `mask` takes a second pass: the shader `cover` blends the stroke's colour through the mask.
-enum class Kind { shape, glyph, mask, image };
+enum class Kind { shape, glyph, mask };
 
 /// A display list as primitives with bounds in whole pixels, part by part from back to front.
 struct RenderList {
@@ -33,8 +32,7 @@ struct RenderList {
     };
     std::vector<Part> parts;
     std::vector<Primitive> primitives;
-    std::vector<Rect> bounds;                            // the pixels that each primitive touches, within the picture
-    std::vector<std::shared_ptr<const Picture>> images;  // kept, so that none can take the place of another in memory
+    std::vector<Rect> bounds;  // the pixels that each primitive touches, within the picture
 };
 
 /// `made` ← the render list of `list`, in the memory it has. An invisible item adds an empty part, or none.

@@ -5,9 +5,9 @@
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 #include "output/formats.hpp"
+#include "plot/page.hpp"
 #include "render/typeface.hpp"
 #include "scene/field.hpp"
-#include "vector/page.hpp"
 
 #include <algorithm>
 #include <array>

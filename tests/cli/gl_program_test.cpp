@@ -20,9 +20,6 @@ using test::with;
 
 const std::vector<std::string> film{"--set", "scene.duration_s=0.1", "--size", "160x90", "--format",
                                     "png",   "--progress",           "none"};
-const std::vector<std::string> chart{"--set",  "grid.x.to=9", "--set",      "scene.duration_s=0.5",
-                                     "--size", "320x180",     "--progress", "none"};
-
 /// What drew, by the manifest of OUT/NAME/.
 std::string drawn_by(const fs::path& out, const std::string& name) {
     const auto manifest = nlohmann::json::parse(bytes_of(out / name / (name + ".json")));
@@ -51,20 +48,7 @@ TEST(GlProgram, DrawsFilmsWithTheLibraryAskedFor) {
     EXPECT_EQ(doppel(folder, {"compare", "osmesa/butterfly/frames", "egl/butterfly/frames"}).code, 0);
 }
 
-TEST(GlProgram, DrawsFiguresWithTheLibraryAskedFor) {
-    const auto folder = fresh_folder();
-    for (const std::string out : {"osmesa", "egl"}) {
-        const auto gl = out == "egl" ? out : test::name_of_osmesa_or_egl();
-        const auto result = doppel(folder, with({"figure", "fig2-right", "--gl", gl, "-o", out}, chart));
-        ASSERT_EQ(result.code, 0) << result.err;
-        EXPECT_EQ(result.err, "");
-    }
-    EXPECT_EQ(drawn_by(folder / "osmesa", "fig2-right").rfind(test::library_of_osmesa_or_egl() + ", ", 0), 0u);
-    EXPECT_EQ(drawn_by(folder / "egl", "fig2-right").rfind("EGL, ", 0), 0u);
-    EXPECT_EQ(doppel(folder, {"compare", "osmesa/fig2-right/fig2-right.png", "egl/fig2-right/fig2-right.png"}).code, 0);
-}
-
-TEST(GlProgram, NeedsNoLibraryWhereNothingIsDrawn) {
+TEST(GlProgram, NeedsNoLibraryForAnythingButFilms) {
     const auto folder = fresh_folder();
     const auto path = spoil(folder, with(osmesa_files, egl_files));
     const auto spoilt = [&] { setenv("LD_LIBRARY_PATH", path.c_str(), 1); };
@@ -74,7 +58,7 @@ TEST(GlProgram, NeedsNoLibraryWhereNothingIsDrawn) {
              {"list"},
              {"check", "calm"},
              {"simulate", "calm", "--set", "scene.duration_s=1", "--progress", "none"},
-             {"figure", "fig2-right", "--set", "grid.x.to=9", "--shard", "1/2", "--progress", "none"}}) {
+             {"figure", "fig2-right", "--set", "grid.x.to=9", "--progress", "none"}}) {
         const auto result = doppel(folder, command, spoilt);
         EXPECT_EQ(result.code, 0) << command[0] << ": " << result.err;
         EXPECT_EQ(result.err, "");
@@ -97,8 +81,7 @@ TEST(GlProgram, ExitsWith4WhereNothingCanDraw) {
     const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases{
         {with({"render", "butterfly"}, film), {"OSMesa cannot draw", "libosmesa6", "EGL cannot draw", "libegl-mesa0"}},
         {with({"render", "butterfly", "--gl", "osmesa"}, film), {"OSMesa cannot draw", "libOSMesa.so.8: "}},
-        {with({"render", "butterfly", "--gl", "egl"}, film), {"doppel: EGL cannot draw", "libEGL.so.1: "}},
-        {with({"figure", "fig2-right", "--gl", "egl"}, chart), {"doppel: EGL cannot draw", "libEGL.so.1: "}}};
+        {with({"render", "butterfly", "--gl", "egl"}, film), {"doppel: EGL cannot draw", "libEGL.so.1: "}}};
     for (const auto& [command, all_words] : cases) {
         const auto result = doppel(folder, command, spoilt);
         EXPECT_EQ(result.code, 4) << result.err;

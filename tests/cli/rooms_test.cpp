@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 // Who may include whom: dependencies run one way.
 //     base ← numeric ← physics ← integrate ← analysis, track ┐
 //     base ← image ← render ← plot ←─────────────────────────┼─ scene ← film ← figure, fit ← cli ← main
-//     base ← image ← output ← vector (and render) ←──────────┘
+//     base ← image ← output ─────────────────────────────────┘
 const std::map<std::string, std::set<std::string>> needs{
     {"base", {}},
     {"numeric", {"base"}},
@@ -27,21 +27,18 @@ const std::map<std::string, std::set<std::string>> needs{
     {"render", {"image", "base"}},
     {"plot", {"render", "image", "base"}},
     {"output", {"image", "base"}},
-    {"vector", {"output", "render", "image", "base"}},
-    {"scene",
-     {"analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image", "base"}},
+    {"scene", {"analysis", "track", "integrate", "physics", "numeric", "output", "plot", "render", "image", "base"}},
     {"film",
-     {"scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render", "image",
-      "base"}},
+     {"scene", "analysis", "track", "integrate", "physics", "numeric", "output", "plot", "render", "image", "base"}},
     {"figure",
-     {"film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render",
-      "image", "base"}},
+     {"film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "plot", "render", "image",
+      "base"}},
     {"fit",
-     {"film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector", "plot", "render",
-      "image", "base"}},
+     {"film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "plot", "render", "image",
+      "base"}},
     {"cli",
-     {"figure", "fit", "film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "vector",
-      "plot", "render", "image", "base"}},
+     {"figure", "fit", "film", "scene", "analysis", "track", "integrate", "physics", "numeric", "output", "plot",
+      "render", "image", "base"}},
 };
 
 /// Calls visit(file, room or system header) for every include in src.

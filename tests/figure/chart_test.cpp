@@ -15,7 +15,7 @@ using test::bytes_of;
 using test::expect_error;
 using test::fresh_folder;
 
-std::string picture_of(const FigurePreset& figure, const std::string& ending) {
+std::string file_of(const FigurePreset& figure, const std::string& ending) {
     const auto out = fresh_folder();
     const auto result = run_figure(figure, {.out = out});
     EXPECT_EQ(names_in(out / "fig2-right"),
@@ -24,8 +24,7 @@ std::string picture_of(const FigurePreset& figure, const std::string& ending) {
 }
 
 TEST(Chart, APdfIsAsWideAsThePaperAsksFor) {
-    const auto pdf =
-        picture_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6", "chart.height_cm=6"}), ".pdf");
+    const auto pdf = file_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6", "chart.height_cm=6"}), ".pdf");
     EXPECT_TRUE(pdf.starts_with("%PDF-"));
     const auto layout = layout_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6"}).chart);
     EXPECT_NEAR(layout.width_pt, 8.6 / 2.54 * 72, 1e-9);
@@ -34,14 +33,14 @@ TEST(Chart, APdfIsAsWideAsThePaperAsksFor) {
 }
 
 TEST(Chart, AnSvgIsWrittenWithoutOpenGl) {
-    const auto svg = picture_of(small_sweep({"chart.format=\"svg\""}), ".svg");
+    const auto svg = file_of(small_sweep({"chart.format=\"svg\""}), ".svg");
     EXPECT_NE(svg.find("How far twins part"), std::string::npos);
     EXPECT_NE(svg.find("width=\"240pt\" height=\"135pt\""), std::string::npos);  // 320 × 180 px of 3/4 pt
 }
 
 TEST(Chart, APngOnPaperHasItsDotsAnInch) {
     const auto figure = small_sweep({"chart.width_cm=8.6", "chart.dpi=600"});
-    const auto png = picture_of(figure, ".png");
+    const auto png = file_of(figure, ".png");
     const auto at = png.find("pHYs");
     ASSERT_NE(at, std::string::npos);
     const auto number = [&](std::size_t from) {
@@ -59,7 +58,8 @@ TEST(Chart, APngOnPaperHasItsDotsAnInch) {
 
 std::vector<std::string> labels_of(const FigurePreset& figure) {
     std::vector<std::string> labels;
-    for (const auto& item : compose_figure(figure, computed(figure)))
+    const auto page = compose_figure(figure, computed(figure));
+    for (const auto& item : page.items)
         if (const auto* text = std::get_if<Label>(&item)) labels.push_back(text->text);
     return labels;
 }

@@ -27,8 +27,7 @@ TEST_P(GoldenFigure, IsAsItWas) {
     auto arguments = GetParam().sets;
     arguments.insert(arguments.end(), {"chart.size=[960, 540]", "chart.scale=0.5"});
     const auto figure = figure_of(GetParam().preset, arguments);
-    Renderer renderer(layout_of(figure.chart).picture);
-    test::expect_golden(GetParam().name, renderer.draw(compose_figure(figure, computed(figure))));
+    test::expect_golden(GetParam().name, picture_of(compose_figure(figure, computed(figure))));
 }
 
 INSTANTIATE_TEST_SUITE_P(

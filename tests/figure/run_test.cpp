@@ -47,7 +47,7 @@ TEST(FigureRun, ManifestTellsWhatTheFigureIs) {
     EXPECT_EQ(manifest["resolved_preset"]["grid"]["x"]["to"], 9);
     EXPECT_EQ(manifest["resolved_preset"]["a"]["integrator"], "euler");
     EXPECT_FALSE(manifest["doppel"]["version"].get<std::string>().empty());
-    EXPECT_FALSE(manifest["libraries"]["gl"].get<std::string>().empty());
+    EXPECT_FALSE(manifest["libraries"]["drawing"].get<std::string>().empty());
 
     const Table table(table_text(figure, computed(figure)));
     double least = table.rows[0][1], most = least;

@@ -183,8 +183,7 @@ TEST(GoldenFigureOfStability, IsAsItWas) {
                                 "stability.duration_s=2", "stability.step_from_s=0.01", "stability.step_to_s=0.7",
                                 "stability.methods=[\"euler\", \"semi-implicit-euler\", \"rk4\", \"rattle6\"]",
                                 "chart.size=[960, 540]", "chart.scale=0.5"});
-    Renderer renderer(layout_of(figure.chart).picture);
-    test::expect_golden("figure-stability", renderer.draw(compose_figure(figure, computed(figure))));
+    test::expect_golden("figure-stability", picture_of(compose_figure(figure, computed(figure))));
 }
 
 }  // namespace stability_test

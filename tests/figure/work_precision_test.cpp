@@ -196,8 +196,7 @@ TEST(GoldenFigureWorkPrecision, IsAsItWas) {
                   {by_evaluations, "work_precision.problems=[\"P1\", \"P3\"]", "work_precision.most_evaluations=20000",
                    "work_precision.least_error=1e-6", "work_precision.models=[\"angles\", \"constraints\"]",
                    "chart.size=[960, 540]", "chart.scale=0.5"});
-    Renderer renderer(layout_of(figure.chart).picture);
-    test::expect_golden("figure-work-precision", renderer.draw(compose_figure(figure, computed(figure))));
+    test::expect_golden("figure-work-precision", picture_of(compose_figure(figure, computed(figure))));
 }
 
 TEST(WorkPrecision, IsTheSameForAnyNumberOfThreads) {

@@ -50,7 +50,7 @@ TEST(Still, IsAlsoAPageOfPathsAndText) {
     for (int time = 0; time < 2; ++time) {  // the second in place of the first
         const auto svg = still(small(), {1, 1}, out, PictureFormat::svg);
         EXPECT_EQ(svg.filename(), "butterfly.1s.svg");
-        EXPECT_NE(test::bytes_of(svg).find("Three thousandths of a degree</text>"), std::string::npos);
+        EXPECT_NE(test::bytes_of(svg).find("<title>Three thousandths of a degree</title>"), std::string::npos);
         const auto pdf = still(small(), {1, 1}, out, PictureFormat::pdf);
         EXPECT_TRUE(test::bytes_of(pdf).starts_with("%PDF-"));
     }

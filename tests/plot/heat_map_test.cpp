@@ -15,33 +15,47 @@ HeatMap strip(std::vector<float> values) {
     return {.columns = values.size(), .rows = 1, .values = values, .label = "an error", .low = 0, .high = 1};
 }
 
-/// Whether the map's uppermost row has that colour `x` px from its left edge.
-void expect_color(const Image& image, int x, const Color& color) {
-    const int column = x * image.pixels->size.width / static_cast<int>(image.right - image.left);
-    EXPECT_TRUE(is_color(image.pixels->at(column, 0), color, 1)) << x;
-}
-
-/// 90 px wide, over an axis of 1 to 1000. A map of all of it has a pixel a cell.
-Image drawn(const HeatMap& map, bool logarithmic) {
-    const Axis x{.low = 1, .high = 1000, .from = 0, .to = 90, .logarithmic = logarithmic};
-    const Axis y{.low = 0, .high = 1, .from = 10, .to = 0};
-    return map_image(map, {.low = 0, .high = 1}, x, y, {0, 0, 90, 10}, rgb(0xff0000), 1);
+/// 90 px wide, over an axis of 1 to 1000 or the reverse, and what lies 5 px around it.
+Picture drawn(const HeatMap& map, bool logarithmic, bool reversed) {
+    Axis x{.low = 1, .high = 1000, .from = 5, .to = 95, .logarithmic = logarithmic};
+    if (reversed) std::swap(x.low, x.high);
+    const Axis y{.low = 0, .high = 1, .from = 15, .to = 5};
+    return picture_of({.size = {100, 20},
+                       .items = {filled({100, 20}, rgb(0xffffff)), map_cells(map, x, y, {5, 5, 95, 15}, themes[1])}});
 }
 
 TEST(HeatMap, HasCellsThatAreEvenOnTheirAxes) {
     auto map = strip({0, 0.5, 1});
     map.x_low = 1, map.x_high = 1000;
-    for (const bool logarithmic : {false, true}) {
-        const auto image = drawn(map, logarithmic);
-        for (const int cell : {0, 1, 2})
-            for (const int x : {30 * cell, 30 * cell + 29}) expect_color(image, x, map_color(0.5 * cell));
-    }
-    // one that covers the middle decade alone
+    const auto expect_color = [](const Picture& picture, int x, const Color& color) {
+        EXPECT_TRUE(is_color(picture.at(x + 5, 10), color, 1)) << x;
+    };
+    for (const bool logarithmic : {false, true})
+        for (const bool reversed : {false, true}) {
+            const auto picture = drawn(map, logarithmic, reversed);
+            for (const int cell : {0, 1, 2})
+                for (const int x : {30 * cell, 30 * cell + 29})
+                    expect_color(picture, reversed ? 89 - x : x, map_color(0.5 * cell));
+            for (const int outside : {-1, 90}) expect_color(picture, outside, rgb(0xffffff));
+        }
+    // one that covers the middle decade alone, and one that is cut off
     map.x_low = 10, map.x_high = 100;
-    const auto image = drawn(map, true);
-    for (const int x : {30, 39, 40, 49, 50, 59}) expect_color(image, x, map_color(0.5 * ((x - 30) / 10)));
-    EXPECT_EQ(image.pixels->at(29, 0)[3], 0);
-    EXPECT_EQ(image.pixels->at(60, 0)[3], 0);
+    auto picture = drawn(map, true, false);
+    for (const int x : {30, 39, 40, 49, 50, 59}) expect_color(picture, x, map_color(0.5 * ((x - 30) / 10)));
+    for (const int outside : {29, 60}) expect_color(picture, outside, rgb(0xffffff));
+    map.x_low = 1e-3, map.x_high = 1e3;
+    picture = drawn(map, true, false);
+    for (const int x : {0, 29, 30, 89}) expect_color(picture, x, map_color(x < 30 ? 0.5 : 1));
+    expect_color(picture, -1, rgb(0xffffff));
+}
+
+TEST(HeatMap, ShowsTheMeanWhereCellsAreSmallerThanPixels) {
+    auto map = strip({});
+    for (int i = 0; i < 2000; ++i) map.values.push_back(i % 2 ? 1.0f : 0.2f);
+    map.columns = 2000, map.x_low = 1, map.x_high = 1000;
+    const auto picture = drawn(map, true, false);
+    for (int x = 7; x < 93; ++x)
+        EXPECT_NEAR(picture.at(x, 10)[1], 255 * (map_color(0.2).g + map_color(1).g) / 2, 12) << x;
 }
 
 TEST(HeatMap, ShowsWhatIsBadInItsColor) {
@@ -55,13 +69,12 @@ TEST(HeatMap, ShowsWhatIsBadInItsColor) {
     map.none_label = "blow-up";
     Figure figure{.panels = {{.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map}}};
     int swatches = 0, cells = 0;
-    for (const auto& item : compose(figure, {800, 450}, themes[1])) {
+    for (const auto& item : composed(figure, {800, 450}, themes[1])) {
         if (const auto* box = std::get_if<Box>(&item)) swatches += box->color == themes[1].bad;
-        if (const auto* image = std::get_if<Image>(&item))
-            if (image->right - image->left > 100) {
-                expect_color(*image, static_cast<int>(image->right - image->left) - 2, themes[1].bad);
-                ++cells;
-            }
+        if (const auto* map_cells = std::get_if<MapCells>(&item)) {
+            EXPECT_TRUE(is_color(map_cells->pixels->at(1, 0), themes[1].bad, 1));
+            ++cells;
+        }
     }
     EXPECT_EQ(swatches, 1);
     EXPECT_EQ(cells, 1);
@@ -76,16 +89,13 @@ TEST(HeatMap, SharesItsBar) {
         figure.panels.assign(4, {.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map});
         int bars = 0;
         float right = 0, panels_right = 0, bar_left = 1e9f;
-        const auto list = compose(figure, {1600, 900}, themes[1]);
+        const auto list = composed(figure, {1600, 900}, themes[1]);
         for (const auto& item : list) {
-            const auto* image = std::get_if<Image>(&item);
-            if (!image) continue;
-            right = std::max(right, image->right);
-            if (image->right - image->left < 40) {
+            if (const auto* bar = std::get_if<Image>(&item)) {
                 ++bars;
-                bar_left = std::min(bar_left, image->left);
-            } else {
-                panels_right = std::max(panels_right, image->right);
+                bar_left = std::min(bar_left, bar->left), right = std::max(right, bar->right);
+            } else if (const auto* panel = std::get_if<MapCells>(&item)) {
+                panels_right = std::max(panels_right, panel->within.right);
             }
         }
         auto words = words_in(list);

@@ -39,18 +39,17 @@ Figure four_maps(bool shares_axes, bool split) {
 }
 
 /// Of the four maps, px².
-std::vector<float> areas(const DisplayList& list) {
+std::vector<float> areas(const PageList& list) {
     std::vector<float> all;
-    constexpr float bar = 60;  // wider than the bar
-    for (const Item& item : list)
-        if (const auto* image = std::get_if<Image>(&item); image && image->right - image->left > bar)
-            all.push_back((image->right - image->left) * (image->bottom - image->top));
+    for (const PageItem& item : list)
+        if (const auto* cells = std::get_if<MapCells>(&item))
+            all.push_back(cells->within.width() * cells->within.height());
     return all;
 }
 
 TEST(Plot, SharedAxesHaveTheirWordsOnce) {
-    const auto apart = compose(four_maps(false, false), size, light);
-    const auto shared = compose(four_maps(true, false), size, light);
+    const auto apart = composed(four_maps(false, false), size, light);
+    const auto shared = composed(four_maps(true, false), size, light);
     EXPECT_EQ(words_in(apart)["step, s"], 4);
     EXPECT_EQ(words_in(apart)["angle, °"], 4);
     EXPECT_EQ(words_in(apart)["90"], 4);
@@ -65,22 +64,22 @@ TEST(Plot, SharedAxesHaveTheirWordsOnce) {
 }
 
 TEST(Plot, AxesThatDifferAreNotShared) {
-    auto words = words_in(compose(four_maps(true, true), size, light));
+    auto words = words_in(composed(four_maps(true, true), size, light));
     EXPECT_EQ(words["step, s"], 2);
     EXPECT_EQ(words["tolerance"], 2);
     EXPECT_EQ(words["50"], 2);
     EXPECT_EQ(words["angle, °"], 1);
     auto figure = four_maps(true, false);
     figure.panels[1].y.high = 90;
-    words = words_in(compose(figure, size, light));
+    words = words_in(composed(figure, size, light));
     EXPECT_EQ(words["angle, °"], 2);  // of the first, and of the one beside it
 }
 
 TEST(Plot, ANoteStandsBesideTheTitleWhereThereIsRoom) {
-    EXPECT_EQ(words_in(compose(four_maps(true, false), size, light))["17 s"], 4);
+    EXPECT_EQ(words_in(composed(four_maps(true, false), size, light))["17 s"], 4);
     auto figure = four_maps(true, false);
     for (auto& plot : figure.panels) plot.title = "a title of a panel that leaves a note no room beside it";
-    const auto words = words_in(compose(figure, size, light));
+    const auto words = words_in(composed(figure, size, light));
     EXPECT_EQ(words.count("17 s"), 0u);
     EXPECT_EQ(words.count(figure.panels[0].title), 1u);
 }
@@ -92,11 +91,11 @@ float line_width(std::size_t points) {
         curve.x.push_back(static_cast<double>(i));
         curve.y.push_back(static_cast<double>(i % 7));
     }
-    const auto list = compose({.panels = {{.curves = {curve}}}}, {1600, 900}, light);
-    const Stroke* longest = nullptr;
-    for (const Item& item : list)
-        if (const auto* stroke = std::get_if<Stroke>(&item))
-            if (!longest || stroke->vertices.size() > longest->vertices.size()) longest = stroke;
+    const auto list = composed({.panels = {{.curves = {curve}}}}, {1600, 900}, light);
+    const Polylines* longest = nullptr;
+    for (const PageItem& item : list)
+        if (const auto* stroke = std::get_if<Polylines>(&item))
+            if (!longest || stroke->lines[0].size() > longest->lines[0].size()) longest = stroke;
     return longest->width;
 }
 

@@ -30,14 +30,14 @@ Figure level_line(Background background) {
 
 TEST(Plot, AGroundIsPaleAndHasNoWords) {
     const auto pale = [](Color color, float share) { return mixed(light.background, color, share); };
-    Renderer renderer(size);
-    const auto band = compose(level_line(Background::band), size, light);
+    const auto band = composed(level_line(Background::band), size, light);
     EXPECT_EQ(words_in(band).count("background"), 0u);
     // 6 lines wide over some 90 % of the width: 6 × 3.2 × 5/9 px of 500
-    EXPECT_NEAR(share_of(renderer.draw(band), pale(light.open, 0.22f)), 0.9 * 6 * 3.2 * 5 / 9 / 500, 0.005);
-    const auto line = compose(level_line(Background::line), size, light);
+    EXPECT_NEAR(share_of(picture(level_line(Background::band), size, light), pale(light.open, 0.22f)),
+                0.9 * 6 * 3.2 * 5 / 9 / 500, 0.005);
+    const auto line = composed(level_line(Background::line), size, light);
     EXPECT_EQ(words_in(line).count("background"), 0u);
-    const double thin = share_of(renderer.draw(line), pale(light.palette[0], 0.3f));
+    const double thin = share_of(picture(level_line(Background::line), size, light), pale(light.palette[0], 0.3f));
     EXPECT_GT(thin, 0.0005);
     EXPECT_LT(thin, 0.003);
 }
@@ -55,10 +55,10 @@ Figure fan(int count) {
 
 TEST(Plot, WordsOfManyCurvesStandUponThem) {
     constexpr int count = 16;
-    const auto list = compose(fan(count), size, light);
+    const auto list = composed(fan(count), size, light);
     const auto words = words_in(list);
     std::vector<const Label*> labels;
-    for (const Item& item : list)
+    for (const PageItem& item : list)
         if (const auto* label = std::get_if<Label>(&item); label && label->text.starts_with("method "))
             labels.push_back(label);
     ASSERT_EQ(labels.size(), static_cast<std::size_t>(count));
@@ -71,9 +71,9 @@ TEST(Plot, AMarkAmongManyCurvesIsLedTo) {
     auto& curves = figure.panels[0].curves;
     figure.panels[0].y.high = 2;
     curves.insert(curves.begin(), {.label = "where the others stand", .x = {5}, .y = {0.9}, .mark = Mark::points});
-    const auto list = compose(figure, size, light);
+    const auto list = composed(figure, size, light);
     EXPECT_EQ(words_in(list).count("where the others stand"), 1u);
-    const auto thin = std::count_if(list.begin(), list.end(), [](const Item& item) {
+    const auto thin = std::count_if(list.begin(), list.end(), [](const PageItem& item) {
         const auto* capsule = std::get_if<Capsule>(&item);
         return capsule && capsule->from.y != capsule->to.y && capsule->from.x == capsule->to.x &&
                capsule->radius <= 0.5f;

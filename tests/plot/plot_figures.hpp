@@ -128,10 +128,17 @@ inline std::vector<Figure> all_figures() {
             sections(5), sections(6),   crowded(),  twins(),   extremes(),  {}};
 }
 
+inline PageList composed(const Figure& figure, Size size, const Theme& theme) {
+    return compose(figure, size, theme).items;
+}
+inline Picture picture(const Figure& figure, Size size, const Theme& theme) {
+    return picture_of(compose(figure, size, theme));
+}
+
 /// How often each text stands in a list.
-inline std::map<std::string, int> words_in(const DisplayList& list) {
+inline std::map<std::string, int> words_in(const PageList& list) {
     std::map<std::string, int> counts;
-    for (const Item& item : list)
+    for (const PageItem& item : list)
         if (const auto* label = std::get_if<Label>(&item)) ++counts[label->text];
     return counts;
 }

@@ -1,5 +1,5 @@
 #include "image/color.hpp"
-#include "plot/plot.hpp"
+#include "plot/plot_figures.hpp"
 #include "render/pixels.hpp"
 
 #include <gtest/gtest.h>
@@ -29,10 +29,10 @@ Figure with_curves(std::vector<Curve> curves) {
     return {.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .curves = std::move(curves)}}};
 }
 
-/// Where the panel lies: its first image.
-Image area_of(const DisplayList& list) {
-    for (const Item& item : list)
-        if (const auto* image = std::get_if<Image>(&item)) return *image;
+/// Where the panel of a map lies.
+Area area_of(const PageList& list) {
+    for (const PageItem& item : list)
+        if (const auto* cells = std::get_if<MapCells>(&item)) return cells->within;
     return {};
 }
 
@@ -43,36 +43,19 @@ void expect_color(const Picture& picture, float x, float y, Color color, int tol
 }
 
 TEST(Plot, MapCellsHaveTheirColours) {
-    const DisplayList list = compose(bare_map(7, 5), size, light);
-    Renderer renderer(size);
-    const Picture& picture = renderer.draw(list);
-    const Image area = area_of(list);
+    const PageList list = composed(bare_map(7, 5), size, light);
+    const Picture drawn = picture(bare_map(7, 5), size, light);
+    const Area area = area_of(list);
     ASSERT_GT(area.right - area.left, 200);
     for (int row = 0; row < 5; ++row)
         for (int column = 0; column < 7; ++column)
-            expect_color(picture, std::lerp(area.left, area.right, (static_cast<float>(column) + 0.5f) / 7),
+            expect_color(drawn, std::lerp(area.left, area.right, (static_cast<float>(column) + 0.5f) / 7),
                          std::lerp(area.bottom, area.top, (static_cast<float>(row) + 0.5f) / 5),
                          map_color((row * 7 + column) % 11 / 10.0));
     // and what has no value the colour for that
-    const DisplayList none = compose(bare_map(3, 3, true), size, dark);
-    const Image where = area_of(none);
-    expect_color(renderer.draw(none), where.left + 50, where.top + 50, dark.none);
-}
-
-TEST(Plot, SmallMapCellsAreAveraged) {
-    Figure figure = bare_map(4000, 3);
-    for (std::size_t i = 0; i < figure.panels[0].map->values.size(); ++i)
-        figure.panels[0].map->values[i] = i % 2 ? 1.0f : 0.2f;
-    const DisplayList list = compose(figure, size, light);
-    const Image area = area_of(list);
-    const Picture& pixels = *area.pixels;
-    EXPECT_EQ(pixels.size.width, static_cast<int>(area.right - area.left));
-    EXPECT_EQ(pixels.size.height, 3);  // down, they are larger than pixels
-    for (int x = 0; x < pixels.size.width; ++x) {
-        // some 12 cells a pixel: the mean, 0.6, within half a cell's weight
-        EXPECT_GT(pixels.at(x, 1)[1], 255 * map_color(0.56).g);
-        EXPECT_LT(pixels.at(x, 1)[1], 255 * map_color(0.64).g);
-    }
+    const PageList none = composed(bare_map(3, 3, true), size, dark);
+    const Area where = area_of(none);
+    expect_color(picture(bare_map(3, 3, true), size, dark), where.left + 50, where.top + 50, dark.none);
 }
 
 TEST(Plot, ACurvePassesWhereItsValuesAre) {
@@ -80,17 +63,15 @@ TEST(Plot, ACurvePassesWhereItsValuesAre) {
         Figure figure = bare_map(1, 1, true);
         Plot& plot = figure.panels[0];
         if (logarithmic) plot.y = {.low = 1e-4, .high = 1, .logarithmic = true}, plot.map->y_low = 1e-4;
-        const Image area = area_of(compose(figure, size, light));
+        const Area area = area_of(composed(figure, size, light));
         plot.curves = {
             {.x = {0, 10}, .y = logarithmic ? std::vector{1e-4, 1.0} : std::vector{0.0, 1.0}, .quiet = true}};
-        Renderer renderer(size);
-        const Picture& picture = renderer.draw(compose(figure, size, light));
+        const Picture drawn = picture(figure, size, light);
         // on either axis a straight line from corner to corner; over a map quiet is white
         for (const float part : {0.1f, 0.35f, 0.5f, 0.81f})
-            expect_color(picture, std::lerp(area.left, area.right, part), std::lerp(area.bottom, area.top, part),
+            expect_color(drawn, std::lerp(area.left, area.right, part), std::lerp(area.bottom, area.top, part),
                          rgb(0xffffff), 40);
-        expect_color(picture, std::lerp(area.left, area.right, 0.2f), std::lerp(area.top, area.bottom, 0.2f),
-                     light.none);
+        expect_color(drawn, std::lerp(area.left, area.right, 0.2f), std::lerp(area.top, area.bottom, 0.2f), light.none);
     }
 }
 
@@ -99,22 +80,23 @@ struct Reach {
 };
 
 /// How far all strokes in a colour reach, px.
-Reach reach(const DisplayList& list, Color color) {
+Reach reach(const PageList& list, Color color) {
     Reach all;
-    for (const Item& item : list) {
-        const auto* stroke = std::get_if<Stroke>(&item);
+    for (const PageItem& item : list) {
+        const auto* stroke = std::get_if<Polylines>(&item);
         if (!stroke || !(stroke->color == color)) continue;
-        for (const auto& vertex : stroke->vertices) {
-            all.left = std::min(all.left, vertex.at.x), all.right = std::max(all.right, vertex.at.x);
-            all.top = std::min(all.top, vertex.at.y), all.bottom = std::max(all.bottom, vertex.at.y);
-        }
+        for (const auto& line : stroke->lines)
+            for (const Point at : line) {
+                all.left = std::min(all.left, at.x), all.right = std::max(all.right, at.x);
+                all.top = std::min(all.top, at.y), all.bottom = std::max(all.bottom, at.y);
+            }
     }
     return all;
 }
 
 TEST(Plot, CurvesAreCutAtThePanel) {
     Figure figure = bare_map(1, 1, true);
-    const Image area = area_of(compose(figure, size, light));
+    const Area area = area_of(composed(figure, size, light));
     Curve wild{.hue = 3};
     std::mt19937 random(5);
     for (int i = 0; i < 2000; ++i) {
@@ -122,7 +104,7 @@ TEST(Plot, CurvesAreCutAtThePanel) {
         wild.y.push_back(std::pow(10, std::normal_distribution<double>(0, 60)(random)));
     }
     figure.panels[0].curves = {wild};
-    const Reach held = reach(compose(figure, size, light), dark.palette[3]);
+    const Reach held = reach(composed(figure, size, light), dark.palette[3]);
     EXPECT_GE(held.left, area.left - 0.01f);
     EXPECT_GE(held.top, area.top - 0.01f);
     EXPECT_LE(held.right, area.right + 0.01f);
@@ -131,7 +113,7 @@ TEST(Plot, CurvesAreCutAtThePanel) {
 
     // in by the bottom after a third of the way, out by the top after two
     figure.panels[0].curves = {{.x = {0, 10}, .y = {-1, 2}, .hue = 3}};
-    const Reach cut = reach(compose(figure, size, light), dark.palette[3]);
+    const Reach cut = reach(composed(figure, size, light), dark.palette[3]);
     EXPECT_NEAR(cut.left, std::lerp(area.left, area.right, 1 / 3.0f), 0.01f);
     EXPECT_NEAR(cut.right, std::lerp(area.left, area.right, 2 / 3.0f), 0.01f);
 }
@@ -156,13 +138,13 @@ TEST(Plot, ManyPointsAreThinnedWithoutATrace) {
         }
         sparse.panels[0].curves.push_back(piece);
     }
-    const DisplayList list = compose(dense, size, light);
+    const PageList list = composed(dense, size, light);
     std::size_t vertices = 0;
-    for (const Item& item : list)
-        if (const auto* stroke = std::get_if<Stroke>(&item)) vertices += stroke->vertices.size();
+    for (const PageItem& item : list)
+        if (const auto* stroke = std::get_if<Polylines>(&item))
+            for (const auto& line : stroke->lines) vertices += line.size();
     EXPECT_LT(vertices, 8u * 400 + 10);
-    Renderer a(size), b(size);
-    const Picture thin = a.draw(list), full = b.draw(compose(sparse, size, light));
+    const Picture thin = picture(dense, size, light), full = picture(sparse, size, light);
     int differ = 0;
     for (std::size_t i = 0; i < thin.rgba.size(); ++i) differ += std::abs(thin.rgba[i] - full.rgba[i]) > 60;
     EXPECT_LT(differ, 60);  // channels by more than 60 of 255, of 480 000; measured 16
@@ -171,26 +153,26 @@ TEST(Plot, ManyPointsAreThinnedWithoutATrace) {
 TEST(Plot, WhatIsNoNumberInterruptsTheLine) {
     auto figure = with_curves({{.x = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .y = {.1, .1, -1, .1, .1, std::nan(""), .1, 0, .1}}});
     figure.panels[0].y = {.low = 1e-3, .high = 1, .logarithmic = true};
-    int strokes_up = 0, dots = 0;
-    for (const Item& item : compose(figure, size, light)) {
+    std::size_t pieces = 0;
+    int dots = 0;
+    for (const PageItem& item : composed(figure, size, light)) {
         if (std::holds_alternative<Capsule>(item)) ++dots;
-        const auto* stroke = std::get_if<Stroke>(&item);
-        if (!stroke) continue;
-        strokes_up += static_cast<int>(std::count_if(stroke->vertices.begin(), stroke->vertices.end(),
-                                                     [](const auto& v) { return v.alpha == 0; }));
+        if (const auto* lines = std::get_if<Polylines>(&item)) pieces += lines->lines.size();
     }
-    EXPECT_EQ(strokes_up, 2 + 1) << "two pieces: up, down, up";
+    EXPECT_EQ(pieces, 2u);
     EXPECT_EQ(dots, 2) << "what stands alone between gaps shows as a dot";
 }
 
 TEST(Plot, ABandIsTintedBetweenItsEdges) {
-    const Image band = area_of(
-        compose(with_curves({{.x = {0, 10}, .y = {0.5, 0.5}, .uncertainty = {0.25, 0.25}, .hue = 1}}), size, light));
-    ASSERT_TRUE(band.pixels);
-    const Picture& pixels = *band.pixels;
-    const int x = pixels.size.width / 2, h = pixels.size.height;
-    for (const int inside : {h / 4 + 2, h / 2, h * 3 / 4 - 2}) EXPECT_NEAR(pixels.at(x, inside)[3], 51, 1) << inside;
-    for (const int outside : {h / 4 - 2, h * 3 / 4 + 2}) EXPECT_EQ(pixels.at(x, outside)[3], 0) << outside;
+    auto figure = with_curves({{.x = {-5, 15}, .y = {0.5, 0.5}, .uncertainty = {0.25, 0.25}, .hue = 1}});
+    const Area area = area_of(composed(bare_map(1, 1), size, light));
+    const auto drawn = picture(figure, size, light);
+    const auto at = [&](float share) { return std::lerp(area.bottom, area.top, share); };
+    const float x = std::lerp(area.left, area.right, 0.53f);  // on no line of the grid
+    const Color tinted = mixed(light.background, light.palette[1], 0.2f);
+    for (const float inside : {0.27f, 0.46f, 0.73f}) expect_color(drawn, x, at(inside), tinted, 2);
+    for (const float outside : {0.23f, 0.77f}) expect_color(drawn, x, at(outside), light.background, 2);
+    expect_color(drawn, area.right + 3, at(0.46f), light.background, 2);  // cut at the panel
 }
 
 }  // namespace plot_pixels_test

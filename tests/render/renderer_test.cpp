@@ -54,16 +54,10 @@ private:
         for (Point* end : {&capsule.from, &capsule.to}) *end = {end->x + x, end->y + y};
     }
 
-    std::shared_ptr<const Picture> pixels() {
-        auto made = std::make_shared<Picture>(Size{9, 7});
-        for (std::uint8_t& value : made->rgba) value = static_cast<std::uint8_t>(random_());
-        return made;
-    }
-
     Item item() {
         const Point a = point(), b = point();
         const float glow = chance(0.4f) ? between(0, 25) : 0;
-        switch (random_() % 7) {
+        switch (random_() % 6) {
             case 0:
                 return Box{a.x, a.y, a.x + between(0, 90), a.y + between(0, 90), between(0, 20), color()};
             case 1:
@@ -76,8 +70,6 @@ private:
                 return stroke;
             }
             case 4:
-                return Image{a.x, a.y, a.x + between(0, 120), a.y + between(0, 120), pixels()};
-            case 5:
                 // long and slanting: damaged in bands, and cut where they end
                 return Capsule{{between(-900, 0), a.y}, {between(320, 1200), b.y}, between(0.3f, 8), color(), glow};
             default: {
