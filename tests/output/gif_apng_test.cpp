@@ -1,6 +1,5 @@
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
-#include "output/gif.hpp"
 #include "output/sink.hpp"
 
 #include <malloc.h>
@@ -216,33 +215,6 @@ TEST(Apng, FramesTimesAndWordsAreExact) {
     });
     EXPECT_EQ(video.times.size(), 6u);
     EXPECT_EQ(video.metadata.at("software"), "doppel 1");
-}
-
-TEST(Spool, GivesBackWhatWasWrittenAndHasNoName) {
-    const auto folder = fresh_folder();
-    {
-        Spool spool(folder / "x.gif");
-        SampledAreas frame;
-        for (unsigned k = 0; k < 6; ++k) {
-            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, AV_PIX_FMT_RGBA, frame);
-            spool.write(frame);
-        }
-        EXPECT_EQ(spool.frames(), 6);
-        spool.rewind();
-        SampledAreas expected;
-        for (unsigned k = 0; k < 6; ++k) {
-            convert(noise({33, 21}, k), {{0, 0, 33, int(k)}, {2, 3, 9, 20}}, AV_PIX_FMT_RGBA, expected);
-            spool.read(frame);
-            ASSERT_EQ(frame.areas, expected.areas);
-            std::size_t bytes = 0;
-            for (const Rect& area : frame.areas) bytes += byte_count(AV_PIX_FMT_RGBA, area);
-            EXPECT_TRUE(std::equal(frame.bytes.data(), frame.bytes.data() + bytes, expected.bytes.data()));
-        }
-        expect_error(ExitCode::io_failed, {"x.gif", "cannot be read"}, [&] { spool.read(frame); });
-        EXPECT_TRUE(fs::is_empty(folder));
-    }
-    const fs::path none = "/none/x.gif";
-    expect_error(ExitCode::io_failed, {"/none/x.gif", "No such file"}, [&] { Spool{none}; });
 }
 
 }  // namespace gif_apng_test
