@@ -170,7 +170,7 @@ std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> p
 
 int png_threads(int jobs, Size size) {
     // a thread's queued rows, its current ones, the compressed ones, and the file, with room to grow
-    const std::size_t bytes = 5 * byte_count(AV_PIX_FMT_RGBA, all_of(size));
+    const std::size_t bytes = std::size_t{5} * 4 * static_cast<std::size_t>(size.width) * size.height;
     return static_cast<int>(affordable(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }
 
