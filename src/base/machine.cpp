@@ -25,25 +25,11 @@ std::vector<double> numbers_in(const fs::path& file) {
     return numbers;
 }
 
-int cores_of(double quota, double period, int cores) {
-    if (!(quota > 0 && period > 0)) return cores;
-    return static_cast<int>(std::clamp(std::ceil(quota / period), 1.0, static_cast<double>(cores)));
-}
-
-std::uintmax_t least(std::uintmax_t memory, double limit) {
-    return limit < static_cast<double>(memory) ? static_cast<std::uintmax_t>(limit) : memory;
-}
-
 int cores_by_mask() {
     // the kernel tells how large its masks are only by refusing smaller ones
-    for (int most = 1024; most <= 1 << 20; most *= 2) {
-        cpu_set_t* const mask = CPU_ALLOC(most);
-        if (!mask) break;
-        const std::size_t size = CPU_ALLOC_SIZE(most);
-        const int count = sched_getaffinity(0, size, mask) == 0 ? CPU_COUNT_S(size, mask) : 0;
-        CPU_FREE(mask);
-        if (count > 0) return count;
-    }
+    for (std::size_t sets = 1; sets <= 1024; sets *= 2)
+        if (std::vector<cpu_set_t> mask(sets); sched_getaffinity(0, sets * sizeof(cpu_set_t), mask.data()) == 0)
+            return CPU_COUNT_S(sets * sizeof(cpu_set_t), mask.data());
     return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
@@ -69,10 +55,12 @@ Machine within_control_groups(Machine machine, const fs::path& root) {
     // a group has its own limits and those of all around it; of one out of sight ("/..") only the top can be seen
     const bool is_seen = line.starts_with("0::/") && line.find("/..") == std::string::npos;
     for (auto folder = is_seen ? top / line.substr(4) : top;; folder = folder.parent_path()) {
-        if (const auto quota = numbers_in(folder / "cpu.max"); quota.size() == 2)
-            machine.cores = cores_of(quota[0], quota[1], machine.cores);
-        if (const auto limit = numbers_in(folder / "memory.max"); !limit.empty())
-            machine.memory = least(machine.memory, limit[0]);
+        const auto quota = numbers_in(folder / "cpu.max"), limit = numbers_in(folder / "memory.max");
+        if (quota.size() == 2 && quota[0] > 0 && quota[1] > 0)
+            machine.cores =
+                static_cast<int>(std::clamp(std::ceil(quota[0] / quota[1]), 1.0, static_cast<double>(machine.cores)));
+        if (!limit.empty() && limit[0] < static_cast<double>(machine.memory))
+            machine.memory = static_cast<std::uintmax_t>(limit[0]);
         if (folder == top || folder == folder.parent_path()) return machine;
     }
 }

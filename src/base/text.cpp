@@ -13,21 +13,16 @@ namespace {
 constexpr char32_t replacement = 0xfffd;
 constexpr std::string_view replacement_utf8 = "\xef\xbf\xbd";
 
-/// Of the first character: its bytes, 0 where it is not well-formed; `character` ← which it is.
-std::size_t length_of_first(std::string_view text, char32_t& character) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned first = byte(0);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-    character = length <= 1 ? first : first & (0x7fu >> length);
-    bool well_formed = length > 0 && first < 0xf5 && text.size() >= length;
-    for (std::size_t i = 1; well_formed && i < length; ++i) {
-        well_formed = (byte(i) & 0xc0u) == 0x80;
-        character = character << 6 | (byte(i) & 0x3fu);
+/// The text where replace(character) gives nothing, else what it gives.
+template <class Replace>
+std::string replaced(std::string_view text, const Replace& replace) {
+    std::string result;
+    while (!text.empty()) {
+        const auto before = text;
+        const std::optional<std::string_view> other = replace(next_character(text));
+        result += other ? *other : before.substr(0, before.size() - text.size());
     }
-    // neither longer than need be, nor half a surrogate pair, nor past the end of Unicode
-    well_formed = well_formed && !(length == 3 && (character < 0x800 || (character >> 11) == 0x1b)) &&
-                  !(length == 4 && (character < 0x10000 || character > 0x10ffff));
-    return well_formed ? length : 0;
+    return result;
 }
 
 /// Letters to add, drop or change to get from one to the other (Levenshtein 1965).
@@ -48,17 +43,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 char32_t next_character(std::string_view& text) {
-    char32_t character = 0;
-    const auto length = length_of_first(text, character);
-    text.remove_prefix(length > 0 ? length : 1);
-    return length > 0 ? character : replacement;
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(0);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    char32_t character = length <= 1 ? first : first & (0x7fu >> length);
+    bool well_formed = length > 0 && first < 0xf5 && text.size() >= length;
+    for (std::size_t i = 1; well_formed && i < length; ++i) {
+        well_formed = (byte(i) & 0xc0u) == 0x80;
+        character = character << 6 | (byte(i) & 0x3fu);
+    }
+    // neither longer than need be, nor half a surrogate pair, nor past the end of Unicode
+    well_formed = well_formed && !(length == 3 && (character < 0x800 || (character >> 11) == 0x1b)) &&
+                  !(length == 4 && (character < 0x10000 || character > 0x10ffff));
+    text.remove_prefix(well_formed ? length : 1);
+    return well_formed ? character : replacement;
 }
 
 bool is_utf8(std::string_view text) {
-    for (char32_t character = 0; !text.empty();) {
-        const auto length = length_of_first(text, character);
-        if (length == 0) return false;
-        text.remove_prefix(length);
+    while (!text.empty()) {
+        const auto before = text.size();
+        if (next_character(text) == replacement && before - text.size() == 1) return false;
     }
     return true;
 }
@@ -70,50 +74,23 @@ bool is_control(char32_t c) {
 }
 
 std::string on_one_line(std::string_view text) {
-    std::string line;
-    for (char32_t character = 0; !text.empty();) {
-        const auto length = length_of_first(text, character);
-        if (length == 0)
-            line += replacement_utf8;
-        else if (is_control(character))
-            line += ' ';
-        else
-            line += text.substr(0, length);
-        text.remove_prefix(length > 0 ? length : 1);
-    }
-    return line;
+    return replaced(text, [](char32_t character) -> std::optional<std::string_view> {
+        if (is_control(character)) return " ";
+        if (character == replacement) return replacement_utf8;  // of a byte, too
+        return std::nullopt;
+    });
 }
 
 std::string markup(std::string_view text) {
-    const std::string line = on_one_line(text);
-    std::string result;
-    for (std::string_view rest = line; !rest.empty();) {
-        const auto before = rest;
-        switch (const char32_t character = next_character(rest)) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            case '\'':
-                result += "&#39;";
-                break;
-            default:
-                // XML 1.0, 2.2: neither U+FFFE nor U+FFFF
-                if ((character & 0xfffe) == 0xfffe)
-                    result += "\xef\xbf\xbd";
-                else
-                    result += before.substr(0, before.size() - rest.size());
-        }
-    }
-    return result;
+    return replaced(on_one_line(text), [](char32_t character) -> std::optional<std::string_view> {
+        if (character == '&') return "&amp;";
+        if (character == '<') return "&lt;";
+        if (character == '>') return "&gt;";
+        if (character == '"') return "&quot;";
+        if (character == '\'') return "&#39;";
+        if ((character & 0xfffe) == 0xfffe) return replacement_utf8;  // XML 1.0, 2.2: neither U+FFFE nor U+FFFF
+        return std::nullopt;
+    });
 }
 
 std::string in_script(std::string json) {

@@ -86,11 +86,10 @@ std::string residual_sentence(const FitResult& result) {
             "Residuals look like noise of {:.2g} rad: neighbours are not correlated ({:.2f} and {:.2f}).", rms,
             u.neighbour[0], u.neighbour[1]);
     const double noise = std::max(result.track.noise[0], result.track.noise[1]);
-    const auto why = rms > 2 * noise ? fmt::format(
-                                           "from sample to sample the angles scatter by {:.1g} rad only, so it is "
-                                           "the model that errs",
-                                           noise)
-                                     : std::string("the measurement's own noise may be so");
+    std::string why = "the measurement's own noise may be so";
+    if (rms > 2 * noise)
+        why = fmt::format("from sample to sample the angles scatter by {:.1g} rad only, so it is the model that errs",
+                          noise);
     return fmt::format(
         "Residuals of {:.2g} rad are not noise: they keep their sign for some {:.2g} s; {}. Standard errors allow "
         "for it ({:.2g} times those of white noise).",

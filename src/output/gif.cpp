@@ -23,13 +23,6 @@ extern "C" {
 namespace doppel {
 namespace {
 
-/// A new file that has no name any more: closing it frees it.
-Stream unnamed_file(const std::filesystem::path& path) {
-    auto file = create_file(path);
-    std::filesystem::remove(path);
-    return file;
-}
-
 /// What libdeflate and libavfilter allocate is null only where memory is out.
 template <class T>
 T* checked(T* thing) {
@@ -95,9 +88,76 @@ private:
     const std::unique_ptr<AVFilterGraph, Free> graph_;
 };
 
-/// A frame in the spool begins with this; its areas and their compressed bytes follow.
-struct FrameHeader {
-    std::size_t areas, packed;
+/// A film's frames on the disk between two passes over them: what changed in each, RGBA, compressed. The file has no
+/// name and goes with the spool. All throw Error (exit 4) with the path and the reason.
+class Spool {
+public:
+    /// On the file system where the file `film` is.
+    explicit Spool(const std::filesystem::path& film)
+        : path_(film.string()),
+          file_(create_file(path_ + ".spool")),
+          compressor_(checked(libdeflate_alloc_compressor(1))),
+          decompressor_(checked(libdeflate_alloc_decompressor())) {
+        std::filesystem::remove(path_ + ".spool");
+    }
+
+    void write(const SampledAreas& frame) {
+        const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas),
+                          bound = libdeflate_deflate_compress_bound(compressor_.get(), size);
+        std::uint8_t* packed = packed_.make_room(bound);
+        const Header header{frame.areas.size(),
+                            libdeflate_deflate_compress(compressor_.get(), frame.bytes.data(), size, packed, bound)};
+        put(&header, sizeof header);
+        put(frame.areas.data(), frame.areas.size() * sizeof(Rect));
+        put(packed, header.packed);
+        ++frames_;
+    }
+
+    /// No write follows; the next read gives the first frame.
+    void rewind() {
+        if (std::fflush(file_.get()) != 0) fail("cannot be written");
+        if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail("cannot be read");
+    }
+
+    /// The next frame, in the order of writing.
+    void read(SampledAreas& frame) {
+        Header header{};
+        get(&header, sizeof header);
+        frame.areas.resize(header.areas);
+        get(frame.areas.data(), header.areas * sizeof(Rect));
+        std::uint8_t* packed = packed_.make_room(header.packed);
+        get(packed, header.packed);
+        const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas);
+        if (libdeflate_deflate_decompress(decompressor_.get(), packed, header.packed, frame.bytes.make_room(size), size,
+                                          nullptr) != LIBDEFLATE_SUCCESS)
+            fail("is damaged");
+    }
+
+    long frames() const { return frames_; }
+
+private:
+    /// A frame begins with this; its areas and their compressed bytes follow.
+    struct Header {
+        std::size_t areas, packed;
+    };
+
+    void put(const void* bytes, std::size_t count) {
+        if (count > 0 && std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
+    }
+    void get(void* bytes, std::size_t count) {
+        if (count > 0 && std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
+    }
+    [[noreturn]] void fail(const char* what) const {
+        throw Error(code_of_errno(errno), fmt::format("{}: its frames on the disk: {}: {}", path_, what,
+                                                      std::generic_category().message(errno)));
+    }
+
+    const std::string path_;
+    Stream file_;
+    Owned<libdeflate_compressor, libdeflate_free_compressor> compressor_;
+    Owned<libdeflate_decompressor, libdeflate_free_decompressor> decompressor_;
+    Buffer packed_;
+    long frames_ = 0;
 };
 
 /// RGBA → opaque BGRA.
@@ -201,55 +261,6 @@ private:
 };
 
 }  // namespace
-
-Spool::Spool(const std::filesystem::path& film)
-    : path_(film),
-      file_(unnamed_file(film.string() + ".spool")),
-      compressor_(checked(libdeflate_alloc_compressor(1))),
-      decompressor_(checked(libdeflate_alloc_decompressor())) {}
-
-void Spool::write(const SampledAreas& frame) {
-    const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas),
-                      bound = libdeflate_deflate_compress_bound(compressor_.get(), size);
-    std::uint8_t* packed = packed_.make_room(bound);
-    const FrameHeader header{frame.areas.size(),
-                             libdeflate_deflate_compress(compressor_.get(), frame.bytes.data(), size, packed, bound)};
-    put(&header, sizeof header);
-    put(frame.areas.data(), frame.areas.size() * sizeof(Rect));
-    put(packed, header.packed);
-    ++frames_;
-}
-
-void Spool::rewind() {
-    if (std::fflush(file_.get()) != 0) fail("cannot be written");
-    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail("cannot be read");
-}
-
-void Spool::read(SampledAreas& frame) {
-    FrameHeader header{};
-    get(&header, sizeof header);
-    frame.areas.resize(header.areas);
-    get(frame.areas.data(), header.areas * sizeof(Rect));
-    std::uint8_t* packed = packed_.make_room(header.packed);
-    get(packed, header.packed);
-    const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas);
-    if (libdeflate_deflate_decompress(decompressor_.get(), packed, header.packed, frame.bytes.make_room(size), size,
-                                      nullptr) != LIBDEFLATE_SUCCESS)
-        fail("is damaged");
-}
-
-void Spool::put(const void* bytes, std::size_t count) {
-    if (count > 0 && std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
-}
-
-void Spool::get(void* bytes, std::size_t count) {
-    if (count > 0 && std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
-}
-
-void Spool::fail(const char* what) const {
-    throw Error(code_of_errno(errno), fmt::format("{}: its frames on the disk: {}: {}", path_.string(), what,
-                                                  std::generic_category().message(errno)));
-}
 
 void check_gif_filters() {
     filter_library();

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
+#include "output/files.hpp"
 #include "output/sink.hpp"
 
 extern "C" {
@@ -29,11 +30,16 @@ Libav<T> owned(T* thing) {
     return Libav<T>(thing);
 }
 
-Libav<AVFormatContext> open_format(const char* container) {
+/// A muxer and its file, which is new: libav itself would follow a link there.
+Libav<AVFormatContext> open_format(const std::filesystem::path& place, const char* container) {
     capture_libav_log();
+    create_file(place);
+    const auto address = "file:" + place.string();
     AVFormatContext* format = nullptr;
-    avformat_alloc_output_context2(&format, nullptr, container, "film");
-    return owned(format);
+    avformat_alloc_output_context2(&format, nullptr, container, address.c_str());
+    auto muxer = owned(format);
+    check_libav(avio_open(&muxer->pb, address.c_str(), AVIO_FLAG_WRITE), place.string(), "cannot be written");
+    return muxer;
 }
 
 bool has_chroma(AVPixelFormat pixels) {
@@ -128,11 +134,9 @@ Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const st
     : path_(place.string()),
       encoding_(std::move(encoding)),
       stop_(stop),
-      file_(place),
-      format_(open_format(encoding_.container)),
+      format_(open_format(place, encoding_.container)),
       packet_(owned(av_packet_alloc())) {
     for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
-    file_.attach(*format_);
     frame_ = make_frame(encoding_.size, encoding_.pixels);
 }
 
@@ -209,7 +213,7 @@ void Encoder::finish(std::string_view ending, int replaced) {
         check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -replaced, SEEK_CUR), 0)), "cannot seek");
         avio_write(format_->pb, reinterpret_cast<const unsigned char*>(ending.data()), static_cast<int>(ending.size()));
     }
-    check(file_.close(), "cannot be written");
+    check(avio_closep(&format_->pb), "cannot be written");
 }
 
 void Encoder::check(int result, std::string_view what) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/files.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"
 
@@ -24,30 +23,13 @@ void capture_libav_log();
 /// Takes the last error message of this thread, one line; empty where there is none.
 std::string take_libav_error();
 
-/// The output file of a muxer, opened by create_file(): libav itself would follow links.
-class LibavFile {
-public:
-    /// Throws Error (exit 4).
-    explicit LibavFile(const std::filesystem::path& place) : file_(create_file(place)) {}
-    ~LibavFile();
-    LibavFile(const LibavFile&) = delete;
-    LibavFile& operator=(const LibavFile&) = delete;
-
-    /// The muxer, which this outlives, writes here, and reads here where it reopens its file (to move an MP4's index to
-    /// the front).
-    void attach(AVFormatContext& format);
-
-    /// Flushes and closes. Returns libav's error code, 0 for success.
-    int close();
-
-private:
-    Stream file_;
-    AVIOContext* writer_ = nullptr;
-};
-
 /// Frees what libav allocated.
 struct LibavFree {
-    void operator()(AVFormatContext* format) const { avformat_free_context(format); }
+    void operator()(AVFormatContext* format) const {
+        auto* file = format->pb;
+        avformat_free_context(format);
+        avio_closep(&file);
+    }
     void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
     void operator()(AVFrame* frame) const { av_frame_free(&frame); }
     void operator()(AVPacket* packet) const { av_packet_free(&packet); }
@@ -117,8 +99,7 @@ private:
     const std::string path_;
     Encoding encoding_;
     const std::atomic<bool>& stop_;
-    LibavFile file_;
-    Libav<AVFormatContext> format_;
+    Libav<AVFormatContext> format_;  // and its file
     Libav<AVCodecContext> codec_;
     Libav<AVFrame> frame_;
     Libav<AVPacket> packet_;

@@ -3,89 +3,16 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/text.hpp"
-#include "output/files.hpp"
 #include "output/samples.hpp"
 #include "output/workers.hpp"
 
 #include <libdeflate.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <functional>
+#include <limits>
 #include <optional>
-#include <string>
 #include <string_view>
-
-namespace doppel {
-namespace {
-
-/// A thread's memory for stb_image_write, which allocates the same few blocks of megabytes for each picture: malloc
-/// would return them to the system each time, and page faults would cost a third of the work.
-class Arena {
-public:
-    /// The first free block, enlarged where it is too small. Null where memory is out.
-    void* take(std::size_t size) {
-        const auto block = std::ranges::find(blocks_, false, &Block::taken);
-        if (block == blocks_.end()) return nullptr;
-        if (block->size < size) {
-            block->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
-            block->size = block->bytes ? size : 0;
-        }
-        block->taken = block->bytes != nullptr;
-        return block->bytes.get();
-    }
-
-    void give_back(const void* bytes) {
-        for (Block& block : blocks_)
-            if (block.bytes.get() == bytes) block.taken = false;
-    }
-
-private:
-    struct Block {
-        Owned<std::byte, std::free> bytes;
-        std::size_t size = 0;
-        bool taken = false;
-    };
-    std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed rows, the file
-};
-
-thread_local Arena arena;
-
-/// zlib's format through libdeflate, as stb_image_write asks for it: a block of the arena's, or null.
-unsigned char* compress(unsigned char* data, int length, int* compressed_length, int /*quality*/) {
-    // the others take 1.8 times as long for a file 2 to 5 % smaller: see tests/output/png_test.cpp
-    constexpr int level = 1;
-    thread_local const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor(
-        libdeflate_alloc_compressor(level));
-    if (!compressor) return nullptr;
-    const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), std::size_t(length));
-    auto* compressed = static_cast<unsigned char*>(arena.take(bound));
-    if (!compressed) return nullptr;
-    *compressed_length =
-        static_cast<int>(libdeflate_zlib_compress(compressor.get(), data, std::size_t(length), compressed, bound));
-    return compressed;
-}
-
-}  // namespace
-}  // namespace doppel
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBIW_ZLIB_COMPRESS doppel::compress
-#define STBIW_MALLOC(size) doppel::arena.take(size)
-#define STBIW_REALLOC(block, size) (std::abort(), nullptr)  // asked for only by its own compressor
-#define STBIW_FREE(block) doppel::arena.give_back(block)
-#include <stb_image_write.h>
-#pragma GCC diagnostic pop
 
 namespace doppel {
 namespace {
@@ -98,10 +25,10 @@ std::string big_endian(std::uint32_t number) {
     return bytes;
 }
 
-std::string chunk(std::string_view type, std::string_view content) {
-    const std::string checked = std::string(type).append(content);
-    return big_endian(static_cast<std::uint32_t>(content.size())) + checked +
-           big_endian(libdeflate_crc32(0, checked.data(), checked.size()));
+void add_chunk(std::string& png, std::string_view type, std::string_view content) {
+    const auto sum = libdeflate_crc32(0, type.data(), type.size());
+    png.append(big_endian(static_cast<std::uint32_t>(content.size()))).append(type).append(content);
+    png += big_endian(libdeflate_crc32(sum, content.data(), content.size()));
 }
 
 std::string keyword(const std::string& key) {
@@ -122,28 +49,49 @@ std::optional<std::string> latin1(std::string_view text) {
     return result;
 }
 
-// flat colours compress best unfiltered; any filter takes 1.7 times as long for a larger file
-[[maybe_unused]] const int no_filter = stbi_write_force_png_filter = 0;
-
-AVPixelFormat pixels_of(const PngOptions& options) {
-    return options.with_alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
+/// Of a row with the number of its filter before it.
+std::size_t row_bytes(Size size, const PngOptions& options) {
+    return 1 + (options.with_alpha ? std::size_t{4} : std::size_t{3}) * static_cast<std::size_t>(size.width);
 }
 
-/// A file's text chunks follow its signature and header.
-constexpr std::size_t header_bytes = 8 + 25;
+/// The rows of a picture, unfiltered: flat colours compress best so; any filter takes 1.7 times as long for a larger
+/// file.
+void put_rows(const Picture& picture, const PngOptions& options, Buffer& rows) {
+    const auto [width, height] = picture.size;
+    const auto format = options.with_alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
+    const std::size_t bytes = row_bytes(picture.size, options);
+    std::uint8_t* row = rows.make_room(bytes * static_cast<std::size_t>(height));
+    for (int y = 0; y < height; ++y, row += bytes) {
+        row[0] = 0;
+        convert(picture, {0, y, width, y + 1}, format, row + 1);
+    }
+}
 
-/// The bytes of the file; `samples` are the picture's in the format pixels_of(). `path` is for messages.
-std::string encoded(const std::filesystem::path& path, Size size, const std::uint8_t* samples,
-                    const PngOptions& options, const std::string& text_chunks) {
-    const int channels = options.with_alpha ? 4 : 3;
-    int count = 0;
-    auto* const bytes =
-        stbi_write_png_to_mem(samples, channels * size.width, size.width, size.height, channels, &count);
-    if (!bytes)
+/// The bytes of the file of a picture's rows. `path` is for messages.
+std::string encoded(const std::filesystem::path& path, Size size, const Buffer& rows, const PngOptions& options) {
+    // other levels take 1.8 times as long for a file 2 to 5 % smaller: see tests/output/png_test.cpp
+    constexpr int level = 1;
+    thread_local const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor(
+        libdeflate_alloc_compressor(level));
+    thread_local Buffer compressed;
+    const std::size_t bytes = row_bytes(size, options) * static_cast<std::size_t>(size.height);
+    if (!compressor || bytes > std::numeric_limits<std::int32_t>::max())
         throw io_failed("{}: a picture of {}x{} px cannot be compressed", path.string(), size.width, size.height);
-    std::string png(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
-    arena.give_back(bytes);
-    return png.insert(header_bytes, text_chunks);
+    const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), bytes);
+    auto* const data = compressed.make_room(bound);
+    const auto count = libdeflate_zlib_compress(compressor.get(), rows.data(), bytes, data, bound);
+    std::string png = "\x89PNG\r\n\x1a\n";
+    add_chunk(png, "IHDR",
+              big_endian(static_cast<std::uint32_t>(size.width)) + big_endian(static_cast<std::uint32_t>(size.height)) +
+                  '\x8' + (options.with_alpha ? '\x6' : '\x2') + std::string(3, '\0'));
+    png += png_text_chunks(options.metadata);
+    if (options.dpi > 0) {  // 11.3.5.3, the size of a pixel
+        const auto per_m = big_endian(static_cast<std::uint32_t>(std::lround(options.dpi / 0.0254)));
+        add_chunk(png, "pHYs", per_m + per_m + '\1');  // the unit is the metre
+    }
+    add_chunk(png, "IDAT", {reinterpret_cast<const char*>(data), count});
+    add_chunk(png, "IEND", "");
+    return png;
 }
 
 class PngSink final : public Sink {
@@ -153,14 +101,11 @@ public:
         : place_of_(std::move(place_of)),
           options_(std::move(options)),
           stop_(stop),
-          text_chunks_(png_text_chunks(options_.metadata)),
           writers_(threads, threads, [this](Job& job) { write(job); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& /*changed*/) override {
         Job job{place_of_(taken_++), picture.size, spare_.take()};
-        const Rect all = all_of(picture.size);
-        const AVPixelFormat format = pixels_of(options_);
-        convert(picture, all, format, job.bytes.make_room(byte_count(format, all)));
+        put_rows(picture, options_, job.rows);
         writers_.give(std::move(job));
     }
 
@@ -170,19 +115,18 @@ private:
     struct Job {
         std::filesystem::path place;
         Size size;
-        Buffer bytes;
+        Buffer rows;
     };
 
     void write(Job& job) {
         throw_if_set(stop_);
-        write_file(job.place, encoded(job.place, job.size, job.bytes.data(), options_, text_chunks_));
-        spare_.give_back(std::move(job.bytes));
+        write_file(job.place, encoded(job.place, job.size, job.rows, options_));
+        spare_.give_back(std::move(job.rows));
     }
 
     const std::function<std::filesystem::path(long)> place_of_;
     const PngOptions options_;
     const std::atomic<bool>& stop_;
-    const std::string text_chunks_;
     long taken_ = 0;
     Pool<Buffer> spare_;
     Workers<Job> writers_;
@@ -196,39 +140,26 @@ std::string png_text_chunks(const Metadata& metadata) {
     std::string chunks;
     for (const auto& [key, text] : metadata) {
         const std::string start = keyword(key) + '\0';
-        const auto short_text = latin1(text);
-        chunks += short_text ? chunk("tEXt", start + *short_text) : chunk("iTXt", start + std::string(4, '\0') + text);
+        if (const auto short_text = latin1(text))
+            add_chunk(chunks, "tEXt", start + *short_text);
+        else
+            add_chunk(chunks, "iTXt", start + std::string(4, '\0') + text);
     }
     return chunks;
-}
-
-/// Text chunks and, 11.3.5.3, the size of a pixel.
-static std::string chunks_of(const PngOptions& options) {
-    auto chunks = png_text_chunks(options.metadata);
-    if (options.dpi > 0) {
-        const auto per_m = big_endian(static_cast<std::uint32_t>(std::lround(options.dpi / 0.0254)));
-        chunks += chunk("pHYs", per_m + per_m + '\1');  // the unit is the metre
-    }
-    return chunks;
-}
-
-/// Not yet compressed.
-static Buffer samples_of(const Picture& picture, const PngOptions& options) {
-    const Rect all = all_of(picture.size);
-    Buffer samples;
-    convert(picture, all, pixels_of(options), samples.make_room(byte_count(pixels_of(options), all)));
-    return samples;
 }
 
 void write_png(const std::filesystem::path& place, const Picture& picture, const PngOptions& options,
                const std::atomic<bool>& stop) {
-    const auto samples = samples_of(picture, options);
+    Buffer rows;
+    put_rows(picture, options, rows);
     throw_if_set(stop);
-    write_file(place, encoded(place, picture.size, samples.data(), options, chunks_of(options)));
+    write_file(place, encoded(place, picture.size, rows, options));
 }
 
 std::string png_bytes(const Picture& picture, const PngOptions& options) {
-    return encoded("a PNG", picture.size, samples_of(picture, options).data(), options, chunks_of(options));
+    Buffer rows;
+    put_rows(picture, options, rows);
+    return encoded("a PNG", picture.size, rows, options);
 }
 
 std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> place_of, int threads,
@@ -238,8 +169,8 @@ std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> p
 }
 
 int png_threads(int jobs, Size size) {
-    // a thread's queued picture, its current one, filtered rows, compressed rows, and the file
-    const std::size_t bytes = 5 * byte_count(AV_PIX_FMT_RGBA, all_of(size));
+    // a thread's queued rows, its current ones, the compressed ones, and the file, with room to grow
+    const std::size_t bytes = std::size_t{5} * 4 * static_cast<std::size_t>(size.width) * size.height;
     return static_cast<int>(affordable(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }
 

@@ -25,26 +25,15 @@ bool has_halved_chroma(AVPixelFormat format) {
     return av_pix_fmt_desc_get(format)->log2_chroma_w > 0;
 }
 
-/// Planes to be filled row by row, in bytes.
+/// Planes to be filled row by row.
 struct Target {
     std::array<std::uint8_t*, 4> plane{};
-    std::array<std::size_t, 4> stride{};
+    std::array<int, 4> stride{};  // bytes
     template <class Sample = std::uint8_t>
-    Sample* row(int k, int number) const {
-        return reinterpret_cast<Sample*>(plane[std::size_t(k)] + stride[std::size_t(k)] * std::size_t(number));
+    Sample* row(std::size_t k, int number) const {
+        return reinterpret_cast<Sample*>(plane[k] + std::ptrdiff_t{stride[k]} * number);
     }
 };
-
-Target target(const Rect& area, AVPixelFormat format, std::uint8_t* to) {
-    Target result;
-    for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {
-        const PlaneArea p = plane_area(format, k, area);
-        result.plane[std::size_t(k)] = to;
-        result.stride[std::size_t(k)] = std::size_t(p.row_bytes);
-        to += std::size_t(p.row_bytes) * p.rows;
-    }
-    return result;
-}
 
 static_assert(std::endian::native == std::endian::little, "a pixel is read as one word, red in its lowest byte");
 
@@ -164,12 +153,8 @@ PlaneArea plane_area(AVPixelFormat format, int plane, const Rect& area) {
 }
 
 std::size_t byte_count(AVPixelFormat format, const Rect& area) {
-    std::size_t count = 0;
-    for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {
-        const PlaneArea p = plane_area(format, k, area);
-        count += std::size_t(p.row_bytes) * p.rows;
-    }
-    return count;
+    return static_cast<std::size_t>(
+        av_image_get_buffer_size(format, area.right - area.left, area.bottom - area.top, 1));
 }
 
 std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas) {
@@ -186,8 +171,9 @@ Rect aligned(AVPixelFormat format, const Rect& area, Size picture) {
 
 DOPPEL_WIDEST_SIMD
 void convert(const Picture& picture, const Rect& area, AVPixelFormat format, std::uint8_t* to) {
-    const Target out = target(area, format, to);
     const int width = area.right - area.left;
+    Target out;
+    av_image_fill_arrays(out.plane.data(), out.stride.data(), to, format, width, area.bottom - area.top, 1);
     if (format == AV_PIX_FMT_YUV420P10LE) convert_420<std::uint16_t>(picture, area, out);
     if (format == AV_PIX_FMT_YUV420P || format == AV_PIX_FMT_YUVA420P) convert_420<std::uint8_t>(picture, area, out);
     for (int i = 0; i < area.bottom - area.top; ++i) {

@@ -95,7 +95,6 @@ constexpr Library libraries[]{
     {"ft2build", "render", "font"},
     {"libavformat/", "output", "libav"},
     {"libavcodec/", "output", "libav"},
-    {"libswscale/", "output", "libav"},
     {"fontconfig/", "render", "system_fonts"},
     {"libavutil/", "output", ""},
     {"libdeflate", "output", ""},
@@ -116,7 +115,7 @@ TEST(Rooms, KeepTheirLibrariesToThemselves) {
             EXPECT_TRUE(is_main || (room == library.room && name.starts_with(library.file))) << file << ": " << header;
         }
     });
-    EXPECT_EQ(seen.size(), std::size(libraries) - 1);  // all but libswscale
+    EXPECT_EQ(seen.size(), std::size(libraries));
 }
 
 }  // namespace

@@ -47,13 +47,6 @@ TEST(FitFlow, MovesAsPhysicsHasIt) {
     EXPECT_EQ(flow.rate(1, 5), 0);
 }
 
-/// A mirrored track is as good: counter-clockwise may be either way.
-TEST(FitFlow, IsTheSameSeenFromBehind) {
-    auto behind = angles_of(lab_arms(), Drag::carried, -somewhere, 0.01, 200, 0.01);
-    for (auto& [one, two] : behind) one = -one, two = -two;
-    EXPECT_EQ(angles_of(lab_arms(), Drag::carried, somewhere, 0.01, 200, 0.01), behind);
-}
-
 TEST(FitFlow, IsOfOrderFive) {
     const auto end = [&](double step) { return angles_of(lab_arms(false), Drag::own, somewhere, step, 2, 1)[1][1]; };
     const double truth = end(1.0 / 8192), coarse = end(1.0 / 256) - truth, fine = end(1.0 / 512) - truth;

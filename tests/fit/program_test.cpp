@@ -196,15 +196,6 @@ TEST(FitProgram, NamesOfStrangersGiveNoOrders) {
     EXPECT_EQ(json["track"]["files"][0], "a [video] format=\"png\" #.csv");  // not from the root
 }
 
-/// The real track played backwards would need friction that drives.
-TEST(FitProgram, RefusesARealTrackPlayedBackwards) {
-    const auto folder = fresh_folder();
-    const auto refused = fit(folder, files_of(folder, test::reversed(read_tracks(lab))));
-    EXPECT_EQ(refused.code, 3);
-    EXPECT_NE(refused.err.find("p0.csv: the swing gains energy, "), std::string::npos) << refused.err;
-    EXPECT_TRUE(!fs::exists(folder / "out") || test::listing(folder / "out").empty());
-}
-
 /// The preset is one that "check" and "simulate" take, and swings as the track did.
 TEST(FitProgram, ItsPresetSwingsAsTheTrackDid) {
     const auto track = test::simulated(test::ratios_of(test::point_masses(1.3, 1, 0.2, 0.25)), Drag::own,

@@ -134,19 +134,6 @@ TEST(FitLadder, ChoosesWhatMadeTheTrack) {
     EXPECT_NEAR(chain.mass[0], 1.3, 1e-2);
 }
 
-/// Over the top again and again: stretches of three seconds have more than one minimum, short ones do not.
-TEST(FitLadder, FollowsAnEnergeticSwing) {
-    const auto truth = lab_arms();
-    const auto track =
-        simulated(truth, Drag::own, {.pieces = 4, .piece_s = 3, .hz = 240, .noise = 2e-3, .amplitude = 3.1, .seed = 8});
-    const auto result = answered(track, Bodies::compound);
-    EXPECT_TRUE(result.uncertainty.is_white);
-    EXPECT_NEAR(result.chosen().fit.rms, 2e-3, 1e-4);  // its noise
-    for (const auto k : {inertia, coupling, gravity_1, gravity_2})
-        EXPECT_NEAR(result.chosen().fit.parameters[k], truth[k], 4 * result.uncertainty.standard_error(k))
-            << parameter_words[k].key;
-}
-
 /// Where the model is the right one, the start's error alone ends predictions; and the pieces' interval is found.
 TEST(FitHorizon, FindsTheIntervalOfPiecesAndHowFarItSees) {
     auto truth = lab_arms(false);

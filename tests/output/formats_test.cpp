@@ -17,6 +17,7 @@ using namespace test;
 namespace fs = std::filesystem;
 
 constexpr Size small{320, 180}, tiny{96, 64};
+using Pixel = std::array<std::uint8_t, 4>;
 
 /// The scene, clear where it is dark: opacity follows the brightest colour.
 Picture clear_scene(Size size, long k) {
@@ -215,55 +216,51 @@ TEST_P(Encoders, DestroyedUnfinishedLeavesNothingBeside) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 
+/// The worst that error_of(frame) finds in a film of a still picture, whose columns are of one colour each.
+double worst_of_columns(PixelFormat pixel_format, int crf, const std::function<Pixel(int x)>& color_of,
+                        const std::function<double(const Luma&)>& error_of) {
+    Picture picture(small);
+    for (int y = 0; y < small.height; ++y)
+        for (int x = 0; x < small.width; ++x) std::ranges::copy(color_of(x), picture.at(x, y));
+    const auto path = fresh_folder() / "x.mp4";
+    const auto sink = make_video_sink(path, {.size = small, .pixel_format = pixel_format, .crf = crf});
+    for (int k = 0; k < 3; ++k) sink->take(picture, whole(small));
+    sink->finish();
+    double worst = 0;
+    read_video(path, [&](const Luma& frame) { worst = std::max(worst, error_of(frame)); });
+    return worst;
+}
+
 TEST(FormatsDetail, MoreBitsAndFullChromaCarryMore) {
     // red and blue lines of one pixel: half the chroma cannot tell them apart
     const auto worst_chroma = [](PixelFormat pixel_format) {
-        Picture stripes(small);
-        for (int y = 0; y < small.height; ++y)
-            for (int x = 0; x < small.width; ++x)
-                std::copy_n(
-                    std::array<std::uint8_t, 4>{std::uint8_t(x % 2 ? 200 : 20), 40, std::uint8_t(x % 2 ? 20 : 200), 255}
-                        .data(),
-                    4, stripes.at(x, y));
-        const auto path = fresh_folder() / "x.mp4";
-        const auto sink = make_video_sink(path, {.size = small, .pixel_format = pixel_format, .crf = 10});
-        for (int k = 0; k < 3; ++k) sink->take(stripes, whole(small));
-        sink->finish();
-        double worst = 0;
-        read_video(path, [&](const Luma& frame) {
+        const auto stripe = [](int x) {
+            return Pixel{std::uint8_t(x % 2 ? 200 : 20), 40, std::uint8_t(x % 2 ? 20 : 200), 255};
+        };
+        return worst_of_columns(pixel_format, 10, stripe, [&](const Luma& frame) {
             const std::size_t width = std::size_t(small.width) * frame.chroma[1].size() / frame.y.size();
-            const double by = pixel_format == yuv444 ? 1 : 2;
+            const std::size_t by = pixel_format == yuv444 ? 1 : 2;
+            double worst = 0;
             for (std::size_t i = 0; i < frame.chroma[1].size(); ++i) {
-                const auto x = static_cast<std::size_t>(by * static_cast<double>(i % width));
-                const double r = x % 2 ? 200 : 20, e = 0.2126 * r + 0.7152 * 40 + 0.0722 * (220 - r);
+                const double r = by * (i % width) % 2 ? 200 : 20, e = 0.2126 * r + 0.7152 * 40 + 0.0722 * (220 - r);
                 worst = std::max(worst, std::abs(128 + 224 * (r - e) / 1.5748 / 255 - frame.chroma[1][i]));
             }
+            return worst;
         });
-        return worst;
     };
     EXPECT_LT(worst_chroma(yuv444), 6.0);   // measured
     EXPECT_GT(worst_chroma(yuv420), 30.0);  // measured
 
-    // a ramp from 100 to 101: 8 bits have a step or two, 10 bits have several
+    // a ramp from 100 to 103: 8 bits have a step or two, 10 bits have several
     const auto levels = [](PixelFormat pixel_format) {
-        Picture grey(small);
-        for (int y = 0; y < small.height; ++y)
-            for (int x = 0; x < small.width; ++x) {
-                const auto v = static_cast<std::uint8_t>(100 + 4 * x / small.width);
-                std::copy_n(std::array<std::uint8_t, 4>{v, v, v, 255}.data(), 4, grey.at(x, y));
-            }
-        const auto path = fresh_folder() / "x.mp4";
-        const auto sink = make_video_sink(path, {.size = small, .pixel_format = pixel_format, .crf = 1});
-        for (int k = 0; k < 3; ++k) sink->take(grey, whole(small));
-        sink->finish();
-        double worst = 0;
-        read_video(path, [&](const Luma& frame) {
-            for (std::size_t i = 0; i < frame.y.size(); ++i) {
-                const double v = grey.rgba[4 * i];
-                worst = std::max(worst, std::abs(16 + 219 * v / 255 - frame.y[i]));
-            }
+        const auto grey = [](int x) { return std::uint8_t(100 + 4 * x / small.width); };
+        const auto ramp = [&](int x) { return Pixel{grey(x), grey(x), grey(x), 255}; };
+        return worst_of_columns(pixel_format, 1, ramp, [&](const Luma& frame) {
+            double worst = 0;
+            for (std::size_t i = 0; i < frame.y.size(); ++i)
+                worst = std::max(worst, std::abs(16 + 219 * grey(int(i) % small.width) / 255.0 - frame.y[i]));
+            return worst;
         });
-        return worst;
     };
     EXPECT_LT(levels(yuv420_10), 0.26);  // measured
     EXPECT_GT(levels(yuv420), 0.3);      // measured
@@ -302,6 +299,7 @@ TEST(FormatsRefusals, AreMadeBeforeAnyWork) {
             {"the pixel_format is \"yuv444p\""});
     refused({.format = F::webm, .size = small, .preset = "swift"}, {"\"swift\"", "veryfast"});
     refused({.format = F::webm, .size = small, .crf = 64}, {"crf must be from 0 to 63; it is 64"});
+    refused({.size = small, .crf = 52}, {"crf must be from 0 to 51; it is 52"});
     for (const Kind& kind : kinds) EXPECT_NO_THROW(check_video(options_of(kind)));
     check_video({.format = F::mp4, .size = {641, 361}, .pixel_format = yuv444});
     check_video({.format = F::apng, .size = small, .fps_numerator = 65535, .fps_denominator = 65534});

@@ -82,12 +82,12 @@ Contents after_new_run(const fs::path& where) {
 }
 
 /// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer.
-bool killed_before(int n, const std::function<void()>& action, const CallWatch& other = {}) {
+bool killed_before(int n, const std::function<void()>& action) {
     const pid_t child = test::forked(fork());
     if (child == 0) {
-        watch_calls([&, calls = 0](const std::string& call) mutable {
+        watch_calls([n, calls = 0](const std::string& /*call*/) mutable {
             if (++calls == n) raise(SIGKILL);
-            return other ? other(call) : 0;
+            return 0;
         });
         try {
             action();
@@ -99,10 +99,6 @@ bool killed_before(int n, const std::function<void()>& action, const CallWatch& 
     int status = 0;
     waitpid(child, &status, 0);
     return WIFSIGNALED(status);
-}
-
-int no_exchange(const std::string& call) {
-    return call == "renameat2" ? EINVAL : 0;
 }
 
 /// Whether the folder is as the run "new" left it; a failed run's file from before may stay until the next whole run.
@@ -118,52 +114,44 @@ void expect_old_or_new(const Contents& found, const Contents& old, const Content
 TEST(Publication, IsAllNewOrAllOldWheneverItIsKilled) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
-    for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)}) {
-        int kills = 0, old = 0;
-        for (bool killed = true; killed;) {
-            const auto folder =
-                after_old_run(quick.path / fmt::format("killed-{}-{}", system ? "backup" : "exchange", kills));
-            const auto expected_old = contents(folder);
-            killed = killed_before(
-                ++kills, [&] { run(folder, "new"); }, system);
-            // at any moment something whole has every name, where two names can be exchanged
-            for (const auto& [name, word] : expected_old)
-                EXPECT_TRUE(system || name == "x.failed.csv" || fs::exists(folder / name)) << kills << ", " << name;
-            watch_calls(as_always);
-            { Transaction next(folder); }
-            const auto found = contents(folder);
-            expect_old_or_new(found, expected_old, expected_new, std::to_string(kills));
-            old += found == expected_old;
-            run(folder, "new");
-            EXPECT_EQ(contents(folder), expected_new) << kills;
-            watch_calls({});
-        }
-        EXPECT_GT(kills, 20);
-        EXPECT_GT(old, 8);
-        EXPECT_LT(old, kills - 6);
+    int kills = 0, old = 0;
+    for (bool killed = true; killed;) {
+        const auto folder = after_old_run(quick.path / fmt::format("killed-{}", kills));
+        const auto expected_old = contents(folder);
+        killed = killed_before(++kills, [&] { run(folder, "new"); });
+        // at any moment something whole has every name of a file
+        for (const char* name : {"x.mp4", "x.json", "notes.txt"})
+            EXPECT_TRUE(fs::exists(folder / name)) << kills << ", " << name;
+        watch_calls(as_always);
+        { Transaction next(folder); }
+        const auto found = contents(folder);
+        expect_old_or_new(found, expected_old, expected_new, std::to_string(kills));
+        old += found == expected_old;
+        run(folder, "new");
+        EXPECT_EQ(contents(folder), expected_new) << kills;
+        watch_calls({});
     }
+    EXPECT_GT(kills, 20);
+    EXPECT_GT(old, 8);
+    EXPECT_LT(old, kills - 6);
 }
 
 TEST(Publication, IsAllNewOrAllOldWhereItsRecoveryIsKilledToo) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
-    for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)})
-        for (int first = 8, count = 0; first > 0; first += 3) {
-            bool killed = false, killed_again = true;
-            for (int again = 1; killed_again; ++again, ++count) {
-                const auto folder =
-                    after_old_run(quick.path / fmt::format("twice-{}-{}", system ? "backup" : "exchange", count));
-                const auto expected_old = contents(folder);
-                killed = killed_before(
-                    first, [&] { run(folder, "new"); }, system);
-                killed_again = killed_before(
-                    again, [&] { Transaction next(folder); }, system);
-                watch_calls(as_always);
-                { Transaction next(folder); }
-                expect_old_or_new(contents(folder), expected_old, expected_new, fmt::format("{}, {}", first, again));
-            }
-            if (!killed) break;
+    bool killed = true;
+    for (int first = 8, count = 0; killed; first += 3) {
+        bool killed_again = true;
+        for (int again = 1; killed_again; ++again, ++count) {
+            const auto folder = after_old_run(quick.path / fmt::format("twice-{}", count));
+            const auto expected_old = contents(folder);
+            killed = killed_before(first, [&] { run(folder, "new"); });
+            killed_again = killed_before(again, [&] { Transaction next(folder); });
+            watch_calls(as_always);
+            { Transaction next(folder); }
+            expect_old_or_new(contents(folder), expected_old, expected_new, fmt::format("{}, {}", first, again));
         }
+    }
     watch_calls({});
 }
 
@@ -174,7 +162,7 @@ TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
         after;  // calls before a name of the folder changes, and after the last that does
     bool begun = false;
     watch_calls([&](const std::string& call) {
-        const bool moves = call == "renameat2" || call == "rename";
+        const bool moves = call == "rename";
         begun = begun || moves;
         if (moves) after.clear();
         ++(begun ? after : before)[call];
@@ -190,28 +178,22 @@ TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
 TEST(Publication, WhereAFileCannotTakeItsPlaceTheNextRunMovesItIn) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
-    for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)}) {
-        const int moves = system ? 4 : 3;
-        for (int failing = 1; failing <= moves + 1; ++failing) {
-            const auto folder =
-                after_old_run(quick.path / fmt::format("fails-{}-{}", system ? "backup" : "exchange", failing));
-            int calls = 0;
-            watch_calls([&](const std::string& call) {
-                const bool moves_one = call == "rename" || (call == "renameat2" && !system);
-                if (moves_one && ++calls >= failing) return EPERM;
-                return system ? system(call) : 0;
-            });
-            if (failing > moves) {
-                run(folder, "new");
-            } else {
-                expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { run(folder, "new"); });
-                expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { Transaction next(folder); });
-            }
-            watch_calls(as_always);
-            { Transaction next(folder); }
-            watch_calls({});
-            EXPECT_TRUE(is_new(contents(folder), expected_new)) << failing;
+    constexpr int moves = 4;  // the film, the older folder, the new one, the manifest
+    for (int failing = 1; failing <= moves + 1; ++failing) {
+        const auto folder = after_old_run(quick.path / fmt::format("fails-{}", failing));
+        watch_calls([&, calls = 0](const std::string& call) mutable {
+            return call == "rename" && ++calls >= failing ? EPERM : 0;
+        });
+        if (failing > moves) {
+            run(folder, "new");
+        } else {
+            expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { run(folder, "new"); });
+            expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { Transaction next(folder); });
         }
+        watch_calls(as_always);
+        { Transaction next(folder); }
+        watch_calls({});
+        EXPECT_TRUE(is_new(contents(folder), expected_new)) << failing;
     }
 }
 

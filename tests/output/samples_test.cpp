@@ -4,7 +4,6 @@
 
 extern "C" {
 #include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
 }
 
 #include <algorithm>
@@ -113,39 +112,6 @@ TEST(Samples, GreysAndPrimariesAreTheStandards) {
     EXPECT_EQ(of(AV_PIX_FMT_YUV420P10LE, 255, 0, 0), (std::vector<int>{250, 409, 960}));
 }
 
-TEST(Samples, AgreeWithSwscale) {
-    const Size size{640, 360};
-    Picture picture = noise(size, 2);
-    // swscale filters chroma over more than 2x2 pixels: let those be alike, and the pictures smooth
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x) {
-            std::uint8_t* p = picture.at(x, y);
-            p[0] = static_cast<std::uint8_t>(x * 255 / size.width);
-            p[1] = static_cast<std::uint8_t>(y * 255 / size.height);
-            p[2] = static_cast<std::uint8_t>((x + y) * 255 / (size.width + size.height));
-        }
-    const std::unique_ptr<SwsContext, void (*)(SwsContext*)> sws(
-        sws_getContext(size.width, size.height, AV_PIX_FMT_RGBA, size.width, size.height, AV_PIX_FMT_YUV420P,
-                       SWS_AREA | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP, nullptr, nullptr,
-                       nullptr),
-        sws_freeContext);
-    ASSERT_TRUE(sws);
-    const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
-    sws_setColorspaceDetails(sws.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
-    const std::size_t pixels = std::size_t(size.width) * size.height;
-    std::vector<std::uint8_t> theirs(pixels * 3 / 2);
-    const std::uint8_t* from[] = {picture.rgba.data()};
-    const int from_stride[] = {4 * size.width};
-    std::uint8_t* to[] = {theirs.data(), theirs.data() + pixels, theirs.data() + pixels * 5 / 4};
-    const int to_stride[] = {size.width, size.width / 2, size.width / 2};
-    ASSERT_EQ(sws_scale(sws.get(), from, from_stride, 0, size.height, to, to_stride), size.height);
-
-    const auto ours = bytes_of_area(picture, {0, 0, size.width, size.height}, AV_PIX_FMT_YUV420P);
-    int worst = 0;
-    for (std::size_t i = 0; i < ours.size(); ++i) worst = std::max(worst, std::abs(ours[i] - theirs[i]));
-    EXPECT_LE(worst, 1);  // measured 1
-}
-
 TEST(Samples, ColoursAndAlphaStayWhereTheyAreKept) {
     Picture picture = noise({37, 5}, 9);
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = static_cast<std::uint8_t>(7 * i);
@@ -198,11 +164,6 @@ TEST(Samples, AreasAreCutToThePictureAndEvenWhereTheyMust) {
     EXPECT_EQ(aligned(AV_PIX_FMT_YUV444P, {5, 3, 99, 99}, {7, 5}), (Rect{5, 3, 7, 5}));
     EXPECT_EQ(aligned(AV_PIX_FMT_RGB24, {-5, 3, 2, 4}, {7, 5}), (Rect{0, 3, 2, 4}));
     EXPECT_TRUE(aligned(AV_PIX_FMT_YUV420P, {8, 0, 9, 2}, {8, 6}).empty());
-}
-
-TEST(Buffer, HasRoomForOneByte) {
-    Buffer buffer;
-    EXPECT_NE(buffer.make_room(1), nullptr);
 }
 
 TEST(Samples, WhatChangedKeepsItsMemory) {

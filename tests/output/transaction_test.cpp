@@ -79,6 +79,8 @@ TEST(Transaction, AppearTogetherWhenPublished) {
     EXPECT_EQ(files.publish(), (std::vector<fs::path>{folder / "x.csv", folder / "x.mp4", folder / "frames"}));
     EXPECT_EQ(listing(out / "a/b"), (Names{hidden, lock, "x.csv", "x.mp4", "frames", "frames/0.png"}));
     EXPECT_EQ(bytes_of(out / "a/b/x.csv"), "table");
+    const auto executable = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+    EXPECT_EQ(fs::status(out / "a/b/x.csv").permissions() & executable, fs::perms::none);
 }
 
 TEST(Transaction, DestroyedUnpublishedLeaveNothing) {
@@ -136,22 +138,6 @@ TEST(Transaction, RunsThatStartTogetherShareTheFoldersTheyMake) {
         runs.clear();
         ASSERT_EQ(begun, 4) << "round " << round;
     }
-}
-
-TEST(Transaction, OlderFilesStayUntilPublished) {
-    const auto out = fresh_folder();
-    write_bytes(out / "x.csv", "old");
-    write_record(out, {"x.csv"});
-    {
-        Transaction files(out);
-        EXPECT_FALSE(fs::exists(files.file("x.csv")));
-    }
-    EXPECT_EQ(bytes_of(out / "x.csv"), "old");
-    Transaction files(out);
-    write_part(files, "x.csv", "new");
-    files.publish();
-    EXPECT_EQ(bytes_of(out / "x.csv"), "new");
-    EXPECT_EQ(listing(out), (Names{hidden, lock, "x.csv", "record.json"}));
 }
 
 TEST(Transaction, AFolderIsReplacedAsAWhole) {
@@ -298,16 +284,6 @@ TEST(Transaction, NeverReplacesAnInput) {
     Transaction(out, "run", "", {.inputs = {elsewhere / "none.csv"}}).file("x.csv");
 }
 
-TEST(Transaction, AreNoPrograms) {
-    const auto folder = fresh_folder();
-    Transaction parts(folder);
-    OutputFile(parts.file("x.csv")).close();
-    const auto executable = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
-    EXPECT_EQ(listing(folder), in_hidden({"x.csv"}));
-    for (const auto& entry : fs::directory_iterator(folder / hidden))
-        EXPECT_EQ(entry.status().permissions() & executable, fs::perms::none) << entry;
-}
-
 TEST(Transaction, FilesOfEarlierRunsStayKnown) {
     const auto out = fresh_folder();
     fs::create_directory(out / "frames");
@@ -333,6 +309,9 @@ TEST(Transaction, WhatIsFinishedStaysWhereALaterStepFails) {
             ExitCode::io_failed, {"no more room; what is finished stays", (out / hidden / "x.mp4").string()}, [&] {
                 files.keeping_finished([]() -> std::vector<fs::path> { throw std::runtime_error("no more room"); });
             });
+        expect_error(ExitCode::method_failed, {"it broke down; what is finished stays", "x.mp4"}, [&] {
+            files.keeping_finished([]() -> std::vector<fs::path> { throw method_failed("it broke down"); });
+        });
     }
     EXPECT_EQ(listing(out), in_hidden({"x.mp4"}));
     fs::copy_file(out / hidden / "x.mp4", out / "rescued.mp4");
@@ -360,16 +339,6 @@ TEST(Transaction, OneAloneIsKeptUnderAnotherName) {
     EXPECT_EQ(files.publish(), std::vector<fs::path>{out / "x.failed.csv"});
     EXPECT_EQ(listing(out), (Names{hidden, lock, "x.failed.csv"}));
     EXPECT_EQ(bytes_of(out / "x.failed.csv"), "table");
-}
-
-TEST(Transaction, AnErrorThatLeavesWhatIsFinishedKeepsItsCode) {
-    const auto out = fresh_folder();
-    Transaction files(out);
-    write_part(files, "x.mp4", "video");
-    files.finished("x.mp4");
-    expect_error(ExitCode::method_failed, {"it broke down; what is finished stays", "x.mp4"}, [&] {
-        files.keeping_finished([]() -> std::vector<fs::path> { throw method_failed("it broke down"); });
-    });
 }
 
 TEST(Files, NamesAreInTheirOrder) {

@@ -43,15 +43,6 @@ TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
     }
 }
 
-TEST(Mp4, LooksLikeItsSource) {
-    double worst = 1e9;
-    const auto path = film(fresh_folder() / "x.mp4", {.size = small}, 60);
-    const Video video = read_video(
-        path, [&](const Luma& luma) { worst = std::min(worst, luma_psnr(moving_scene(small, luma.frame), luma)); });
-    EXPECT_EQ(video.times.size(), 60u);
-    EXPECT_GT(worst, 36.0);  // dB; measured 42.8
-}
-
 /// The start of each frame that a player can begin with, s.
 std::vector<double> key_times(const fs::path& path) {
     std::vector<double> times;
@@ -98,44 +89,6 @@ TEST(Mp4, LooksAlikeWithBothPresetsAndBothDepths) {
     EXPECT_GT(ours, stock - 0.1);
     EXPECT_LT(ours, stock + 6);
     EXPECT_NEAR(noise_of("doppel", PixelFormat::yuv420_10), ours, 3);
-}
-
-TEST(Mp4, OnlyWhatChangedNeedsToBeTaken) {
-    const auto folder = fresh_folder();
-    const auto square = [](long k) {
-        Picture picture = moving_scene(small, 0);
-        for (int y = 51; y < 84; ++y)
-            for (int x = 31 + 3 * static_cast<int>(k); x < 60 + 3 * static_cast<int>(k); ++x)
-                std::fill_n(picture.at(x, y), 3, 200);
-        return picture;
-    };
-    const auto film_squares = [&](const fs::path& path, auto changed_in) {
-        const auto sink = make_video_sink(path, {.size = small});
-        for (long k = 0; k < 40; ++k) sink->take(square(k), changed_in(k));
-        sink->finish();
-        return bytes_of(path);
-    };
-    const std::string all = film_squares(folder / "all.mp4", [](long) { return whole(small); });
-    const std::string areas = film_squares(folder / "areas.mp4", [](long k) {
-        const int left = 31 + 3 * static_cast<int>(k);
-        return k == 0 ? whole(small) : std::vector<Rect>{{left - 3, 51, left, 84}, {}, {left + 26, 51, left + 29, 84}};
-    });
-    EXPECT_TRUE(all == areas);
-}
-
-TEST(Mp4, WhatCannotBeEncodedIsRefused) {
-    const auto path = fresh_folder() / "x.mp4";
-    expect_error(ExitCode::bad_input,
-                 {"size must be even, as H.264 needs it in yuv420p; it is [641, 360]; [642, 360] would do"}, [&] {
-                     make_video_sink(path, {.size = {641, 360}});
-                 });
-    expect_error(ExitCode::bad_input, {"\"swift\"", "veryfast"},
-                 [&] { make_video_sink(path, {.size = small, .preset = "swift"}); });
-    expect_error(ExitCode::bad_input, {"crf must be from 0 to 51; it is 52"},
-                 [&] { make_video_sink(path, {.size = small, .crf = 52}); });
-    EXPECT_FALSE(fs::exists(path));
-    expect_error(ExitCode::io_failed, {"none/x.mp4", "No such file"},
-                 [&] { make_video_sink(path.parent_path() / "none/x.mp4", {.size = small}); });
 }
 
 TEST(Mp4, WhereverTheDiskIsFullItIsAnError) {
