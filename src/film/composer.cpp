@@ -14,17 +14,14 @@
 
 namespace doppel {
 
-/// A line of text on a card.
-struct Cards::Line {
-    std::string text;
-    double size;  // px
-    Weight weight = Weight::regular;
-    Color color;
-};
-
 namespace {
 
 constexpr float leading = 1.55f;  // of a line's size
+
+/// A line of text on a card; where it goes depends on the others.
+Label card_line(std::string text, double size, Weight weight, Color color) {
+    return label(std::move(text), {}, px(size), color, Align::center, weight);
+}
 
 // px of a 1920×1080 picture: what all lines of a card but the still take
 constexpr float card_words = 400;
@@ -50,41 +47,77 @@ PendulumPanel still_panel(const Layout& layout) {
     return panel;
 }
 
+Label with_text(Label label, std::string text) {
+    label.text = std::move(text);
+    return label;
+}
+
 }  // namespace
 
-Cards::Cards(const FilmState& state) : state_(state) {
-    const auto& video = state.scene.preset.video;
-    const bool wanted = video.title_card_s.value() > 0 || video.end_card_s.value() > 0;
-    if (!wanted || state.layout.panels.empty()) return;
-    panel_ = still_panel(state.layout);
-    still_ = make_pendulum_layer(state, panel_);
+Composer::Composer(const Scene& scene, const MotionBounds& bounds, Dress dress)
+    : state_{scene, make_layout(scene, bounds, dress)} {
+    const auto& layout = state_.layout;
+    for (const auto& panel : layout.panels) layers_.push_back(make_pendulum_layer(state_, panel));
+    if (layout.phase) layers_.push_back(make_phase_layer(state_, *layout.phase));
+    for (std::size_t i = 0; i < layout.strips.size(); ++i) layers_.push_back(make_strip_layer(state_, i));
+    const auto& video = scene.preset.video;
+    const bool has_cards = video.title_card_s.value() > 0 || video.end_card_s.value() > 0;
+    if (!has_cards || layout.panels.empty()) return;
+    still_panel_ = still_panel(layout);
+    still_ = make_pendulum_layer(state_, still_panel_);
+}
+
+DisplayList Composer::backdrop() const {
+    DisplayList list;
+    const auto& video = state_.scene.preset.video;
+    if (!video.transparent) list.push_back(filled(video.size, page_color()));
+    for (const auto& layer : layers_) layer->backdrop(list);
+    list.insert(list.end(), state_.layout.words.begin(), state_.layout.words.end());
+    return list;
+}
+
+void Composer::add(const Snapshot& snapshot) {
+    state_.snapshot = snapshot;
+    if (state_.is_between()) return;
+    state_.outcome.add(state_.time(), snapshot.pair);
+    for (const auto& layer : layers_) layer->add();
+    if (still_) still_->add();
+}
+
+DisplayList Composer::frame() const {
+    DisplayList list;
+    for (const auto& layer : layers_) layer->frame(list);
+    const auto& layout = state_.layout;
+    const double time = state_.time();
+    if (layout.clock) list.push_back(with_text(*layout.clock, clock_text(state_.scene, time)));
+    if (layout.speed) list.push_back(with_text(*layout.speed, speed_text(state_.scene, time)));
+    return list;
 }
 
 /// Lines above the still, and below it; without one all in the middle.
-DisplayList Cards::card(const std::vector<Line>& above, const std::vector<Line>& below, double opacity) const {
+DisplayList Composer::card(const std::vector<Label>& above, const std::vector<Label>& below, double opacity) const {
     const auto& page = state_.layout.page;
     const float middle = (page.left + page.right) / 2;
-    DisplayList list{filled(state_.scene.preset.video.size, state_.layout.style.theme.background)};
-    const auto height = [](const std::vector<Line>& lines) {
+    DisplayList list{filled(state_.scene.preset.video.size, page_color())};
+    const auto height = [](const std::vector<Label>& lines) {
         float sum = 0;
-        for (const auto& line : lines) sum += leading * px(line.size);
+        for (const auto& line : lines) sum += leading * line.size;
         return sum;
     };
-    const auto write = [&](const std::vector<Line>& lines, float y) {
-        for (const auto& line : lines) {
-            y += leading * px(line.size);
-            const float fits =
-                state_.layout.style.type.fitting_size(line.text, px(line.size), line.weight, 0.94f * page.width());
-            list.push_back(
-                label(line.text, {middle, y - 0.35f * px(line.size)}, fits, line.color, Align::center, line.weight));
+    const auto write = [&](const std::vector<Label>& lines, float y) {
+        for (auto line : lines) {
+            y += leading * line.size;
+            line.anchor = {middle, y - 0.35f * line.size};
+            line.size = state_.layout.style.type.fitting_size(line.text, line.size, line.weight, 0.94f * page.width());
+            list.emplace_back(std::move(line));
         }
     };
     const float gap = 12 * state_.layout.text;
     if (still_) {
-        write(above, panel_.area.top - gap - height(above));
+        write(above, still_panel_.area.top - gap - height(above));
         still_->backdrop(list);
         still_->frame(list);
-        write(below, panel_.area.bottom + gap);
+        write(below, still_panel_.area.bottom + gap);
     } else {
         const float top = (page.top + page.bottom - height(above) - height(below)) / 2;
         write(above, top);
@@ -93,109 +126,43 @@ DisplayList Cards::card(const std::vector<Line>& above, const std::vector<Line>&
     return faded(std::move(list), static_cast<float>(opacity));
 }
 
-DisplayList Cards::title(double opacity) const {
+DisplayList Composer::title_card(double opacity) const {
     const auto& layout = state_.layout;
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
     const auto captions = side_captions(state_.scene, wording_of(state_.scene));
-    return card({{state_.scene.preset.title, font.card, Weight::bold, theme.text},
-                 {scene_caption(state_.scene, wording_of(state_.scene)), 1.3 * font.subtitle, Weight::regular,
-                  theme.quiet_text}},
-                {{captions[0].heading, 1.3 * font.heading, Weight::bold, theme.sides[0]},
-                 {captions[1].heading, 1.3 * font.heading, Weight::bold, theme.sides[1]}},
-                opacity);
+    const auto side = [&](std::size_t k) {
+        return card_line(captions[k].heading, 1.3 * font.heading, Weight::bold, theme.sides[k]);
+    };
+    return card({card_line(state_.scene.preset.title, font.card, Weight::bold, theme.text),
+                 card_line(scene_caption(state_.scene, wording_of(state_.scene)), 1.3 * font.subtitle, Weight::regular,
+                           theme.quiet_text)},
+                {side(0), side(1)}, opacity);
 }
 
-std::string Cards::outcome() const {
-    const auto& parting = state_.parting;
+std::string Composer::outcome() const {
+    const auto& parting = state_.outcome.parting;
     if (!parting.start_as_one()) return "apart from the start";
     if (parting.since()) return fmt::format("parted after {:.1f} s", *parting.since());
-    if (state_.largest_distance >= Parting::apart_at) return "apart for moments only";
+    if (state_.outcome.largest_distance >= Parting::apart_at) return "apart for moments only";
     return fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
 }
 
-DisplayList Cards::end(double opacity) const {
+DisplayList Composer::end_card(double opacity) const {
     const auto& layout = state_.layout;
     const auto& font = layout.style.font;
     const auto& theme = layout.style.theme;
     const bool exact = wording_of(state_.scene) == Wording::exact;
-    std::vector<Line> below{{outcome(), 1.3 * font.heading, Weight::bold, theme.trace}};
-    if (exact && state_.start_distance > 0)
-        below.push_back({fmt::format("from a state-space distance of {} to {}", scientific(state_.start_distance),
-                                     scientific(state_.largest_distance)),
-                         font.heading, Weight::regular, theme.text});
+    std::vector<Label> below{card_line(outcome(), 1.3 * font.heading, Weight::bold, theme.trace)};
+    if (exact && state_.outcome.start_distance > 0)
+        below.push_back(
+            card_line(fmt::format("from a state-space distance of {} to {}", scientific(state_.outcome.start_distance),
+                                  scientific(state_.outcome.largest_distance)),
+                      font.heading, Weight::regular, theme.text));
     if (state_.scene.preset.video.shows("credit"))
-        below.push_back({fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle,
-                         Weight::regular, theme.quiet_text});
-    return card({{state_.scene.preset.title, 0.7 * font.card, Weight::bold, theme.text}}, below, opacity);
-}
-
-namespace {
-
-class PageLayer final : public Layer {
-public:
-    using Layer::Layer;
-
-    void backdrop(DisplayList& list) const override {
-        if (const auto& video = state_.scene.preset.video; !video.transparent)
-            list.push_back(filled(video.size, theme_.background));
-    }
-    void frame(DisplayList&) const override {}
-};
-
-Label with_text(Label label, std::string text) {
-    label.text = std::move(text);
-    return label;
-}
-
-/// The words that stay, the time, and the speed where it changes.
-class WordsLayer final : public Layer {
-public:
-    using Layer::Layer;
-
-    void backdrop(DisplayList& list) const override {
-        list.insert(list.end(), layout_.words.begin(), layout_.words.end());
-    }
-    void frame(DisplayList& list) const override {
-        const double time = state_.time();
-        if (layout_.clock) list.push_back(with_text(*layout_.clock, clock_text(state_.scene, time)));
-        if (layout_.speed) list.push_back(with_text(*layout_.speed, speed_text(state_.scene, time)));
-    }
-};
-
-}  // namespace
-
-Composer::Composer(const Scene& scene, const std::atomic<bool>& stop, Dress dress)
-    : state_{scene, make_layout(scene, stop, dress)}, cards_(state_) {
-    const auto& layout = state_.layout;
-    layers_.push_back(std::make_unique<PageLayer>(state_));
-    for (const auto& panel : layout.panels) layers_.push_back(make_pendulum_layer(state_, panel));
-    if (layout.phase) layers_.push_back(make_phase_layer(state_, *layout.phase));
-    for (std::size_t i = 0; i < layout.strips.size(); ++i) layers_.push_back(make_strip_layer(state_, i));
-    layers_.push_back(std::make_unique<WordsLayer>(state_));
-}
-
-DisplayList Composer::backdrop() const {
-    DisplayList list;
-    for (const auto& layer : layers_) layer->backdrop(list);
-    return list;
-}
-
-void Composer::add(const Snapshot& snapshot) {
-    state_.snapshot = snapshot;
-    if (state_.is_between()) return;
-    const auto& state = snapshot.pair;
-    if (state.sample == 0) state_.start_distance = state.distance;
-    state_.largest_distance = std::max(state_.largest_distance, state.distance);
-    state_.parting.add(state_.time(), state.distance);
-    for (const auto& layer : layers_) layer->add();
-    cards_.add();
-}
-
-DisplayList Composer::frame() const {
-    DisplayList list;
-    for (const auto& layer : layers_) layer->frame(list);
-    return list;
+        below.push_back(card_line(fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle,
+                                  Weight::regular, theme.quiet_text));
+    return card({card_line(state_.scene.preset.title, 0.7 * font.card, Weight::bold, theme.text)}, below, opacity);
 }
 
 }  // namespace doppel

@@ -14,47 +14,43 @@
 namespace doppel {
 namespace {
 
-/// Makes the samples of one side brief, a few steps each, as one of the scene's may hold any number of them. The
-/// number of brief ones in one of the scene's.
-double make_brief(Scene& scene, Side& side) {
+SimulationEstimate estimated_side(const Scene& scene, Side side, char name, const std::atomic<bool>& stop) {
+    constexpr double look_s = 0.025, patience_s = 0.3;
+    // a sample may hold any number of steps: parts of it, a few steps each or brief
     constexpr long few_steps = 250;
     constexpr double brief_s = 0.01, most_parts = 1e12;
-    auto& motion = side.motion;
     const bool adaptive = side.method.adaptive;
-    const auto steps = std::min(few_steps, motion.steps_per_sample);
-    const double parts = adaptive ? std::clamp(std::ceil(motion.sample_interval.value() / brief_s), 1.0, most_parts)
-                                  : static_cast<double>(motion.steps_per_sample) / static_cast<double>(steps);
-    const auto brief =
-        adaptive ? quotient(motion.sample_interval, {std::llround(parts), 1}) : product(side.step, {steps, 1});
-    if (!brief) return 1;
-    motion.sample_interval = *brief;
-    if (!adaptive) motion.steps_per_sample = steps;
-    scene.preset.sample_hz = quotient({1, 1}, *brief).value_or(scene.preset.sample_hz);
-    return parts;
-}
-
-SimulationEstimate estimated_side(Scene scene, Side Scene::*which, char name, const std::atomic<bool>& stop) {
-    constexpr double look_s = 0.025, patience_s = 0.3;
-    auto& side = scene.*which;
-    const double whole_samples = static_cast<double>(scene.samples);
-    const double steps = whole_samples * static_cast<double>(side.motion.steps_per_sample);
-    const double samples = whole_samples * make_brief(scene, side);
+    auto& interval = side.motion.sample_interval;
+    long parts = adaptive ? std::llround(std::clamp(std::ceil(interval.value() / brief_s), 1.0, most_parts))
+                          : std::max(1L, side.motion.steps_per_sample / few_steps);
+    if (const auto brief = quotient(interval, {parts, 1}); adaptive && brief)
+        interval = *brief;
+    else if (adaptive)
+        parts = 1;
+    const double all = static_cast<double>(scene.samples) * static_cast<double>(parts);
     SideRun run(scene, side, name);
     const TimeLimit limit(patience_s, stop);
-    double start = seconds_of(CLOCK_MONOTONIC), elapsed = 0, done = 0;
+    double start = seconds_of(CLOCK_MONOTONIC), elapsed = 0;
+    long done = 0;
     try {
         run.next(limit.reached());
         start = seconds_of(CLOCK_MONOTONIC);
-        for (; done < samples && elapsed < look_s; ++done) {
-            run.next(limit.reached());
+        while (static_cast<double>(done) < all && elapsed < look_s) {
+            const long next = done + 1;
+            const double part = adaptive ? 0 : static_cast<double>(next % parts) / static_cast<double>(parts);
+            run.advance_to({adaptive ? next : next / parts, part}, limit.reached());
             elapsed = seconds_of(CLOCK_MONOTONIC) - start;
+            done = next;
         }
     } catch (const Error& fault) {
         if (fault.code() != ExitCode::interrupted || stop) throw;
         elapsed = seconds_of(CLOCK_MONOTONIC) - start;
     }
-    const double share = samples / std::max(done, 1.0);
-    return {elapsed * share, side.method.adaptive ? static_cast<double>(run.effort().steps) * share : steps, done < 1};
+    const double share = all / static_cast<double>(std::max(done, 1L));
+    const double steps = adaptive
+                             ? static_cast<double>(run.effort().steps) * share
+                             : static_cast<double>(scene.samples) * static_cast<double>(side.motion.steps_per_sample);
+    return {elapsed * share, steps, done < 1};
 }
 
 /// The motion of an ensemble's members, s a sample.
@@ -80,27 +76,26 @@ Scene beginning_of(Scene scene, long samples) {
     if (!frames.changing.empty()) frames.changing.resize(static_cast<std::size_t>(frames.count - 1));
     auto& preset = scene.preset;
     preset.duration_s = quotient({scene.samples, 1}, preset.sample_hz).value_or(preset.duration_s);
-    preset.video.poster_s.reset();
-    preset.video.contact_sheet.reset();
     auto& video = preset.video;
+    video.poster_s.reset();
+    video.contact_sheet.reset();
     video.hold_start_s = video.hold_end_s = video.title_card_s = video.end_card_s = {0, 1};
     return scene;
 }
 
 /// What some frames take, s.
 struct FrameCost {
-    double frames = 0, wall_s = 0, cpu_s = 0;  // from the first of them on
+    double frames = 1, wall_s = 0, cpu_s = 0;  // from the first of them on
     double run_s = 0;                          // of the whole run
 };
 
 /// Of the last `count` frames of the scene.
 FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>& stop) {
     const TemporaryFolder folder;
-    const long first = std::max(scene.frames.count - count, 0L);
     double wall_s = 0, cpu_s = 0;
-    const auto result = run(scene, {.out = folder.path(), .first = first}, stop, [&](const Progress& progress) {
-        if (progress.done > 1) return;
-        wall_s = seconds_of(CLOCK_MONOTONIC), cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const RunOptions options{.out = folder.path(), .first = std::max(scene.frames.count - count, 0L)};
+    const auto result = run(scene, options, stop, [&](const Progress& progress) {
+        if (progress.done == 1) wall_s = seconds_of(CLOCK_MONOTONIC), cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     });
     return {static_cast<double>(result.frames), seconds_of(CLOCK_MONOTONIC) - wall_s,
             seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s, result.wall_s};
@@ -109,14 +104,14 @@ FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>
 /// Of one frame: what many take more than few. The run is that of few.
 FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
     constexpr double enough_s = 0.1, slow_s = 0.5;
-    constexpr long most = 128;
     const auto few = cost_of_frames(scene, 2, stop);
     FrameCost cost{1, few.wall_s, few.cpu_s, few.run_s};
-    for (long count = 8; count <= most && few.wall_s < slow_s; count *= 4) {
+    for (long count = 8; count <= 128 && few.wall_s < slow_s; count *= 4) {
         const auto many = cost_of_frames(scene, count, stop);
-        if (many.frames <= few.frames) break;
         const double more = many.frames - few.frames, wall_s = many.wall_s - few.wall_s;
-        cost = {1, std::max(wall_s, 0.0) / more, std::max(many.cpu_s - few.cpu_s, 0.0) / more, few.run_s};
+        if (more < 1) break;
+        cost.wall_s = std::max(wall_s, 0.0) / more;
+        cost.cpu_s = std::max(many.cpu_s - few.cpu_s, 0.0) / more;
         if (wall_s > enough_s) break;
     }
     return cost;
@@ -126,7 +121,7 @@ FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
 
 SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop) {
     const auto estimated = [&](Side Scene::*side, char name) {
-        return (scene.*side).replay ? SimulationEstimate{} : estimated_side(scene, side, name, stop);
+        return (scene.*side).replay ? SimulationEstimate{} : estimated_side(scene, scene.*side, name, stop);
     };
     const auto a = estimated(&Scene::a, 'a'), b = estimated(&Scene::b, 'b');
     return {a.seconds + b.seconds, a.steps + b.steps, a.at_least || b.at_least};
@@ -140,16 +135,13 @@ double estimated_render(const Scene& scene, const SimulationEstimate& simulation
     const double sample_s = motions_s / samples;
     const auto second = scene.frames.at(std::min(1L, scene.frames.count - 1));
     const long one_frame = std::max(1L, second.sample + (second.share > 0 ? 1 : 0));
-    if (simulation.at_least || sample_s * static_cast<double>(one_frame) > patience_s)
-        return simulation.seconds + motions_s;
+    if (simulation.at_least || sample_s * static_cast<double>(one_frame) > patience_s) return motions_s;
     const double wanted = std::min(motion_s * scene.preset.sample_hz.value(), begin_s / std::max(sample_s, 1e-12));
     const auto begun = beginning_of(
         scene, std::clamp(static_cast<long>(std::min(wanted, 1e9)), std::min(one_frame, scene.samples), scene.samples));
     const auto cost = cost_of_frame(begun, stop);
     const auto frames = static_cast<double>(schedule_of(scene).frames());
-    // the pair alone runs in advance; then it moves while frames are drawn and written
-    return cost.run_s + simulation.seconds +
-           std::max({cost.wall_s * frames, motions_s, (cost.cpu_s * frames + motions_s) / cores()});
+    return cost.run_s + motions_s + std::max(cost.wall_s * frames, cost.cpu_s * frames / cores());
 }
 
 }  // namespace doppel

@@ -2,7 +2,6 @@
 
 #include "base/clock.hpp"
 #include "base/embedded.hpp"
-#include "base/threads.hpp"
 #include "image/picture.hpp"
 #include "output/png.hpp"
 #include "output/sink.hpp"
@@ -33,21 +32,6 @@ DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
     DisplayList list{filled(size, page)};
     list.insert(list.end(), backdrop.begin(), backdrop.end());
     return list;
-}
-
-/// The moments of `count` frames spread over those from `low` to `high`, both ends included.
-std::vector<Moment> spread(const FrameTimes& frames, long low, long high, long count) {
-    std::vector<Moment> moments;
-    for (long k = 0; k < count; ++k)
-        moments.push_back(frames.at(
-            count == 1 ? high
-                       : low + std::lround(static_cast<double>((high - low) * k) / static_cast<double>(count - 1))));
-    return moments;
-}
-
-/// Snapshots ahead: many of a pair, few of an ensemble, whose snapshots are large.
-std::size_t most_ahead(bool with_members) {
-    return with_members ? 16 : 256;
 }
 
 }  // namespace
@@ -106,14 +90,24 @@ VideoOptions video_options(const Scene& scene) {
     return options;
 }
 
-Film::Film(const Scene& scene, const RunOptions& options, long first, long last, Transaction& parts, RunRecord& record,
-           const std::atomic<bool>& stop)
-    : scene_(scene), schedule_(schedule_of(scene)), composer_(scene, stop), parts_(parts), stop_(stop) {
+Film::Film(const Scene& scene, Recording& recording, const RunOptions& options, long first, long last,
+           Transaction& parts, RunRecord& record, const std::atomic<bool>& stop)
+    : scene_(scene),
+      recording_(recording),
+      options_(options),
+      first_(first),
+      last_(last),
+      parts_(parts),
+      record_(record),
+      stop_(stop),
+      schedule_(schedule_of(scene)),
+      composer_(scene, recording.bounds()) {
     const auto& video = scene.preset.video;
     if (video.format == FilmFormat::png) {
         film_name_ = "frames";
-        const auto place_of = [this, folder = parts.directory(film_name_)](long k) {
-            return folder / fmt::format("{:06}.png", first_number_ + k);
+        const long number = first == 0 ? 0 : schedule_.title + schedule_.hold_start + first;
+        const auto place_of = [number, folder = parts.directory(film_name_)](long k) {
+            return folder / fmt::format("{:06}.png", number + k);
         };
         sink_ = make_png_sink(place_of, png_threads(options.jobs, video.size),
                               {.with_alpha = video.transparent, .metadata = film_metadata(scene.preset)}, stop);
@@ -123,51 +117,45 @@ Film::Film(const Scene& scene, const RunOptions& options, long first, long last,
         sink_ = make_video_sink(parts.file(film_name_), file, stop);
         record.libav = libav_description();
     }
-    if (poster_frame(scene)) parts.demand(scene.preset.name + ".poster.png");
+    if (video.poster_s) parts.demand(scene.preset.name + ".poster.png");
     if (video.contact_sheet) parts.demand(scene.preset.name + ".contact.png");
     canvas_.emplace(scene, composer_, options.gl, stop);
     record.gl = canvas_->description();
-    if (video.contact_sheet)
-        sheet_.emplace(
-            scene, spread(scene.frames, first, last - 1, long{(*video.contact_sheet)[0]} * (*video.contact_sheet)[1]),
-            options.gl, stop);
 }
 
-const Picture& Film::take(const DisplayList& list, RunRecord& record) {
+const Picture& Film::take(const DisplayList& list) {
     const Picture* picture = nullptr;
     {
-        Stopwatch watch(record.draw_cpu_s);
+        Stopwatch watch(record_.draw_cpu_s);
         picture = &canvas_->draw(list);
     }
-    Stopwatch watch(record.write_cpu_s);
+    Stopwatch watch(record_.write_cpu_s);
     sink_->take(*picture, canvas_->changed());
-    ++record.frames;
+    ++record_.frames;
     return *picture;
 }
 
 /// The frame shown last under a card that goes, or comes up.
-void Film::take_card(long frames, bool fades_in, RunRecord& record) {
+void Film::take_card(long frames, bool fades_in) {
     for (long k = 0; k < frames; ++k) {
         const double opacity = card_opacity(k, frames, scene_.fps.value(), fades_in);
         auto list = composer_.frame();
         const auto card = fades_in ? composer_.end_card(opacity) : composer_.title_card(opacity);
         list.insert(list.end(), card.begin(), card.end());
-        take(list, record);
+        take(list);
     }
 }
 
-void Film::write_frame(RunRecord& record) {
-    const long number = scene_.frames.first_from(moment_);
+void Film::write_frame(long number) {
     const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
-    if (record.frames == 0) first_number_ = is_first ? 0 : schedule_.title + schedule_.hold_start + number;
-    if (is_first) take_card(schedule_.title, false, record);
+    if (is_first) take_card(schedule_.title, false);
     const auto list = composer_.frame();
     const long times = 1 + (is_first ? schedule_.hold_start : 0) + (is_last ? schedule_.hold_end : 0);
     for (long k = 0; k < times; ++k) {
-        const auto& picture = take(list, record);
+        const auto& picture = take(list);
         if (k == 0 && number == poster_frame(scene_)) poster_ = picture;
     }
-    if (is_last) take_card(schedule_.end, true, record);
+    if (is_last) take_card(schedule_.end, true);
 }
 
 void Film::finish() {
@@ -181,63 +169,9 @@ void Film::finish() {
         parts_.finished(name);
     };
     if (poster_) write(".poster.png", *poster_);
-    if (sheet_) write(".contact.png", sheet_->picture());
-}
-
-Simulation::Simulation(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop)
-    : ahead_(most_ahead(with_pictures)),
-      thread_(start_thread([this, &scene, end, with_pictures, &stop] { work(scene, end, with_pictures, stop); })) {}
-
-std::optional<Snapshot> Simulation::next() {
-    auto snapshot = ahead_.pop();
-    if (!snapshot && fault_) std::rethrow_exception(fault_);
-    return snapshot;
-}
-
-std::pair<Effort, Effort> Simulation::efforts() {
-    const std::lock_guard hold(mutex_);
-    return efforts_;
-}
-
-void Simulation::work(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop) {
-    try {
-        simulate(scene, end, with_pictures, stop);
-    } catch (...) {
-        fault_ = std::current_exception();
-    }
-    ahead_.close();
-}
-
-void Simulation::simulate(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop) {
-    PairRun pair(scene);
-    std::optional<MotionBatch> members;
-    if (with_pictures && !scene.members.empty()) members.emplace(scene.members, 1);
-    /// False where nobody takes snapshots any more.
-    const auto push = [&](const PairState& state) {
-        Snapshot snapshot{state, {}};
-        for (std::size_t k = 0; members && k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
-        cpu_s_ = seconds_of(CLOCK_THREAD_CPUTIME_ID) + pair.other_cpu_s();
-        {
-            const std::lock_guard hold(mutex_);
-            efforts_ = {pair.effort_a(), pair.effort_b()};
-        }
-        return ahead_.push(std::move(snapshot));
-    };
-    const auto& frames = scene.frames;
-    long frame = 0;
-    for (Moment sample; sample < end; ++sample.sample) {
-        const auto state = pair.next(stop);
-        if (members && sample.sample > 0) members->advance(stop);
-        if (!push(state)) return;
-        if (!with_pictures) continue;
-        for (; frame < frames.count && frames.at(frame) < std::min(end, {sample.sample + 1}); ++frame) {
-            const auto moment = frames.at(frame);
-            if (moment.share == 0) continue;
-            const auto between = pair.advance_to(moment, stop);
-            if (members) members->advance_within(moment.share, stop);
-            if (!push(between)) return;
-        }
-    }
+    if (!preset.video.contact_sheet) return;
+    Stopwatch watch(record_.draw_cpu_s);
+    write(".contact.png", contact_sheet_of(scene_, recording_, first_, last_, options_.gl, stop_));
 }
 
 }  // namespace doppel

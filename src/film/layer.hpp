@@ -1,8 +1,7 @@
 #pragma once
 
-#include "analysis/difference.hpp"
 #include "film/layout.hpp"
-#include "scene/scene.hpp"
+#include "film/recording.hpp"
 
 #include <deque>
 #include <limits>
@@ -54,19 +53,12 @@ private:
     Points points_;
 };
 
-/// The state at a sample, or between two where a frame is: the pair, and the bobs of an ensemble's members.
-struct Snapshot {
-    PairState pair;
-    std::vector<Bobs<double>> members;
-};
-
 /// What the layers of a film's picture draw: the scene, where everything goes, and what came of the pair so far.
 struct FilmState {
     const Scene& scene;
     const Layout layout;
     Snapshot snapshot{};  // added last
-    double start_distance = 0, largest_distance = 0;
-    Parting parting{};
+    Outcome outcome{};
 
     double time() const { return scene.time(snapshot.pair.moment()); }
     /// Whether the snapshot is between two samples: traces and trails end at the last sample, and are drawn up to it.

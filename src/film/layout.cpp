@@ -1,6 +1,6 @@
 #include "film/layout.hpp"
 
-#include "film/bounds.hpp"
+#include "film/strips.hpp"
 #include "image/color.hpp"
 #include "numeric/state.hpp"
 #include "render/typeface.hpp"
@@ -37,7 +37,7 @@ bool is_dark(const Theme& theme) {
 }
 
 /// From the bottom up: labels of the time axis, then the strips, each with its words above it.
-void place_strips(Layout& layout, const Scene& scene, const Area& room, const std::optional<MotionBounds>& seen) {
+void place_strips(Layout& layout, const Scene& scene, const Area& room, const MotionBounds& seen) {
     const auto& strips = scene.preset.video.strips;
     if (strips.empty()) return;
     const float t = layout.text;
@@ -81,8 +81,7 @@ std::size_t panel_count(const VideoSpec& video) {
 }
 
 /// Which sides each panel shows, and the axes of phase space.
-void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& areas,
-                  const std::optional<MotionBounds>& seen) {
+void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& areas, const MotionBounds& seen) {
     const auto kind = scene.preset.video.layout;
     if (kind == Arrangement::side_by_side || kind == Arrangement::portrait) {
         for (std::size_t side = 0; side < 2; ++side) layout.panels.push_back({.area = areas[side], .sides = {side}});
@@ -94,7 +93,7 @@ void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& a
     const Area& area = areas[1];
     const Area axes{area.left + std::round(96 * t), area.top + std::round(26 * t), area.right - std::round(40 * t),
                     area.bottom - std::round(54 * t)};
-    const double fastest = 1.08 * std::max(seen->fastest, 1e-6) * 180 / pi;
+    const double fastest = 1.08 * std::max(seen.fastest, 1e-6) * 180 / pi;
     layout.phase = {area,
                     axes,
                     {.low = -180, .high = 180, .from = axes.left, .to = axes.right},
@@ -110,7 +109,7 @@ float member_scale(std::size_t members) {
 
 /// In the middle of their panels, as large as these allow, all to one scale: of a chain the circle that it reaches, of
 /// a mechanism the places that it visits.
-void place_pendulums(Layout& layout, const Scene& scene, const std::optional<MotionBounds>& seen) {
+void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& seen) {
     const auto& style = layout.style;
     const auto view = fitted_view(scene, seen);
     const auto across = static_cast<float>(view.width), up = static_cast<float>(view.height);
@@ -152,7 +151,7 @@ float tile_text(float unit) {
 
 constexpr float tile_clock = 44;  // height of the time above a tile's panels, px of its text
 
-Layout make_tile(const Scene& scene, const std::optional<MotionBounds>& seen) {
+Layout make_tile(const Scene& scene, const MotionBounds& seen) {
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
     Layout layout;
@@ -224,8 +223,8 @@ std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool a
     return ticks;
 }
 
-Layout make_layout(const Scene& scene, const std::atomic<bool>& stop, Dress dress) {
-    if (dress == Dress::tile) return make_tile(scene, motion_bounds(scene, stop));
+Layout make_layout(const Scene& scene, const MotionBounds& seen, Dress dress) {
+    if (dress == Dress::tile) return make_tile(scene, seen);
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
     const bool tall = is_tall(video), is_portrait = video.layout == Arrangement::portrait;
@@ -239,7 +238,6 @@ Layout make_layout(const Scene& scene, const std::atomic<bool>& stop, Dress dres
     layout.page = {std::round(60 * u), std::round(top), width - std::round(60 * u), height - std::round(bottom)};
     if (video.shows("title")) layout.title = scene.preset.title;
     if (video.shows("subtitle")) layout.subtitle = scene_caption(scene, tall ? Wording::plain : Wording::exact);
-    const auto seen = motion_bounds(scene, stop);
 
     const float header = std::round(place_header(layout, scene));
     const auto rooms = place_headings(layout, scene, {layout.page.left, header, layout.page.right, layout.page.bottom},

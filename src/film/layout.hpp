@@ -1,5 +1,6 @@
 #pragma once
 
+#include "film/bounds.hpp"
 #include "image/color.hpp"
 #include "plot/axis.hpp"
 #include "render/display_list.hpp"
@@ -78,7 +79,7 @@ std::string axis_number(double value);
 /// Ticks `spacing` px apart or more, labels of `size` px an em; whole numbers and the fewest decimals.
 std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
 
-/// Where everything of a film's picture goes: a function of the scene alone.
+/// Where everything of a film's picture goes: a function of the scene, and of how far its motion gets.
 struct Layout {
     float unit = 1;  // 1 px of a 1920×1080 picture
     float text = 1;  // the same for text, which stays legible in small pictures and on telephones
@@ -100,8 +101,8 @@ struct Layout {
 /// A film's picture, or a tile of a contact sheet: pendulums and time alone.
 enum class Dress { film, tile };
 
-/// May run the scene beforehand (film/bounds.hpp); throws Error (exit 130) soon after `stop` is set. A tile has no strips.
-Layout make_layout(const Scene& scene, const std::atomic<bool>& stop = false, Dress dress = Dress::film);
+/// `bounds`: of the whole motion, where the picture depends on it (depends_on_motion()). A tile has no strips.
+Layout make_layout(const Scene& scene, const MotionBounds& bounds, Dress dress = Dress::film);
 
 /// The size of a tile of that width, px.
 Size tile_size(const Scene& scene, int width);
@@ -133,32 +134,8 @@ inline constexpr float caption_line = 27, caption_edge = 16, time_labels_height 
 /// or, where that leaves too little for these, in a column at the right. A panel alone is a square beside its strips.
 Rooms shared_out(const Area& room, const RoomNeeds& needs);
 
-/// How much of a height that strips share goes to one.
-float share_of(StripKind kind);
-
 /// How a film's words put it: upright ones are for a telephone.
 Wording wording_of(const Scene& scene);
-
-/// What the words above a strip say: what it shows, and of what or how; in one where there is little room.
-struct StripWords {
-    std::string what, how, brief{};
-};
-StripWords strip_words(StripKind kind, const Scene& scene);
-
-/// px of a 1920×1080 picture that a number above a strip has, so that what comes after it stays in place.
-inline constexpr float value_room = 110, brief_value_room = 50;
-
-/// The words above each strip.
-struct CaptionPlan {
-    std::vector<int> lines;               // the name; the value; when they parted
-    bool from_edge = false;               // of the strips' room: over the labels of the axes, too
-    float line = 0, apart = 0, edge = 0;  // px: from line to line, from the last to the curves, above the first
-
-    float height(std::size_t strip) const { return edge + line * static_cast<float>(lines[strip]) + apart; }
-};
-
-/// For strips in `room`, whose axes have labels that wide, px.
-CaptionPlan plan_captions(const Layout& layout, const Scene& scene, const Area& room, float labels);
 
 /// The time as the clock shows it, with as many decimals as tell one frame from the next.
 std::string clock_text(const Scene& scene, double time);

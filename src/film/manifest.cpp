@@ -84,7 +84,8 @@ Json fonts_json(const Preset& preset) {
 
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop) {
     constexpr double most = 0.01, least_patience_s = 0.2, most_patience_s = 2;
-    for (const auto& [name, side, seen] : {std::tuple('a', &scene.a, &record.a), {'b', &scene.b, &record.b}}) {
+    for (const auto& [name, side, seen] :
+         {std::tuple('a', &scene.a, &record.motion.a), {'b', &scene.b, &record.motion.b}}) {
         const double error = seen->energy_change / scene.energy_range();
         if (side->has_energy_error && error > most)
             record.warnings.push_back(fmt::format(
@@ -103,6 +104,7 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
 }
 
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
+    const auto& outcome = record.motion.outcome;
     Json manifest = {
         {"doppel", program_json()},
         {"preset", scene.preset.name},
@@ -110,11 +112,13 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
         {"frames",
          {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", samples_per_frame(scene.frames)}}},
-        {"steps", record.a.effort.steps + record.b.effort.steps},
-        {"a", scene.a.replay ? track_json(*scene.a.replay, scene.preset.a.track) : side_json(scene, scene.a, record.a)},
-        {"b", scene.b.replay ? track_json(*scene.b.replay, scene.preset.b.track) : side_json(scene, scene.b, record.b)},
-        {"largest_distance", record.largest_distance},
-        {"parted_s", record.parting.since() ? Json(*record.parting.since()) : Json(nullptr)},
+        {"steps", record.motion.a.effort.steps + record.motion.b.effort.steps},
+        {"a", scene.a.replay ? track_json(*scene.a.replay, scene.preset.a.track)
+                             : side_json(scene, scene.a, record.motion.a)},
+        {"b", scene.b.replay ? track_json(*scene.b.replay, scene.preset.b.track)
+                             : side_json(scene, scene.b, record.motion.b)},
+        {"largest_distance", outcome.largest_distance},
+        {"parted_s", outcome.parting.since() ? Json(*outcome.parting.since()) : Json(nullptr)},
         {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},
         {"warnings", record.warnings},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},

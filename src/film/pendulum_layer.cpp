@@ -10,15 +10,15 @@
 namespace doppel {
 namespace {
 
-/// The part of from…to that is in the area, if any.
-std::optional<std::pair<Point, Point>> clipped(Point from, Point to, const Area& area) {
+/// The part of a line from…to that is in the area, if any.
+void add_line(Point from, Point to, float radius, Color color, const Area& area, DisplayList& list) {
     const auto within = clip_segment(area, from.x, from.y, to.x, to.y);
-    if (!within) return std::nullopt;
+    if (!within) return;
     const auto at = [&](double share) {
         return Point{static_cast<float>(std::lerp(from.x, to.x, share)),
                      static_cast<float>(std::lerp(from.y, to.y, share))};
     };
-    return std::pair{at(within->from), at(within->to)};
+    list.push_back(Capsule{at(within->from), at(within->to), radius, color});
 }
 
 class PendulumLayer final : public Layer {
@@ -55,7 +55,8 @@ private:
     bool swing_as_one() const;
     void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
     void draw_members(DisplayList& list) const;
-    void draw_member_bobs(std::size_t k, DisplayList& list) const;
+    void draw_bobs(std::size_t side, const Bobs<double>& bobs, Color of_last, Color of_others, float least,
+                   DisplayList& list) const;
     Color member_hue(std::size_t k, float opacity) const;
     float member_trail_width() const;
     void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
@@ -145,19 +146,24 @@ bool PendulumLayer::swing_as_one() const {
            std::ranges::equal(state_.scene.a.lines, state_.scene.b.lines, same_line);
 }
 
-/// Rods, then the pivot and the bobs, each on a rim that sets it off. Where two share a panel all of each has its hue.
+/// Rods, then the pivot and the bobs. Where two share a panel all of each has its hue.
 void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& list) const {
     const auto& bobs = state_.seen(side).bobs;
     const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme_.sides[side], share); };
     draw_lines(side, bobs, layout_.rod_radius, hued(theme_.rod, 0.55f), list);
     draw_pivots(side, list);
+    draw_bobs(side, bobs, theme_.sides[side], hued(theme_.bob, 0.4f), layout_.last_bob_radius, list);
+}
+
+/// Each on a rim that sets it off, the last one `least` px or more.
+void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, Color of_last, Color of_others, float least,
+                              DisplayList& list) const {
     for (std::size_t i = 0; i < bobs.size(); ++i) {
-        const auto& bob = bobs[i];
         const bool last = i + 1 == bobs.size();
-        const float own = bob_radius(side, i), radius = last ? std::max(own, layout_.last_bob_radius) : own;
+        const float radius = std::max(bob_radius(side, i), last ? least : 0);
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
-        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme_.panel, list);
-        draw_disc(at(bob), radius, last ? theme_.sides[side] : hued(theme_.bob, 0.4f), list, last ? style_.glow : 0);
+        if (!state_.scene.preset.video.transparent) draw_disc(at(bobs[i]), radius + rim, theme_.panel, list);
+        draw_disc(at(bobs[i]), radius, last ? of_last : of_others, list, last ? style_.glow : 0);
     }
 }
 
@@ -182,24 +188,13 @@ void PendulumLayer::draw_members(DisplayList& list) const {
     for (std::size_t k = member_paths_.size(); k-- > 0;) draw_trail(member_paths_[k], members[k].back(), list);
     for (std::size_t k = members.size(); k-- > 0;) {
         draw_lines(0, members[k], layout_.rod_radius, member_hue(k, 0.43f), list);
-        if (few) draw_member_bobs(k, list);
+        const auto hue = member_hue(k, 1);
+        if (few) draw_bobs(0, members[k], hue, mixed(theme_.bob, hue, 0.4f), 0, list);
     }
     draw_pivots(0, list);
     if (few) return;
     for (std::size_t k = members.size(); k-- > 0;)
         draw_disc(at(members[k].back()), bob_radius(0, members[k].size() - 1), member_hue(k, 1).with_alpha(1), list);
-}
-
-void PendulumLayer::draw_member_bobs(std::size_t k, DisplayList& list) const {
-    const auto& bobs = state_.snapshot.members[k];
-    for (std::size_t i = 0; i < bobs.size(); ++i) {
-        const auto& bob = bobs[i];
-        const bool last = i + 1 == bobs.size();
-        const float radius = bob_radius(0, i), rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
-        const auto color = member_hue(k, 1);
-        if (!state_.scene.preset.video.transparent) draw_disc(at(bob), radius + rim, theme_.panel, list);
-        draw_disc(at(bob), radius, last ? color : mixed(theme_.bob, color, 0.4f), list, last ? style_.glow : 0);
-    }
 }
 
 /// Rods, and springs as thin zigzags.
@@ -209,10 +204,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
         if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs[*bob]);
         return place_at(side, std::get<Place<double>>(end));
     };
-    const auto draw = [&](Point from, Point to, float width) {
-        if (const auto seen = clipped(from, to, panel_.area))
-            list.push_back(Capsule{seen->first, seen->second, width, color});
-    };
+    const auto draw = [&](Point from, Point to, float width) { add_line(from, to, width, color, panel_.area, list); };
     for (const auto& line : state_.side(side).lines) {
         if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), line.width * radius);
         if (line.kind != MechanismLine::Kind::spring) continue;
@@ -244,9 +236,8 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
         // on beyond both ends, to the edges of the panel
         const Point end = at(*to), along{end.x - start.x, end.y - start.y};
         const float far = (panel_.area.width() + panel_.area.height()) / std::max(distance(start, end), 1e-3f);
-        if (const auto seen = clipped({start.x - far * along.x, start.y - far * along.y},
-                                      {start.x + far * along.x, start.y + far * along.y}, panel_.area))
-            list.push_back(Capsule{seen->first, seen->second, width / 2, color});
+        add_line({start.x - far * along.x, start.y - far * along.y}, {start.x + far * along.x, start.y + far * along.y},
+                 width / 2, color, panel_.area, list);
     }
 }
 

@@ -65,25 +65,6 @@ Rooms with_strips_beside(const Area& room, const RoomNeeds& needs, float column)
 
 }  // namespace
 
-float share_of(StripKind kind) {
-    switch (kind) {
-        case StripKind::distance:
-            return 0.24f;
-        case StripKind::exponent:
-        case StripKind::rod_force:
-        case StripKind::energies_a:
-        case StripKind::energies_b:
-        case StripKind::angles:
-        case StripKind::rates:
-        case StripKind::total_energy:
-            return 0.18f;
-        case StripKind::energy:
-        case StripKind::rod_error:
-            break;
-    }
-    return 0.15f;
-}
-
 Rooms shared_out(const Area& room, const RoomNeeds& needs) {
     if (needs.panels == 0) return {{}, room};
     if (needs.strips.empty()) return {panel_areas(room, needs), {}};

@@ -1,10 +1,10 @@
 #include "film/run.hpp"
 
-#include "analysis/difference.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "film/film.hpp"
 #include "film/pair_table.hpp"
+#include "film/recording.hpp"
 #include "output/transaction.hpp"
 #include "scene/scene.hpp"
 
@@ -15,17 +15,11 @@
 namespace doppel {
 namespace {
 
-/// Keeps the largest errors.
-void watch(SideRecord& record, const Observation& seen, std::optional<double> energy_error) {
-    record.energy_error = std::max(record.energy_error, std::abs(energy_error.value_or(0)));
-    if (energy_error) record.energy_change = std::max(record.energy_change, std::abs(seen.energy_change));
-    record.length_error = std::max(record.length_error, seen.length_error);
-}
-
-/// Whether the side comes to `sample`; `effort` ← what it took.
-bool holds(const Scene& scene, const Side& side, const BreakDown& fault, const std::atomic<bool>& stop,
-           Effort& effort) {
+/// Whether the side comes to the sample of `fault`; and what it took.
+std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const BreakDown& fault,
+                                const std::atomic<bool>& stop) {
     SideRun run(scene, side, fault.side);
+    Effort effort;
     try {
         for (long sample = 0; sample <= fault.sample; ++sample) {
             run.next(stop);
@@ -33,32 +27,29 @@ bool holds(const Scene& scene, const Side& side, const BreakDown& fault, const s
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::method_failed && error.code() != ExitCode::interrupted) throw;
-        return false;
+        return {false, effort};
     }
-    return true;
+    return {true, effort};
 }
 
 /// What would have held where `fault` broke down, in words: with a fixed step, the first of its halves, quarters … that
 /// comes as far; of an adaptive method, the smallest step that it took. Gives up early where `stop` is set.
 std::string step_that_holds(const Scene& scene, const BreakDown& fault, const std::atomic<bool>& stop) {
     auto side = fault.side == 'a' ? scene.a : scene.b;
-    Effort effort;
     if (side.method.adaptive) {
-        holds(scene, side, fault, stop, effort);
-        if (effort.smallest_step == 0) return "not even a first step held";
-        return fmt::format("the smallest step that held was {:.3g} s; a smaller tolerance may hold",
-                           effort.smallest_step);
+        const double smallest = retried(scene, side, fault, stop).second.smallest_step;
+        if (smallest == 0) return "not even a first step held";
+        return fmt::format("the smallest step that held was {:.3g} s; a smaller tolerance may hold", smallest);
     }
     auto finest = side.step;                 // that was tried
     constexpr long most_steps = 20'000'000;  // a few seconds for a double pendulum
+    const long samples = static_cast<long>(side.mass.size()) * std::max(1L, fault.sample);
     for (int halvings = 1; halvings < 40 && !stop; ++halvings) {
         const auto half = quotient(side.step, {2, 1});
-        if (!half) break;
-        side.step = *half;
         side.motion.steps_per_sample *= 2;
-        const auto bobs = static_cast<long>(side.mass.size());
-        if (side.motion.steps_per_sample > most_steps / (bobs * std::max(1L, fault.sample))) break;
-        if (holds(scene, side, fault, stop, effort))
+        if (!half || side.motion.steps_per_sample > most_steps / samples) break;
+        side.step = *half;
+        if (retried(scene, side, fault, stop).first)
             return fmt::format("halved until it held: step_s = \"{}\" comes further", side.step.text());
         finest = side.step;
     }
@@ -80,10 +71,10 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     record.failure = fmt::format("{}; {}", fault.what(), advice);
     record.last_sample = fault.sample - 1;
     add_warnings(scene, record, stop);
-    const auto csv = failed_name(name, ".csv"), manifest = failed_name(name, ".json");
+    const auto csv = failed_name(name, ".csv");
     parts.keep_only(name + ".csv", csv);
     parts.finished(csv);
-    write_manifest(parts, manifest, scene, record);
+    write_manifest(parts, failed_name(name, ".json"), scene, record);
     const auto files = parts.publish();
     throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());
 }
@@ -157,77 +148,61 @@ std::vector<std::string> run_files(const Scene& scene, bool pictures) {
     return files;
 }
 
-RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
-              const std::function<void(const Progress&)>& report) {
+RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const auto part = part_of(scene, options);
-    RunRecord record{.first_sample = part.first_sample(), .last_sample = part.last_sample()};
-    const long samples = record.last_sample - record.first_sample + 1;
-    const long total = options.pictures ? part.last - part.first : samples;
+    RunRecord record;
+    record.first_sample = part.first_sample();
+    record.last_sample = part.last_sample();
+    record.samples = record.last_sample - record.first_sample + 1;
+    const long total = options.pictures ? part.last - part.first : record.samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
     parts.demand(scene.preset.name + ".json");
+    Recording recording(scene, part.end, options.pictures, stop);
     std::optional<Film> film;
-    if (options.pictures) film.emplace(scene, options, part.first, part.last, parts, record, stop);
+    if (options.pictures && !recording.fails())
+        film.emplace(scene, recording, options, part.first, part.last, parts, record, stop);
     const auto csv_name = scene.preset.name + ".csv";
     PairTable table(parts.file(csv_name), scene, options.columns);
-
-    Simulation simulation(scene, part.end, options.pictures, stop);
-    const auto take_efforts = [&] { std::tie(record.a.effort, record.b.effort) = simulation.efforts(); };
-    double start_distance = 0;
-    for (long frame = part.first, done = 0;;) {
-        std::optional<Snapshot> snapshot;
-        try {
-            snapshot = simulation.next();
-        } catch (const BreakDown& fault) {
-            take_efforts();
-            table.finish();
-            film.reset();  // its threads write into what goes now
-            keep_failed(scene, fault, record, parts, stop);
-        }
-        if (!snapshot) break;
-        const auto& state = snapshot->pair;
-        throw_if_set(stop);
-        check_distance(scene, state);
-        if (film) film->add(*snapshot);
-        if (state.share == 0) {
-            if (state.sample == 0) start_distance = state.distance;
-            watch(record.a, state.a, state.energy_error_a);
-            watch(record.b, state.b, state.energy_error_b);
-            record.largest_distance = std::max(record.largest_distance, state.distance);
-            record.parting.add(scene.time(state.sample), state.distance);
-            if (state.sample >= record.first_sample) {
-                table.add(state, start_distance);
-                if (!film) report({++done, total});
+    long frame = part.first, done = 0;
+    try {
+        recording.play([&](const Snapshot& snapshot) {
+            const auto& state = snapshot.pair;
+            throw_if_set(stop);
+            if (film) film->add(snapshot);
+            if (state.share == 0 && state.sample >= record.first_sample) {
+                table.add(state, recording.record().outcome.start_distance);
+                if (!options.pictures) report({++done, total});
             }
-        }
-        if (!film || frame == part.last || state.moment() != scene.frames.at(frame)) continue;
-        ++frame;
-        film->write_frame(record);
-        report({++done, total});
+            if (!film || frame == part.last || state.moment() != scene.frames.at(frame)) return;
+            film->write_frame(frame++);
+            report({++done, total});
+        });
+    } catch (const BreakDown& fault) {
+        record.motion = recording.record();
+        table.finish();
+        film.reset();  // its threads write into what goes now
+        keep_failed(scene, fault, record, parts, stop);
     }
-    take_efforts();
     const auto finish = [&] {
         if (film) film->finish();
         table.finish();
         parts.finished(csv_name);
-        record.simulate_cpu_s = simulation.cpu_s();
+        record.motion = recording.record();
+        record.simulate_cpu_s = recording.cpu_s();
         record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
         add_warnings(scene, record, stop);
         record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
         record.encode_cpu_s =
             std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
-        // a failed run's files from before are no news beside a whole one
+        // those of an earlier run that failed
         for (const char* ending : {".csv", ".json"}) parts.remove(failed_name(scene.preset.name, ending));
         write_manifest(parts, scene.preset.name + ".json", scene, record);
         throw_if_set(stop);
         return parts.publish();
     };
-    auto files = parts.keeping_finished(finish);
-    return {.files = std::move(files),
-            .frames = record.frames,
-            .samples = samples,
-            .wall_s = record.wall_s,
-            .warnings = record.warnings};
+    record.files = parts.keeping_finished(finish);
+    return std::move(static_cast<RunResult&>(record));
 }
 
 }  // namespace doppel

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "film/recording.hpp"
 #include "output/transaction.hpp"
 #include "render/renderer.hpp"
 #include "scene/scene.hpp"
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,11 +26,6 @@ struct RunOptions {
     Replacing replacing = {};
 };
 
-/// How far a run is, as often as a frame is done.
-struct Progress {
-    long done, total;  // frames (samples where no pictures are made)
-};
-
 /// What came of a run.
 struct RunResult {
     std::vector<std::filesystem::path> files;
@@ -43,7 +38,7 @@ struct RunResult {
 /// One picture, OUT/NAME/NAME.14s.png (or .pdf, .svg): that of any `time`, s. `options` say where to, and what draws.
 /// Throws Error as run(), and exit 2 where the scene ends before.
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
-                     const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
+                     const std::atomic<bool>& stop, const Report& report);
 /// That of such a picture. Throws Error (exit 2) where the scene ends before.
 Moment still_moment(const Scene& scene, const Rational& time);
 /// "NAME.14s.png", of such a picture.
@@ -55,9 +50,8 @@ void check_run(const Scene& scene, const RunOptions& options);
 /// What run() writes into OUT/NAME/, folders with "/".
 std::vector<std::string> run_files(const Scene& scene, bool pictures);
 
-/// Simulates, draws and writes; the three overlap through bounded queues. Files appear complete or not at all.
+/// Simulates, then draws and writes, which overlap. Files appear complete or not at all.
 /// Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.
-RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
-              const std::function<void(const Progress&)>& report);
+RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report);
 
 }  // namespace doppel

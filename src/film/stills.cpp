@@ -42,26 +42,22 @@ std::string still_name(const Scene& scene, const Moment& moment, PictureFormat f
 }
 
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
-                     const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
+                     const std::atomic<bool>& stop, const Report& report) {
     const double start = seconds_of(CLOCK_MONOTONIC);
     const auto moment = still_moment(scene, time);
     const auto text = seconds_text(scene.time(moment));
     const auto name = still_name(scene, moment, format);
     Transaction parts(options.out / scene.preset.name, "still", "film", options.replacing);
     const auto place = parts.file(name);
-    Composer composer(scene, stop);
-    std::optional<Canvas> canvas;  // now: what cannot draw says so at once
-    if (format == PictureFormat::png) canvas.emplace(scene, composer, options.gl, stop);
     auto alone = scene;  // with one frame
     alone.frames = {.last = moment, .count = 1};
-    Simulation simulation(alone, {moment.sample + 1}, true, stop);
+    alone.preset.video.contact_sheet.reset();
     const long samples = moment.sample + 1;
-    while (const auto snapshot = simulation.next()) {
-        throw_if_set(stop);
-        check_distance(scene, snapshot->pair);
-        composer.add(*snapshot);
-        if (!(snapshot->pair.share > 0)) report({snapshot->pair.sample + 1, samples});
-    }
+    Recording recording(alone, {samples}, true, stop, report);
+    Composer composer(scene, recording.bounds());
+    std::optional<Canvas> canvas;  // now: what cannot draw says so at once
+    if (format == PictureFormat::png) canvas.emplace(scene, composer, options.gl, stop);
+    recording.play([&](const Snapshot& snapshot) { composer.add(snapshot); });
     const auto& video = scene.preset.video;
     const auto metadata = metadata_of(scene.preset.title, scene.preset.name,
                                       fmt::format("at {} s of {}", text, scene.preset.duration_s.value()));
@@ -122,30 +118,32 @@ DisplayList title_of(const Scene& scene, const Style& style, Size size, float un
 
 }  // namespace
 
-ContactSheet::ContactSheet(const Scene& scene, std::vector<Moment> moments, Gl gl, const std::atomic<bool>& stop)
-    : scene_(tile_scene(scene)),
-      composer_(scene_, stop, Dress::tile),
-      renderer_(scene_.preset.video.size, composer_.backdrop(), gl, stop, scene_.preset.video.typeface),
-      moments_(std::move(moments)),
-      columns_((*scene.preset.video.contact_sheet)[0]),
-      gl_(gl),
-      stop_(stop) {}
-
-void ContactSheet::add(const Snapshot& snapshot) {
-    composer_.add(snapshot);
-    const auto times = std::count(moments_.begin(), moments_.end(), snapshot.pair.moment());
-    if (times == 0) return;
-    const auto& picture = renderer_.draw(composer_.frame(), stop_);
-    tiles_.insert(tiles_.end(), static_cast<std::size_t>(times), picture);
-}
-
-Picture ContactSheet::picture() const {
-    const auto below = contact_sheet(tiles_, columns_, 8, composer_.page_color());
+Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, long last, Gl gl,
+                         const std::atomic<bool>& stop) {
+    const auto [across, down] = *scene.preset.video.contact_sheet;
+    std::vector<Moment> moments;  // of frames spread over all, both ends included
+    const long count = long{across} * down, high = last - 1;
+    for (long k = 0; k < count; ++k)
+        moments.push_back(scene.frames.at(count == 1 ? high
+                                                     : first + std::lround(static_cast<double>((high - first) * k) /
+                                                                           static_cast<double>(count - 1))));
+    const auto tile = tile_scene(scene);
+    const auto& style = tile.preset.video;
+    Composer composer(tile, recording.bounds(), Dress::tile);
+    Renderer tiles(style.size, composer.backdrop(), gl, stop, style.typeface);
+    std::vector<Picture> pictures;
+    recording.play([&](const Snapshot& snapshot) {
+        throw_if_set(stop);
+        composer.add(snapshot);
+        if (const auto times = std::ranges::count(moments, snapshot.pair.moment()); times > 0)
+            pictures.insert(pictures.end(), static_cast<std::size_t>(times), tiles.draw(composer.frame(), stop));
+    });
+    const auto below = contact_sheet(pictures, across, 8, composer.page_color());
     const float unit = static_cast<float>(below.size.width) / 1920;
     const Size title{below.size.width, static_cast<int>(110 * unit) + 1};
-    const auto style = make_style(scene_.preset.video, unit, unit);
-    Renderer renderer(title, title_of(scene_, style, title, unit), gl_, stop_, style.type);
-    Picture sheet = renderer.draw({}, stop_);
+    const auto title_style = make_style(style, unit, unit);
+    Renderer renderer(title, title_of(tile, title_style, title, unit), gl, stop, style.typeface);
+    Picture sheet = renderer.draw({}, stop);
     sheet.size.height += below.size.height;
     sheet.rgba.insert(sheet.rgba.end(), below.rgba.begin(), below.rgba.end());
     return sheet;

@@ -1,7 +1,6 @@
-#include "film/bounds.hpp"
 #include "film/layer.hpp"
 #include "film/layout.hpp"
-#include "numeric/state.hpp"
+#include "film/strips.hpp"
 #include "render/stroke.hpp"
 #include "render/typeface.hpp"
 #include "scene/captions.hpp"
@@ -20,14 +19,6 @@ void add_dashed_line(float x, const Area& area, float dash, float width, Color c
         list.push_back(vertical_line(x, top, std::min(top + dash, area.bottom), width, color));
 }
 
-/// What goes up in a strip: a line of its own for each.
-struct StripValue {
-    std::optional<double> value;
-    Color color;
-    double width = 0;    // px
-    std::string name{};  // empty where the heading says it all
-};
-
 class StripLayer final : public Layer {
 public:
     StripLayer(const FilmState& state, std::size_t index) : Layer(state), index_(index) {}
@@ -39,15 +30,18 @@ public:
         if (index_ + 1 == layout_.strips.size()) draw_time_labels(list);
     }
     void add() override {
-        const auto now = values();
+        const auto now = curves();
         traces_.resize(now.size());
         for (std::size_t k = 0; k < now.size(); ++k) extend(traces_[k], now[k]);
     }
     void frame(DisplayList& list) const override;
 
 private:
-    std::vector<StripValue> values() const;
-    void extend(Trace& trace, const StripValue& now) const {
+    std::vector<StripCurve> curves() const {
+        return strip_curves(strip_.kind, state_.scene, state_.snapshot.pair, state_.outcome.start_distance, theme_,
+                            style_.width.trace);
+    }
+    void extend(Trace& trace, const StripCurve& now) const {
         if (now.value) trace.add({strip_.time.at(state_.time()), strip_.value.at(*now.value)});
     }
     /// The words of a line of the caption, from 0 on, at its left.
@@ -56,8 +50,6 @@ private:
     }
     /// px between ticks of the time, at least.
     float time_spacing() const { return (strip_.area.width() < 400 * layout_.text ? 50 : 90) * layout_.text; }
-    template <class Value>
-    void add_links(std::size_t side, std::size_t count, const Value& value, std::vector<StripValue>& values) const;
     void draw_axes(DisplayList& list) const;
     void dim_horizon(DisplayList& list) const;
     std::string horizon_text() const { return fmt::format("predictable to {:.1f} s", *state_.scene.horizon()); }
@@ -65,72 +57,18 @@ private:
     void say_horizon_above(DisplayList& list) const;
     void draw_time_labels(DisplayList& list) const;
     void draw_parting(float free_from, DisplayList& list) const;
-    float draw_values(const std::vector<StripValue>& now, DisplayList& list) const;
+    float draw_values(const std::vector<StripCurve>& now, DisplayList& list) const;
 
     const std::size_t index_;
     const StripLayout& strip_ = layout_.strips[index_];
     const StripWords words_ = strip_words(strip_.kind, state_.scene);
     // its first line; what a second line says after the number
     const bool short_ = strip_.lines > 1;
-    const std::string name_ = short_ ? (words_.brief.empty() ? words_.what : words_.brief)
-                                     : words_.what + (words_.how.empty() ? "" : ", " + words_.how);
+    const std::string name_ = short_ ? (words_.brief.empty() ? words_.what : words_.brief) : words_.in_full();
     const std::string rest_ = short_ && words_.brief.empty() ? words_.how : "";
     const float size_ = px(style_.font.strip);
-    // J: one for both sides, or the side that starts near E = 0 would look far worse
-    std::vector<Trace> traces_;  // by value
+    std::vector<Trace> traces_;  // by curve
 };
-
-std::vector<StripValue> StripLayer::values() const {
-    const double width = style_.width.trace;
-    // of two lines the first is wider, so that it still shows where both run as one
-    const std::array widths{1.5 * width, 0.64 * width};
-    const auto& state = state_.snapshot.pair;
-    if (strip_.kind == StripKind::distance) return {{state.distance, theme_.trace, width}};
-    if (strip_.kind == StripKind::exponent)
-        return {{exponent_so_far(state_.scene, state, state_.start_distance), theme_.trace, width}};
-    std::vector<StripValue> values;
-    for (std::size_t side = 0; side < 2; ++side) {
-        const auto& seen = state_.seen(side);
-        const auto color = theme_.sides[side];
-        if (strip_.kind == StripKind::rod_error) values.push_back({seen.length_error, color, widths[side]});
-        if (strip_.kind == StripKind::energy) {
-            // where damping takes energy no change of it is an error
-            const double error = std::abs(seen.energy_change) / state_.scene.energy_range();
-            values.push_back(
-                {state_.side(side).has_energy_error ? std::optional(error) : std::nullopt, color, widths[side]});
-        }
-        if (strip_.kind == StripKind::total_energy) values.push_back({seen.energy, color, widths[side]});
-        if (strip_.kind == (side == 0 ? StripKind::energies_a : StripKind::energies_b)) {
-            const double kinetic = seen.kinetic_energy;
-            values.push_back({kinetic, color, 0.8 * width, "kinetic"});
-            values.push_back({seen.energy - kinetic, mixed(color, theme_.background, 0.45f), 0.8 * width, "potential"});
-            values.push_back({seen.energy, theme_.text, 0.64 * width, "total"});
-        }
-        if (strip_.kind == StripKind::rod_force)
-            add_links(
-                side, seen.tension.size(), [&](std::size_t k) { return seen.tension[k]; }, values);
-        constexpr double degree = pi / 180;
-        if (strip_.kind == StripKind::angles)
-            add_links(
-                side, seen.bobs.size(), [&](std::size_t k) { return seen.bobs[k].theta / degree; }, values);
-        if (strip_.kind == StripKind::rates)
-            add_links(
-                side, seen.bobs.size(), [&](std::size_t k) { return seen.bobs[k].omega / degree; }, values);
-    }
-    return values;
-}
-
-/// A line for each link or rod that is shown, the inner ones paler.
-template <class Value>
-void StripLayer::add_links(std::size_t side, std::size_t count, const Value& value,
-                           std::vector<StripValue>& values) const {
-    const auto links = shown_links(count);
-    for (const auto k : links) {
-        const float pale = links.size() < 2 || k + 1 == count ? 0 : 0.6f;
-        values.push_back({value(k), mixed(theme_.sides[side], theme_.text, pale), 0.8 * style_.width.trace,
-                          fmt::format("{}{}", side == 0 ? "a" : "b", k + 1)});
-    }
-}
 
 void StripLayer::draw_axes(DisplayList& list) const {
     const float t = layout_.text, line = px(style_.width.grid), size = px(style_.font.axis);
@@ -208,9 +146,9 @@ void StripLayer::say_horizon_above(DisplayList& list) const {
 
 /// The moment of parting: a dashed line, and when it was above it, right of what is there already.
 void StripLayer::draw_parting(float free_from, DisplayList& list) const {
-    const float x = strip_.time.at(*state_.parting.since());
+    const float x = strip_.time.at(*state_.outcome.parting.since());
     add_dashed_line(x, strip_.area, 6 * layout_.text, px(style_.width.mark), theme_.quiet_text, list);
-    const auto text = fmt::format("parted at {:.1f} s", *state_.parting.since());
+    const auto text = fmt::format("parted at {:.1f} s", *state_.outcome.parting.since());
     const auto& caption = strip_.caption;
     if (strip_.lines > 2) return list.push_back(label(text, {caption.left, strip_.base}, size_, theme_.text));
     if (strip_.lines == 2)
@@ -222,7 +160,7 @@ void StripLayer::draw_parting(float free_from, DisplayList& list) const {
 }
 
 /// The number now, or which line is which, beside the name or below it. Returns where that ends, px.
-float StripLayer::draw_values(const std::vector<StripValue>& now, DisplayList& list) const {
+float StripLayer::draw_values(const std::vector<StripCurve>& now, DisplayList& list) const {
     const float t = layout_.text, y = base(short_ ? 1 : 0);
     float left = strip_.caption.left + (short_ ? 0 : style_.type.width(name_, size_) + 18 * t);
     const auto say = [&](const std::string& text, Color color, float room) {
@@ -231,15 +169,14 @@ float StripLayer::draw_values(const std::vector<StripValue>& now, DisplayList& l
         list.push_back(label(text, {left, y}, size, color));
         left += std::max(room, style_.type.width(text, size) + 14 * t);
     };
-    const auto& scene = state_.scene;
     if (strip_.kind == StripKind::distance)
         say(scientific(state_.snapshot.pair.distance), now[0].color, value_room * t);
     else if (strip_.kind == StripKind::exponent && now[0].value)
         say(fmt::format("{:.2f}", *now[0].value), now[0].color, (short_ ? brief_value_room : value_room) * t);
-    else if (strip_.kind == StripKind::exponent && state_.start_distance == 0)
-        say("none: both start alike", theme_.quiet_text, 0);
-    else if (strip_.kind == StripKind::energy && !scene.a.has_energy_error && !scene.b.has_energy_error)
-        say("none: damping takes energy", theme_.quiet_text, 0);
+    else if (strip_.kind == StripKind::exponent && state_.outcome.start_distance == 0)
+        say(alike_words, theme_.quiet_text, 0);
+    else if (const auto none = no_error_words(strip_.kind, state_.scene); !none.empty())
+        say(none, theme_.quiet_text, 0);
     else if (!rest_.empty() && strip_.kind != StripKind::exponent)
         say(rest_, theme_.quiet_text, 0);
     for (const auto& value : now)
@@ -250,9 +187,9 @@ float StripLayer::draw_values(const std::vector<StripValue>& now, DisplayList& l
 
 void StripLayer::frame(DisplayList& list) const {
     const float x = strip_.time.at(state_.time());
-    const auto now = values();
+    const auto now = curves();
     const float left = draw_values(now, list);
-    if (state_.parting.since() && index_ == 0)
+    if (state_.outcome.parting.since() && index_ == 0)
         draw_parting(left, list);
     else if (index_ == 0 && state_.scene.horizon())
         say_horizon_above(list);

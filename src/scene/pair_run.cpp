@@ -58,19 +58,18 @@ void check_distance(const Scene& scene, const PairState& state) {
         std::string what;
         double a = 0, b = 0;
     } worst;
+    using Member = double Bob<double>::*;
     const auto all_a = compared_bobs(scene, state.a.bobs), all_b = compared_bobs(scene, state.b.bobs);
-    for (std::size_t i = 0; i < all_a.size(); ++i) {
-        const auto &a = all_a[i], &b = all_b[i];
-        const auto look = [&](const char* what, double of_a, double of_b) {
-            if (std::abs(of_a - of_b) > std::abs(worst.a - worst.b))
-                worst = {fmt::format("{} of mass {}", what, i + 1), of_a, of_b};
-        };
-        look("the mass, kg,", a.mass, b.mass);
-        look("the place in x, m,", a.x, b.x);
-        look("the place in y, m,", a.y, b.y);
-        look("the velocity in x, m/s,", a.vx, b.vx);
-        look("the velocity in y, m/s,", a.vy, b.vy);
-    }
+    for (std::size_t i = 0; i < all_a.size(); ++i)
+        for (const auto& [what, member] : {std::pair<const char*, Member>{"the mass, kg,", &Bob<double>::mass},
+                                           {"the place in x, m,", &Bob<double>::x},
+                                           {"the place in y, m,", &Bob<double>::y},
+                                           {"the velocity in x, m/s,", &Bob<double>::vx},
+                                           {"the velocity in y, m/s,", &Bob<double>::vy}}) {
+            const double a = all_a[i].*member, b = all_b[i].*member;
+            if (std::abs(a - b) > std::abs(worst.a - worst.b))
+                worst = {fmt::format("{} of mass {}", what, i + 1), a, b};
+        }
     const bool of_b = std::abs(worst.b) > std::abs(worst.a);
     throw Error(state.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,
                 fmt::format("{}: side {}: {} is {:.6g} at t = {} s, and {:.6g} on the other side: the square of their "

@@ -30,19 +30,19 @@ Scene butterfly() {
 /// Calls visit(composer) for each of the frames, in order.
 template <class Visit>
 void for_each_frame(const Scene& scene, Visit&& visit) {
-    Composer composer(scene);
-    PairRun pair(scene);
-    for (long n = 0; n < first + count; ++n) {
-        composer.add({pair.next(never), {}});
-        if (n >= first) visit(composer);
-    }
+    Recording recording(scene, {first + count}, true, never);
+    Composer composer(scene, recording.bounds());
+    recording.play([&](const Snapshot& snapshot) {
+        composer.add(snapshot);
+        if (snapshot.pair.sample >= first) visit(composer);
+    });
 }
 
 void compose(benchmark::State& state) {
     const auto scene = butterfly();
-    Composer composer(scene);
-    PairRun pair(scene);
-    for (long n = 0; n < first; ++n) composer.add({pair.next(never), {}});
+    Recording recording(scene, {first}, true, never);
+    Composer composer(scene, recording.bounds());
+    recording.play([&](const Snapshot& snapshot) { composer.add(snapshot); });
     for (auto _ : state) benchmark::DoNotOptimize(composer.frame());
 }
 BENCHMARK(compose)->Unit(benchmark::kMillisecond);
@@ -54,7 +54,7 @@ void draw(benchmark::State& state, Size size, bool converts) {
     const auto scene = make_scene(preset);
     std::vector<DisplayList> lists;
     for_each_frame(scene, [&](const Composer& composer) { lists.push_back(composer.frame()); });
-    Renderer renderer(size, Composer(scene).backdrop());
+    Renderer renderer(size, Composer(scene, Recording(scene, {1}, true, never).bounds()).backdrop());
     SampledAreas converted;
     std::size_t k = 0;
     double pixels = 0;
@@ -82,9 +82,9 @@ BENCHMARK_CAPTURE(draw, and_convert_what_changed, Size{1920, 1080}, true)
     ->MeasureProcessCPUTime();
 
 Picture one_frame(const Scene& scene) {
-    Composer composer(scene);
-    PairRun pair(scene);
-    for (long n = 0; n <= first; ++n) composer.add({pair.next(never), {}});
+    Recording recording(scene, {first + 1}, true, never);
+    Composer composer(scene, recording.bounds());
+    recording.play([&](const Snapshot& snapshot) { composer.add(snapshot); });
     Renderer renderer(scene.preset.video.size, composer.backdrop());
     return renderer.draw(composer.frame());
 }
@@ -116,14 +116,14 @@ struct Cost {
 
 RecordedFrames recorded(const Scene& scene) {
     RecordedFrames reel{scene.preset.video.size, {}};
-    Composer composer(scene);
-    PairRun pair(scene);
+    Recording recording(scene, {scene.samples + 1}, true, never);
+    Composer composer(scene, recording.bounds());
     Renderer renderer(reel.size, composer.backdrop());
-    for (long n = 0; n <= scene.samples; ++n) {
-        composer.add({pair.next(never), {}});
+    recording.play([&](const Snapshot& snapshot) {
+        composer.add(snapshot);
         const auto& picture = renderer.draw(composer.frame());
         convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, reel.frames.emplace_back());
-    }
+    });
     return reel;
 }
 

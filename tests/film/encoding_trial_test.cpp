@@ -50,16 +50,5 @@ TEST(EncodingTrial, FindsTheNoiseOfAFileThatHoldsTheSame) {
     }
 }
 
-TEST(EncodingTrial, ReplacesOptions) {
-    const auto frames = recorded();
-    const auto bytes = [&](const Metadata& replaced) { return try_encoding(frames, {.size = size}, replaced).bytes; };
-    EXPECT_LT(bytes({{"x264-params", "qp=40"}}), bytes({}));
-    expect_error(ExitCode::io_failed, {"nonsense"}, [&] { bytes({{"nonsense", "1"}}); });
-    const auto vp9 = [&](const char* speed) {
-        return try_encoding(frames, {.format = FilmFormat::webm, .size = size}, {{"cpu-used", speed}}).bytes;
-    };
-    EXPECT_NE(vp9("8"), vp9("0"));
-}
-
 }  // namespace encoding_trial_test
 }  // namespace doppel

@@ -104,39 +104,6 @@ TEST(Hero, LongHeadingsLeaveTheCircleWhereItIs) {
         expect_in_place_at_all_sizes(scene_of("butterfly", arguments), arguments[0]);
 }
 
-TEST(Hero, StripsOfErrorsAreOfWhatTheRunHas) {
-    for (const char* film : {"butterfly", "triple", "whip"}) {
-        const auto scene = scene_of(film, {"video.panels=[\"energy\"]", "scene.duration_s=4"});
-        const auto axis = make_layout(scene).strips.front().value;
-        const double unit = std::max(scene.a.energy_unit, scene.b.energy_unit);
-        double most = 0;
-        for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
-            for (const auto* side : {&snapshot.pair.a, &snapshot.pair.b})
-                most = std::max(most, std::abs(side->energy_change) / unit);
-        });
-        EXPECT_LE(most, axis.high) << film;
-        EXPECT_GE(most, axis.high / 11) << film;
-        EXPECT_LE(axis.high / axis.low, 1.01e6) << film;
-    }
-}
-
-TEST(Hero, LabelsOfTheTimeKeepApart) {
-    for (const char* panels :
-         {"[\"pendulums\", \"distance\"]", "[\"pendulums\", \"distance\", \"exponent\", \"energy\"]"})
-        for (const auto& size : sizes) {
-            auto scene = scene_of("butterfly", {std::string("video.panels=") + panels});
-            scene.preset.video.size = size;
-            const auto layout = make_layout(scene);
-            std::vector<Area> boxes;
-            for (const auto& label : labels_of(scene, 0))
-                if (label.anchor.y == layout.time_labels) boxes.push_back(box_of(label));
-            std::ranges::sort(boxes, {}, &Area::left);
-            ASSERT_GE(boxes.size(), 2u);
-            for (std::size_t i = 1; i < boxes.size(); ++i)
-                EXPECT_GE(boxes[i].left - boxes[i - 1].right, 9 * layout.text) << size.width << ' ' << i;
-        }
-}
-
 TEST(Parting, TakesAStartAsOneAndAWholeSecondApart) {
     const auto since = [](double start, const std::vector<std::pair<double, double>>& steps) {
         Parting parting;
@@ -155,7 +122,9 @@ TEST(Parting, TakesAStartAsOneAndAWholeSecondApart) {
 }
 
 TEST(Parting, IsInTheManifest) {
-    EXPECT_NEAR(manifest_of(scene_of("butterfly"))["parted_s"].get<double>(), 14.2, 0.05);  // measured 14.2
+    // by a method that is right for as long; explicit Euler, off by half a rad from 11 s on, says 14.2
+    const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1e-13"});
+    EXPECT_NEAR(manifest_of(scene)["parted_s"].get<double>(), 15.35, 0.01);
     EXPECT_TRUE(manifest_of(scene_of("calm"))["parted_s"].is_null());
 }
 
@@ -170,24 +139,16 @@ TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
     EXPECT_EQ(bar[0].color, member_color(layout.style, 0));
     EXPECT_EQ(bar.back().color, member_color(layout.style, 1));
     EXPECT_EQ(bar.back().left + 1, bar.back().right);
-    Composer composer(scene);
-    for_each_snapshot(scene, 60, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-    EXPECT_TRUE(says(composer.backdrop(), "first to last"));
+    const auto composer = composed(scene, 60);
+    EXPECT_TRUE(says(composer->backdrop(), "first to last"));
     const auto strokes =
-        std::ranges::count_if(composer.frame(), [](const Item& item) { return std::holds_alternative<Stroke>(item); });
+        std::ranges::count_if(composer->frame(), [](const Item& item) { return std::holds_alternative<Stroke>(item); });
     EXPECT_GE(strokes, 200) << "a trail each";
-}
-
-TEST(Fan, DrawsManyMembersFinerThanFew) {
-    const auto sizes_of = [](int members) {
-        const auto layout =
-            make_layout(at_size(scene_of("fan", {fmt::format("video.members={}", members)}), {1920, 1080}));
-        return std::pair{layout.bob_radius, layout.rod_radius};
-    };
-    const auto few = sizes_of(5), many = sizes_of(200);
-    EXPECT_NEAR(few.first / many.first, 5, 1e-3);  // √(200/8)
-    EXPECT_GT(few.second / many.second, 3);
-    EXPECT_EQ(few, sizes_of(8));
+    // many are finer than few
+    const auto few = make_layout(at_size(scene_of("fan", {"video.members=5"}), {1920, 1080})),
+               many = make_layout(at_size(scene_of("fan", {"video.members=200"}), {1920, 1080}));
+    EXPECT_NEAR(few.bob_radius / many.bob_radius, 5, 1e-3);  // √(200/8)
+    EXPECT_GT(few.rod_radius / many.rod_radius, 3);
 }
 
 TEST(Fan, ShowsListedMembersLargeWithALegend) {

@@ -74,6 +74,36 @@ TEST(RunFaults, LooksAheadOnlyWhereAPictureDependsOnIt) {
     const std::vector<std::string> arguments{"scene.duration_s=800000", "video.size=[64, 64]",
                                              "video.panels=[\"distance\"]", "video.distance_range=[1e-5, 10]"};
     EXPECT_EQ(render(scene_of("springs", arguments), {.out = fresh_folder(), .first = 0, .last = 1}).frames, 1);
+    EXPECT_FALSE(depends_on_motion(scene_of("whip-256"))) << "a still of its start takes no run of seconds";
+}
+
+TEST(RunFaults, WhatIsTooLargeToKeepIsSimulatedAgain) {
+    const auto scene = scene_of("fan", {"scene.duration_s=0.5", "video.members=3", "video.fps=50"});
+    struct Seen {
+        std::vector<double> numbers;
+        MotionRecord record;
+        MotionBounds bounds;
+    };
+    const auto seen = [&](double most_bytes) {
+        long reports = 0;
+        Recording recording(
+            scene, {40}, true, never_stopped, [&](const Progress&) { ++reports; }, most_bytes);
+        std::vector<double> numbers;
+        for (int time = 0; time < 2; ++time)
+            recording.play([&](const Snapshot& snapshot) {
+                numbers.insert(numbers.end(), {snapshot.pair.share, snapshot.pair.a.bobs[1].x, snapshot.pair.distance});
+                for (const auto& bobs : snapshot.members) numbers.push_back(bobs.back().theta);
+            });
+        EXPECT_EQ(reports, most_bytes > 0 ? 61 : 61 + 2 * 40);
+        return Seen{numbers, recording.record(), recording.bounds()};
+    };
+    const auto kept = seen(Recording::usual_bytes), again = seen(0);
+    EXPECT_EQ(kept.numbers.size(), 2u * (40 + 13) * 6);  // 13 of 17 frames lie between two samples
+    EXPECT_EQ(kept.numbers, again.numbers);
+    EXPECT_EQ(kept.record.outcome.largest_distance, again.record.outcome.largest_distance);
+    EXPECT_EQ(kept.record.a.effort.steps, again.record.a.effort.steps);
+    EXPECT_EQ(kept.bounds.strips[0].most, again.bounds.strips[0].most);
+    EXPECT_GT(kept.bounds.strips[0].count, 40) << "to the end";
 }
 
 TEST(RunFaults, LeavesNoFrameOfASequenceThatBrokeDown) {

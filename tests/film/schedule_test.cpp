@@ -93,25 +93,23 @@ TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
     EXPECT_GT(title, 30);
     EXPECT_LT(title, 100);
     // the words of a tile are the time alone
-    Composer composer(tile, false, Dress::tile);
-    for_each_snapshot(tile, 60, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-    EXPECT_EQ(words_of({composer.backdrop(), composer.frame()}), std::vector<std::string>{"0.50 s"});
+    const auto composer = composed(tile, 60, Dress::tile);
+    EXPECT_EQ(words_of({composer->backdrop(), composer->frame()}), std::vector<std::string>{"0.50 s"});
     // the last tile is the end of the motion
-    Renderer renderer(tile.preset.video.size, composer.backdrop());
-    const auto last = renderer.draw(composer.frame());
+    Renderer renderer(tile.preset.video.size, composer->backdrop());
+    const auto last = renderer.draw(composer->frame());
     const int left = 2 * 328 + 8, top = title + tile.preset.video.size.height + 2 * 8;
     for (int y = 0; y < last.size.height; ++y)
         for (int x = 0; x < last.size.width; ++x)
             ASSERT_TRUE(std::equal(last.at(x, y), last.at(x, y) + 4, sheet.at(left + x, top + y))) << x << ' ' << y;
     // both pendulums fill their halves: a circle takes most of a tile's width
-    const auto layout = make_layout(tile, false, Dress::tile);
+    const auto layout = make_layout(tile, bounds_of(scene), Dress::tile);
     EXPECT_GT(4 * layout.reach, 0.85f * 320);
 }
 
 TEST(Schedule, CardsHaveAStillOfTheOutcome) {
     const auto scene = scene_of("pendulum-portrait", {"scene.duration_s=1", "video.trail_s=0"});
-    Composer composer(scene);
-    for_each_snapshot(scene, 120, [&](const Snapshot& snapshot) { composer.add(snapshot); });
+    const auto composer = composed(scene, 120);
     const auto theme = make_layout(scene).style.theme;
     const auto discs = [](const DisplayList& list, Color color) {
         return std::ranges::count_if(list, [&](const Item& item) {
@@ -119,15 +117,15 @@ TEST(Schedule, CardsHaveAStillOfTheOutcome) {
             return disc && disc->from.x == disc->to.x && disc->from.y == disc->to.y && disc->color == color;
         });
     };
-    for (const auto& card : {composer.end_card(1), composer.title_card(1)})
+    for (const auto& card : {composer->end_card(1), composer->title_card(1)})
         for (std::size_t side = 0; side < 2; ++side) EXPECT_EQ(discs(card, theme.sides[side]), 1) << side;
-    for (const auto& item : composer.end_card(1))
+    for (const auto& item : composer->end_card(1))
         if (const auto* label = std::get_if<Label>(&item)) {
             EXPECT_GT(label->anchor.y - label->size, 110) << label->text;
             EXPECT_LT(label->anchor.y, 1920 - 260) << label->text;
         }
     // all of it fades
-    for (const auto& item : composer.end_card(0.25))
+    for (const auto& item : composer->end_card(0.25))
         std::visit([](const auto& shape) { EXPECT_LE(shape.color.a, 0.25f); }, item);
 }
 

@@ -1,11 +1,23 @@
 #pragma once
 
 #include "film/composer.hpp"
+#include "film/recording.hpp"
 #include "integrate/motion_batch.hpp"
+#include "output/sink.hpp"
 #include "render/renderer.hpp"
 #include "scene/support.hpp"
 
+#include <memory>
+#include <optional>
+
 namespace doppel {
+
+inline MotionBounds bounds_of(const Scene& scene) {
+    return Recording(scene, {1}, true, never_stopped).bounds();
+}
+inline Layout make_layout(const Scene& scene) {
+    return make_layout(scene, bounds_of(scene));
+}
 
 /// Calls visit(snapshot) for the samples 0 … last.
 template <class Visit>
@@ -13,10 +25,9 @@ void for_each_snapshot(const Scene& scene, long last, Visit&& visit) {
     PairRun pair(scene);
     std::optional<MotionBatch> members;
     if (!scene.members.empty()) members.emplace(scene.members, 1);
-    const std::atomic<bool> never = false;
     for (long n = 0; n <= last; ++n) {
-        Snapshot snapshot{pair.next(never), {}};
-        if (members && n > 0) members->advance(never);
+        Snapshot snapshot{pair.next(never_stopped), {}};
+        if (members && n > 0) members->advance(never_stopped);
         for (std::size_t k = 0; members && k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
         visit(snapshot);
     }
@@ -38,12 +49,21 @@ inline std::vector<std::string> one_link_at(const std::string& a, const std::str
             "b.angle_deg=[" + b + "]"};
 }
 
+/// That has seen the samples 0 … last.
+inline std::unique_ptr<Composer> composed(const Scene& scene, long last, Dress dress = Dress::film) {
+    Recording recording(scene, {last + 1}, true, never_stopped);
+    auto composer = std::make_unique<Composer>(scene, recording.bounds(), dress);
+    recording.play([&](const Snapshot& snapshot) {
+        if (snapshot.pair.share == 0) composer->add(snapshot);
+    });
+    return composer;
+}
+
 /// The picture of one sample.
 inline Picture frame_of(const Scene& scene, long sample) {
-    Composer composer(scene);
-    for_each_snapshot(scene, sample, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-    Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, false, scene.preset.video.typeface);
-    return renderer.draw(composer.frame());
+    const auto composer = composed(scene, sample);
+    Renderer renderer(scene.preset.video.size, composer->backdrop(), Gl::automatic, false, scene.preset.video.typeface);
+    return renderer.draw(composer->frame());
 }
 
 }  // namespace doppel

@@ -35,9 +35,8 @@ inline std::vector<std::string> words_of(const std::vector<DisplayList>& lists) 
 
 /// The words of the picture after the snapshots 0 … last.
 inline std::vector<Label> labels_of(const Scene& scene, long last) {
-    Composer composer(scene);
-    for_each_snapshot(scene, last, [&](const Snapshot& snapshot) { composer.add(snapshot); });
-    return labels_in({composer.backdrop(), composer.frame()});
+    const auto composer = composed(scene, last);
+    return labels_in({composer->backdrop(), composer->frame()});
 }
 
 /// Each is in the picture, and none touches another.

@@ -43,18 +43,18 @@ RecordedFrames record(const Scene& scene) {
     const auto& frames = scene.frames;
     const long first = frames.first_from(moment_at(from_s * scene.preset.sample_hz.value()));
     const long end = first + count;
-    Composer composer(scene);
-    Simulation simulation(scene, frames.at(end), true, never_stopped);
+    Recording recording(scene, frames.at(end), true, never_stopped);
+    Composer composer(scene, recording.bounds());
     Renderer renderer(scene.preset.video.size, composer.backdrop(), Gl::automatic, never_stopped,
                       scene.preset.video.typeface);
     RecordedFrames recorded{scene.preset.video.size, {}};
-    for (long frame = 0; frame < end;) {
-        const auto snapshot = simulation.next();
-        composer.add(*snapshot);
-        if (snapshot->pair.moment() != frames.at(frame) || frame++ < first) continue;
+    long frame = 0;
+    recording.play([&](const Snapshot& snapshot) {
+        composer.add(snapshot);
+        if (snapshot.pair.moment() != frames.at(frame) || frame++ < first) return;
         const auto& picture = renderer.draw(composer.frame(), never_stopped);
         convert(picture, renderer.changed(), AV_PIX_FMT_YUV420P, recorded.frames.emplace_back());
-    }
+    });
     return recorded;
 }
 
