@@ -7,28 +7,20 @@
 
 namespace doppel {
 
+constexpr std::array<Fraction, 8> over_120960(const std::array<long, 8>& numerators) {
+    std::array<Fraction, 8> weights;
+    for (std::size_t j = 0; j < weights.size(); ++j) weights[j] = {numerators[j], 120960};
+    return weights;
+}
 /// The linear multistep methods of order 8 in exact fractions, newest slope first:
 ///     predictor  y ← y + h Σ_j b_j f_{n−j}
 ///     corrector  y ← y + h Σ_j c_j f_{n+1−j},  f_{n+1} that of the prediction
 /// Source  Adams & Bashforth 1883, Moulton 1926; Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I,
 ///         §III.1.
 struct AdamsWeights {
-    static constexpr std::array<Fraction, 8> bashforth{{{434241, 120960},
-                                                        {-1152169, 120960},
-                                                        {2183877, 120960},
-                                                        {-2664477, 120960},
-                                                        {2102243, 120960},
-                                                        {-1041723, 120960},
-                                                        {295767, 120960},
-                                                        {-36799, 120960}}};
-    static constexpr std::array<Fraction, 8> moulton{{{36799, 120960},
-                                                      {139849, 120960},
-                                                      {-121797, 120960},
-                                                      {123133, 120960},
-                                                      {-88547, 120960},
-                                                      {41499, 120960},
-                                                      {-11351, 120960},
-                                                      {1375, 120960}}};
+    static constexpr auto bashforth =
+        over_120960({434241, -1152169, 2183877, -2664477, 2102243, -1041723, 295767, -36799});
+    static constexpr auto moulton = over_120960({36799, 139849, -121797, 123133, -88547, 41499, -11351, 1375});
 };
 
 /// Adams–Bashforth–Moulton at fixed step: predict, evaluate, correct, evaluate; two evaluations a step whatever the
@@ -44,7 +36,7 @@ public:
         : model_(model), y_(start), at_(start), sum_(start), h_(step), starter_(start) {
         past_.fill(start);
         take_modes(model_, y_);
-        doppel::slope(model_, y_, past_[0]);
+        model_.rate(y_, past_[0]);
     }
 
     void advance(long steps) {
@@ -87,7 +79,7 @@ private:
         if (!(model_.margin(y_) < Scalar(0))) return;
         y_ = before_;
         step_through_events(model_, y_, h_, [&](State& y, const Scalar& t) {
-            doppel::slope(model_, y, starter_[0]);
+            model_.rate(y, starter_[0]);
             ++evaluations_;
             one_step(y, t);
         });
@@ -100,7 +92,7 @@ private:
         sum<AdamsWeights::bashforth>(sum_);
         at_ = y_ + h_ * sum_;
         newest_ = (newest_ + 1) % order;  // the oldest slope makes room for the one predicted
-        doppel::slope(model_, at_, past_[newest_]);
+        model_.rate(at_, past_[newest_]);
         ++evaluations_;
         sum<AdamsWeights::moulton>(sum_);
         y_ += h_ * sum_;
@@ -110,7 +102,7 @@ private:
     /// At the new state: its slope becomes the newest.
     void arrive() {
         project(model_, y_);
-        doppel::slope(model_, y_, past_[newest_]);
+        model_.rate(y_, past_[newest_]);
         ++evaluations_;
     }
 

@@ -34,7 +34,7 @@ public:
                             static_cast<double>(tolerance), std::numeric_limits<Scalar>::digits10 + 1,
                             static_cast<double>(least));
         take_modes(model_, y1_);
-        doppel::slope(model_, y1_, k_[end]);
+        model_.rate(y1_, k_[end]);
         h_ = first_step();
         evaluations_ = 2;
     }
@@ -44,7 +44,7 @@ public:
         y1_ = out_ = start;
         take_modes(model_, y1_);
         ends_at_event_ = false;
-        doppel::slope(model_, y1_, k_[end]);
+        model_.rate(y1_, k_[end]);
         ++evaluations_;
         span_ = Scalar(0);
         time_ = {};
@@ -52,22 +52,10 @@ public:
     }
 
     void advance(const Scalar& seconds) {
-        time_.advance(seconds);
-        while (time_.offset() > span_) {
-            time_.pass(span_);
-            step(seconds);
-        }
-        sample(time_.offset());
+        sample(time_.advance(seconds, span_, [&] { step(seconds); }));
     }
     void look_ahead(const Scalar& seconds) {
-        auto ahead = time_;
-        ahead.advance(seconds);
-        while (ahead.offset() > span_) {
-            ahead.pass(span_);
-            time_.note_step_ahead(span_);
-            step(seconds);
-        }
-        sample(ahead.offset());
+        sample(time_.look_ahead(seconds, span_, [&] { step(seconds); }));
     }
 
     const State& state() const { return out_; }
@@ -87,7 +75,7 @@ private:
     void step(const Scalar& seconds) {
         if (ends_at_event_) {
             if constexpr (HasEvents<Model>) model_.settle(y1_);
-            doppel::slope(model_, y1_, k_[end]);
+            model_.rate(y1_, k_[end]);
             ++evaluations_;
             ends_at_event_ = false;
         }
@@ -120,7 +108,7 @@ private:
     void take(const Scalar& h) {
         k_.template evaluate<1, end>(model_, y0_, h);
         k_.finish(y0_, h, y1_);
-        if constexpr (error_needs_end) doppel::slope(model_, y1_, k_[end]);
+        if constexpr (error_needs_end) model_.rate(y1_, k_[end]);
         evaluations_ += static_cast<long>(error_needs_end ? end : end - 1);
         span_ = h;
     }
@@ -128,7 +116,7 @@ private:
     void arrive() {
         project(model_, y1_);
         if (!error_needs_end || projects(model_)) {
-            doppel::slope(model_, y1_, k_[end]);
+            model_.rate(y1_, k_[end]);
             ++evaluations_;
         }
         interpolates_ = false;
@@ -192,7 +180,7 @@ private:
         const double slope = std::sqrt(static_cast<double>(norm_squared(k_[end])));
         const double guess = size < 1e-5 || slope < 1e-5 ? 1e-6 : 0.01 * size / slope;
         scratch_ = y1_ + Scalar(guess) * k_[end];
-        doppel::slope(model_, scratch_, k_[0]);
+        model_.rate(scratch_, k_[0]);
         scratch_ = k_[0] - k_[end];
         const double curvature = std::sqrt(static_cast<double>(norm_squared(scratch_))) / guess;
         const double bend = slope > curvature ? slope : curvature;

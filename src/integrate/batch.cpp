@@ -8,19 +8,6 @@ namespace doppel {
 
 BatchBlock::~BatchBlock() = default;
 
-namespace {
-
-/// The numbers of pendulums by quantity: that of link j of member i is at [j · members + i].
-std::vector<double> gathered(std::span<const Pendulum<double>> members,
-                             const std::vector<double> Pendulum<double>::*quantity) {
-    std::vector<double> all;
-    for (std::size_t j = 0; j < members[0].links(); ++j)
-        for (const auto& member : members) all.push_back((member.*quantity)[j]);
-    return all;
-}
-
-}  // namespace
-
 bool Batch::serves(std::string_view method, std::size_t links) {
     return (method == Euler::method.name || method == Rk4::method.name) && (links == 2 || links == 3);
 }
@@ -34,18 +21,9 @@ Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string
             throw bad_input("the pendulums of a batch have as many links each: not {} and {}", links, member.links());
     if (!serves(method, links))
         throw bad_input("two or three links are stepped side by side, by euler or rk4: not {} by {}", links, method);
-    const auto mass = gathered(members, &Pendulum<double>::mass), length = gathered(members, &Pendulum<double>::length),
-               angle = gathered(members, &Pendulum<double>::angle), rate = gathered(members, &Pendulum<double>::rate);
-    std::vector<double> gravity;
-    for (const auto& member : members) gravity.push_back(member.gravity);
     const auto make = at_width(width_, []<int chosen>() { return make_batch_block<chosen>; });
-    const BatchRequest request{.members = members.size(),
-                               .links = links,
-                               .mass = mass.data(),
-                               .length = length.data(),
-                               .angle = angle.data(),
-                               .rate = rate.data(),
-                               .gravity = gravity.data(),
+    const BatchRequest request{.members = members.data(),
+                               .count = members.size(),
                                .step = step,
                                .constraints = model == Model::constraints,
                                .by_rk4 = method == Rk4::method.name};
@@ -57,12 +35,6 @@ Batch::Batch(Batch&&) noexcept = default;
 
 void Batch::advance(long steps) {
     for (auto& block : blocks_) block->advance(steps);
-}
-
-State<double, Eigen::Dynamic> Batch::state(std::size_t member) const {
-    State<double, Eigen::Dynamic> y;
-    read(member, y);
-    return y;
 }
 
 void Batch::read(std::size_t member, State<double, Eigen::Dynamic>& y) const {

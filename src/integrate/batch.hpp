@@ -30,7 +30,11 @@ public:
     int width() const { return width_; }
 
     /// The state of a member as its model keeps it: (θ1 … θN, ω1 … ωN) or (x1, y1 … , vx1, vy1 …).
-    State<double, Eigen::Dynamic> state(std::size_t member) const;
+    State<double, Eigen::Dynamic> state(std::size_t member) const {
+        State<double, Eigen::Dynamic> y;
+        read(member, y);
+        return y;
+    }
     /// The same into `y`, which keeps its memory.
     void read(std::size_t member, State<double, Eigen::Dynamic>& y) const;
 

@@ -9,17 +9,16 @@
 
 namespace doppel {
 
-// What integrate/batch.cpp and the code for one kind of processor (integrate/batch_width.cpp) share: only plain numbers
-// pass between them, so that no function of a common type is compiled twice for different processors under one name.
+// What integrate/batch.cpp and the code for one kind of processor (integrate/batch_width.cpp) share: no function of a common
+// type may be compiled there under a name of its own.
 
-/// Pendulums of one shape, stored by quantity: quantity j of member i is at [j · members + i].
+/// Pendulums of as many links each.
 struct BatchRequest {
-    std::size_t members, links;
-    const double *mass, *length, *angle, *rate;  // of link j
-    const double* gravity;                       // one a member
-    double step;                                 // s
-    bool constraints;                            // the model: else angles
-    bool by_rk4;                                 // else by Euler
+    const Pendulum<double>* members;
+    std::size_t count;
+    double step;       // s
+    bool constraints;  // the model: else angles
+    bool by_rk4;       // else by Euler
 };
 
 /// Some members that are stepped side by side.
@@ -73,23 +72,21 @@ private:
 /// The members from `first` side by side.
 template <class Pack>
 Pendulum<Pack> pendulum_of(const BatchRequest& request, std::size_t first) {
-    Pendulum<Pack> pendulum;
-    const auto fill = [&](Pack& side, const double* values) {
-        for (int lane = 0; lane < Pack::width; ++lane) {
-            const std::size_t member = first + static_cast<std::size_t>(lane);
-            side.set(lane, values[member < request.members ? member : request.members - 1]);
+    const std::size_t links = request.members->links();
+    Pendulum<Pack> all;
+    for (auto* of : {&all.mass, &all.length, &all.angle, &all.rate}) of->resize(links);
+    for (int lane = 0; lane < Pack::width; ++lane) {
+        const std::size_t member = first + static_cast<std::size_t>(lane);
+        const auto& one = request.members[member < request.count ? member : request.count - 1];
+        for (std::size_t j = 0; j < links; ++j) {
+            all.mass[j].set(lane, one.mass[j]);
+            all.length[j].set(lane, one.length[j]);
+            all.angle[j].set(lane, one.angle[j]);
+            all.rate[j].set(lane, one.rate[j]);
         }
-    };
-    const auto fill_all = [&](std::vector<Pack>& sides, const double* values) {
-        sides.resize(request.links);
-        for (std::size_t j = 0; j < request.links; ++j) fill(sides[j], values + j * request.members);
-    };
-    fill_all(pendulum.mass, request.mass);
-    fill_all(pendulum.length, request.length);
-    fill_all(pendulum.angle, request.angle);
-    fill_all(pendulum.rate, request.rate);
-    fill(pendulum.gravity, request.gravity);
-    return pendulum;
+        all.gravity.set(lane, one.gravity);
+    }
+    return all;
 }
 
 /// The block with the method asked for.

@@ -18,7 +18,7 @@ using Pack = Lanes<batch_block(compiled_width), ThisBuild>;
 template <>
 BatchBlock* make_batch_block<compiled_width>(const BatchRequest& request, std::size_t first) {
     const auto pendulum = pendulum_of<Pack>(request, first);
-    if (request.links == 2)
+    if (request.members->links() == 2)
         return request.constraints ? with_method<RodChain<Pack, 2>>(request, pendulum)
                                    : with_method<DoublePendulum<Pack>>(request, pendulum);
     return request.constraints ? with_method<RodChain<Pack, 3>>(request, pendulum)

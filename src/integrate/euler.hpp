@@ -30,14 +30,7 @@ public:
     }
 
     void advance(long steps) {
-        for (long i = 0; i < steps; ++i) {
-            if constexpr (HasEvents<Model>)
-                if (model_.switches()) {
-                    step_through_events(model_, y_, h_, [&](State& y, const Scalar& h) { step(y, h); });
-                    continue;
-                }
-            step(y_, h_);
-        }
+        take_steps(model_, y_, steps, h_, [&](State& y, const Scalar& h) { step(y, h); });
     }
 
     const State& state() const { return y_; }

@@ -123,29 +123,18 @@ void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& sp
                  const std::atomic<bool>& stop, int width) {
     check(pendulums, spec, times);
     const auto find = at_width(chosen_width(width), []<int chosen>() { return find_flips<chosen>; });
-    std::vector<FlipStart> starts;
-    starts.reserve(pendulums.size());
     for (std::size_t i = 0; i < pendulums.size(); ++i) {
-        const auto& p = pendulums[i];
-        const auto &mass = p.mass, &length = p.length;
         // what is known beforehand; the rest is marked by a negative time
+        const auto& p = pendulums[i];
         const bool is_beyond = std::max(std::abs(p.angle[0]), std::abs(p.angle[1])) > pi;
         times[i] = is_beyond ? 0 : flip_is_forbidden(p) ? never : -1;
-        const double swing =
-            std::sqrt(std::min(length[0], length[1]) / std::abs(p.gravity));  // s, a rod's natural time
-        starts.push_back({.chain = {.gravity = p.gravity / length[0],
-                                    .ratio = mass[0] / mass[1],
-                                    .masses = 1 + mass[0] / mass[1],
-                                    .longer = length[1] / length[0],
-                                    .pull = -1 / (length[1] / length[0]),
-                                    .longest = std::min(swing, spec.duration)},
-                          .theta = {p.angle[0], p.angle[1]},
-                          .omega = {p.rate[0], p.rate[1]}});
     }
+    const Pendulum<double> hanging;
     const FlipRequest request{.duration = spec.duration,
                               .allowed = std::log2(spec.tolerance),
-                              .count = starts.size(),
-                              .starts = starts.data(),
+                              .count = pendulums.size(),
+                              .pendulums = pendulums.data(),
+                              .hanging = &hanging,
                               .times = times.data(),
                               .stop = &stop};
     if (!find(request)) throw interrupted();

@@ -11,21 +11,15 @@ namespace doppel {
 // What integrate/flips.cpp and the code for one kind of processor (integrate/flips_width.cpp) share, by the rules of
 // integrate/batch_width.cpp.
 
-/// What the motion of a double pendulum depends on besides its state.
-template <class Number>
+/// What the motion of double pendulums depends on besides their states.
+template <class Pack>
 struct FlipChain {
-    Number gravity;  // g / l1, 1/s²
-    Number ratio;    // m1 / m2
-    Number masses;   // 1 + m1 / m2
-    Number longer;   // L = l2 / l1
-    Number pull;     // −1 / L
-    Number longest;  // s, of a step
-};
-
-/// A double pendulum as it is released.
-struct FlipStart {
-    FlipChain<double> chain;
-    double theta[2], omega[2];  // rad, rad/s
+    Pack gravity;  // g / l1, 1/s²
+    Pack ratio;    // m1 / m2
+    Pack masses;   // 1 + m1 / m2
+    Pack longer;   // L = l2 / l1
+    Pack pull;     // −1 / L
+    Pack longest;  // s, of a step
 };
 
 inline constexpr int flip_order = 16;  // at 1e-8 rad/s, 12 costs 1.2 times as much and 20 costs 1.1 times
@@ -142,8 +136,9 @@ struct FlipRequest {
     double duration;  // s
     double allowed;   // log2 of the tolerance, rad/s
     std::size_t count;
-    const FlipStart* starts;
-    double* times;  // s; those that are negative are to be found
+    const Pendulum<double>* pendulums;
+    const Pendulum<double>* hanging;  // at rest, for lanes that are left without one
+    double* times;                    // s; those that are negative are to be found
     const std::atomic<bool>* stop;
 };
 

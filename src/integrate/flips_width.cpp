@@ -3,6 +3,7 @@
 #include "integrate/flips_kernel.hpp"
 #include "numeric/state.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace doppel {
@@ -37,8 +38,6 @@ private:
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double broken = std::numeric_limits<double>::quiet_NaN();
     static constexpr std::size_t none = ~std::size_t(0);
-    static constexpr FlipStart hanging{.chain = {1, 1, 2, 1, -1, 1}, .theta = {}, .omega = {}};
-
     struct Group {
         FlipChain<Pack> chain;
         Series series;
@@ -62,7 +61,7 @@ private:
         const Pack reach1 = reach(h, now.theta[0], end.theta[0], now.omega[0], end.omega[0]);
         const Pack reach2 = reach(h, now.theta[1], end.theta[1], now.omega[1], end.omega[1]);
         const auto dull =
-            (reach1 < Pack(pi)) & (reach2 < Pack(pi)) & (after < Pack(request_.duration)) & (h > Pack(least_step));
+            (reach1 < Pack(pi)) & (reach2 < Pack(pi)) & (after < Pack(request_.duration)) & (Pack(least_step) < h);
         bool done[Pack::width] = {};
         const bool all_dull = all_of(dull);
         if (!all_dull)
@@ -116,18 +115,19 @@ private:
         busy_ += is_left;
         group.trial[lane] = is_left ? next_ : none;
         group.time.set(lane, 0);
-        const FlipStart& start = is_left ? request_.starts[next_] : hanging;
-        const auto& chain = start.chain;
-        group.chain.gravity.set(lane, chain.gravity);
-        group.chain.ratio.set(lane, chain.ratio);
-        group.chain.masses.set(lane, chain.masses);
-        group.chain.longer.set(lane, chain.longer);
-        group.chain.pull.set(lane, chain.pull);
-        group.chain.longest.set(lane, chain.longest);
+        const auto& p = is_left ? request_.pendulums[next_] : *request_.hanging;
+        const double l1 = p.length[0], l2 = p.length[1], ratio = p.mass[0] / p.mass[1], longer = l2 / l1;
+        const double swing = std::sqrt((l2 < l1 ? l2 : l1) / std::abs(p.gravity));  // s, a rod's natural time
+        group.chain.gravity.set(lane, p.gravity / l1);
+        group.chain.ratio.set(lane, ratio);
+        group.chain.masses.set(lane, 1 + ratio);
+        group.chain.longer.set(lane, longer);
+        group.chain.pull.set(lane, -1 / longer);
+        group.chain.longest.set(lane, request_.duration < swing ? request_.duration : swing);
         auto& now = group.series.term[0];
-        for (int i = 0; i < 2; ++i) {
-            now.theta[i].set(lane, start.theta[i]);
-            now.omega[i].set(lane, start.omega[i]);
+        for (std::size_t i = 0; i < 2; ++i) {
+            now.theta[i].set(lane, p.angle[i]);
+            now.omega[i].set(lane, p.rate[i]);
         }
         next_ += is_left;
     }

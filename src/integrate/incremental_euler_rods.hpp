@@ -31,7 +31,9 @@ public:
             now_.r[2] = now_.r[2] * (Scalar(1) / scale3_);
             now_.u[2] = now_.u[2] * (Scalar(1) / scale3_);
         }
-        mark_resting(model);
+        State dydt = start;
+        Model(model).rate(start, dydt);
+        for (const Scalar& rate : dydt) rests_ = rests_ & (rate <= Scalar(0)) & (Scalar(0) <= rate);
     }
 
     DOPPEL_COMPONENTS_APART void advance(long steps) { run(steps); }
@@ -49,8 +51,7 @@ public:
             y[2 * N + 2 * k] = v.x / h_;
             y[2 * N + 2 * k + 1] = v.y / h_;
         }
-        for (int lane = 0; lane < width; ++lane)
-            if (rests_[static_cast<std::size_t>(lane)]) copy_lane(lane, start_, y);
+        for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = select(rests_, start_[i], y[i]);
         return y;
     }
     long evaluations() const { return taken_; }
@@ -69,36 +70,6 @@ private:
     struct Now {
         Pair r[N], u[N];
     };
-    static constexpr int width = [] {
-        if constexpr (is_lanes<Scalar>)
-            return Scalar::width;
-        else
-            return 1;
-    }();
-
-    static void copy_lane(int lane, const State& from, State& to) {
-        for (Eigen::Index i = 0; i < to.size(); ++i)
-            if constexpr (is_lanes<Scalar>)
-                to[i].set(lane, from[i][lane]);
-            else
-                to[i] = from[i];
-    }
-
-    /// What the model finds in equilibrium stays there exactly: sums that are ordered for speed would let it tremble.
-    void mark_resting(Model model) {
-        State dydt = start_;
-        model.rate(start_, dydt);
-        for (int lane = 0; lane < width; ++lane) {
-            bool rests = true;
-            for (Eigen::Index i = 0; i < dydt.size(); ++i)
-                if constexpr (is_lanes<Scalar>)
-                    rests = rests && dydt[i][lane] == 0;
-                else
-                    rests = rests && dydt[i] == 0;
-            rests_[static_cast<std::size_t>(lane)] = rests;
-        }
-    }
-
     static Pair relative(const State& y, Eigen::Index k, Eigen::Index first) {
         const Eigen::Index at = first + 2 * k;
         if (k == 0) return {y[at], y[at + 1]};
@@ -123,7 +94,8 @@ private:
     Pulls by_;          // gravity: h² g
     Scalar scale3_{1};  // ρ_2 (physics/rod_pulls.hpp)
     Now now_;
-    std::array<bool, width> rests_{};
+    /// What the model finds in equilibrium stays there exactly: sums that are ordered for speed would let it tremble.
+    decltype(Scalar() <= Scalar()) rests_ = Scalar(0) <= Scalar(0);
     long taken_ = 0;  // steps
 };
 

@@ -8,7 +8,7 @@
 // A linear map is kept by distance: by[s] holds what it makes of lane i xor s for lane i.
 
 #include "integrate/lane_series.hpp"
-#include "numeric/lanes.hpp"
+#include "numeric/sin_cos.hpp"
 
 namespace doppel {
 namespace {
@@ -21,10 +21,6 @@ template <int N>
 struct Plane {
     Pack part[N - 1];
 
-    [[gnu::always_inline]] static Plane load_from(const double (&p)[N - 1][4]) {
-        if constexpr (N == 2) return {{Pack::load(p[0])}};
-        if constexpr (N == 3) return {{Pack::load(p[0]), Pack::load(p[1])}};
-    }
     [[gnu::always_inline]] static Plane from(const double (&x)[N], const double (&y)[N]) {
         if constexpr (N == 2) return {{Pack::of(x[0], x[1], y[0], y[1])}};
         if constexpr (N == 3) return {{Pack::of(x[0], x[1], x[2], 0), Pack::of(y[0], y[1], y[2], 0)}};
@@ -33,10 +29,6 @@ struct Plane {
     [[gnu::always_inline]] static Plane both(double x, double y) {
         if constexpr (N == 2) return {{Pack::of(x, x, y, y)}};
         if constexpr (N == 3) return {{Pack(x), Pack(y)}};
-    }
-    [[gnu::always_inline]] void store_to(double (&p)[N - 1][4]) const {
-        part[0].store(p[0]);
-        if constexpr (N == 3) part[1].store(p[1]);
     }
     [[gnu::always_inline]] friend Plane operator+(const Plane& a, const Plane& b) {
         if constexpr (N == 2) return {{a.part[0] + b.part[0]}};
@@ -106,6 +98,40 @@ template <int N, class Number>
         for (double& entry : row) entry *= factor;
 }
 
+/// A chain as the recurrence needs it. μ_i = Σ_{k≥i} m_k.
+template <int N>
+struct Chain {
+    static constexpr int most_orders = 64;
+
+    Pack coupling[N]{};  // μ_max(i,j) / μ_i in row i
+    Pack exchange[4]{};  // the same by distance s: lane i, column i xor s
+    double length[N];
+    double gravity;
+    double inverse[most_orders + 2]{};  // 1/k
+
+    explicit Chain(const Pendulum<double>& p) : gravity(p.gravity) {
+        double mass[N + 1] = {};  // μ
+        for (int i = N - 1; i >= 0; --i) mass[i] = mass[i + 1] + p.mass[static_cast<std::size_t>(i)];
+        const auto of = [&](int i, int j) { return mass[i > j ? i : j] / mass[i]; };
+        constexpr int used = N == 2 ? 4 : N;  // lanes; two links fill them twice
+        for (int lane = 0; lane < used; ++lane) {
+            for (int i = 0; i < N; ++i) coupling[i].set(lane, of(i, lane % N));
+            for (int s = 0; s < 4; ++s)
+                if ((lane ^ s) < used) exchange[s].set(lane, of(lane % N, (lane ^ s) % N));
+        }
+        for (int i = 0; i < N; ++i) length[i] = p.length[static_cast<std::size_t>(i)];
+        for (int k = 1; k < most_orders + 2; ++k) inverse[k] = 1 / static_cast<double>(k);
+    }
+};
+
+/// Coefficients of one order; the forces of link i in units of μ_i.
+template <int N>
+struct Term {
+    Plane<N> across;  // r
+    double rate[4];   // ω
+    Plane<N> force;   // F
+};
+
 /// The recurrence about one state. With D = r_0 ω_k + R_{k−1}, which is (k + 1) r̂_{k+1}, and so F_{k−1} = k F[D]:
 ///     R_k     = Σ_{j=2}^k r_j ω_{k+1−j} + r_1 ω_k + r_{k+1} ω_0
 ///     ω_{k+1} = −M⁻¹ ( r_0 · F[R_k] + k/(k+1) r_1 · F[D] + 1/(k+1) Σ_{j=2}^k r_j · F_{k−j} ) .
@@ -114,10 +140,9 @@ template <int N, class Number>
 template <int N>
 struct Recurrence {
     using Vectors = Plane<N>;
-    using Series = LaneSeries<N>;
 
-    const typename Series::Chain& chain;
-    typename Series::Term* const term;
+    const Chain<N>& chain;
+    Term<N>* const term;
     const Vectors quarter = Vectors::both(-1, 1);  // of a turn: (x, y) becomes (−y, x)
     const Vectors weight = Vectors::both(0, chain.gravity);
     Vectors across0, across1;  // r_0, r_1
@@ -129,8 +154,8 @@ struct Recurrence {
     Vectors known;             // R_{k−1}
 
     /// Rates up to `order` from angles and rates.
-    [[gnu::always_inline]] void run(const double* sin, const double* cos, const double* rates, int order) {
-        start(sin, cos, rates);
+    [[gnu::always_inline]] void run(const double* state, int order) {
+        start(state, state + N);
         rate = of_newest(known) + solve((across0 * weight).sum());
         rate.store(term[1].rate);
         Vectors across{}, force{};  // r_k, F_{k−2}
@@ -140,18 +165,18 @@ struct Recurrence {
             add_old(k, p, e);
             if (k == 1) e = across1 * weight;  // F_0 = F[…] + gravity
             if (k > 2) {
-                const auto across2 = Vectors::load_from(term[2].across);
+                const auto across2 = term[2].across;
                 p = (p + across * Pack::load(term[1].rate)) + across2 * last;
-                e = (e + across * Vectors::load_from(term[0].force)) + across2 * force;
+                e = (e + across * term[0].force) + across2 * force;
             }
             const double step = chain.inverse[k + 1];
             const Vectors change = across0 * rate + known;
             last = rate;
             force = force_of(change) * Pack(k);
             if (k == 1) force = force + weight;
-            force.store_to(term[k - 1].force);
+            term[k - 1].force = force;
             across = quarter * change.mirrored() * Pack(step);
-            across.store_to(term[k + 1].across);
+            term[k + 1].across = across;
 
             // r_{k+1} ω_0 = (R_{k−1} + r_0 ω_k) turned, times ω_0/(k + 1); and r_0 turned, times ω_0, is r_1
             const Vectors next = (p + turning * Pack(step) * known.mirrored()) + across1 * Pack(1 + step) * rate;
@@ -161,11 +186,12 @@ struct Recurrence {
         }
     }
 
-    [[gnu::always_inline]] void start(const double* sin, const double* cos, const double* rates) {
+    [[gnu::always_inline]] void start(const double* angles, const double* rates) {
+        const SinCos<Pack> turn(numbers<N>([&](int i) { return angles[i]; }));
         double x[N], y[N], dx[N], dy[N], m[N][N], n[N][N];  // r_0, r_1, M, −M⁻¹
         for (int i = 0; i < N; ++i) {
-            x[i] = chain.length[i] * cos[i];
-            y[i] = chain.length[i] * sin[i];
+            x[i] = chain.length[i] * turn.cos[i];
+            y[i] = chain.length[i] * turn.sin[i];
             dx[i] = -(y[i] * rates[i]);
             dy[i] = x[i] * rates[i];
         }
@@ -181,14 +207,14 @@ struct Recurrence {
         turning = quarter * rate;
         known = across1 * rate;
         rate.store(term[0].rate);
-        across1.store_to(term[1].across);
+        term[1].across = across1;
     }
 
     /// −M⁻¹ (x, y) · F[…], from n = −M⁻¹
     [[gnu::always_inline]] Map<N> map_of(const double (&x)[N], const double (&y)[N], const double (&n)[N][N]) const {
         Map<N> map{};
         for (int i = 0; i < N; ++i) {
-            const auto row = Vectors::both(x[i], y[i]) * Pack::load(chain.coupling[i]);
+            const auto row = Vectors::both(x[i], y[i]) * chain.coupling[i];
             const Pack column = numbers<N>([&](int j) { return n[j][i]; });
             map.by[0] = map.by[0] + row * column;
             map.by[1] = map.by[1] + row.template exchanged<1>() * column;
@@ -200,10 +226,9 @@ struct Recurrence {
 
     /// F[v], in units of μ_i
     [[gnu::always_inline]] Vectors force_of(const Vectors& v) const {
-        const auto sum = v + v.template exchanged<1>() * Pack::load(chain.exchange[1]);
+        const auto sum = v + v.template exchanged<1>() * chain.exchange[1];
         if constexpr (N == 2) return sum;
-        return sum + (v.template exchanged<2>() * Pack::load(chain.exchange[2]) +
-                      v.template exchanged<3>() * Pack::load(chain.exchange[3]));
+        return sum + (v.template exchanged<2>() * chain.exchange[2] + v.template exchanged<3>() * chain.exchange[3]);
     }
 
     /// −M⁻¹ v
@@ -217,9 +242,9 @@ struct Recurrence {
     [[gnu::always_inline]] void add_old(int k, Vectors& p, Vectors& e) const {
         Vectors p2{}, e2{};
         const auto add = [&](int j, Vectors& into_p, Vectors& into_e) __attribute__((always_inline)) {
-            const auto r = Vectors::load_from(term[j].across);
+            const auto r = term[j].across;
             into_p = into_p + r * Pack::load(term[k + 1 - j].rate);
-            into_e = into_e + r * Vectors::load_from(term[k - j].force);
+            into_e = into_e + r * term[k - j].force;
         };
         if (k % 2 == 0) add(k / 2 + 1, p, e);
         for (int low = (k + 1) / 2, high = k / 2 + 2; low > 2; --low, ++high) {
@@ -232,47 +257,47 @@ struct Recurrence {
 };
 
 template <int N>
-void expand(const typename LaneSeries<N>::Chain& chain, const double* sin, const double* cos, const double* rates,
-            typename LaneSeries<N>::Term* term, int order) {
-    Recurrence<N>{chain, term}.run(sin, cos, rates, order);
-}
+class LaneRecurrenceOf final : public LaneRecurrence {
+public:
+    LaneRecurrenceOf(const Pendulum<double>& p, int order) : order_(order), chain_(p) {}
 
-/// change ← Σ_{k≥0} ω_k h^{k+1} / (k + 1) and Σ_{k≥1} ω_k h^k, even and odd orders apart.
-template <int N>
-void move(const typename LaneSeries<N>::Chain& chain, const typename LaneSeries<N>::Term* term, int order, double h,
-          double* change) {
-    using Both = Plane<N>;  // numbers for each link, of the angles in place of x and of the rates in place of y
-    const auto coefficient = [&](int k) __attribute__((always_inline)) {
-        return Both::both(chain.inverse[k + 1], 1) * Pack::load(term[k].rate);
-    };
-    const Pack square = Pack(h * h);
-    Both even{}, odd{};
-    int k = order;
-    if (k % 2 == 1) odd = coefficient(k--);
-    for (; k > 0; k -= 2) {
-        even = even * square + coefficient(k);
-        odd = odd * square + coefficient(k - 1);
-    }
-    alignas(32) double sum[2][4];
-    const Both total = even * square + odd * Pack(h);
-    total.part[0].store(sum[0]);
-    total.part[N - 2].store(sum[1]);
-    for (int i = 0; i < N; ++i) {
-        change[i] = (sum[0][i] + term[0].rate[i]) * h;
-        change[N + i] = sum[1][N == 2 ? i + 2 : i];
-    }
-}
+    void expand(const double* state) override { Recurrence<N>{chain_, terms_}.run(state, order_); }
 
-template <int N>
-typename LaneSeries<N>::Kernel kernel() {
-    return {expand<N>, move<N>};
-}
+    /// change ← Σ_{k≥0} ω_k h^{k+1} / (k + 1) and Σ_{k≥1} ω_k h^k, even and odd orders apart.
+    void move(double h, double* change) const override {
+        using Both = Plane<N>;  // numbers for each link, of the angles in place of x and of the rates in place of y
+        const auto coefficient = [&](int k) __attribute__((always_inline)) {
+            return Both::both(chain_.inverse[k + 1], 1) * Pack::load(terms_[k].rate);
+        };
+        const Pack square = Pack(h * h);
+        Both even{}, odd{};
+        int k = order_;
+        if (k % 2 == 1) odd = coefficient(k--);
+        for (; k > 0; k -= 2) {
+            even = even * square + coefficient(k);
+            odd = odd * square + coefficient(k - 1);
+        }
+        const Both total = even * square + odd * Pack(h);
+        for (int i = 0; i < N; ++i) {
+            change[i] = (total.part[0][i] + terms_[0].rate[i]) * h;
+            change[N + i] = total.part[N - 2][N == 2 ? i + 2 : i];
+        }
+    }
+
+    const double* rates(int k) const override { return terms_[k].rate; }
+
+private:
+    int order_;
+    Chain<N> chain_;
+    Term<N> terms_[Chain<N>::most_orders + 2];
+};
 
 }  // namespace
 
 template <>
-LaneKernels lane_kernels<compiled_width>() {
-    return {kernel<2>(), kernel<3>()};
+LaneRecurrence* make_lane_recurrence<compiled_width>(const Pendulum<double>& p, int order) {
+    if (p.links() == 2) return new LaneRecurrenceOf<2>(p, order);
+    return new LaneRecurrenceOf<3>(p, order);
 }
 
 }  // namespace doppel

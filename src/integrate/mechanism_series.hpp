@@ -136,7 +136,7 @@ private:
 };
 
 template <class Scalar>
-std::unique_ptr<Series<Scalar>> series_of_mechanism(const Assembly<Scalar>& parts, int order) {
+std::unique_ptr<Series<Scalar>> series_of(const Assembly<Scalar>& parts, int order) {
     return std::make_unique<MechanismSeries<Scalar>>(parts, order);
 }
 

@@ -34,56 +34,55 @@ template <class Scalar>
 class Simulation final : public Motion {
 public:
     explicit Simulation(const MotionSpec& spec)
-        : stepper_(make_stepper(spec)), model_(spec.model), adaptive_(find_method(spec.method)->adaptive) {
+        : stepper_(make_stepper(spec)),
+          model_(spec.model),
+          adaptive_(find_method(spec.method)->adaptive),
+          wants_tension_(spec.wants_tension) {
         if (spec.chain) pendulum_ = spec.chain->cast<Scalar>();
         if (spec.physical) {
             physical_ = spec.physical->cast<Scalar>();
-            const auto links = static_cast<Eigen::Index>(spec.chain->links());
-            layout_.emplace(*physical_, links);
+            layout_.emplace(*physical_, static_cast<Eigen::Index>(spec.chain->links()));
         }
         if (model_ == Model::mechanism) mechanism_.emplace(spec.parts->cast<Scalar>());
-        if (spec.wants_tension && model_ == Model::mechanism) weighed_.emplace(spec.parts->cast<double>());
-        wants_tension_ = spec.wants_tension;
+        if (wants_tension_ && model_ == Model::mechanism) weighed_.emplace(spec.parts->cast<double>());
         stepper_->read(y_);
-        auto bobs = bobs_of(chain_state(y_));
+        const auto released = look(y_);
+        start_energy_ = released.energy.total;
+        const double interval = spec.sample_interval.value();
         const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
         if (adaptive_) {
-            const double interval = spec.sample_interval.value();
             double fastest = 0;  // rad/s, of any bob or drive
-            for (const auto& bob : bobs) fastest = std::max(fastest, std::abs(static_cast<double>(bob.omega)));
+            for (const auto& bob : released.bobs) fastest = std::max(fastest, std::abs(static_cast<double>(bob.omega)));
             if (physical_) {
                 fastest = std::max(fastest, static_cast<double>(physical_->pivot.frequency));
                 for (const auto& motor : physical_->torques)
                     fastest = std::max(fastest, static_cast<double>(motor.frequency));
             }
-            const double whole =
+            const double pieces =
                 std::max(follows_turns ? interval / Turns::longest : 1, interval * fastest / most_unwatched<Scalar>);
-            portions_ = static_cast<long>(std::ceil(std::min(whole, 1e12)));
-            portion_ = spec.sample_interval.as<Scalar>() / Scalar(portions_);
+            whole_ = static_cast<long>(std::ceil(std::min(pieces, 1e12)));
+            portion_ = spec.sample_interval.as<Scalar>() / Scalar(whole_);
         } else {
-            steps_per_sample_ = spec.steps_per_sample;
+            whole_ = spec.steps_per_sample;
             portion_steps_ = steps_in_one_go(y_.size());
-            step_ = spec.sample_interval.value() / static_cast<double>(steps_per_sample_);
+            step_ = interval / static_cast<double>(whole_);
         }
         if (follows_turns) turns_ = Turns(pendulum_->template cast<double>().angle);
-        if (follows_turns) turns_.update(y_, 0);
-        const auto pivot = pivot_of(y_);
-        if (physical_) move_with(bobs, pivot);
-        start_energy_ = energies_of(y_, bobs, pivot).total;
+        follow_turns(0);
     }
 
     void advance(const std::atomic<bool>& stop) override {
         ahead_.reset();
-        adaptive_ ? take_portions(portions_, stop) : take_steps(steps_per_sample_, stop);
-        steps_ += steps_per_sample_;
+        go_to(whole_, stop);
         taken_ = 0;
+        ++samples_;
     }
 
     void advance_within(double share, const std::atomic<bool>& stop) override {
-        if (!adaptive_) return take_steps(std::lround(share * static_cast<double>(steps_per_sample_)), stop);
-        const double portions = share * static_cast<double>(portions_), whole = std::floor(portions);
-        take_portions(static_cast<long>(whole), stop);
-        const Scalar rest = Scalar(portions - whole) * portion_;
+        const double part = share * static_cast<double>(whole_), last = std::floor(part);
+        if (!adaptive_) return go_to(std::lround(part), stop);
+        go_to(static_cast<long>(last), stop);
+        const Scalar rest = Scalar(part - last) * portion_;
         stepper_->look_ahead(rest);
         if (!turns_.followed()) return;
         ahead_ = turns_;
@@ -92,13 +91,10 @@ public:
     }
 
     Observation observe() const override {
-        const auto y = stepper_->state();
-        auto bobs = bobs_of(chain_state(y));
+        State y;
+        stepper_->read(y);
+        auto [bobs, pivot, energy] = look(y);
         (ahead_ ? *ahead_ : turns_).add_to(bobs);
-        const double length_error = length_error_of(y, bobs);
-        const auto pivot = pivot_of(y);
-        if (physical_) move_with(bobs, pivot);
-        const auto energy = energies_of(y, bobs, pivot);
         const Scalar work = layout_ ? layout_->work_of(y) : Scalar(0);
         Observation seen{.bobs = {},
                          .exact = {},
@@ -107,7 +103,7 @@ public:
                          .kinetic_energy = static_cast<double>(energy.kinetic),
                          .work = static_cast<double>(work),
                          .energy_change = static_cast<double>(Scalar(energy.total - start_energy_ - work)),
-                         .length_error = length_error};
+                         .length_error = length_error_of(y, bobs)};
         for (const auto& bob : bobs) seen.bobs.push_back(in_double(bob));
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
         if (wants_tension_)
@@ -117,7 +113,7 @@ public:
     }
 
     Effort effort() const override {
-        if (!adaptive_) return {steps_, stepper_->evaluations(), step_};
+        if (!adaptive_) return {samples_ * whole_, stepper_->evaluations(), step_};
         return {stepper_->steps(), stepper_->evaluations(), static_cast<double>(stepper_->smallest_step())};
     }
 
@@ -137,29 +133,33 @@ private:
         return make_mechanism_stepper<Scalar>(spec);
     }
 
-    /// Their angles, where they hang in a chain, within (−π, π] but in the model of angles.
-    Bobs<Scalar> bobs_of(const State& y) const {
-        if (model_ == Model::angles) return bobs_of_angles(*pendulum_, y);
-        return pendulum_ ? bobs_of_particles(*pendulum_, y) : mechanism_->bobs(y);
-    }
-    struct EnergyParts {
-        Scalar total, kinetic;
+    /// What a state looks like.
+    struct Look {
+        Bobs<Scalar> bobs;  // their angles, where they hang in a chain, within (−π, π] but in the model of angles
+        Bob<Scalar> pivot{};
+        struct {
+            Scalar total, kinetic;
+        } energy;
     };
-    EnergyParts energies_of(const State& y, const Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) const {
+    Look look(const State& y) const {
         if (physical_) {
-            const auto parts = energies(*physical_, bobs, pivot);
-            return {Scalar(parts.kinetic + parts.potential), parts.kinetic};
+            const PivotPlace<Scalar> at(physical_->pivot, layout_->time_of(y));
+            Look seen{.bobs = bobs_of_angles(*pendulum_, layout_->of_links(y)),
+                      .pivot = {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y},
+                      .energy = {}};
+            move_with(seen.bobs, seen.pivot);
+            const auto parts = energies(*physical_, seen.bobs, seen.pivot);
+            seen.energy = {Scalar(parts.kinetic + parts.potential), parts.kinetic};
+            return seen;
         }
-        return {mechanism_ ? mechanism_->energy(y) : energy(bobs, pendulum_->gravity), kinetic_energy(bobs)};
+        Look seen{.bobs = model_ == Model::angles ? bobs_of_angles(*pendulum_, y)
+                          : pendulum_             ? bobs_of_particles(*pendulum_, y)
+                                                  : mechanism_->bobs(y),
+                  .energy = {}};
+        seen.energy = {mechanism_ ? mechanism_->energy(y) : energy(seen.bobs, pendulum_->gravity),
+                       kinetic_energy(seen.bobs)};
+        return seen;
     }
-    /// Of a physical pendulum the pivot, which may move.
-    Bob<Scalar> pivot_of(const State& y) const {
-        if (!physical_) return {};
-        const PivotPlace<Scalar> at(physical_->pivot, layout_->time_of(y));
-        return {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y};
-    }
-    /// Of a physical pendulum the state of its links alone.
-    State chain_state(const State& y) const { return layout_ ? layout_->of_links(y) : y; }
     static Bob<double> in_double(const Bob<Scalar>& bob) {
         const auto plain = [](const Scalar& x) { return static_cast<double>(x); };
         return {plain(bob.mass), plain(bob.x),     plain(bob.y),    plain(bob.vx),
@@ -170,21 +170,18 @@ private:
         return static_cast<double>(mechanism_ ? mechanism_->length_error(y) : length_error(*pendulum_, bobs));
     }
 
-    /// Up to that portion of the way to the next sample.
-    void take_portions(long last, const std::atomic<bool>& stop) {
-        for (; taken_ < last; ++taken_) {
+    /// Up to that portion of the way to the next sample, or that step.
+    void go_to(long last, const std::atomic<bool>& stop) {
+        for (long some = 1; taken_ < last; taken_ += some) {
             throw_if_set(stop);
-            advance_by(portion_);
-        }
-    }
-    /// Up to that step.
-    void take_steps(long last, const std::atomic<bool>& stop) {
-        for (long steps; taken_ < last; taken_ += steps) {
-            throw_if_set(stop);
-            steps = std::min(last - taken_, portion_steps_);
-            if (turns_.followed()) steps = std::min(steps, steps_within(turns_.longest_interval(), step_));
-            stepper_->advance(steps);
-            follow_turns(static_cast<double>(steps) * step_);
+            if (adaptive_) {
+                advance_by(portion_);
+                continue;
+            }
+            some = std::min(last - taken_, portion_steps_);
+            if (turns_.followed()) some = std::min(some, steps_within(turns_.longest_interval(), step_));
+            stepper_->advance(some);
+            follow_turns(static_cast<double>(some) * step_);
         }
     }
 
@@ -207,19 +204,20 @@ private:
         stepper_->read(y_);
         turns_.update(y_, seconds);
     }
+
     std::unique_ptr<Stepper<Scalar>> stepper_;
     Model model_;
-    bool adaptive_, wants_tension_ = false;
+    bool adaptive_, wants_tension_;
     std::optional<Pendulum<Scalar>> pendulum_;
     std::optional<PhysicalPendulum<Scalar>> physical_;
     std::optional<PhysicalLayout> layout_;  // of the state of a physical pendulum
     std::optional<Mechanism<Scalar>> mechanism_;
-    mutable std::optional<Mechanism<double>> weighed_;           // for the forces in rods; computes in space of its own
-    long portions_ = 1;                                          // of a sample, of an adaptive method
-    Scalar portion_{0};                                          // s
-    long steps_per_sample_ = 0, portion_steps_ = 1, steps_ = 0;  // of a fixed step
-    double step_ = 0;                                            // s
-    long taken_ = 0;                                             // portions or steps since the last sample
+    mutable std::optional<Mechanism<double>> weighed_;  // for the forces in rods; computes in space of its own
+    long whole_ = 1;                                    // portions of a sample, of an adaptive method; or steps
+    Scalar portion_{0};                                 // s
+    long portion_steps_ = 1;                            // of a fixed step, in one go
+    double step_ = 0;                                   // s
+    long samples_ = 0, taken_ = 0;                      // portions or steps since the last sample
     Scalar start_energy_{0};
     State y_;  // of the last update of turns
     Turns turns_;
@@ -240,8 +238,7 @@ std::unique_ptr<Motion> make_motion(const MotionSpec& spec) {
     if (spec.physical && spec.wants_tension)
         throw bad_input(
             "the force in a rod is that of point masses on massless rods; with links that have mass, friction or a "
-            "drive "
-            "there is none to tell");
+            "drive there is none to tell");
     if (spec.precision == Precision::in_quad) return std::make_unique<Simulation<Quad>>(spec);
     return std::make_unique<Simulation<double>>(spec);
 }

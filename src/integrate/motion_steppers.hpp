@@ -17,49 +17,37 @@ namespace doppel {
 template <class Scalar>
 using MakeStepper = std::unique_ptr<Stepper<Scalar>>(const MotionSpec& spec);
 
-template <class Model>
-std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on(const Model& model, const typename Model::State& start,
-                                                            const MotionSpec& spec) {
+/// On a model of `system`, made with `more`.
+template <class Model, class System, class... More>
+std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on(const System& system, const MotionSpec& spec,
+                                                            const More&... more) {
     using Scalar = typename Model::Scalar;
     const Scalar step_or_tolerance = find_method(spec.method)->adaptive
                                          ? static_cast<Scalar>(spec.tolerance)
                                          : spec.sample_interval.as<Scalar>() / Scalar(spec.steps_per_sample);
-    return make_stepper(spec.method, model, start, step_or_tolerance);
+    return make_stepper(spec.method, Model(system, more...), Model::start(system), step_or_tolerance);
 }
 
 /// On a constrained model of `system`, stabilised as asked.
 template <Constrained Model, class System>
 std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on_stabilised(const System& system, const MotionSpec& spec) {
     using Scalar = typename Model::Scalar;
-    const auto start = Model::start(system);
-    switch (spec.stabilise) {
-        case Stabilise::baumgarte:
-            return stepper_on(Baumgarte<Model>(system, static_cast<Scalar>(spec.stabilise_rate)), start, spec);
-        case Stabilise::projection:
-            return stepper_on(Projected<Model>(system), start, spec);
-        case Stabilise::none:
-            break;
-    }
-    return stepper_on(Model(system), start, spec);
+    if (spec.stabilise == Stabilise::baumgarte)
+        return stepper_on<Baumgarte<Model>>(system, spec, static_cast<Scalar>(spec.stabilise_rate));
+    if (spec.stabilise == Stabilise::projection) return stepper_on<Projected<Model>>(system, spec);
+    return stepper_on<Model>(system, spec);
 }
 
 /// Two links go by the closed form; chains by O(N), three of double unrolled by the compiler for methods that ask for no more
 /// than rates.
 template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
+    if (spec.physical) return stepper_on<PhysicalChain<Scalar>>(spec.physical->cast<Scalar>(), spec);
     const auto p = spec.chain->cast<Scalar>();
-    const auto made = [&]<class Model>(std::type_identity<Model>) {
-        return stepper_on(Model(p), Model::start(p), spec);
-    };
-    if (spec.physical) {
-        const auto physical = spec.physical->cast<Scalar>();
-        return stepper_on(PhysicalChain<Scalar>(physical), PhysicalChain<Scalar>::start(physical), spec);
-    }
-    if (p.links() == 2) return made(std::type_identity<DoublePendulum<Scalar>>());
+    if (p.links() == 2) return stepper_on<DoublePendulum<Scalar>>(p, spec);
     if constexpr (std::is_same_v<Scalar, double>)
-        if (p.links() == 3 && find_method(spec.method)->stabilised)
-            return made(std::type_identity<AngleChain<Scalar, 3>>());
-    return made(std::type_identity<AngleChain<Scalar, Eigen::Dynamic>>());
+        if (p.links() == 3 && find_method(spec.method)->stabilised) return stepper_on<AngleChain<Scalar, 3>>(p, spec);
+    return stepper_on<AngleChain<Scalar, Eigen::Dynamic>>(p, spec);
 }
 
 /// A chain of particles on rods: two and three links of double unrolled by the compiler for methods that ask for no more than
@@ -69,8 +57,8 @@ std::unique_ptr<Stepper<Scalar>> make_constraints_stepper(const MotionSpec& spec
     const auto p = spec.chain->cast<Scalar>();
     if constexpr (std::is_same_v<Scalar, double>)
         if (spec.stabilise == Stabilise::none && find_method(spec.method)->stabilised) {
-            if (p.links() == 2) return stepper_on(RodChain<Scalar, 2>(p), RodChain<Scalar, 2>::start(p), spec);
-            if (p.links() == 3) return stepper_on(RodChain<Scalar, 3>(p), RodChain<Scalar, 3>::start(p), spec);
+            if (p.links() == 2) return stepper_on<RodChain<Scalar, 2>>(p, spec);
+            if (p.links() == 3) return stepper_on<RodChain<Scalar, 3>>(p, spec);
         }
     return stepper_on_stabilised<RodChain<Scalar, Eigen::Dynamic>>(p, spec);
 }

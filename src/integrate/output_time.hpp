@@ -11,20 +11,31 @@ namespace doppel {
 template <class Scalar>
 class OutputTime {
 public:
-    const Scalar& offset() const { return offset_; }
-
-    /// So many seconds on.
-    void advance(const Scalar& seconds) {
+    /// So many seconds on: next() takes the next step, which `step` is the length of, until the time lies in the last.
+    template <class Next>
+    Scalar advance(const Scalar& seconds, const Scalar& step, const Next& next) {
         add_compensated(offset_, lost_, seconds);
-        for (const auto& step : steps_ahead_) pass(step);
+        for (const auto& ahead : steps_ahead_) pass(ahead);
         steps_ahead_.clear();
+        while (offset_ > step) {
+            pass(step);
+            next();
+        }
+        return offset_;
     }
-    /// A step has been taken, and the next one starts at its end.
-    void pass(const Scalar& step) { add_compensated(offset_, lost_, Scalar(-step)); }
-    /// A step has been taken to look ahead.
-    void note_step_ahead(const Scalar& step) { steps_ahead_.push_back(step); }
+    /// Where it would be so many seconds on.
+    template <class Next>
+    Scalar look_ahead(const Scalar& seconds, const Scalar& step, const Next& next) {
+        auto ahead = *this;
+        return ahead.advance(seconds, step, [&] {
+            steps_ahead_.push_back(step);
+            next();
+        });
+    }
 
 private:
+    void pass(const Scalar& step) { add_compensated(offset_, lost_, Scalar(-step)); }
+
     Scalar offset_ = Scalar(0), lost_ = Scalar(0);  // s
     std::vector<Scalar> steps_ahead_;               // s, that start before the last step and are not subtracted yet
 };

@@ -7,26 +7,20 @@
 #include "physics/rod_chain.hpp"
 
 #include <array>
-#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
 namespace doppel {
 
-/// Whether forces depend on velocity (friction). A model may say so of itself, feels_velocity(); of a rod chain it is
-/// known that they do not.
+/// Whether forces depend on velocity (friction): a model with such says so of itself.
 template <Constrained Model>
-bool forces_feel_velocity(const Model& model) {
-    if constexpr (requires { model.feels_velocity(); })
-        return model.feels_velocity();
-    else
-        return !requires {
-            []<class S, int N>(const RodChain<S, N>&) {}(model);
-        };
+bool forces_feel_velocity([[maybe_unused]] const Model& model) {
+    if constexpr (requires { model.feels_velocity(); }) return model.feels_velocity();
+    return false;
 }
 
-/// RATTLE, composed: substeps make one step of the method. Their fractions γ of it are symmetric and sum to 1; given are
+/// RATTLE, composed: substeps make one step of the method. Their fractions γ of it are symmetric and sum to 1; `Which` has
 /// those before the middle one, in decimal. A substep of size h from (q, v) on the constraints to (q1, v1) on them is
 ///     u  = v + h/2 a(q, v) + M⁻¹ Jᵀ(q) λ ,     q1 = q + h u ,     λ such that C(q1) = 0 ,
 ///     v1 = u + h/2 a(q1, v1) + M⁻¹ Jᵀ(q1) μ ,                     μ such that J(q1) v1 = 0 ,
@@ -37,20 +31,18 @@ bool forces_feel_velocity(const Model& model) {
 /// of second order and time-reversible, although no longer symplectic.
 /// Errors  exit 3 where λ or v1 is not found.
 /// Source  Andersen 1983; Hairer, Lubich & Wanner, Geometric Numerical Integration, §VII.1.4 and §V.3.2.
-template <Unstabilised Model>
+template <Unstabilised Model, class Which>
 class ComposedRattle {
 public:
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
 
-    ComposedRattle(Model& model, const State& start, const Scalar& step, const Method& method,
-                   std::span<const std::string_view> fractions = {})
+    ComposedRattle(Model& model, const State& start, const Scalar& step)
         : model_(model),
-          method_(method),
           friction_(forces_feel_velocity(model)),
           y_(start),
           step_(step),
-          sizes_(2 * fractions.size() + 1, step),
+          sizes_(2 * Which::fractions.size() + 1, step),
           q_(start.head(start.size() / 2)),
           v_(start.tail(start.size() / 2)),
           q0_(q_),
@@ -61,9 +53,9 @@ public:
           force_(guess_),
           force_before_(guess_),
           newton_(model, q_) {
-        const std::size_t middle = fractions.size();
+        const std::size_t middle = Which::fractions.size();
         for (std::size_t i = 0; i < middle; ++i) {
-            sizes_[i] = sizes_[2 * middle - i] = number(fractions[i]) * step;
+            sizes_[i] = sizes_[2 * middle - i] = number(Which::fractions[i]) * step;
             sizes_[middle] -= Scalar(2) * sizes_[i];
         }
         model_.free_acceleration(q_, v_, a_);
@@ -150,7 +142,7 @@ private:
             if (unchanged(half, i >= newton_.many)) return;
         }
         throw method_failed("{}: step {}: friction is too strong for steps of {:g} s; choose a smaller step_s",
-                            method_.name, done_ + 1, static_cast<double>(step_));
+                            Which::method.name, done_ + 1, static_cast<double>(step_));
     }
 
     /// Whether the forces at the velocity that they led to are the same again, to rounding. Where large ones cancel
@@ -167,11 +159,10 @@ private:
         throw method_failed(
             "{}: step {}: the constraints are still off by {:.2g} after {} corrections; choose a smaller step_s than "
             "{:g}",
-            method_.name, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
+            Which::method.name, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
     }
 
     Model& model_;
-    const Method& method_;
     bool friction_;
     State y_;
     Scalar step_;
@@ -187,11 +178,9 @@ private:
 struct Rattle {
     static constexpr Method method{"rattle", "RATTLE", 2, false,
                                    "keeps rods; symplectic and time-reversible without friction"};
+    static constexpr std::array<std::string_view, 0> fractions{};
     template <Unstabilised Model>
-    struct Stepper : ComposedRattle<Model> {
-        Stepper(Model& model, const typename Model::State& start, const typename Model::Scalar& step)
-            : ComposedRattle<Model>(model, start, step, method) {}
-    };
+    using Stepper = ComposedRattle<Model, Rattle>;
 };
 
 /// Kahan & Li 1997: of the symmetric compositions of nine steps with Σγ = 1, Σγ³ = Σγ⁵ = Σγ³m² = 0 (m: where the middle
@@ -203,10 +192,7 @@ struct Rattle6 {
         "0.3921614440073141392756553300383809325954", "0.3325991367893594386042721253257905699416",
         "-0.7062461725576393598098453372227639944854", "0.08221359629355080023044270533411341434285"};
     template <Unstabilised Model>
-    struct Stepper : ComposedRattle<Model> {
-        Stepper(Model& model, const typename Model::State& start, const typename Model::Scalar& step)
-            : ComposedRattle<Model>(model, start, step, method, fractions) {}
-    };
+    using Stepper = ComposedRattle<Model, Rattle6>;
 };
 
 }  // namespace doppel

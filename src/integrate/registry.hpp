@@ -35,15 +35,15 @@ constexpr void for_each_method(Visit&& visit) {
     }(std::type_identity<Methods>());
 }
 
-/// A stepper of one method and the system that it owns.
+/// A stepper of one method and the system that it owns; `step_or_tolerance` is the step, s, or the tolerance.
 template <class Which, class Model>
 class MethodStepper final : public Stepper<typename Model::Scalar> {
 public:
     using Scalar = typename Model::Scalar;
+    using State = typename Stepper<Scalar>::State;
 
-    /// `step_or_tolerance` is the step, s, or the tolerance.
-    MethodStepper(Model model, const typename Model::State& start, const Scalar& step_or_tolerance)
-        : model_(std::move(model)), method_(model_, start, step_or_tolerance) {}
+    MethodStepper(std::unique_ptr<Model> model, const typename Model::State& start, const Scalar& step_or_tolerance)
+        : model_(std::move(model)), method_(*model_, start, step_or_tolerance) {}
 
     void advance([[maybe_unused]] long steps) override {
         if constexpr (!adaptive) method_.advance(steps);
@@ -54,7 +54,7 @@ public:
     void look_ahead([[maybe_unused]] const Scalar& seconds) override {
         if constexpr (adaptive) method_.look_ahead(seconds);
     }
-    void read(State<Scalar, Eigen::Dynamic>& y) const override { y = method_.state(); }
+    void read(State& y) const override { y = method_.state(); }
     long evaluations() const override { return method_.evaluations(); }
     long steps() const override {
         if constexpr (adaptive) return method_.steps();
@@ -66,12 +66,10 @@ public:
     }
 
 private:
-    using Method = typename Which::template Stepper<Model>;
     static constexpr bool adaptive = Which::method.adaptive;
-    static_assert(adaptive ? AdaptiveStepper<Method> : FixedStepper<Method>);
 
-    Model model_;
-    Method method_;
+    std::unique_ptr<Model> model_;
+    typename Which::template Stepper<Model> method_;
 };
 
 /// Whether a method is compiled for that model: where it needs more of it than its right-hand side, or where a call costs
@@ -80,9 +78,11 @@ private:
 /// RATTLE ask of a model is compiled for chains of any.
 template <class Which, class Model>
 consteval bool is_compiled_for() {
+    using Any = AnySystem<typename Model::State>;
     constexpr bool has_any_size = Model::State::RowsAtCompileTime == Eigen::Dynamic;
     if (!serves<Which, Model>) return false;
-    if (!serves<Which, AnySystem<typename Model::State>>)
+    if (std::is_same_v<Model, Any>) return true;
+    if (!serves<Which, Any>)
         return has_any_size || std::is_same_v<Which, Taylor> ||
                std::is_same_v<Model, DoublePendulum<typename Model::Scalar>>;
     constexpr bool has_few_stages =
@@ -91,20 +91,40 @@ consteval bool is_compiled_for() {
     return has_few_stages && Hamiltonian<Model> && std::is_same_v<typename Model::Scalar, double> && !has_any_size;
 }
 
-/// The method of that name at work on `model`: through AnySystem where it needs no more of it than its right-hand side.
+/// The method of that name compiled for that model; null where it is not.
+template <System Model>
+std::unique_ptr<Stepper<typename Model::Scalar>> compiled_stepper(std::string_view method, std::unique_ptr<Model> model,
+                                                                  const typename Model::State& start,
+                                                                  const typename Model::Scalar& step_or_tolerance) {
+    std::unique_ptr<Stepper<typename Model::Scalar>> stepper;
+    for_each_method([&]<class Which>() {
+        if constexpr (is_compiled_for<Which, Model>())
+            if (Which::method.name == method)
+                stepper = std::make_unique<MethodStepper<Which, Model>>(std::move(model), start, step_or_tolerance);
+    });
+    return stepper;
+}
+
+// For any system, in stepper_any_double.cpp and stepper_quad.cpp.
+template <class State, class S = typename State::Scalar>
+using CompiledStepper = std::unique_ptr<Stepper<S>>(std::string_view, std::unique_ptr<AnySystem<State>>, const State&,
+                                                    const S&);
+extern template CompiledStepper<State<double, 4>> compiled_stepper;
+extern template CompiledStepper<State<double, 6>> compiled_stepper;
+extern template CompiledStepper<State<double, Eigen::Dynamic>> compiled_stepper;
+extern template CompiledStepper<State<Quad, Eigen::Dynamic>> compiled_stepper;
+
+/// The method of that name at work on `model`: on any system where it needs no more of it than its right-hand side.
 /// Throws Error (exit 2) where it cannot step it.
 template <System Model>
 std::unique_ptr<Stepper<typename Model::Scalar>> make_stepper(std::string_view method, const Model& model,
                                                               const typename Model::State& start,
                                                               const typename Model::Scalar& step_or_tolerance) {
-    using Any = AnySystem<typename Model::State>;
-    std::unique_ptr<Stepper<typename Model::Scalar>> stepper;
-    for_each_method([&]<class Which>() {
-        if constexpr (is_compiled_for<Which, Model>())
-            if (Which::method.name == method)
-                stepper = std::make_unique<MethodStepper<Which, Model>>(model, start, step_or_tolerance);
-    });
-    if (!stepper) stepper = make_any_stepper(method, Any(model), start, step_or_tolerance);
+    auto stepper = compiled_stepper(method, std::make_unique<Model>(model), start, step_or_tolerance);
+    if (!stepper) {
+        std::unique_ptr<AnySystem<typename Model::State>> any = std::make_unique<HeldSystem<Model>>(model);
+        stepper = compiled_stepper(method, std::move(any), start, step_or_tolerance);
+    }
     if (!stepper) throw bad_input("the method \"{}\" does not serve this model", method);
     return stepper;
 }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 namespace doppel {
 
@@ -77,15 +78,12 @@ concept HasStageAngles = is_machine_number<typename Model::Scalar> &&
     model.rate_of_stage(y, dydt, angles);
 };
 template <class Model>
-struct StageAnglesOf {
-    struct type {
-        explicit type(Eigen::Index) {}
-    };
-};
-template <HasStageAngles Model>
-struct StageAnglesOf<Model> {
-    using type = typename Model::Angles;
-};
+auto stage_angles(Eigen::Index links) {
+    if constexpr (HasStageAngles<Model>)
+        return typename Model::Angles(links);
+    else
+        return std::monostate();
+}
 
 /// The slopes k_i of one step of `pair`: any system, any scalar; no allocation after the constructor.
 template <System Model, const auto& pair>
@@ -107,7 +105,7 @@ public:
             static constexpr auto row = pair.a[i];
             sum<row>(at_);
             at_ = y + h * at_;
-            doppel::slope(model, at_, k_[i]);
+            model.rate(at_, k_[i]);
         };
         [&]<std::size_t... i>(std::index_sequence<i...>) {
             (slope.template operator()<first + i>(), ...);
@@ -120,7 +118,7 @@ public:
         for (std::size_t i = stages + 1; i < all; ++i) {
             sum_with(pair.a[i], at_);
             at_ = y + h * at_;
-            doppel::slope(model, at_, k_[i]);
+            model.rate(at_, k_[i]);
         }
     }
 
@@ -168,20 +166,17 @@ public:
     using State = typename Model::State;
 
     RungeKutta(Model& model, const State& start, const Scalar& step)
-        : model_(model), y_(start), h_(step), angles_(start.size() / 2) {
+        : model_(model), y_(start), h_(step), angles_(stage_angles<Model>(start.size() / 2)) {
         slopes_.fill(start);
         at_ = start;
         take_modes(model_, y_);
     }
 
     void advance(long steps) {
-        if constexpr (HasEvents<Model>)
-            if (model_.switches()) return advance_through_events(steps);
         if constexpr (flattened)
             repeat_flattened(steps);
         else
             repeat(steps);
-        evaluations_ += steps * static_cast<long>(stages);
     }
 
     const State& state() const { return y_; }
@@ -191,18 +186,9 @@ private:
     static constexpr std::size_t stages = table.b.size();
     static constexpr bool reuses_angles = stages > 1 && HasStageAngles<Model>;
 
-    void repeat(long steps) {
-        for (long i = 0; i < steps; ++i) step(y_);
-    }
-    void advance_through_events(long steps) {
-        const Scalar h = h_;
-        for (long i = 0; i < steps; ++i)
-            step_through_events(model_, y_, h, [&](State& y, const Scalar& t) {
-                h_ = t;
-                step(y);
-                evaluations_ += static_cast<long>(stages);
-            });
-        h_ = h;
+    [[gnu::always_inline]] void repeat(long steps) {
+        take_steps(
+            model_, y_, steps, h_, [&](State & y, const Scalar& h) __attribute__((always_inline)) { step(y, h); });
     }
 
     /// Short states of doubles: whether the compiler inlines a right-hand side of its own accord depends on what else is
@@ -217,7 +203,7 @@ private:
         repeat(steps);
     }
 
-    void step(State& y) {
+    void step(State& y, const Scalar& h) {
         // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)
         const auto slope = [&]<std::size_t i>() {
             if constexpr (i == 0) {
@@ -228,7 +214,7 @@ private:
             } else {
                 static constexpr auto row = table.a[i];
                 at_ = y;
-                move<row>(at_, std::make_index_sequence<i>());
+                move<row>(at_, h);
                 if constexpr (reuses_angles)
                     model_.rate_of_stage(at_, slopes_[i], angles_);
                 else
@@ -242,22 +228,27 @@ private:
 
         // y + h Σ b_i k_i
         static constexpr auto b = table.b;
-        move<b>(y, std::make_index_sequence<stages>());
+        move<b>(y, h);
         project(model_, y);
+        evaluations_ += static_cast<long>(stages);
     }
 
     /// y ← y + h Σ_j weight_j k_j over the weights that are not zero; which those are is known to the compiler.
-    template <const auto& weights, std::size_t... J>
-    void move(State& y, std::index_sequence<J...>) {
-        [[maybe_unused]] const std::array<Scalar, sizeof...(J)> share{Scalar(h_ * value<Scalar>(weights[J]))...};  // s
-        for (Eigen::Index i = 0; i < y.size(); ++i) {
-            Scalar change(-0.0);  // unlike +0, it changes no sum and costs no addition
-            [[maybe_unused]] const auto add = [&]<std::size_t j>() {
-                if constexpr (!is_zero(weights[j])) change += share[j] * slopes_[j][i];
-            };
-            (add.template operator()<J>(), ...);
-            y[i] += change;
+    template <const auto& weights>
+    void move(State& y, const Scalar& h) {
+        [&]<std::size_t... J>(std::index_sequence<J...>) {
+            const std::array<Scalar, stages> share{
+                is_zero(weights[J]) ? Scalar(0) : Scalar(h * value<Scalar>(weights[J]))...};  // s
+            for (Eigen::Index i = 0; i < y.size(); ++i) {
+                Scalar change(-0.0);  // unlike +0, it changes no sum and costs no addition
+                const auto add = [&]<std::size_t j>() {
+                    if constexpr (!is_zero(weights[j])) change += share[j] * slopes_[j][i];
+                };
+                (add.template operator()<J>(), ...);
+                y[i] += change;
+            }
         }
+        (std::make_index_sequence<stages>());
     }
 
     Model& model_;
@@ -266,7 +257,7 @@ private:
     long evaluations_ = 0;
     std::array<State, stages> slopes_;
     State at_;
-    [[no_unique_address]] typename StageAnglesOf<Model>::type angles_;
+    [[no_unique_address]] decltype(stage_angles<Model>(0)) angles_;
 };
 
 /// Runge 1895; Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, eq. II.1.4.

@@ -49,11 +49,11 @@ public:
 /// The series of a model to an order. All memory is allocated here, or when it is first expanded. That of bodies asks the
 /// model for the modes of its joints, and so the model must live as long.
 template <class Scalar>
-std::unique_ptr<Series<Scalar>> series_of_chain(const Pendulum<Scalar>& p, int order);
+std::unique_ptr<Series<Scalar>> series_of(const Pendulum<Scalar>& p, int order);
 template <class Scalar>
-std::unique_ptr<Series<Scalar>> series_of_bodies(const PhysicalChain<Scalar>& model, int order);
+std::unique_ptr<Series<Scalar>> series_of(const PhysicalChain<Scalar>& model, int order);
 template <class Scalar>
-std::unique_ptr<Series<Scalar>> series_of_mechanism(const Assembly<Scalar>& parts, int order);
+std::unique_ptr<Series<Scalar>> series_of(const Assembly<Scalar>& parts, int order);
 // As they are compiled, one file a scalar.
 template <class Scalar>
 using SeriesOfBodies = std::unique_ptr<Series<Scalar>>(const PhysicalChain<Scalar>& model, int order);

@@ -1,9 +1,9 @@
-#include "integrate/any_stepper.hpp"
+#include "integrate/registry.hpp"
 
 namespace doppel {
 
-template MakeAnyStepper<State<double, 4>> make_any_stepper;
-template MakeAnyStepper<State<double, 6>> make_any_stepper;
-template MakeAnyStepper<State<double, Eigen::Dynamic>> make_any_stepper;
+template CompiledStepper<State<double, 4>> compiled_stepper;
+template CompiledStepper<State<double, 6>> compiled_stepper;
+template CompiledStepper<State<double, Eigen::Dynamic>> compiled_stepper;
 
 }  // namespace doppel

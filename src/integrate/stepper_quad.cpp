@@ -1,17 +1,16 @@
 #include "integrate/angle_series.hpp"
-#include "integrate/any_stepper.hpp"
 #include "integrate/mechanism_series.hpp"
 #include "integrate/motion_steppers.hpp"
 
 namespace doppel {
 
 template <>
-std::unique_ptr<Series<Quad>> series_of_chain(const Pendulum<Quad>& p, int order) {
+std::unique_ptr<Series<Quad>> series_of(const Pendulum<Quad>& p, int order) {
     return std::make_unique<AngleSeries<Quad>>(p, order);
 }
-template SeriesOfBodies<Quad> series_of_bodies;
-template SeriesOfMechanism<Quad> series_of_mechanism;
-template MakeAnyStepper<State<Quad, Eigen::Dynamic>> make_any_stepper;
+template SeriesOfBodies<Quad> series_of;
+template SeriesOfMechanism<Quad> series_of;
+template CompiledStepper<State<Quad, Eigen::Dynamic>> compiled_stepper;
 template MakeStepper<Quad> make_angles_stepper;
 template MakeStepper<Quad> make_constraints_stepper;
 template MakeStepper<Quad> make_mechanism_stepper;

@@ -2,7 +2,7 @@
 
 namespace doppel {
 
-template SeriesOfBodies<double> series_of_bodies;
-template SeriesOfMechanism<double> series_of_mechanism;
+template SeriesOfBodies<double> series_of;
+template SeriesOfMechanism<double> series_of;
 
 }  // namespace doppel

@@ -176,7 +176,7 @@ private:
 };
 
 template <class Scalar>
-std::unique_ptr<Series<Scalar>> series_of_bodies(const PhysicalChain<Scalar>& model, int order) {
+std::unique_ptr<Series<Scalar>> series_of(const PhysicalChain<Scalar>& model, int order) {
     return std::make_unique<BodiesSeries<Scalar>>(model, order);
 }
 

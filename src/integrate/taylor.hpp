@@ -18,9 +18,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace doppel {
@@ -41,12 +41,13 @@ public:
     using Scalar = S;
     using State = typename Series<Scalar>::State;
 
-    /// `system` where it projects or has events.
-    SeriesStepper(std::unique_ptr<Series<Scalar>> series, std::optional<AnySystem<State>> system, const State& start,
-                  double tolerance, int order)
+    /// `series_to` gives the series to an order; `system` where it projects or has events. `order` from 5 to 64, or 0: by the
+    /// tolerance. Throws Error (exit 2) for a tolerance that the scalar cannot give.
+    SeriesStepper(const std::function<std::unique_ptr<Series<Scalar>>(int order)>& series_to,
+                  std::unique_ptr<AnySystem<State>> system, const State& start, double tolerance, int order)
         : tolerance_(tolerance),
-          order_(order),
-          series_(std::move(series)),
+          order_(order_for(tolerance, order)),
+          series_(series_to(order_)),
           system_(std::move(system)),
           base_(start),
           lost_(State::Zero(start.size())),
@@ -56,22 +57,10 @@ public:
     }
 
     void advance(const Scalar& seconds) {
-        time_.advance(seconds);
-        while (time_.offset() > step_) {
-            time_.pass(step_);
-            next_step(static_cast<double>(seconds));
-        }
-        at(time_.offset());
+        at(time_.advance(seconds, step_, [&] { next_step(static_cast<double>(seconds)); }));
     }
     void look_ahead(const Scalar& seconds) {
-        auto ahead = time_;
-        ahead.advance(seconds);
-        while (ahead.offset() > step_) {
-            ahead.pass(step_);
-            time_.note_step_ahead(step_);
-            next_step(static_cast<double>(seconds));
-        }
-        at(ahead.offset());
+        at(time_.look_ahead(seconds, step_, [&] { next_step(static_cast<double>(seconds)); }));
     }
     const State& state() const { return out_; }
 
@@ -106,6 +95,14 @@ public:
     long evaluations() const { return steps_ * order_; }
 
 private:
+    static int order_for(double tolerance, int asked) {
+        const auto least = 4 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+        if (!(tolerance >= least))
+            throw bad_input("taylor: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", tolerance,
+                            std::numeric_limits<Scalar>::digits10 + 1, least);
+        const long order = asked == 0 ? std::lround(10 - 0.5 * std::log(tolerance)) : asked;
+        return static_cast<int>(std::clamp(order, watched_coefficients + 1L, 64L));
+    }
     bool has_events() const { return system_ && system_->switches(); }
     void project(State& y) {
         if (system_) system_->project(y);
@@ -180,7 +177,7 @@ private:
     double tolerance_;
     int order_;
     std::unique_ptr<Series<Scalar>> series_;
-    std::optional<AnySystem<State>> system_;
+    std::unique_ptr<AnySystem<State>> system_;
     State base_, lost_;                               // where the step starts, and what rounding took from it
     State change_, out_;                              // the state at the output time
     Scalar step_ = Scalar(0), smallest_ = Scalar(0);  // s
@@ -198,24 +195,20 @@ extern template class SeriesStepper<Quad>;
 // it is the same motion, pulled back by Baumgarte's terms it is not.
 template <class Scalar, int N>
 std::unique_ptr<Series<Scalar>> series_of(const AngleChain<Scalar, N>& model, int order) {
-    return series_of_chain(model.pendulum, order);
+    return series_of(model.pendulum, order);
 }
 template <class Scalar>
 std::unique_ptr<Series<Scalar>> series_of(const DoublePendulum<Scalar>& d, int order) {
     const Pendulum<Scalar> chain{{d.m1, d.m2}, {d.l1, d.l2}, {Scalar(0), Scalar(0)}, {Scalar(0), Scalar(0)}, d.g};
-    return series_of_chain(chain, order);
-}
-template <class Scalar>
-std::unique_ptr<Series<Scalar>> series_of(const PhysicalChain<Scalar>& model, int order) {
-    return series_of_bodies(model, order);
+    return series_of(chain, order);
 }
 template <class Scalar>
 std::unique_ptr<Series<Scalar>> series_of(const Mechanism<Scalar>& model, int order) {
-    return series_of_mechanism(model.parts, order);
+    return series_of(model.parts, order);
 }
 template <class Scalar, int N>
 std::unique_ptr<Series<Scalar>> series_of(const RodChain<Scalar, N>& model, int order) {
-    return series_of_mechanism(parts_of(model.pendulum), order);
+    return series_of(parts_of(model.pendulum), order);
 }
 template <class Model>
 std::unique_ptr<Series<typename Model::Scalar>> series_of(const Baumgarte<Model>&, int) = delete;
@@ -225,36 +218,22 @@ concept HasSeries = requires(const Model& model) {
     series_of(model, 1);
 };
 
-/// The Taylor method on a model (integrate/stepper.hpp). Throws Error (exit 2) for a tolerance that the scalar cannot give.
+/// The Taylor method on a model (integrate/stepper.hpp).
 template <HasSeries Model>
 class TaylorStepper : public SeriesStepper<typename Model::Scalar> {
 public:
     using Scalar = typename Model::Scalar;
+    using State = typename SeriesStepper<Scalar>::State;
 
-    /// `order` from 5 to 64, or 0: by the tolerance.
+    /// `order` as of SeriesStepper.
     TaylorStepper(Model& model, const typename Model::State& start, const Scalar& tolerance, int order = 0)
-        : TaylorStepper(Order{order_for(static_cast<double>(tolerance), order)}, model, start,
-                        static_cast<double>(tolerance)) {}
+        : SeriesStepper<Scalar>([&](int to) { return series_of(model, to); }, system_of(model), start,
+                                static_cast<double>(tolerance), order) {}
 
 private:
-    using State = typename SeriesStepper<Scalar>::State;
-    struct Order {
-        int value;
-    };
-    TaylorStepper(Order order, Model& model, const State& start, double tolerance)
-        : SeriesStepper<Scalar>(series_of(model, order.value), system_of(model), start, tolerance, order.value) {}
-
-    static int order_for(double tolerance, int asked) {
-        const auto least = 4 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
-        if (!(tolerance >= least))
-            throw bad_input("taylor: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", tolerance,
-                            std::numeric_limits<Scalar>::digits10 + 1, least);
-        const long order = asked == 0 ? std::lround(10 - 0.5 * std::log(tolerance)) : asked;
-        return static_cast<int>(std::clamp(order, watched_coefficients + 1L, 64L));
-    }
-    static std::optional<AnySystem<State>> system_of([[maybe_unused]] Model& model) {
-        if constexpr (std::is_same_v<typename Model::State, State>) return AnySystem<State>::of(model);
-        return std::nullopt;
+    static std::unique_ptr<AnySystem<State>> system_of([[maybe_unused]] Model& model) {
+        if constexpr (std::is_same_v<typename Model::State, State>) return std::make_unique<HeldSystem<Model&>>(model);
+        return nullptr;
     }
     static_assert(std::is_same_v<typename Model::State, State> || !(HasEvents<Model> || Projects<Model>),
                   "what projects or has events has a state of any size");

@@ -67,14 +67,6 @@ struct Dual {
     friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
     friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
     friend bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
-    friend bool isfinite(const Dual& a) {
-        using std::isfinite;
-        return isfinite(a.value) && a.tangent.allFinite();
-    }
-    friend bool isnan(const Dual& a) {
-        using std::isnan;
-        return isnan(a.value);
-    }
 
     // f(a)′ = f′(a) a′
 
@@ -86,28 +78,12 @@ struct Dual {
         return {portable_atan2(y.value, x.value), (x.value * y.tangent - y.value * x.tangent) / square};
     }
 
-    // These have no finite slope at the ends of their range, where a constant is still a constant.
-
+    /// At 0, where it has no finite slope, a constant is still a constant.
     friend Dual sqrt(const Dual& a) {
         using std::sqrt;
         const Scalar root = sqrt(a.value);
         return a.varies() ? Dual{root, a.tangent / Scalar(Scalar(2) * root)} : Dual(root);
     }
-    friend Dual acos(const Dual& a) {
-        using std::acos, std::sqrt;
-        const Scalar angle = acos(a.value);
-        return a.varies() ? Dual{angle, -a.tangent / Scalar(sqrt(Scalar(Scalar(1) - a.value * a.value)))} : Dual(angle);
-    }
-    friend Dual pow(const Dual& a, const Dual& b) {
-        // (a^b)′ = b a^(b−1) a′ + a^b log(a) b′
-        using std::log, std::pow;
-        const Scalar power = pow(a.value, b.value);
-        Dual result(power);
-        if (a.varies()) result.tangent += Scalar(b.value * pow(a.value, Scalar(b.value - Scalar(1)))) * a.tangent;
-        if (b.varies()) result.tangent += Scalar(power * log(a.value)) * b.tangent;
-        return result;
-    }
-
     bool varies() const { return (tangent.array() != Scalar(0)).any(); }
 };
 

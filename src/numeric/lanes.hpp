@@ -48,6 +48,7 @@ struct Lanes {
     static constexpr int part = lanes < register_width ? lanes : register_width, parts = lanes / part;
     using Doubles = typename LaneRegister<part>::Doubles;
     using Masks = typename LaneRegister<part>::Masks;
+    using Memory = typename LaneRegister<part>::Memory;
 
     /// What a comparison says: a lane has all bits set, or none.
     struct Mask {
@@ -128,7 +129,6 @@ struct Lanes {
         for (int k = 0; k < parts; ++k) r.v[k] = a.v[k] <= b.v[k];
         return r;
     }
-    [[gnu::always_inline]] friend Mask operator>=(const Lanes& a, const Lanes& b) { return b <= a; }
     [[gnu::always_inline]] friend Mask operator<(const Lanes& a, const Lanes& b) {
         Mask r;
         for (int k = 0; k < parts; ++k) r.v[k] = a.v[k] < b.v[k];
@@ -168,7 +168,9 @@ struct Lanes {
     }
 
     friend Lanes sqrt(const Lanes& a) {
-        return each(a, [](double x) { return std::sqrt(x); });
+        Lanes r;
+        for (int i = 0; i < width; ++i) r.set(i, std::sqrt(a[i]));
+        return r;
     }
 
     /// Lane i from lane i xor s.
@@ -186,16 +188,6 @@ struct Lanes {
             else
                 r.v[k] = __builtin_shufflevector(r.v[k], r.v[k], 1, 0);
         }
-        return r;
-    }
-
-private:
-    using Memory = typename LaneRegister<part>::Memory;
-
-    template <class Function>
-    [[gnu::always_inline]] static Lanes each(const Lanes& a, Function function) {
-        Lanes r;
-        for (int i = 0; i < width; ++i) r.set(i, function(a[i]));
         return r;
     }
 };

@@ -78,17 +78,13 @@ std::optional<Rational> parse_decimal(std::string_view text) {
         exponent += written;
     }
     if (negative) result.numerator = -result.numerator;
-    while (exponent > 0 && result.numerator != 0) {
+    for (; exponent > 0 && result.numerator != 0; --exponent)
         if (__builtin_mul_overflow(result.numerator, 10, &result.numerator)) return std::nullopt;
-        --exponent;
-    }
-    while (exponent < 0 && result.numerator != 0) {
+    for (; exponent < 0 && result.numerator != 0; ++exponent)
         if (result.numerator % 10 == 0)
             result.numerator /= 10;
         else if (__builtin_mul_overflow(result.denominator, 10, &result.denominator))
             return std::nullopt;
-        ++exponent;
-    }
     return reduced(result.numerator, result.denominator);
 }
 

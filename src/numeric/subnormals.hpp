@@ -14,35 +14,32 @@ public:
 
 private:
 #if defined(__x86_64__)
-    using Control = unsigned;
-    static constexpr Control flush = 0x8040;  // flush to zero, denormals are zeros
-    static Control control() {
+    static constexpr unsigned long flush = 0x8040;  // flush to zero, denormals are zeros
+    static unsigned long control() {
         return __builtin_ia32_stmxcsr();
     }
-    static void set_control(Control value) {
-        __builtin_ia32_ldmxcsr(value);
+    static void set_control(unsigned long value) {
+        __builtin_ia32_ldmxcsr(static_cast<unsigned>(value));
     }
 #elif defined(__aarch64__)
-    using Control = unsigned long;
-    static constexpr Control flush = 1ul << 24;
-    static Control control() {
-        Control value;
+    static constexpr unsigned long flush = 1ul << 24;
+    static unsigned long control() {
+        unsigned long value;
         asm volatile("mrs %0, fpcr" : "=r"(value));
         return value;
     }
-    static void set_control(Control value) {
+    static void set_control(unsigned long value) {
         asm volatile("msr fpcr, %0" : : "r"(value));
     }
 #else
-    using Control = unsigned;
-    static constexpr Control flush = 0;
-    static Control control() {
+    static constexpr unsigned long flush = 0;
+    static unsigned long control() {
         return 0;
     }
-    static void set_control(Control) {}
+    static void set_control(unsigned long) {}
 #endif
 
-    Control before_;
+    unsigned long before_;
 };
 
 }  // namespace doppel

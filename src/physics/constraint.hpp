@@ -238,7 +238,7 @@ std::optional<Place<Scalar>> fixed_place_of(const Constraint<Scalar>& constraint
 /// A first-order system y′ = f(y): what every method steps. rate() may use scratch space of the model: one model a
 /// thread.
 template <class M>
-concept System = requires(M model, const typename M::State& y, typename M::State& dydt) {
+concept System = requires(M& model, const typename M::State& y, typename M::State& dydt) {
     typename M::Scalar;
     model.rate(y, dydt);
 };

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "numeric/quad.hpp"
-#include "physics/pendulum.hpp"
+#include "physics/bob.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace doppel {
@@ -28,6 +29,45 @@ typename Model::State after(const System& system, const typename Model::State& s
 template <class State>
 double distance(const State& a, const State& b) {
     return static_cast<double>((a - b).cwiseAbs().maxCoeff());
+}
+
+/// There and back again: how far from the start.
+template <class Which, class Model>
+double way_back(double step, long steps) {
+    const auto p = unequal<double>();
+    const typename Model::State start = Model::start(p);
+    const auto half = start.size() / 2;
+    auto end = after<Which, Model>(p, start, step, steps);
+    end.tail(half) *= -1;
+    end = after<Which, Model>(p, end, step, steps);
+    end.tail(half) *= -1;
+    return distance<typename Model::State>(end, start);
+}
+
+/// What a run leaves: errors of energy (J) and rods (m), largest in its first and its last tenth.
+struct Errors {
+    double early = 0, late = 0, rod = 0;
+};
+template <class Which, class Model>
+Errors errors_of(const Pendulum<double>& p, double step, long steps) {
+    Model model(p);
+    typename Which::template Stepper<Model> stepper(model, Model::start(p), step);
+    const auto bobs_now = [&] {
+        const auto& y = stepper.state();
+        if (y.size() == 2 * static_cast<Eigen::Index>(p.links())) return bobs_of_angles<double>(p, y);
+        return bobs_of_particles<double>(p, y);
+    };
+    const double start = energy(bobs_now(), p.gravity);
+    Errors errors;
+    for (int part = 0; part < 1000; ++part) {
+        stepper.advance(steps / 1000);
+        const auto bobs = bobs_now();
+        const double error = std::abs(energy(bobs, p.gravity) - start);
+        if (part < 100) errors.early = std::max(errors.early, error);
+        if (part >= 900) errors.late = std::max(errors.late, error);
+        errors.rod = std::max(errors.rod, length_error(p, bobs));
+    }
+    return errors;
 }
 
 /// How many times the error at 0.5 s halves when the step does, from three step sizes.

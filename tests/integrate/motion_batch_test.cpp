@@ -1,6 +1,6 @@
 #include "integrate/motion_batch.hpp"
 
-#include "base/error.hpp"
+#include "errors.hpp"
 #include "integrate/batch.hpp"
 #include "integrate/support.hpp"
 #include "integrate/widths.hpp"
@@ -92,18 +92,6 @@ TEST(MotionBatch, StepsOneByOneWhatIsNotSteppedAlike) {
     expect_alone([&](MotionSpec& spec) { spec.chain = fan(Model::constraints, "euler", 3, 1)[0].chain; });
 }
 
-/// The sentence of the error.
-template <class Act>
-std::string fault(ExitCode code, Act act) {
-    try {
-        act();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), code);
-        return error.what();
-    }
-    return "";
-}
-
 TEST(MotionBatch, SaysWhoCannotGoOn) {
     // two of them break down in the same sample, in different parts: the first is named whatever the threads do
     auto specs = fan(Model::constraints, "rattle", 2, 200);
@@ -112,20 +100,21 @@ TEST(MotionBatch, SaysWhoCannotGoOn) {
     std::atomic<bool> stop = false;
     for (const int jobs : {1, 4}) {
         MotionBatch batch(specs, jobs);
-        const auto words = fault(ExitCode::method_failed, [&] { batch.advance(stop); });
+        const auto [code, words] = test::thrown_by([&] { batch.advance(stop); });
+        EXPECT_EQ(code, ExitCode::method_failed);
         EXPECT_EQ(words.find("pendulum 101 of 200: rattle: "), 0u) << words;
     }
     specs[50].method = "ruler";
-    EXPECT_EQ(fault(ExitCode::bad_input, [&] { MotionBatch(specs, 2); }),
-              "pendulum 51 of 200: there is no method \"ruler\"");
-    EXPECT_NE(fault(ExitCode::bad_input, [&] { MotionBatch({}, 2); }), "");
+    EXPECT_EQ(test::thrown_by([&] { MotionBatch(specs, 2); }),
+              test::Thrown(ExitCode::bad_input, "pendulum 51 of 200: there is no method \"ruler\""));
+    EXPECT_EQ(test::thrown_by([&] { MotionBatch({}, 2); }).first, ExitCode::bad_input);
 }
 
 TEST(MotionBatch, StopsWhenAsked) {
     std::atomic<bool> stop = true;
     for (const char* method : {"euler", "taylor"}) {
         MotionBatch batch(fan(Model::angles, method, 2, 10), 1);
-        EXPECT_EQ(fault(ExitCode::interrupted, [&] { batch.advance(stop); }), "interrupted");
+        EXPECT_EQ(test::thrown_by([&] { batch.advance(stop); }), test::Thrown(ExitCode::interrupted, "interrupted"));
     }
 }
 

@@ -1,79 +1,29 @@
-// The error of every explicit method shrinks like step^order: measured in quad, where rounding does not hide it.
+// The order of interpolations, and Butcher's conditions; the orders of all methods: integrate/physical_methods_test.cpp.
 
-#include "integrate/adams.hpp"
 #include "integrate/dormand_prince.hpp"
 #include "integrate/euler.hpp"
 #include "integrate/fixed_step.hpp"
+#include "integrate/flow.hpp"
 #include "integrate/runge_kutta.hpp"
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
-#include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace doppel {
 namespace order_test {
-
-Pendulum<Quad> unequal() {
-    return {
-        {Quad(1), Quad(7) / 10}, {Quad(1), Quad(13) / 10}, {Quad(2), Quad(-1) / 2}, {Quad(0), Quad(1)}, Quad(98) / 10};
-}
-
-/// Half a second on, with steps of 2^-halvings s.
-template <class Which, class Model>
-typename Model::State after_half_a_second(int halvings) {
-    Model model(unequal());
-    typename Which::template Stepper<Model> stepper(model, Model::start(unequal()), ldexp(Quad(1), -halvings));
-    stepper.advance(1L << (halvings - 1));
-    return stepper.state();
-}
-
-struct Expected {
-    int halvings;  // the coarser of the two steps is 2^-halvings s
-    double within;
-    double error;  // at the finer step, at most
-};
-
-template <class Which, class Model>
-void measure(const typename Model::State& truth, const Expected& expected) {
-    const auto error = [&](int halvings) {
-        return static_cast<double>((after_half_a_second<Which, Model>(halvings) - truth).norm());
-    };
-    const double coarse = error(expected.halvings), fine = error(expected.halvings + 1);
-    EXPECT_NEAR(std::log2(coarse / fine), Which::method.order, expected.within) << Which::method.name;
-    EXPECT_LT(fine, expected.error) << Which::method.name;
-}
-
-template <class Model>
-class Order : public testing::Test {};
-using Models = testing::Types<DoublePendulum<Quad>, RodChain<Quad, 2>>;
-TYPED_TEST_SUITE(Order, Models);
-
-TYPED_TEST(Order, IsAsStated) {
-    const auto truth = after_half_a_second<Fixed<Dop853>, TypeParam>(14);
-    measure<Euler, TypeParam>(truth, {11, 0.02, 0.1});
-    measure<SemiImplicitEuler, TypeParam>(truth, {11, 0.02, 0.1});
-    measure<Midpoint, TypeParam>(truth, {10, 0.02, 2e-4});
-    measure<Rk4, TypeParam>(truth, {10, 0.02, 2e-10});
-    measure<Fixed<Dopri5>, TypeParam>(truth, {12, 0.02, 1e-16});
-    measure<Fixed<Dop853>, TypeParam>(truth, {9, 0.05, 1e-20});
-    measure<Fixed<Dop853>, TypeParam>(truth, {12, 0.05, 1e-27});
-    measure<Adams, TypeParam>(truth, {13, 0.05, 1e-20});
-}
 
 /// Order of the interpolation: the error a quarter into the first step shrinks like step^(order + 1).
 template <class Which>
 double interpolation_order(double coarse_tolerance, double fine_tolerance) {
     using Model = DoublePendulum<Quad>;
     const auto measured = [](double tolerance) {
-        Model model(unequal());
-        const auto start = Model::start(unequal());
+        Model model(unequal<Quad>());
+        const auto start = Model::start(unequal<Quad>());
         typename Which::template Stepper<Model> stepper(model, start, Quad(tolerance));
         const Quad little = ldexp(Quad(1), -80);
         stepper.advance(little);

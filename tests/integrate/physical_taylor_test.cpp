@@ -19,19 +19,6 @@ auto after(const PhysicalPendulum<Scalar>& p, double seconds, double tolerance) 
     return typename Model::State(stepper.state());
 }
 
-/// One with everything that has derivatives.
-PhysicalPendulum<double> smooth() {
-    auto p = physical(Pendulum<double>{{1.1, 0.6, 0.8}, {0.7, 0.9, 0.5}, {2.0, 1.4, -0.4}, {0.5, 0.2, -1.0}});
-    p.center = {0.4, 0.3, 0.5};
-    p.inertia = {0.05, 0.1, 0.02};
-    p.friction.viscous = {0.05, 0.02, 0.03};
-    p.friction.arm_linear = {0.01, 0, 0.02};
-    p.friction.drag_linear = {0.02, 0.03, 0};
-    p.pivot = {0.05, 0.1, 7, 0.4};
-    p.torques = {{1, 0.7, 2, 0.3}};
-    return p;
-}
-
 MotionSpec spec_of(const PhysicalPendulum<double>& p, std::string_view method, long rate) {
     auto spec = stepping(Model::angles, method, p.chain, rate);
     spec.physical = p.cast<Quad>();
@@ -89,46 +76,6 @@ TEST(PhysicalTaylor, SmallSwingsFadeAsTheLinearSystemDoes) {
     }
 }
 
-TEST(PhysicalTaylor, EnergyLessWorkIsConstant) {
-    auto all = smooth();
-    all.friction.arm_quadratic = {0.01, 0.02, 0.03};
-    all.friction.drag_quadratic = {0.02, 0.05, 0.01};
-    for (const auto& p : {smooth(), all}) {
-        Course course(spec_of(p, "taylor", 10));
-        const double start = course.observe().energy;
-        const auto end = course.advance(100);
-        EXPECT_GT(std::abs(end.work), 0.5);
-        EXPECT_NEAR(end.energy - end.work, start, 1e-12 * p.potential_range());  // measured 1e-14
-    }
-}
-
-TEST(PhysicalTaylor, AgreesWithItselfInQuad) {
-    auto p = smooth();
-    p.friction.drag_quadratic = {0.02, 0.05, 0.01};
-    p.friction.arm_quadratic = {0.01, 0.02, 0.03};
-    const auto fine = after(p.cast<Quad>(), 1, 1e-30), finer = after(p.cast<Quad>(), 1, 1e-32);
-    EXPECT_LE(static_cast<double>((fine - finer).norm()), 1e-28);         // measured 6e-31
-    EXPECT_LE((after(p, 1, 1e-15) - fine.cast<double>()).norm(), 1e-13);  // measured 1e-14
-}
-
-TEST(PhysicalTaylor, IsWhatOtherMethodsConvergeTo) {
-    auto p = smooth();
-    p.friction.drag_quadratic = {0.02, 0.05, 0.01};
-    for (const bool slides : {false, true}) {
-        // where joints change their direction, a fixed step is of first order
-        if (slides) p.friction.coulomb = {0.1, 0, 0.05};
-        const auto expected = Course(spec_of(p, "taylor", 2)).advance(2);
-        for (const auto* method : {"rk4", "dop853", "adams"}) {
-            const bool adaptive = std::string_view(method) == "dop853";
-            const long rate = adaptive ? 2 : 20'000;
-            const double most = adaptive ? slides ? 1e-8 : 1e-9 : slides ? 1e-5 : 1e-10;
-            const auto seen = Course(spec_of(p, method, rate)).advance(rate);
-            for (std::size_t i = 0; i < 3; ++i)
-                EXPECT_NEAR(seen.bobs[i].theta, expected.bobs[i].theta, most) << method << slides;
-        }
-    }
-}
-
 /// Of small deviations from the upright over one period of the pivot: the trace of the map.
 double trace_of_period(double amplitude, double frequency) {
     double trace = 0;
@@ -165,21 +112,6 @@ TEST(PhysicalTaylor, TheUprightIsHeldWhereKapitzaAndMathieuSay) {
     }
 }
 
-TEST(PhysicalTaylor, ADriveHoldsTwoLinksUpright) {
-    auto p = physical(Pendulum<double>{{1, 1}, {0.2, 0.2}, {radians(178), radians(181)}, {0, 0}});
-    p.friction.viscous = {0.002, 0.002};
-    const auto furthest = [&] {
-        Course course(spec_of(p, "taylor", 100));
-        double most = 0;
-        for (int i = 0; i < 1000; ++i)
-            for (const auto& bob : course.advance(1).bobs) most = std::max(most, std::abs(bob.theta - pi));
-        return most;
-    };
-    EXPECT_GT(furthest(), 1);
-    p.pivot = {0, 0.02, 2 * pi * 50, 0};
-    EXPECT_LT(furthest(), radians(5));  // measured 3.0°
-}
-
 TEST(PhysicalTaylor, SeesARateThatDipsBelowZeroAndBackWithinAStep) {
     // ω = 0.99 + sin t but for the drag |ω| ω, which turns over twice in 0.28 s of steps of some seconds
     PhysicalPendulum<double> p = physical(Pendulum<double>{{1}, {1}, {0}, {0.99}, 0});
@@ -193,28 +125,6 @@ TEST(PhysicalTaylor, SeesARateThatDipsBelowZeroAndBackWithinAStep) {
         return stepper.state()[0];
     };
     EXPECT_NEAR(end(Taylor(), 1e-12), end(Dop853(), 1e-14), 1e-11);
-}
-
-TEST(PhysicalTaylor, CoulombsFrictionTakesAsMuchOfEverySwing) {
-    // of a small one: 2 c / (m g l) of the amplitude at each turn, until it sticks, and then for ever
-    const double c = 1e-3, start = 0.0103, each = 2 * c / 9.8;
-    auto p = physical(Pendulum<double>{{1}, {1}, {start}, {0}});
-    p.friction.coulomb = {c};
-    Course course(spec_of(p, "taylor", 1000));
-    double before = 0, turned = start;
-    int turns = 0;
-    for (int i = 0; i < 60'000; ++i) {
-        const auto now = course.advance(1).bobs[0];
-        if (before * now.omega < 0) {
-            EXPECT_NEAR(std::abs(now.theta), turned - each, 4e-6) << turns;  // measured 1e-6
-            turned -= each;
-            ++turns;
-        }
-        before = now.omega;
-    }
-    EXPECT_EQ(turns, 49);  // at the next, 0.47 of what one takes is left: less than c holds it
-    EXPECT_EQ(before, 0);
-    EXPECT_NEAR(std::abs(course.observe().bobs[0].theta), start - 50 * each, 4e-6);
 }
 
 TEST(PhysicalTaylor, WhatSticksStaysWhereItIs) {

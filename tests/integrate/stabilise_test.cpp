@@ -1,5 +1,6 @@
 #include "integrate/stabilise.hpp"
 
+#include "errors.hpp"
 #include "integrate/euler.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/runge_kutta.hpp"
@@ -50,14 +51,6 @@ TEST(Projected, KeepsRodsThatDriftWithoutIt) {
     EXPECT_LT(kept.energy, 0.1 * drifting.energy);  // measured a factor 45
 }
 
-TEST(Projected, KeepsRodsUnderEuler) {
-    const auto p = released(90, 90);
-    Chain bare(p);
-    Projected<Chain> projected(p);
-    EXPECT_GT(errors_of<Euler>(p, bare, 1e-3, 5'000).rod, 1e-3);        // measured 0.04 m
-    EXPECT_LT(errors_of<Euler>(p, projected, 1e-3, 5'000).rod, 1e-15);  // measured 4e-16 m
-}
-
 TEST(Projected, KeepsTheOrderOfTheMethod) {
     // halving the step divides the error by 16
     const auto p = released(60, -30).cast<Quad>();
@@ -101,23 +94,6 @@ TEST(Projected, ReachesTheDigitsOfTheScalar) {
     EXPECT_LT(static_cast<double>(length_error(p, bobs_of_particles<Quad>(p, y))), 5e-34);  // measured 0
 }
 
-TEST(Projected, KeepsARodOfAnyNumberOfLinks) {
-    Pendulum<double> p{{1, 2, 0.5, 1}, {1, 0.5, 2, 1}, {1, 2, 3, 0}, {0, 0, 0, 0}, 9.8};
-    using Model = RodChain<double, Eigen::Dynamic>;
-    Projected<Model> model(p);
-    Rk4::Stepper<Projected<Model>> stepper(model, Model::start(p), 1e-3);
-    stepper.advance(2000);
-    EXPECT_LT(length_error(p, bobs_of_particles<double>(p, stepper.state())), 1e-15);  // measured 2.2e-16 m
-}
-
-TEST(Projected, HangsStill) {
-    const Pendulum<double> p{{1, 2}, {1, 0.5}, {0, 0}, {0, 0}, 9.8};
-    Projected<Chain> model(p);
-    Rk4::Stepper<Projected<Chain>> stepper(model, Chain::start(p), 0.01);
-    stepper.advance(1000);
-    EXPECT_EQ(stepper.state(), Chain::start(p));
-}
-
 TEST(Projected, KeepsTheRodsOfALightFirstMass) {
     // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings at √(2 m2 g / (l m1))
     for (const auto& [light, most] : {std::pair{1e-3, 2e-10}, {1e-6, 2e-13}, {1e-9, 3e-13}, {1e-12, 3e-13}}) {
@@ -146,14 +122,9 @@ TEST(Projected, SaysWhenThereIsNoWayBack) {
     const auto p = released(0, 0);
     Projected<Chain> model(p);
     Chain::State y = Chain::State::Zero(8);
-    try {
-        model.project(y);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::method_failed);
-        EXPECT_EQ(std::string(error.what()).rfind("projection: the constraints are still off by ", 0), 0u)
-            << error.what();
-    }
+    const auto [code, said] = test::thrown_by([&] { model.project(y); });
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_EQ(said.rfind("projection: the constraints are still off by ", 0), 0u) << said;
 }
 
 /// How C of a hanging rod, stretched by 1e-9 m, goes on: after `steps` steps of Euler or Runge–Kutta with α dt = z.

@@ -76,7 +76,7 @@ void expect_lanes_like_quad() {
     const auto p = uneven(N);
     const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
     for (int k = 2; k <= 24; ++k) {
-        const auto lanes = coefficient<LaneSeries<N>>(p, y, k);
+        const auto lanes = coefficient<LaneSeries>(p, y, k);
         const auto chain = coefficient<AngleSeries<double>>(p, y, k);
         const auto quad = coefficient<AngleSeries<Quad>>(p.template cast<Quad>(), Vector<Quad>(y.cast<Quad>()), k);
         const double size = static_cast<double>(Quad(quad.cwiseAbs().maxCoeff()));
@@ -97,7 +97,7 @@ void expect_same_bits() {
     const auto p = uneven(N);
     const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
     for (int order : {5, 8, 13, 24, 33}) {
-        LaneSeries<N> wide(p, order, std::min(register_widths().back(), 4)), narrow(p, order, 2);
+        LaneSeries wide(p, order, std::min(register_widths().back(), 4)), narrow(p, order, 2);
         Vector<double> one = y, other = y;
         wide.expand(y);
         wide.move(0.02, one);

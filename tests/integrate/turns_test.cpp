@@ -1,7 +1,5 @@
 #include "integrate/turns.hpp"
 
-#include "integrate/motion.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,19 +49,6 @@ TEST(Turns, AreKeptWhereARodPointsStraightUp) {
             turns.update(y, 0);
             for (const auto& bob : seen(turns, y)) EXPECT_DOUBLE_EQ(bob.theta, released) << x;
         }
-}
-
-TEST(Turns, AreThoseOfTheReleaseHoweverFastItTurns) {
-    MotionSpec spec;
-    spec.chain = chain(7, -20, 60, -45).cast<Quad>();
-    spec.model = Model::constraints;
-    spec.method = "rk4";
-    spec.sample_interval = {1, 1000};
-    spec.steps_per_sample = 1;
-    spec.follows_turns = true;
-    const auto seen = make_motion(spec)->observe();
-    EXPECT_NEAR(seen.bobs[0].theta, 7, 1e-14);    // measured 0
-    EXPECT_NEAR(seen.bobs[1].theta, -20, 1e-14);  // measured 0
 }
 
 TEST(Turns, AreNotAddedWhereNotFollowed) {

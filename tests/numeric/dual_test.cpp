@@ -1,6 +1,7 @@
 #include "numeric/dual.hpp"
 
 #include "integrate/euler.hpp"
+#include "integrate/flow.hpp"
 #include "integrate/runge_kutta.hpp"
 #include "numeric/elimination.hpp"
 #include "numeric/quad.hpp"
@@ -14,20 +15,6 @@
 
 namespace doppel {
 namespace dual_test {
-
-template <class Scalar>
-Pendulum<Scalar> uneven(std::size_t links) {
-    Pendulum<Scalar> p;
-    p.mass.clear(), p.length.clear(), p.angle.clear(), p.rate.clear();
-    for (std::size_t i = 0; i < links; ++i) {
-        const Scalar number(static_cast<double>(i));
-        p.mass.push_back(Scalar(1) + number / Scalar(3));
-        p.length.push_back(Scalar(1) - number / Scalar(5));
-        p.angle.push_back(Scalar(4) / Scalar(3) - number);
-        p.rate.push_back(number - Scalar(1) / Scalar(2));
-    }
-    return p;
-}
 
 /// The model's start, each entry a variable of its own.
 template <class Model, class Scalar>
@@ -53,9 +40,9 @@ double jacobian_error(std::size_t links) {
     using Varied = Model<Dual<Scalar, N>>;
     using Exact = Model<Quad>;
     constexpr int steps = 200;
-    const auto start = Exact::start(uneven<Quad>(links));
+    const auto start = Exact::start(unequal<Quad>(links));
     const State<Scalar, Exact::State::SizeAtCompileTime> rounded = start.template cast<Scalar>();
-    const auto end = flow<Varied, Which>(uneven<Scalar>(links).template cast<Dual<Scalar, N>>(),
+    const auto end = flow<Varied, Which>(unequal<Scalar>(links).template cast<Dual<Scalar, N>>(),
                                          as_variables<Varied, Scalar>(rounded), steps, Scalar(1) / Scalar(400));
     const Quad h(1e-11);
     double worst = 0;
@@ -64,8 +51,8 @@ double jacobian_error(std::size_t links) {
         up[j] += h;
         down[j] -= h;
         const typename Exact::State slope =
-            (flow<Exact, Which>(uneven<Quad>(links), up, steps, Quad(1) / Quad(400)) -
-             flow<Exact, Which>(uneven<Quad>(links), down, steps, Quad(1) / Quad(400))) /
+            (flow<Exact, Which>(unequal<Quad>(links), up, steps, Quad(1) / Quad(400)) -
+             flow<Exact, Which>(unequal<Quad>(links), down, steps, Quad(1) / Quad(400))) /
             Quad(2 * h);
         for (int i = 0; i < N; ++i)
             worst = std::max(worst, std::abs(static_cast<double>(Quad(Quad(end[i].tangent[j]) - slope[i]))));
@@ -87,16 +74,11 @@ TEST(Dual, GivesTheJacobianOfTheFlow) {
     EXPECT_LT((jacobian_error<Euler, RodChain3, 12, double>(3)), 3e-13);         // measured 4e-14
 }
 
-TEST(Dual, OfQuadHasTheDigitsOfQuad) {
-    EXPECT_LT((jacobian_error<Rk4, DoublePendulum, 4, Quad>(2)),
-              3e-21);  // measured 5e-22, the error of the differences
-}
-
 TEST(Dual, ParametersVaryToo) {
     // the period of small swings grows like √l: scaling all lengths by k and the time by √k changes no angle, so
     //     l ∂θ/∂l = −½ t ω for a release from rest
     using D = Dual<double, 1>;
-    auto p = uneven<D>(2);
+    auto p = unequal<D>(2);
     p.rate = {D(0), D(0)};
     for (auto& l : p.length) l.tangent[0] = l.value;
     const auto end = flow<DoublePendulum<D>, Rk4>(p, DoublePendulum<D>::start(p), 2000, D(5e-4));
@@ -107,26 +89,18 @@ TEST(Dual, ParametersVaryToo) {
 /// A random expression of three variables, in any scalar; the same for the same seed.
 template <class Scalar>
 Scalar expression(unsigned seed, const std::array<Scalar, 3>& x) {
-    using std::abs, std::acos, std::atan2, std::cos, std::pow, std::sin, std::sqrt;
+    using std::abs, std::cos, std::sin, std::sqrt;
     std::mt19937 random(seed);
     std::array<Scalar, 3> y = x;
     for (int i = 0; i < 8; ++i) {
         Scalar& a = y[random() % 3];
-        const Scalar b = y[random() % 3], positive = Scalar(1) + b * b, within = b / (Scalar(2) + abs(b));
+        const Scalar b = y[random() % 3], positive = Scalar(1) + b * b;
         Scalar sum = a, product = a, quotient = a;
         sum += b;
         product *= sin(b);
         quotient /= positive;
-        const std::array<Scalar, 9> next{sum,
-                                         b - a * b,
-                                         product,
-                                         quotient,
-                                         cos(a) / sqrt(positive),
-                                         atan2(a, positive),
-                                         pow(positive, within) - a,
-                                         abs(a) + b,
-                                         acos(within) * a};
-        a = next[random() % 9];
+        const std::array<Scalar, 6> next{sum, b - a * b, product, quotient, cos(a) / sqrt(positive), abs(a) + b};
+        a = next[random() % 6];
     }
     return y[0] + y[1] * y[2];
 }
@@ -165,10 +139,7 @@ TEST(Dual, ComparesByValue) {
 
 TEST(Dual, ConstantsStayConstantWhereTheSlopeIsInfinite) {
     using D = Dual<double, 2>;
-    EXPECT_EQ(pi_of<D>().value, pi);
-    EXPECT_EQ(pi_of<D>().tangent[0], 0);
     EXPECT_EQ(sqrt(D(0)).tangent[1], 0);
-    EXPECT_EQ(pow(D(0), D(2)).tangent[1], 0);
 }
 
 TEST(Dual, SolvesLinearSystems) {
