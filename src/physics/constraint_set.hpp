@@ -69,8 +69,9 @@ public:
     void update(const Vector& q, Gradients& gradients) const {
         auto next = gradients.begin();
         for (const auto& row : rows_) {
-            *next++ = row.gradient(q);
-            if (row.other_particle()) *next++ = -*(next - 1);
+            const Place<Scalar> gradient = row.gradient(q);
+            *next++ = gradient;
+            if (row.other_particle()) *next++ = -gradient;
         }
     }
     /// matrix ← J1 M⁻¹ J0ᵀ

@@ -33,11 +33,13 @@ struct Pendulum {
     }
 
     /// Between hanging straight down and standing straight up, J: the scale of its energies.
-    Scalar potential_range() const {
+    Scalar potential_range() const { return potential_range(length); }
+    /// The same of bodies, whose centres of mass are so far from their joints, m.
+    Scalar potential_range(const std::vector<Scalar>& center) const {
         Scalar range(0), reach(0);
         for (std::size_t i = 0; i < links(); ++i) {
+            range += Scalar(2) * mass[i] * gravity * (reach + center[i]);
             reach += length[i];
-            range += Scalar(2) * mass[i] * gravity * reach;
         }
         return range;
     }

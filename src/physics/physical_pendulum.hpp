@@ -77,14 +77,7 @@ struct PhysicalPendulum {
     bool conserves_energy() const { return friction.is_none() && !is_driven(); }
 
     /// Between hanging straight down and standing straight up, J.
-    Scalar potential_range() const {
-        Scalar range(0), reach(0);
-        for (std::size_t i = 0; i < chain.links(); ++i) {
-            range += Scalar(2) * chain.mass[i] * chain.gravity * (reach + center[i]);
-            reach += chain.length[i];
-        }
-        return range;
-    }
+    Scalar potential_range() const { return chain.potential_range(center); }
 
     auto members() const { return std::tie(chain, center, inertia, friction, pivot, torques); }
     /// The same in another scalar.
