@@ -1,13 +1,15 @@
 #include "analysis/exponent.hpp"
 
-#include "analysis/stability.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/physical_chain.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -118,6 +120,24 @@ TangentFlow flow_of(const PhysicalPendulum<double>& p) {
     using Chain = PhysicalChain<Dual<double, 1>>;
     const auto release = p.cast<Dual<double, 1>>();
     return tangent_flow(Chain(release, false), Chain::start(release, false));
+}
+
+/// Of the eigenvalues of a matrix; 0 where it is that to rounding.
+double greatest_real_part(const Eigen::MatrixXd& matrix) {
+    constexpr double rounding = 1e-12;  // what an oscillation without friction may seem to grow by
+    // as Eigen's eigenvalues(), without the vectors: half the time to compile
+    const double scale = matrix.cwiseAbs().maxCoeff();
+    const Eigen::HessenbergDecomposition<Eigen::MatrixXd> hessenberg(matrix / scale);
+    Eigen::RealSchur<Eigen::MatrixXd> schur(matrix.rows());
+    schur.computeFromHessenberg(hessenberg.matrixH(), Eigen::MatrixXd(), false);
+    const Eigen::MatrixXd t = schur.matrixT() * scale;
+    double most = -std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i < t.rows(); ++i) {
+        const bool is_pair = i + 1 < t.rows() && t(i + 1, i) != 0;  // of complex ones
+        most = std::max(most, is_pair ? t(i + 1, i + 1) + 0.5 * (t(i, i) - t(i + 1, i + 1)) : t(i, i));
+        i += is_pair;
+    }
+    return std::abs(most) < rounding * scale ? 0 : most;
 }
 
 /// Nothing where the release is no equilibrium, as of what is driven.

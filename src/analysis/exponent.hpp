@@ -16,9 +16,7 @@ struct ExponentSpec {
 struct Exponent {
     double value;  // 1/s
     /// 1/s: within it of the value is, two times in three or more, that of a run four times as long from a release next
-    /// to this one; within twice of it nine times in ten or more.
-    /// Of 40 releases 1e-9 or 1e-6 rad apart in each of 15 chaotic seas 78 % and 97 % were; in seven where sticky orbits
-    /// hold a motion for minutes, as from 70° and 75°, 66 % and 92 %; of regular ones all.
+    /// to this one; within twice of it nine times in ten or more (docs/methods.md has how often).
     double uncertainty;
     /// Whether long stretches of the run differ by no more than short ones foretell. Where they do (a chaotic transient,
     /// orbits that stick), one run does not show all of the motion, and the uncertainty is too small.

@@ -8,44 +8,6 @@
 #include <limits>
 
 namespace doppel {
-
-std::vector<Quad> ErrorMeasure::coordinates(const Observation& seen) const {
-    std::vector<Quad> all;
-    const auto take = [&](const auto& bobs) {
-        for (const auto& bob : bobs) {
-            all.emplace_back(in_angles ? bob.theta : bob.x);
-            if (!in_angles) all.emplace_back(bob.y);
-        }
-    };
-    seen.exact.empty() ? take(seen.bobs) : take(seen.exact);
-    return all;
-}
-
-double ErrorMeasure::distance(std::span<const Quad> one, std::span<const Quad> other) const {
-    static const Quad turn = 2 * pi_of<Quad>();
-    double worst = 0;
-    for (std::size_t i = 0; i < one.size(); i += in_angles ? 1 : 2) {
-        const Quad first = one[i] - other[i];
-        double off = std::abs(static_cast<double>(Quad(remainder(first, turn))));
-        if (!in_angles) {
-            const auto x = static_cast<double>(first), y = static_cast<double>(Quad(one[i + 1] - other[i + 1]));
-            off = std::sqrt(x * x + y * y) / reach;
-        }
-        if (!std::isfinite(off)) return off;
-        worst = std::max(worst, off);
-    }
-    return worst;
-}
-
-MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance) {
-    if (spec.model == Model::constraints) spec.model = Model::angles;
-    spec.method = "taylor";
-    spec.tolerance = tolerance;
-    spec.stabilise = Stabilise::none;
-    spec.follows_turns = spec.wants_tension = false;
-    return spec;
-}
-
 namespace {
 
 /// Of a motion by Taylor series.
@@ -59,35 +21,6 @@ Observation end_in_quad(MotionSpec spec, const char* tolerance, const Rational& 
     for (long i = 0; i < parts; ++i) motion->advance(stop);
     return motion->observe();
 }
-
-}  // namespace
-
-Reference reference_end(MotionSpec spec, const Rational& seconds, const std::atomic<bool>& stop) {
-    spec = by_taylor_series(spec, 0);
-    const bool is_plain = spec.model == Model::angles && !spec.physical;
-    const ErrorMeasure measure{spec.chain.has_value()};
-    Reference reference{end_in_quad(spec, "1e-32", seconds, stop), 0, NAN};
-    for (std::size_t i = 0; is_plain && i < spec.chain->links(); ++i) {
-        constexpr double apart = 1e-14;  // rad: far above the tolerance; what grows from it stays small
-        auto beside = spec;
-        beside.chain->angle[i] += Quad(apart);
-        const double grown = measure.distance(end_in_quad(beside, "1e-24", seconds, stop), reference.end);
-        reference.sensitivity = std::fmax(reference.sensitivity, grown / apart);
-    }
-    if (is_plain) spec.model = Model::constraints;
-    reference.disagreement =
-        measure.distance(reference.end, end_in_quad(spec, is_plain ? "1e-32" : "1e-30", seconds, stop));
-    // quad at its tolerance comes to some 1e-30 of the sensitivity; that of a mechanism is not known
-    const double allowed = is_plain ? 1e-26 * std::max(reference.sensitivity, 1.0) : 1e-15;
-    if (!(reference.disagreement <= allowed))
-        throw method_failed(
-            "no reference: two computations in quad differ by {:.2g} {} after {} s, where {:.2g} is allowed; the "
-            "motion is too chaotic for so long a time",
-            reference.disagreement, measure.in_angles ? "rad" : "m", seconds.value(), allowed);
-    return reference;
-}
-
-namespace {
 
 /// How many roundings of a number, half an ulp each, some_roundings_away() moves it by: a number errs by one at most; more
 /// of them leave room for what the steps add.
@@ -146,6 +79,68 @@ ReferenceTrajectory followed(Motion& motion, Motion& beside, const ErrorMeasure&
 }
 
 }  // namespace
+
+std::vector<Quad> ErrorMeasure::coordinates(const Observation& seen) const {
+    std::vector<Quad> all;
+    const auto take = [&](const auto& bobs) {
+        for (const auto& bob : bobs) {
+            all.emplace_back(in_angles ? bob.theta : bob.x);
+            if (!in_angles) all.emplace_back(bob.y);
+        }
+    };
+    seen.exact.empty() ? take(seen.bobs) : take(seen.exact);
+    return all;
+}
+
+double ErrorMeasure::distance(std::span<const Quad> one, std::span<const Quad> other) const {
+    static const Quad turn = 2 * pi_of<Quad>();
+    double worst = 0;
+    for (std::size_t i = 0; i < one.size(); i += in_angles ? 1 : 2) {
+        const Quad first = one[i] - other[i];
+        double off = std::abs(static_cast<double>(Quad(remainder(first, turn))));
+        if (!in_angles) {
+            const auto x = static_cast<double>(first), y = static_cast<double>(Quad(one[i + 1] - other[i + 1]));
+            off = std::sqrt(x * x + y * y) / reach;
+        }
+        if (!std::isfinite(off)) return off;
+        worst = std::max(worst, off);
+    }
+    return worst;
+}
+
+MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance) {
+    if (spec.model == Model::constraints) spec.model = Model::angles;
+    spec.method = "taylor";
+    spec.tolerance = tolerance;
+    spec.stabilise = Stabilise::none;
+    spec.follows_turns = spec.wants_tension = false;
+    return spec;
+}
+
+Reference reference_end(MotionSpec spec, const Rational& seconds, const std::atomic<bool>& stop) {
+    spec = by_taylor_series(spec, 0);
+    const bool is_plain = spec.model == Model::angles && !spec.physical;
+    const ErrorMeasure measure{spec.chain.has_value()};
+    Reference reference{end_in_quad(spec, "1e-32", seconds, stop), 0, NAN};
+    for (std::size_t i = 0; is_plain && i < spec.chain->links(); ++i) {
+        constexpr double apart = 1e-14;  // rad: far above the tolerance; what grows from it stays small
+        auto beside = spec;
+        beside.chain->angle[i] += Quad(apart);
+        const double grown = measure.distance(end_in_quad(beside, "1e-24", seconds, stop), reference.end);
+        reference.sensitivity = std::fmax(reference.sensitivity, grown / apart);
+    }
+    if (is_plain) spec.model = Model::constraints;
+    reference.disagreement =
+        measure.distance(reference.end, end_in_quad(spec, is_plain ? "1e-32" : "1e-30", seconds, stop));
+    // quad at its tolerance comes to some 1e-30 of the sensitivity; that of a mechanism is not known
+    const double allowed = is_plain ? 1e-26 * std::max(reference.sensitivity, 1.0) : 1e-15;
+    if (!(reference.disagreement <= allowed))
+        throw method_failed(
+            "no reference: two computations in quad differ by {:.2g} {} after {} s, where {:.2g} is allowed; the "
+            "motion is too chaotic for so long a time",
+            reference.disagreement, measure.in_angles ? "rad" : "m", seconds.value(), allowed);
+    return reference;
+}
 
 ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
                                          const std::atomic<bool>& stop, double most_work) {

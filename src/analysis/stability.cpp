@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 
 namespace doppel {
 namespace {
@@ -62,6 +61,33 @@ double adams_amplitude(double z, long steps) {
         power = power.lazyProduct(power).eval();
     }
     return std::abs(past[0]);
+}
+
+/// Takes the error of one sample in; NaN stays.
+void take(double error, double& greatest) {
+    greatest = error <= blow_up ? std::max(greatest, error) : NAN;
+}
+
+/// By a method that steps them in lanes.
+std::vector<double> side_by_side(const MotionSpec& spec, std::span<const Pendulum<Quad>> releases, long samples,
+                                 const std::atomic<bool>& stop) {
+    std::vector<Pendulum<double>> chains;
+    for (const auto& release : releases) chains.push_back(release.cast<double>());
+    Batch batch(chains, spec.model, spec.method, quotient(spec.sample_interval, {spec.steps_per_sample, 1})->value());
+    std::vector<double> start, greatest(chains.size(), 0);
+    for (long n = 0; n <= samples; ++n) {
+        throw_if_set(stop);
+        if (n > 0) batch.advance(spec.steps_per_sample);
+        for (std::size_t i = 0; i < chains.size(); ++i) {
+            const auto& p = chains[i];
+            const auto y = batch.state(i);
+            const auto bobs = spec.model == Model::angles ? bobs_of_angles(p, y) : bobs_of_particles(p, y);
+            const double now = energy(bobs, p.gravity);
+            if (n == 0) start.push_back(now);
+            take(std::abs(now - start[i]) / released_energy(p), greatest[i]);
+        }
+    }
+    return greatest;
 }
 
 }  // namespace
@@ -140,23 +166,6 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
     return fails;
 }
 
-double greatest_real_part(const Eigen::MatrixXd& matrix) {
-    constexpr double rounding = 1e-12;  // what an oscillation without friction may seem to grow by
-    // as Eigen's eigenvalues(), without the vectors: half the time to compile
-    const double scale = matrix.cwiseAbs().maxCoeff();
-    const Eigen::HessenbergDecomposition<Eigen::MatrixXd> hessenberg(matrix / scale);
-    Eigen::RealSchur<Eigen::MatrixXd> schur(matrix.rows());
-    schur.computeFromHessenberg(hessenberg.matrixH(), Eigen::MatrixXd(), false);
-    const Eigen::MatrixXd t = schur.matrixT() * scale;
-    double most = -std::numeric_limits<double>::infinity();
-    for (Eigen::Index i = 0; i < t.rows(); ++i) {
-        const bool is_pair = i + 1 < t.rows() && t(i + 1, i) != 0;  // of complex ones
-        most = std::max(most, is_pair ? t(i + 1, i + 1) + 0.5 * (t(i, i) - t(i + 1, i + 1)) : t(i, i));
-        i += is_pair;
-    }
-    return std::abs(most) < rounding * scale ? 0 : most;
-}
-
 double released_energy(const Pendulum<double>& release) {
     // Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …), without the cancellation of the levels
     double vx = 0, vy = 0, height = 0, sum = 0;
@@ -170,37 +179,6 @@ double released_energy(const Pendulum<double>& release) {
     }
     return sum;
 }
-
-namespace {
-
-/// Takes the error of one sample in; NaN stays.
-void take(double error, double& greatest) {
-    greatest = error <= blow_up ? std::max(greatest, error) : NAN;
-}
-
-/// By a method that steps them in lanes.
-std::vector<double> side_by_side(const MotionSpec& spec, std::span<const Pendulum<Quad>> releases, long samples,
-                                 const std::atomic<bool>& stop) {
-    std::vector<Pendulum<double>> chains;
-    for (const auto& release : releases) chains.push_back(release.cast<double>());
-    Batch batch(chains, spec.model, spec.method, quotient(spec.sample_interval, {spec.steps_per_sample, 1})->value());
-    std::vector<double> start, greatest(chains.size(), 0);
-    for (long n = 0; n <= samples; ++n) {
-        throw_if_set(stop);
-        if (n > 0) batch.advance(spec.steps_per_sample);
-        for (std::size_t i = 0; i < chains.size(); ++i) {
-            const auto& p = chains[i];
-            const auto y = batch.state(i);
-            const auto bobs = spec.model == Model::angles ? bobs_of_angles(p, y) : bobs_of_particles(p, y);
-            const double now = energy(bobs, p.gravity);
-            if (n == 0) start.push_back(now);
-            take(std::abs(now - start[i]) / released_energy(p), greatest[i]);
-        }
-    }
-    return greatest;
-}
-
-}  // namespace
 
 std::vector<double> greatest_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,
                                            const std::atomic<bool>& stop) {

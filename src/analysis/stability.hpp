@@ -33,9 +33,6 @@ std::vector<Mode> small_oscillations(const Pendulum<double>& pendulum);
 /// nowhere, have that step too. Nothing where no step up to `seconds` does it.
 std::optional<double> step_limit(std::string_view method, std::span<const Mode> modes, double seconds, double times);
 
-/// Of the eigenvalues of a matrix; 0 where it is that to rounding.
-double greatest_real_part(const Eigen::MatrixXd& matrix);
-
 /// Energy is compared with what a release has above hanging at rest. An error beyond so many times that is a blow-up.
 inline constexpr double blow_up = 100;
 

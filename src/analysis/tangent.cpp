@@ -26,29 +26,23 @@ long parts_of(double seconds, const NaturalUnits& units) {
 }
 
 struct TangentMotion::Stepper {
-    struct System {
-        using Scalar = double;
-        using State = TangentState;
-        TangentFlow flow;
-        void rate(const State& all, State& rates) { flow.rate(all, rates); }
-    };
-    System system;
+    TangentFlow flow;
     Eigen::Index angles;
     double tolerance;
-    std::optional<Dop853::Stepper<System>> dop853{};  // knows where the system is
+    std::optional<Dop853::Stepper<TangentFlow>> dop853{};  // knows where the flow is
 };
 
 TangentMotion::TangentMotion(TangentFlow flow, std::size_t angles, double tolerance)
-    : stepper_(new Stepper{{std::move(flow)}, static_cast<Eigen::Index>(angles), tolerance}) {}
+    : stepper_(new Stepper{std::move(flow), static_cast<Eigen::Index>(angles), tolerance}) {}
 TangentMotion::~TangentMotion() = default;
 
 void TangentMotion::restart(TangentState y) {
-    auto& [system, angles, tolerance, dop853] = *stepper_;
+    auto& [flow, angles, tolerance, dop853] = *stepper_;
     for (Eigen::Index i = 0; i < angles; ++i) y[i] = std::remainder(y[i], 2 * pi);
     if (dop853)
         dop853->reset(y);
     else
-        dop853.emplace(system, y, tolerance);
+        dop853.emplace(flow, y, tolerance);
 }
 
 const TangentState& TangentMotion::advance(double seconds) {

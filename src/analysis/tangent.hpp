@@ -49,6 +49,9 @@ void from_dual(const DualState& y, TangentState& all) {
 /// both from one evaluation of f in dual numbers.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:9.
 struct TangentFlow {
+    using Scalar = double;
+    using State = TangentState;
+
     std::function<void(const TangentState& all, TangentState& rates)> rate;
     TangentState start;
 };

@@ -145,11 +145,8 @@ std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& refere
     const auto is_at_floor = [&](double error) {
         constexpr double near = 100, useful = 1e-3;
         constexpr long patience = 3, long_patience = 8;
-        ++since_best;
-        if (error < best) {
-            best = error;
-            since_best = 0;
-        }
+        since_best = error < best ? 0 : since_best + 1;
+        best = std::fmin(best, error);
         return best < near * reference.floor() ? since_best >= patience : best < useful && since_best >= long_patience;
     };
     std::vector<Rung> rungs;
@@ -167,9 +164,9 @@ std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& refere
 }
 
 Ladder merged(const Solver& solver, const std::vector<std::vector<Rung>>& repeats) {
-    Ladder ladder{solver, {}};
-    for (std::size_t i = 0; i < repeats.front().size(); ++i) {
-        auto& rung = ladder.rungs.emplace_back(MeasuredRung{repeats.front()[i]});
+    Ladder ladder{solver, repeats.front()};
+    for (std::size_t i = 0; i < ladder.rungs.size(); ++i) {
+        auto& rung = ladder.rungs[i];
         std::vector<double> times;
         for (const auto& rungs : repeats)
             if (i < rungs.size() && std::isfinite(rungs[i].cpu_s)) times.push_back(rungs[i].cpu_s);
@@ -181,8 +178,8 @@ Ladder merged(const Solver& solver, const std::vector<std::vector<Rung>>& repeat
     return ladder;
 }
 
-std::vector<MeasuredRung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range) {
-    std::vector<MeasuredRung> points;
+std::vector<Rung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range) {
+    std::vector<Rung> points;
     for (const auto& [solver, rungs] : ladders)
         for (std::size_t i = 0; i < rungs.size(); ++i) {
             const double error = rungs[i].error;
@@ -192,7 +189,7 @@ std::vector<MeasuredRung> front_of(std::span<const Ladder> ladders, Cost cost, c
     std::stable_sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
         return std::pair(a.cost(cost), a.error) < std::pair(b.cost(cost), b.error);
     });
-    std::vector<MeasuredRung> front;
+    std::vector<Rung> front;
     for (const auto& point : points) {
         if (!front.empty() && front.back().error <= range.least) break;
         if (front.empty() || point.error < front.back().error) front.push_back(point);

@@ -59,8 +59,9 @@ struct Rung {
     double setting = NAN;  // step, s, or tolerance
     double error = NAN;    // at the end: of the worst angle, rad, or the worst place, of the size
     double energy_error = NAN, length_error = NAN;  // the worst on the way: relative; m
-    double cpu_s = NAN;                             // of one run
+    double cpu_s = NAN;                             // of one run; of repeats the median
     double evaluations = NAN, steps = NAN;
+    double spread = 0;  // of the CPU times of repeats: half the range of their middle half, relative
 
     bool failed() const { return !std::isnan(setting) && !std::isfinite(error); }
     /// Whether it has the study's step, as nearly as whole steps allow.
@@ -83,15 +84,10 @@ struct LadderSpec {
 std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& reference, const Solver& solver,
                              const LadderSpec& spec, const std::atomic<bool>& stop);
 
-/// The median of a rung's repeats.
-struct MeasuredRung : Rung {
-    double spread = 0;  // of the CPU time: half the range of its middle half, relative
-};
-
 /// A solver's rungs on a problem.
 struct Ladder {
     Solver solver;
-    std::vector<MeasuredRung> rungs;
+    std::vector<Rung> rungs;
 };
 
 /// The ladder of several repeats, the first of which has everything.
@@ -104,7 +100,7 @@ struct ErrorRange {
 
 /// Of ladders of one problem the rungs that no cheaper one beats, cheapest first, until one is at the floor. A rung whose
 /// next finer one errs more than twice as much was lucky and does not count.
-std::vector<MeasuredRung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range);
+std::vector<Rung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range);
 
 /// The ladder that takes the least to err by no more than `error`: by the cheapest rung that does so, and whose next finer
 /// one does, too, for now and then a coarse one is lucky.

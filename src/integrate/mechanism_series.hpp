@@ -23,7 +23,7 @@ public:
     MechanismSeries(const Assembly<Scalar>& parts, int order)
         : Base(Mechanism<Taped<Scalar>>(parts.template cast<Taped<Scalar>>()), scale_of(parts), order),
           model_(parts),
-          gradients_(model_.set_.blank_gradients()),
+          gradients_(model_.blank_gradients()),
           ahead_(gradients_) {}
 
     void expand(const State& y) override {
@@ -84,8 +84,8 @@ private:
 
     void start_checking() {
         checked_ = Scalar(0);
-        model_.set_.update(start_.head(start_.size() / 2), gradients_);
-        if (const auto row = first_fault(gradients_, gradients_); row < model_.set_.rows())
+        model_.update(start_.head(start_.size() / 2), gradients_);
+        if (const auto row = first_fault(gradients_, gradients_); row < model_.constraints())
             model_.fail(start_.head(start_.size() / 2), row);
     }
 
@@ -110,17 +110,17 @@ private:
         here_.resize(start_.size() / 2);
         Base::move(h, here_);
         here_ += start_.head(here_.size());
-        model_.set_.update(here_, ahead_);
+        model_.update(here_, ahead_);
         if (!Model::alike(ahead_, gradients_)) return last;
         const auto row = first_fault(ahead_, gradients_);
-        if (last && row < model_.set_.rows()) model_.fail(here_, row);
-        return row == model_.set_.rows();
+        if (last && row < model_.constraints()) model_.fail(here_, row);
+        return row == model_.constraints();
     }
 
     /// The first row of J1 M⁻¹ J0ᵀ that depends on others or has turned over.
     Eigen::Index first_fault(const Gradients& one, const Gradients& zero) {
         auto& matrix = model_.matrix_;
-        model_.set_.couple(one, zero, model_.masses_.w, matrix);
+        model_.couple(one, zero, matrix);
         matrix.factor();
         return std::min(matrix.dependent_row(), matrix.negative_row());
     }

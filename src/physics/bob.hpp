@@ -71,6 +71,25 @@ Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>
     return bobs;
 }
 
+/// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) of bobs.
+template <int N = Eigen::Dynamic, class Scalar>
+State<Scalar, times<4, N>> particles_of(const Bobs<Scalar>& bobs) {
+    const auto n = static_cast<Eigen::Index>(bobs.size());
+    State<Scalar, times<4, N>> y(4 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto& bob = bobs[static_cast<std::size_t>(i)];
+        y.template segment<2>(2 * i) << bob.x, bob.y;
+        y.template segment<2>(2 * n + 2 * i) << bob.vx, bob.vy;
+    }
+    return y;
+}
+
+/// The same as released.
+template <class Scalar, int N>
+State<Scalar, times<4, N>> released_as_particles(const Pendulum<Scalar>& p) {
+    return particles_of<N>(bobs_of_angles(p, released_in_angles<Scalar, N>(p)));
+}
+
 /// Σ ½ m v², J
 template <class Scalar>
 Scalar kinetic_energy(const Bobs<Scalar>& bobs) {

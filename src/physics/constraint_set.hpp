@@ -4,10 +4,8 @@
 #include "physics/constraint.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
-#include <vector>
 
 namespace doppel {
 
@@ -20,44 +18,42 @@ public:
     using Column = State<Scalar, Eigen::Dynamic>;
     using Gradients = std::vector<Place<Scalar>>;  // ∂C_row/∂q_particle, one a block
 
-    /// Of particles that now are at q.
-    explicit ConstraintSet(const std::vector<Constraint<Scalar>>& constraints, const Column& q)
-        : constraints_(constraints) {
-        Eigen::Index row = 0;
-        for (std::size_t c = 0; c < constraints_.size(); ++c)
-            std::visit(
-                [&](const auto& part) {
-                    part.gradient(q, [&](Eigen::Index nth, std::size_t particle, const Place<Scalar>&) {
-                        blocks_.push_back({row + nth, static_cast<Eigen::Index>(particle)});
-                    });
-                    owner_.insert(owner_.end(), part.rows, c);
-                    row += static_cast<Eigen::Index>(part.rows);
-                },
-                constraints_[c]);
-        std::vector<std::vector<std::size_t>> of_particle(static_cast<std::size_t>(q.size() / 2));
-        const auto neighbours = [&](std::size_t k) -> auto& {
-            return of_particle[static_cast<std::size_t>(blocks_[k].particle)];
+    /// Of particles with these inverse masses, 1/kg.
+    ConstraintSet(const std::vector<Constraint<Scalar>>& constraints, const Column& inverse_masses)
+        : w_(inverse_masses) {
+        std::vector<std::vector<std::size_t>> of_particle(static_cast<std::size_t>(w_.size()));
+        const auto add = [&](std::size_t particle) {
+            of_particle[particle].push_back(blocks_.size());
+            blocks_.push_back({static_cast<Eigen::Index>(rows_.size()), static_cast<Eigen::Index>(particle)});
         };
-        for (std::size_t k = 0; k < blocks_.size(); ++k) neighbours(k).push_back(k);
+        for (std::size_t c = 0; c < constraints.size(); ++c)
+            for (const auto& row : rows_of(constraints[c])) {
+                add(row.a);
+                if (const auto* other = row.other_particle())
+                    add(*other);
+                else
+                    farthest_fixed_ =
+                        std::max(farthest_fixed_, Scalar(std::get<Place<Scalar>>(row.b).cwiseAbs().maxCoeff()));
+                longest_rod_ = std::max(longest_rod_, row.length);
+                rows_.push_back(row);
+                owner_.push_back(c);
+            }
         for (std::size_t k = 0; k < blocks_.size(); ++k)
-            for (const auto l : neighbours(k)) couples_.push_back({k, l});
-        for (const auto& constraint : constraints_) {
-            if (const auto place = fixed_place_of(constraint))
-                farthest_fixed_ = std::max(farthest_fixed_, Scalar(place->cwiseAbs().maxCoeff()));
-            if (const auto rod = rod_of(constraint)) longest_rod_ = std::max(longest_rod_, rod->length);
-        }
+            for (const auto l : of_particle[static_cast<std::size_t>(blocks_[k].particle)]) couples_.push_back({k, l});
+        scratch_ = blank_gradients();
     }
 
-    Eigen::Index rows() const { return static_cast<Eigen::Index>(owner_.size()); }
+    Eigen::Index constraints() const { return static_cast<Eigen::Index>(rows_.size()); }
 
     /// The constraint that a row belongs to.
     std::size_t owner(Eigen::Index row) const { return owner_[static_cast<std::size_t>(row)]; }
 
-    const Constraint<Scalar>& operator[](std::size_t constraint) const { return constraints_[constraint]; }
+    /// The longest rod or radius, m; 0 where all constraints are straight.
+    const Scalar& longest_rod() const { return longest_rod_; }
 
     /// A J M⁻¹ Jᵀ of zeros, wide enough for what couple() puts into it.
     EnvelopeMatrix<Scalar> blank_matrix() const {
-        std::vector<Eigen::Index> begin(static_cast<std::size_t>(rows()));
+        std::vector<Eigen::Index> begin(rows_.size());
         std::iota(begin.begin(), begin.end(), 0);
         for (const auto& [first, second] : couples_) {
             const auto [low, high] = std::minmax({blocks_[first].row, blocks_[second].row});
@@ -68,55 +64,23 @@ public:
     }
     Gradients blank_gradients() const { return Gradients(blocks_.size(), Place<Scalar>(Scalar(0), Scalar(0))); }
 
-    /// c ← C(q)
-    template <class Vector>
-    void value(const Vector& q, Column& c) const {
-        fill(c, [&](const auto& part) { return part.value(q); });
-    }
-
-    /// s ← J̇ v
-    template <class Vector>
-    void jdot_v(const Vector& v, Column& s) const {
-        fill(s, [&](const auto& part) { return part.jdot_v(v); });
-    }
-
-    /// How far the constraint that is furthest from being met is from it, m.
-    template <class Vector>
-    Scalar worst_error(const Vector& q) const {
-        Scalar worst(0);
-        for (const auto& constraint : constraints_) {
-            const Scalar error = std::visit([&](const auto& part) { return Scalar(part.error(q)); }, constraint);
-            if (!(error <= worst)) worst = error;  // NaN counts as worst
-        }
-        return worst;
-    }
-
-    /// The longest rod or radius, m; 0 where all constraints are straight.
-    const Scalar& longest_rod() const { return longest_rod_; }
-
-    /// c ← ε |q| Σ_j |J_ij|, with the largest coordinate that there is, of particles and fixed places
-    template <class Vector>
-    void rounding(const Gradients& gradients, const Vector& q, Column& c) const {
-        using std::abs;
-        c.setZero();
-        for (std::size_t k = 0; k < blocks_.size(); ++k)
-            c[blocks_[k].row] += abs(gradients[k][0]) + abs(gradients[k][1]);
-        c *=
-            Scalar(std::numeric_limits<Scalar>::epsilon()) * std::max(farthest_fixed_, Scalar(q.cwiseAbs().maxCoeff()));
-    }
-
     /// gradients ← J(q)
     template <class Vector>
     void update(const Vector& q, Gradients& gradients) const {
         auto next = gradients.begin();
-        for (const auto& constraint : constraints_)
-            std::visit(
-                [&](const auto& part) {
-                    part.gradient(q, [&](Eigen::Index, std::size_t, const Place<Scalar>& g) { *next++ = g; });
-                },
-                constraint);
+        for (const auto& row : rows_) {
+            const Place<Scalar> gradient = row.gradient(q);
+            *next++ = gradient;
+            if (row.other_particle()) *next++ = -gradient;
+        }
     }
-
+    /// matrix ← J1 M⁻¹ J0ᵀ
+    void couple(const Gradients& one, const Gradients& zero, EnvelopeMatrix<Scalar>& matrix) const {
+        matrix.clear();
+        for (const auto& [first, second] : couples_)
+            matrix(blocks_[first].row, blocks_[second].row) +=
+                w_[blocks_[first].particle] * inner(one[first], zero[second]);
+    }
     /// s ← s + J v
     template <class Vector>
     void add_constraint_velocity(const Gradients& gradients, const Vector& v, Column& s) const {
@@ -125,41 +89,46 @@ public:
             s[blocks_[k].row] += gradients[k][0] * v[i] + gradients[k][1] * v[i + 1];
         }
     }
-
-    /// v ← v + M⁻¹ Jᵀ λ, with the inverse masses w
+    /// v ← v + M⁻¹ Jᵀ λ
     template <class Vector>
-    void add_pull(const Gradients& gradients, const Column& w, const Column& lambda, Vector& v) const {
+    void add_pull(const Gradients& gradients, const Column& lambda, Vector& v) const {
         for (std::size_t k = 0; k < blocks_.size(); ++k) {
             const auto i = blocks_[k].particle;
-            const Scalar share = w[i] * lambda[blocks_[k].row];
+            const Scalar share = w_[i] * lambda[blocks_[k].row];
             v[2 * i] += share * gradients[k][0];
             v[2 * i + 1] += share * gradients[k][1];
         }
     }
 
-    /// The forces in the rods, N, > 0 where one pulls: λ r acts on its particle a, where r is its first gradient.
-    std::vector<Scalar> tensions(const Gradients& gradients, const Column& lambda) const {
-        using std::sqrt;
-        std::vector<Scalar> all;
-        for (std::size_t k = 0; k < blocks_.size(); ++k) {
-            const auto row = blocks_[k].row;
-            const bool first = k == 0 || blocks_[k - 1].row != row;
-            if (!first || !std::holds_alternative<Rod<Scalar>>(constraints_[owner(row)])) continue;
-            const auto& r = gradients[k];
-            all.push_back(-lambda[row] * sqrt(Scalar(r[0] * r[0] + r[1] * r[1])));
-        }
-        return all;
+    // Of the concept Constrained, which says what they do.
+
+    void residual(const Column& q, Column& c) const {
+        for (std::size_t i = 0; i < rows_.size(); ++i) c[static_cast<Eigen::Index>(i)] = rows_[i].value(q);
+    }
+    template <class Vector>
+    void jdot_v(const Vector&, const Vector& v, Column& s) const {
+        for (std::size_t i = 0; i < rows_.size(); ++i) s[static_cast<Eigen::Index>(i)] = rows_[i].jdot_v(v);
+    }
+    void rounding(const Column& q, Column& c) {
+        using std::abs;
+        update(q, scratch_);
+        c.setZero();
+        for (std::size_t k = 0; k < blocks_.size(); ++k) c[blocks_[k].row] += abs(scratch_[k][0]) + abs(scratch_[k][1]);
+        c *=
+            Scalar(std::numeric_limits<Scalar>::epsilon()) * std::max(farthest_fixed_, Scalar(q.cwiseAbs().maxCoeff()));
+    }
+    void constraint_velocity(const Column& q, const Column& v, Column& s) {
+        update(q, scratch_);
+        s.setZero();
+        add_constraint_velocity(scratch_, v, s);
+    }
+    void pull(const Column& q, const Column& lambda, Column& v) {
+        update(q, scratch_);
+        add_pull(scratch_, lambda, v);
     }
 
-    /// matrix ← J1 M⁻¹ J0ᵀ, with the inverse masses w
-    void couple(const Gradients& one, const Gradients& zero, const Column& w, EnvelopeMatrix<Scalar>& matrix) const {
-        matrix.clear();
-        for (const auto& [first, second] : couples_) {
-            const auto &g1 = one[first], &g0 = zero[second];
-            matrix(blocks_[first].row, blocks_[second].row) +=
-                w[blocks_[first].particle] * (g1[0] * g0[0] + g1[1] * g0[1]);
-        }
-    }
+protected:
+    Gradients scratch_;
 
 private:
     /// What is not zero in J.
@@ -171,19 +140,8 @@ private:
         std::size_t first, second;
     };
 
-    /// The values that `ask` gives for every constraint, one a row.
-    template <class Ask>
-    void fill(Column& values, const Ask& ask) const {
-        Eigen::Index row = 0;
-        for (const auto& constraint : constraints_)
-            std::visit(
-                [&](const auto& part) {
-                    for (const auto& value : ask(part)) values[row++] = value;
-                },
-                constraint);
-    }
-
-    std::vector<Constraint<Scalar>> constraints_;
+    Column w_;  // inverse masses, 1/kg
+    std::vector<ConstraintRow<Scalar>> rows_;
     std::vector<std::size_t> owner_;  // of each row
     std::vector<Block> blocks_;
     std::vector<Couple> couples_;

@@ -16,12 +16,11 @@ Scalar newton_constant() {
     return Scalar(6674) / Scalar(100'000'000'000'000.0);
 }
 
-// Every force is a struct like these:
+// Every force is a struct of its members like these:
 //
 //     kind                            as presets name it
 //     accelerate(masses, q, v, a)     a ← a + M⁻¹ F(q, v)
 //     energy(masses, q)               its potential, J; zero where it says
-//     cast<To>()                      the same in another scalar
 
 /// Uniform gravity, downwards. Energy: zero at y = 0.
 template <class Scalar>
@@ -31,6 +30,7 @@ struct Gravity {
     Scalar g = Scalar(98) / Scalar(10);  // m/s²
 
     friend bool operator==(const Gravity&, const Gravity&) = default;
+    auto members() const { return std::tie(g); }
 
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector&, const Vector&, Sum& a) const {
@@ -41,10 +41,6 @@ struct Gravity {
         Scalar sum(0);
         for (Eigen::Index i = 0; i < masses.m.size(); ++i) sum += masses.m[i] * g * q[2 * i + 1];
         return sum;
-    }
-    template <class To>
-    Gravity<To> cast() const {
-        return {static_cast<To>(g)};
     }
 };
 
@@ -62,45 +58,31 @@ struct Spring {
     Scalar damping = Scalar(0);  // N s/m, ≥ 0
 
     friend bool operator==(const Spring&, const Spring&) = default;
+    auto members() const { return std::tie(a, b, stiffness, length, damping); }
 
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector& v, Sum& sum) const {
         const Place<Scalar> r = part_of(q, a) - place_of(b, q), u = part_of(v, a) - velocity_of(b, v);
-        const auto pull_ends = [&](const Scalar& pull) {
-            add(masses, a, Scalar(-pull), r, sum);
-            if (const auto* particle = std::get_if<std::size_t>(&b)) add(masses, *particle, pull, r, sum);
+        const auto pull = [&](std::size_t particle, const Scalar& f) {
+            const auto i = static_cast<Eigen::Index>(particle);
+            for (Eigen::Index axis = 0; axis < 2; ++axis) sum[2 * i + axis] += masses.w[i] * f * r[axis];
+        };
+        const auto pull_ends = [&](const Scalar& f) {
+            pull(a, Scalar(-f));
+            if (const auto* particle = std::get_if<std::size_t>(&b)) pull(*particle, f);
         };
         if constexpr (requires { length.tape(); })  // there |r| has no series where it is 0
             if (!has_direction()) return pull_ends(stiffness);
-        const Scalar now = norm(r);
+        const Scalar now = length_of(r);
         if (now == Scalar(0)) return;
-        const Scalar stretching = (r[0] * u[0] + r[1] * u[1]) / now;
-        pull_ends((stiffness * (now - length) + damping * stretching) / now);
+        pull_ends((stiffness * (now - length) + damping * Scalar(inner(r, u) / now)) / now);
     }
     /// Whether it needs one: without rest length and damping it is k r in any.
     bool has_direction() const { return length != Scalar(0) || damping != Scalar(0); }
     template <class Vector>
     Scalar energy(const Masses<Scalar>&, const Vector& q) const {
-        const Scalar stretch = norm(part_of(q, a) - place_of(b, q)) - length;
+        const Scalar stretch = length_of(Place<Scalar>(part_of(q, a) - place_of(b, q))) - length;
         return Scalar(0.5) * stiffness * stretch * stretch;
-    }
-    template <class To>
-    Spring<To> cast() const {
-        return {a, cast_end<To>(b), static_cast<To>(stiffness), static_cast<To>(length), static_cast<To>(damping)};
-    }
-
-private:
-    static Scalar norm(const Place<Scalar>& r) {
-        using std::sqrt;
-        return sqrt(Scalar(r[0] * r[0] + r[1] * r[1]));
-    }
-    /// The acceleration of `particle` by the force f r.
-    template <class Sum>
-    static void add(const Masses<Scalar>& masses, std::size_t particle, const Scalar& f, const Place<Scalar>& r,
-                    Sum& sum) {
-        const auto i = static_cast<Eigen::Index>(particle);
-        sum[2 * i] += masses.w[i] * f * r[0];
-        sum[2 * i + 1] += masses.w[i] * f * r[1];
     }
 };
 
@@ -108,7 +90,7 @@ private:
 template <class Scalar>
 Scalar inverse_cube(const Place<Scalar>& r) {
     using std::sqrt;
-    const Scalar square = r[0] * r[0] + r[1] * r[1];
+    const Scalar square = inner(r, r);
     return Scalar(1) / (square * sqrt(square));
 }
 
@@ -122,6 +104,7 @@ struct Attraction {
     Scalar constant = newton_constant<Scalar>();  // G, m³/(kg s²)
 
     friend bool operator==(const Attraction&, const Attraction&) = default;
+    auto members() const { return std::tie(a, b, constant); }
 
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector&, Sum& sum) const {
@@ -135,14 +118,8 @@ struct Attraction {
     }
     template <class Vector>
     Scalar energy(const Masses<Scalar>& masses, const Vector& q) const {
-        using std::sqrt;
-        const Place<Scalar> r = part_of(q, a) - part_of(q, b);
         const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
-        return -(constant * masses.m[i] * masses.m[j]) / sqrt(Scalar(r[0] * r[0] + r[1] * r[1]));
-    }
-    template <class To>
-    Attraction<To> cast() const {
-        return {a, b, static_cast<To>(constant)};
+        return -(constant * masses.m[i] * masses.m[j]) / length_of(Place<Scalar>(part_of(q, a) - part_of(q, b)));
     }
 };
 
@@ -157,29 +134,23 @@ struct Droplet {
     Scalar constant = newton_constant<Scalar>();  // G, m³/(kg s²)
 
     friend bool operator==(const Droplet&, const Droplet&) = default;
+    auto members() const { return std::tie(place, mass, constant); }
 
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector&, Sum& sum) const {
         for (Eigen::Index i = 0; i < masses.m.size(); ++i) {
             const Place<Scalar> r = part_of(q, static_cast<std::size_t>(i)) - place;
             const Scalar pull = constant * mass * inverse_cube(r);
-            sum[2 * i] -= pull * r[0];
-            sum[2 * i + 1] -= pull * r[1];
+            for (Eigen::Index axis = 0; axis < 2; ++axis) sum[2 * i + axis] -= pull * r[axis];
         }
     }
     template <class Vector>
     Scalar energy(const Masses<Scalar>& masses, const Vector& q) const {
-        using std::sqrt;
         Scalar sum(0);
-        for (Eigen::Index i = 0; i < masses.m.size(); ++i) {
-            const Place<Scalar> r = part_of(q, static_cast<std::size_t>(i)) - place;
-            sum -= constant * masses.m[i] * mass / sqrt(Scalar(r[0] * r[0] + r[1] * r[1]));
-        }
+        for (Eigen::Index i = 0; i < masses.m.size(); ++i)
+            sum -= constant * masses.m[i] * mass /
+                   length_of(Place<Scalar>(part_of(q, static_cast<std::size_t>(i)) - place));
         return sum;
-    }
-    template <class To>
-    Droplet<To> cast() const {
-        return {place.template cast<To>(), static_cast<To>(mass), static_cast<To>(constant)};
     }
 };
 

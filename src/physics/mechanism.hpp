@@ -38,7 +38,7 @@ class MechanismSeries;
 /// Errors  Error (exit 3) where a constraint comes to depend on others, so that the forces are not determined.
 /// Source  Witkin 1997, Physically Based Modeling: Constrained Dynamics.
 template <class S>
-struct Mechanism {
+struct Mechanism : ConstraintSet<S> {
     using Scalar = S;
     using State = doppel::State<Scalar, Eigen::Dynamic>;
     using Half = State;         // positions, velocities or accelerations
@@ -47,16 +47,7 @@ struct Mechanism {
     Assembly<Scalar> parts;
 
     /// Of an assembly that check() has nothing against.
-    explicit Mechanism(const Assembly<Scalar>& assembly)
-        : parts(assembly),
-          masses_(masses_of(assembly)),
-          set_(assembly.constraints, start(assembly).head(2 * masses_.m.size())),
-          matrix_(set_.blank_matrix()),
-          lambda_(Multipliers::Zero(set_.rows())),
-          gradients_(set_.blank_gradients()),
-          gradients_before_(gradients_),
-          other_gradients_(gradients_),
-          feels_velocity_(!assembly.conserves_energy()) {}
+    explicit Mechanism(const Assembly<Scalar>& assembly) : Mechanism(assembly, masses_of(assembly)) {}
 
     static State start(const Assembly<Scalar>& assembly) {
         const auto n = static_cast<Eigen::Index>(assembly.particles.size());
@@ -75,93 +66,71 @@ struct Mechanism {
         const auto q = y.head(2 * n), v = y.tail(2 * n);
         dydt.head(2 * n) = v;
         auto a = dydt.tail(2 * n);
-        accelerate(q, v, a);
+        free_acceleration(q, v, a);
 
         turn_to(q);
         if constexpr (requires { y[0].tape(); })  // its series checks the path
-            set_.couple(gradients_, gradients_, masses_.w, matrix_);
+            this->couple(gradients_, gradients_, matrix_);
         else
             factor_and_check_path(q, gradients_);
         find_multipliers(gradients_, v, a);
-        set_.add_pull(gradients_, masses_.w, lambda_, a);
+        this->add_pull(gradients_, lambda_, a);
     }
-
-    // What methods that keep to the constraints themselves need (physics/constrained.hpp). Positions q, velocities v.
-
-    Eigen::Index constraints() const { return set_.rows(); }
 
     /// Whether a force depends on velocities.
-    bool feels_velocity() const { return feels_velocity_; }
+    bool feels_velocity() const { return !parts.conserves_energy(); }
 
-    /// a ← M⁻¹ F, the accelerations without constraints
-    void free_acceleration(const Half& q, const Half& v, Half& a) const { accelerate(q, v, a); }
-
-    /// c ← C(q)
-    void residual(const Half& q, Multipliers& c) const { set_.value(q, c); }
-
-    /// c ← ε |q| Σ_j |J_ij|
-    void rounding(const Half& q, Multipliers& c) {
-        set_.update(q, other_gradients_);
-        set_.rounding(other_gradients_, q, c);
+    template <class Vector, class Sum>
+    void free_acceleration(const Vector& q, const Vector& v, Sum& a) const {
+        a.setZero();
+        for (const auto& force : parts.forces)
+            std::visit([&](const auto& part) { part.accelerate(masses_, q, v, a); }, force);
     }
 
-    /// s ← J(q) v
-    void constraint_velocity(const Half& q, const Half& v, Multipliers& s) {
-        set_.update(q, other_gradients_);
-        s.setZero();
-        set_.add_constraint_velocity(other_gradients_, v, s);
-    }
-
-    /// s ← J̇ v, the part of C″ that is there without any acceleration
-    void jdot_v(const Half&, const Half& v, Multipliers& s) const { set_.jdot_v(v, s); }
-
-    /// v ← v + M⁻¹ Jᵀ(q) λ
-    void pull(const Half& q, const Multipliers& lambda, Half& v) {
-        set_.update(q, other_gradients_);
-        set_.add_pull(other_gradients_, masses_.w, lambda, v);
-    }
-
-    /// x ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ x
     void solve(const Half& q1, const Half& q0, Multipliers& x) {
         turn_to(q1);
-        set_.update(q0, other_gradients_);
-        factor_and_check_path(q1, other_gradients_);
+        this->update(q0, scratch_);
+        factor_and_check_path(q1, scratch_);
         matrix_.solve(x);
     }
 
     // What is reported of a state.
 
     Scalar energy(const State& y) const {
-        const auto n = masses_.m.size();
-        Scalar total(0);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const Scalar &vx = y[2 * n + 2 * i], &vy = y[2 * n + 2 * i + 1];
-            total += Scalar(0.5) * masses_.m[i] * (vx * vx + vy * vy);
-        }
-        const auto q = y.head(2 * n);
+        Scalar total = kinetic_energy(bobs(y));
+        const auto q = y.head(y.size() / 2);
         for (const auto& force : parts.forces)
             total += std::visit([&](const auto& part) { return Scalar(part.energy(masses_, q)); }, force);
         return total;
     }
 
     /// The constraint that is furthest from being met, m.
-    Scalar length_error(const State& y) const { return set_.worst_error(y.head(y.size() / 2)); }
+    template <class Vector>
+    Scalar length_error(const Vector& y) const {
+        Scalar worst(0);
+        for (const auto& constraint : parts.constraints) {
+            const Scalar error = error_of(constraint, y);
+            if (!(error <= worst)) worst = error;  // NaN counts as worst
+        }
+        return worst;
+    }
 
     /// The forces in the rods, N, > 0 where one pulls, in the order of the constraints that are rods: the λ of C″ = 0,
     /// without what a stabilisation adds. NaN where a constraint depends on others, so that none is
     /// determined.
     std::vector<Scalar> tensions(const State& y) {
-        const auto q = y.head(y.size() / 2), v = y.tail(y.size() / 2);
+        const Half q = y.head(y.size() / 2), v = y.tail(y.size() / 2);
         Half a(q.size());
-        accelerate(q, v, a);
-        set_.update(q, other_gradients_);
-        set_.couple(other_gradients_, other_gradients_, masses_.w, matrix_);
-        matrix_.factor();
-        if (matrix_.dependent_row() < matrix_.rows())
+        free_acceleration(q, v, a);
+        if (dependence(q))
             lambda_.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
         else
-            find_multipliers(other_gradients_, v, a);
-        return set_.tensions(other_gradients_, lambda_);
+            find_multipliers(scratch_, v, a);
+        std::vector<Scalar> all;
+        for (Eigen::Index row = 0; row < lambda_.size(); ++row)
+            if (const auto* rod = std::get_if<Rod<Scalar>>(&parts.constraints[this->owner(row)]))
+                all.push_back(-lambda_[row] * length_of(Place<Scalar>(part_of(q, rod->a) - place_of(rod->b, q))));
+        return all;
     }
 
     Bobs<Scalar> bobs(const State& y) const {
@@ -176,8 +145,8 @@ struct Mechanism {
 
     /// The first constraint that follows from those before it at positions q, if there is one.
     std::optional<Dependence> dependence(const Half& q) {
-        set_.update(q, other_gradients_);
-        set_.couple(other_gradients_, other_gradients_, masses_.w, matrix_);
+        this->update(q, scratch_);
+        this->couple(scratch_, scratch_, matrix_);
         matrix_.factor();
         const auto row = matrix_.dependent_row();
         if (row == matrix_.rows()) return std::nullopt;
@@ -185,9 +154,20 @@ struct Mechanism {
     }
 
 private:
-    friend MechanismSeries<Scalar>;  // made of the same parts, with the same errors (integrate/mechanism_series.hpp)
+    friend MechanismSeries<Scalar>;  // with the same errors (integrate/mechanism_series.hpp)
 
-    using Gradients = typename ConstraintSet<Scalar>::Gradients;
+    using Set = ConstraintSet<Scalar>;
+    using Gradients = typename Set::Gradients;
+    using Set::scratch_;
+
+    Mechanism(const Assembly<Scalar>& assembly, const Masses<Scalar>& masses)
+        : Set(assembly.constraints, masses.w),
+          parts(assembly),
+          masses_(masses),
+          matrix_(this->blank_matrix()),
+          lambda_(Multipliers::Zero(this->constraints())),
+          gradients_(this->blank_gradients()),
+          gradients_before_(gradients_) {}
 
     static Masses<Scalar> masses_of(const Assembly<Scalar>& assembly) {
         const auto n = static_cast<Eigen::Index>(assembly.particles.size());
@@ -199,18 +179,11 @@ private:
         return masses;
     }
 
-    template <class Vector, class Sum>
-    void accelerate(const Vector& q, const Vector& v, Sum& a) const {
-        a.setZero();
-        for (const auto& force : parts.forces)
-            std::visit([&](const auto& part) { part.accelerate(masses_, q, v, a); }, force);
-    }
-
     /// λ from C″ = 0, of the factored matrix and the accelerations a without constraints
     template <class Vector, class Sum>
     void find_multipliers(const Gradients& gradients, const Vector& v, const Sum& a) {
-        set_.jdot_v(v, lambda_);
-        set_.add_constraint_velocity(gradients, a, lambda_);
+        this->jdot_v(v, v, lambda_);
+        this->add_constraint_velocity(gradients, a, lambda_);
         lambda_ = -lambda_;
         solve_factored(matrix_, lambda_);
     }
@@ -219,77 +192,74 @@ private:
     template <class Vector>
     void turn_to(const Vector& q) {
         gradients_.swap(gradients_before_);
-        set_.update(q, gradients_);
+        this->update(q, gradients_);
     }
 
     /// Factors J(q) M⁻¹ J0ᵀ, and near a singular configuration finds out whether one lies between this call and the one
     /// before: stepped over, it would look like any other step, and end in another motion.
     template <class Vector>
     void factor_and_check_path(const Vector& q, const Gradients& zero) {
-        factor(q, gradients_, zero);
+        factor(q, zero);
         const bool was_near = std::exchange(is_near_, matrix_.nearly_singular());
         if (!(was_near || is_near_) || !alike(gradients_, gradients_before_)) return;
-        factor(q, gradients_, gradients_before_);
-        factor(q, gradients_, zero);
+        factor(q, gradients_before_);
+        factor(q, zero);
     }
 
-    /// Factors J1 M⁻¹ J0ᵀ, unless a constraint depends on others at q or between the two.
+    /// Factors J(q) M⁻¹ J0ᵀ, unless a constraint depends on others at q or between the two.
     ///
     /// det(J1 M⁻¹ J0ᵀ) is the scalar product of two volumes, each spanned by gradients. A negative pivot says that one
     /// of them turned over. If gradients have hardly turned otherwise, it did so by passing through zero.
     template <class Vector>
-    void factor(const Vector& q, const Gradients& one, const Gradients& zero) {
-        set_.couple(one, zero, masses_.w, matrix_);
+    void factor(const Vector& q, const Gradients& zero) {
+        this->couple(gradients_, zero, matrix_);
         matrix_.factor();
         if (const auto row = matrix_.dependent_row(); row < matrix_.rows()) fail(q, row);
-        if (const auto row = matrix_.negative_row(); row < matrix_.rows() && alike(one, zero)) fail(q, row);
+        if (const auto row = matrix_.negative_row(); row < matrix_.rows() && alike(gradients_, zero)) fail(q, row);
     }
 
     /// Whether no gradient differs by more than half its length.
     static bool alike(const Gradients& one, const Gradients& zero) {
         for (std::size_t k = 0; k < one.size(); ++k) {
             const Place<Scalar> change = one[k] - zero[k];
-            if (Scalar(4) * squared(change) > squared(zero[k])) return false;
+            if (Scalar(4) * inner(change, change) > inner(zero[k], zero[k])) return false;
         }
         return true;
     }
-    static Scalar squared(const Place<Scalar>& r) { return r[0] * r[0] + r[1] * r[1]; }
 
     template <class Vector>
     [[noreturn]] void fail(const Vector& q, Eigen::Index row) const {
         std::vector<double> places;
         for (Eigen::Index i = 0; i < q.size(); ++i) places.push_back(static_cast<double>(q[i]));
-        const Scalar& rod = set_.longest_rod();
-        const double off = rod > Scalar(0) ? static_cast<double>(Scalar(set_.worst_error(q) / rod)) : 0;
+        const Scalar& rod = this->longest_rod();
+        const double off = rod > Scalar(0) ? static_cast<double>(Scalar(length_error(q) / rod)) : 0;
         const auto found = dependence_of(row);
-        throw singular_configuration(name_of(found.constraint, set_[found.constraint]), found, places, off);
+        throw singular_configuration(name_of(found.constraint, parts.constraints[found.constraint]), found, places,
+                                     off);
     }
 
     /// Row j counts where its share in row i is more than rounding could make it.
     Dependence dependence_of(Eigen::Index row) const {
         using std::abs;
-        Dependence found{set_.owner(row), {}};
+        Dependence found{this->owner(row), {}};
         const auto share = matrix_.dependence(row);
         Scalar largest(0);
-        for (Eigen::Index j = 0; j < row; ++j)
-            if (abs(share[j]) > largest) largest = abs(share[j]);
+        for (const auto& part : share)
+            if (abs(part) > largest) largest = abs(part);
         for (Eigen::Index j = 0; j < row; ++j) {
-            const auto other = set_.owner(j);
-            if (abs(share[j]) > Scalar(1e-6) * largest && other != found.constraint) found.others.push_back(other);
+            const auto other = this->owner(j);
+            const bool is_listed = !found.others.empty() && found.others.back() == other;
+            if (abs(share[j]) > Scalar(1e-6) * largest && other != found.constraint && !is_listed)
+                found.others.push_back(other);
         }
-        std::sort(found.others.begin(), found.others.end());
-        found.others.erase(std::unique(found.others.begin(), found.others.end()), found.others.end());
         return found;
     }
 
     Masses<Scalar> masses_;
-    ConstraintSet<Scalar> set_;
     EnvelopeMatrix<Scalar> matrix_;
     Multipliers lambda_;
     Gradients gradients_, gradients_before_;  // where a system was solved last, and before that
-    Gradients other_gradients_;
-    bool is_near_ = false;  // a singular configuration
-    bool feels_velocity_;
+    bool is_near_ = false;                    // a singular configuration
 };
 
 }  // namespace doppel

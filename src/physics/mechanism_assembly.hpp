@@ -1,14 +1,13 @@
 #pragma once
 
+#include "physics/bob.hpp"
 #include "physics/force.hpp"
-#include "physics/pendulum.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 namespace doppel {
@@ -21,6 +20,7 @@ struct Particle {
     Place<Scalar> velocity = Place<Scalar>(Scalar(0), Scalar(0));  // m/s, at t = 0
 
     friend bool operator==(const Particle&, const Particle&) = default;
+    auto members() const { return std::tie(mass, place, velocity); }
 };
 
 /// What a mechanism is made of and how it is released. Constraints and forces name particles by their index, from 0;
@@ -33,20 +33,11 @@ struct Assembly {
 
     friend bool operator==(const Assembly&, const Assembly&) = default;
 
+    auto members() const { return std::tie(particles, constraints, forces); }
     /// The same in another scalar.
     template <class To>
     Assembly<To> cast() const {
-        Assembly<To> made;
-        for (const auto& p : particles)
-            made.particles.push_back(
-                {static_cast<To>(p.mass), p.place.template cast<To>(), p.velocity.template cast<To>()});
-        for (const auto& c : constraints)
-            made.constraints.push_back(
-                std::visit([](const auto& part) -> Constraint<To> { return part.template cast<To>(); }, c));
-        for (const auto& f : forces)
-            made.forces.push_back(
-                std::visit([](const auto& part) -> Force<To> { return part.template cast<To>(); }, f));
-        return made;
+        return Cast<To>()(*this);
     }
 
     /// Whether the true motion keeps its energy: no spring is damped.
@@ -61,14 +52,13 @@ struct Assembly {
 /// A chain as its parts: bobs, rods and gravity, where there is any.
 template <class Scalar>
 Assembly<Scalar> parts_of(const Pendulum<Scalar>& chain) {
-    const auto start = released_as_particles<Scalar, Eigen::Dynamic>(chain);
-    const auto n = static_cast<Eigen::Index>(chain.links());
     Assembly<Scalar> parts;
-    for (std::size_t k = 0; k < chain.links(); ++k) {
-        const auto i = 2 * static_cast<Eigen::Index>(k);
-        parts.particles.push_back({chain.mass[k], start.template segment<2>(i), start.template segment<2>(2 * n + i)});
-        const End<Scalar> above = k == 0 ? End<Scalar>(Place<Scalar>(Scalar(0), Scalar(0))) : End<Scalar>(k - 1);
+    End<Scalar> above = Place<Scalar>(Scalar(0), Scalar(0));
+    for (const auto& bob : bobs_of_angles(chain, released_in_angles<Scalar, Eigen::Dynamic>(chain))) {
+        const auto k = parts.particles.size();
+        parts.particles.push_back({bob.mass, Place<Scalar>(bob.x, bob.y), Place<Scalar>(bob.vx, bob.vy)});
         parts.constraints.push_back(Rod<Scalar>{k, above, chain.length[k]});
+        above = k;
     }
     if (chain.gravity != Scalar(0)) parts.forces.push_back(Gravity<Scalar>{chain.gravity});
     return parts;

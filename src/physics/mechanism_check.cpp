@@ -7,7 +7,7 @@
 namespace doppel {
 namespace {
 
-using Particles = std::vector<Particle<double>>;
+using Places = State<double, Eigen::Dynamic>;  // (x1, y1, x2, y2 …), m
 
 constexpr double tolerance = 1e-9;  // of the size, or of the greatest speed
 
@@ -25,28 +25,17 @@ std::string listed(const std::vector<std::size_t>& indices) {
     return (indices.size() == 1 ? "constraint " : "constraints ") + all;
 }
 
-bool is_finite(const Place<double>& place) {
-    return std::isfinite(place[0]) && std::isfinite(place[1]);
-}
-
-void check_particles(const Particles& particles) {
-    if (particles.empty()) throw bad_input("the mechanism has no particles; it needs at least one");
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-        const auto& [mass, place, velocity] = particles[i];
-        if (!(mass > 0) || !std::isfinite(mass))
-            throw bad_input("particle {}: its mass is {} kg; it must be greater than 0", i + 1, mass);
-        if (!is_finite(place))
-            throw bad_input("particle {}: its place is {} m; both must be finite numbers", i + 1, text(place));
-        if (!is_finite(velocity))
-            throw bad_input("particle {}: its velocity is {} m/s; both must be finite numbers", i + 1, text(velocity));
-    }
-}
-
-/// Throws unless every particle that the part names is there.
+/// Throws unless the numbers of the part of that name are right, and every particle that it names is there.
 class PartCheck {
 public:
-    PartCheck(std::string name, const Particles& particles) : name_(std::move(name)), particles_(particles) {}
+    PartCheck(std::string name, const std::vector<Particle<double>>& particles)
+        : name_(std::move(name)), particles_(particles) {}
 
+    void operator()(const Particle<double>& particle) const {
+        positive("mass", particle.mass, "kg");
+        finite("place", particle.place, " m");
+        finite("velocity", particle.velocity, " m/s");
+    }
     void operator()(const Anchor<double>& anchor) const {
         exists(anchor.particle);
         finite("place", anchor.place);
@@ -104,110 +93,81 @@ private:
             throw bad_input("{}: particle {} starts at {} m, where what attracts it is; they must start apart", name_,
                             particle + 1, text(place));
     }
-    void finite(std::string_view what, const Place<double>& value) const {
-        if (!is_finite(value))
-            throw bad_input("{}: its {} is {}; both must be finite numbers", name_, what, text(value));
+    void finite(std::string_view what, const Place<double>& value, std::string_view unit = "") const {
+        if (!value.allFinite())
+            throw bad_input("{}: its {} is {}{}; both must be finite numbers", name_, what, text(value), unit);
     }
     void finite(std::string_view what, double value, std::string_view unit) const {
-        if (!std::isfinite(value))
-            throw bad_input("{}: its {} is {} {}; it must be a finite number", name_, what, value, unit);
+        number(what, value, unit, true, "be a finite number");
     }
     void positive(std::string_view what, double value, std::string_view unit) const {
-        if (!(value > 0) || !std::isfinite(value))
-            throw bad_input("{}: its {} is {} {}; it must be greater than 0", name_, what, value, unit);
+        number(what, value, unit, value > 0, "be greater than 0");
     }
     void not_negative(std::string_view what, double value, std::string_view unit) const {
-        if (!(value >= 0) || !std::isfinite(value))
-            throw bad_input("{}: its {} is {} {}; it must not be negative", name_, what, value, unit);
+        number(what, value, unit, value >= 0, "not be negative");
+    }
+    void number(std::string_view what, double value, std::string_view unit, bool is_right,
+                std::string_view must) const {
+        if (!is_right || !std::isfinite(value))
+            throw bad_input("{}: its {} is {} {}; it must {}", name_, what, value, unit, must);
     }
 
     std::string name_;
-    const Particles& particles_;
+    const std::vector<Particle<double>>& particles_;
 };
 
-/// What is wrong with where a constraint's particles start, and what would satisfy it.
-class Remedy {
-public:
-    Remedy(const State<double, Eigen::Dynamic>& q, double error) : q_(q), error_(error) {}
-
-    std::string operator()(const Anchor<double>& anchor) const {
-        const auto place = text(part_of(q_, anchor.particle));
-        return fmt::format("the particle starts at {} m, {:.3g} m from its anchor {} m; anchor it at {}", place, error_,
-                           text(anchor.place), place);
-    }
-    std::string operator()(const Rod<double>& rod) const {
-        const double length = (part_of(q_, rod.a) - place_of(rod.b, q_)).norm();
-        return fmt::format("its ends start {} m apart, {:.3g} m from its length {} m; make the length {}", length,
-                           error_, rod.length, length);
-    }
-    std::string operator()(const SlotLine<double>& slot) const {
-        const auto place = part_of(q_, slot.particle);
+/// What is wrong with where a constraint's particles start, `error` m away, and what would satisfy it.
+std::string remedy(const Constraint<double>& constraint, const Places& q, double error) {
+    const auto row = rows_of(constraint)[0];
+    const auto place = part_of(q, row.a);
+    if (const auto* anchor = std::get_if<Anchor<double>>(&constraint))
+        return fmt::format("the particle starts at {} m, {:.3g} m from its anchor {} m; anchor it at {}", text(place),
+                           error, text(anchor->place), text(place));
+    if (const auto* slot = std::get_if<SlotLine<double>>(&constraint)) {
         const Place<double> foot =
-            slot.point + slot.direction * (slot.direction.dot(place - slot.point) / slot.direction.squaredNorm());
-        return fmt::format("the particle starts at {} m, {:.3g} m off the line; start it at {}", text(place), error_,
+            slot->point + slot->direction * (slot->direction.dot(place - slot->point) / slot->direction.squaredNorm());
+        return fmt::format("the particle starts at {} m, {:.3g} m off the line; start it at {}", text(place), error,
                            text(foot));
     }
-    std::string operator()(const SlotCircle<double>& slot) const {
-        const double radius = (part_of(q_, slot.particle) - slot.centre).norm();
-        return fmt::format(
-            "the particle starts {} m from the centre, {:.3g} m from the radius {} m; make the radius {}", radius,
-            error_, slot.radius, radius);
-    }
+    const double length = row.ends_apart(q).norm();
+    if (std::holds_alternative<Rod<double>>(constraint))
+        return fmt::format("its ends start {} m apart, {:.3g} m from its length {} m; make the length {}", length,
+                           error, row.length, length);
+    return fmt::format("the particle starts {} m from the centre, {:.3g} m from the radius {} m; make the radius {}",
+                       length, error, row.length, length);
+}
 
-private:
-    const State<double, Eigen::Dynamic>& q_;  // m
-    double error_;                            // m
-};
-
-void check_places(const Assembly<double>& assembly, const State<double, Eigen::Dynamic>& q) {
+void check_places(const Assembly<double>& assembly, const Places& q) {
     const double size = std::max(q.lpNorm<Eigen::Infinity>(), size_of(assembly));
     for (std::size_t i = 0; i < assembly.constraints.size(); ++i) {
         const auto& constraint = assembly.constraints[i];
-        const double error = std::visit([&](const auto& part) { return part.error(q); }, constraint);
-        if (error > tolerance * size)
-            throw bad_input("{}: {}", name_of(i, constraint), std::visit(Remedy(q, error), constraint));
+        if (const double error = error_of(constraint, q); error > tolerance * size)
+            throw bad_input("{}: {}", name_of(i, constraint), remedy(constraint, q, error));
     }
 }
 
-/// The velocity of the last particle that row `nth` ties, without the part of it that the row forbids: with it and the
-/// others as they are, the row holds.
-std::string velocity_remedy(const Constraint<double>& constraint, const Assembly<double>& assembly,
-                            const State<double, Eigen::Dynamic>& q, Eigen::Index nth, double slip) {
-    std::size_t last = 0;
-    Place<double> gradient = Place<double>::Zero();
-    std::visit(
-        [&](const auto& part) {
-            part.gradient(q, [&](Eigen::Index row, std::size_t particle, const Place<double>& g) {
-                if (row != nth) return;
-                last = particle;
-                gradient = g;
-            });
-        },
-        constraint);
-    const Place<double> velocity = assembly.particles[last].velocity - gradient * (slip / gradient.squaredNorm());
-    return fmt::format("particle {} at {} m/s", last + 1, text(velocity));
-}
-
-void check_velocities(const Assembly<double>& assembly, const State<double, Eigen::Dynamic>& q) {
+/// An error names the velocity of the last particle that a row ties, without the part of it that the row forbids: with it and
+/// the others as they are, the row holds.
+void check_velocities(const Assembly<double>& assembly, const Places& q) {
+    const auto& particles = assembly.particles;
     double speed = 0;
-    for (const auto& particle : assembly.particles) speed = std::max(speed, particle.velocity.norm());
-    for (std::size_t i = 0; i < assembly.constraints.size(); ++i) {
-        const auto& constraint = assembly.constraints[i];
-        std::array<double, 2> slips{}, squares{};
-        std::visit(
-            [&](const auto& part) {
-                part.gradient(q, [&](Eigen::Index row, std::size_t particle, const Place<double>& g) {
-                    slips[static_cast<std::size_t>(row)] += g.dot(assembly.particles[particle].velocity);
-                    squares[static_cast<std::size_t>(row)] = g.squaredNorm();
-                });
-            },
-            constraint);
-        for (std::size_t row = 0; row < 2; ++row)
-            if (const double leaving = std::abs(slips[row]); leaving > tolerance * speed * std::sqrt(squares[row]))
-                throw bad_input("{}: the start violates it at {:.3g} m/s; start {}", name_of(i, constraint),
-                                leaving / std::sqrt(squares[row]),
-                                velocity_remedy(constraint, assembly, q, static_cast<Eigen::Index>(row), slips[row]));
-    }
+    for (const auto& particle : particles) speed = std::max(speed, particle.velocity.norm());
+    for (std::size_t i = 0; i < assembly.constraints.size(); ++i)
+        for (const auto& row : rows_of(assembly.constraints[i])) {
+            std::size_t last = row.a;
+            Place<double> gradient = row.gradient(q);
+            double slip = gradient.dot(particles[last].velocity);
+            if (const auto* other = row.other_particle()) {
+                last = *other;
+                gradient = -gradient;
+                slip += gradient.dot(particles[last].velocity);
+            }
+            const double length = gradient.norm();
+            if (!(std::abs(slip) > tolerance * speed * length)) continue;
+            const Place<double> velocity = particles[last].velocity - gradient * (slip / gradient.squaredNorm());
+            throw bad_input("{}: the start violates it at {:.3g} m/s; start particle {} at {} m/s",
+                            name_of(i, assembly.constraints[i]), std::abs(slip) / length, last + 1, text(velocity));
+        }
 }
 
 }  // namespace
@@ -242,19 +202,21 @@ double size_of(const Assembly<double>& assembly) {
 }
 
 void check(const Assembly<double>& assembly) {
-    check_particles(assembly.particles);
-    for (std::size_t i = 0; i < assembly.constraints.size(); ++i)
-        std::visit(PartCheck(name_of(i, assembly.constraints[i]), assembly.particles), assembly.constraints[i]);
-    for (std::size_t i = 0; i < assembly.forces.size(); ++i)
-        std::visit(PartCheck(name_of(assembly.forces, i), assembly.particles), assembly.forces[i]);
+    const auto& [particles, constraints, forces] = assembly;
+    if (particles.empty()) throw bad_input("the mechanism has no particles; it needs at least one");
+    for (std::size_t i = 0; i < particles.size(); ++i)
+        PartCheck(fmt::format("particle {}", i + 1), particles)(particles[i]);
+    for (std::size_t i = 0; i < constraints.size(); ++i)
+        std::visit(PartCheck(name_of(i, constraints[i]), particles), constraints[i]);
+    for (std::size_t i = 0; i < forces.size(); ++i) std::visit(PartCheck(name_of(forces, i), particles), forces[i]);
 
     const auto start = Mechanism<double>::start(assembly);
-    const State<double, Eigen::Dynamic> q = start.head(start.size() / 2);
+    const Places q = start.head(start.size() / 2);
     check_places(assembly, q);
     check_velocities(assembly, q);
     if (const auto found = Mechanism<double>(assembly).dependence(q))
         throw bad_input("{} is redundant: it follows from {}; leave it out, or start elsewhere",
-                        name_of(found->constraint, assembly.constraints[found->constraint]), listed(found->others));
+                        name_of(found->constraint, constraints[found->constraint]), listed(found->others));
 }
 
 Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,

@@ -1,10 +1,9 @@
 #pragma once
 
 #include "numeric/sin_cos.hpp"
-#include "numeric/state.hpp"
+#include "physics/cast.hpp"
 
-#include <cstddef>
-#include <vector>
+#include <algorithm>
 
 namespace doppel {
 
@@ -26,23 +25,21 @@ struct Pendulum {
 
     std::size_t links() const { return mass.size(); }
 
+    auto members() const { return std::tie(mass, length, angle, rate, gravity); }
     /// The same in another scalar.
     template <class To>
     Pendulum<To> cast() const {
-        const auto all = [](const std::vector<Scalar>& values) {
-            std::vector<To> made;
-            for (const auto& value : values) made.push_back(static_cast<To>(value));
-            return made;
-        };
-        return {all(mass), all(length), all(angle), all(rate), static_cast<To>(gravity)};
+        return Cast<To>()(*this);
     }
 
     /// Between hanging straight down and standing straight up, J: the scale of its energies.
-    Scalar potential_range() const {
+    Scalar potential_range() const { return potential_range(length); }
+    /// The same of bodies, whose centres of mass are so far from their joints, m.
+    Scalar potential_range(const std::vector<Scalar>& center) const {
         Scalar range(0), reach(0);
         for (std::size_t i = 0; i < links(); ++i) {
+            range += Scalar(2) * mass[i] * gravity * (reach + center[i]);
             reach += length[i];
-            range += Scalar(2) * mass[i] * gravity * reach;
         }
         return range;
     }
@@ -60,31 +57,8 @@ template <class Scalar, int N>
 State<Scalar, times<2, N>> released_in_angles(const Pendulum<Scalar>& p) {
     const auto n = static_cast<Eigen::Index>(p.links());
     State<Scalar, times<2, N>> y(2 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        y[i] = p.angle[static_cast<std::size_t>(i)];
-        y[n + i] = p.rate[static_cast<std::size_t>(i)];
-    }
-    return y;
-}
-
-/// (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) as released.
-template <class Scalar, int N>
-State<Scalar, times<4, N>> released_as_particles(const Pendulum<Scalar>& p) {
-    const auto n = static_cast<Eigen::Index>(p.links());
-    State<Scalar, times<4, N>> y(4 * n);
-    Scalar x(0), height(0), vx(0), vy(0);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const SinCos<Scalar> turn(p.angle[k]);
-        x += p.length[k] * turn.sin;
-        height -= p.length[k] * turn.cos;
-        vx += p.length[k] * p.rate[k] * turn.cos;
-        vy += p.length[k] * p.rate[k] * turn.sin;
-        y[2 * i] = x;
-        y[2 * i + 1] = height;
-        y[2 * n + 2 * i] = vx;
-        y[2 * n + 2 * i + 1] = vy;
-    }
+    std::copy(p.angle.begin(), p.angle.end(), y.data());
+    std::copy(p.rate.begin(), p.rate.end(), y.data() + n);
     return y;
 }
 

@@ -4,6 +4,7 @@
 #include "physics/articulated.hpp"
 #include "physics/physical_forces.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -56,46 +57,39 @@ public:
         const auto n = layout.coordinates;
         const auto omega = y.segment(layout.half, n);
         if (switches() && !has_modes_) choose_modes(y);
-        const auto pivot = accelerate(y, omega);
+        const Scalar by_pivot = accelerate(y, omega);
         for (Eigen::Index i = 0; i < n; ++i) {
             dydt[i] = omega[i];
             dydt[layout.half + i] = alpha_[i];
         }
-        layout.rate(y, Scalar(forces_.power + dot(pivot.force, pivot.velocity)), dydt);
+        layout.rate(y, Scalar(forces_.power + by_pivot), dydt);
     }
 
     // Events (integrate/events.hpp): a sliding joint comes to rest; a held one is let go.
     bool switches() const { return !pendulum.friction.coulomb.empty(); }
     void take_modes(State& y) {
         has_modes_ = false;
-        choose_modes(y);
+        settle(y);
         has_modes_ = true;
-        y.segment(layout.half, layout.coordinates) = rates_;
     }
     void settle(State& y) {
         choose_modes(y);
         y.segment(layout.half, layout.coordinates) = rates_;
     }
     Scalar margin(const State& y) {
-        using std::abs;
         const auto omega = y.segment(layout.half, layout.coordinates);
         Scalar least(1);
-        const auto note = [&](const Scalar& margin) {
-            if (margin < least) least = margin;
-        };
         for (Eigen::Index i = 0; i < omega.size(); ++i)
-            if (slides_[at(i)] != 0) note(Scalar(slides_[at(i)]) * rate_at(omega, i));
-        if (!holds_any()) return least;
-        accelerate(y, omega);
-        for (Eigen::Index i = 0; i < omega.size(); ++i)
-            if (is_held(i)) note(Scalar(1) - load(i));
+            if (slides_[at(i)] != 0) least = std::min(least, Scalar(Scalar(slides_[at(i)]) * rate_at(omega, i)));
+        const auto joints = held();
+        if (!joints.empty()) accelerate(y, omega);
+        for (const auto i : joints) least = std::min(least, Scalar(Scalar(1) - load(i)));
         return least;
     }
     /// Half a period of the fastest drive: joints that rest do not shorten steps.
     Scalar longest_step() const {
         Scalar fastest = pendulum.pivot.moves() ? pendulum.pivot.frequency : Scalar(0);
-        for (const auto& motor : pendulum.torques)
-            if (fastest < motor.frequency) fastest = motor.frequency;
+        for (const auto& motor : pendulum.torques) fastest = std::max(fastest, motor.frequency);
         return fastest > Scalar(0) ? Scalar(pi_of<Scalar>() / fastest) : Scalar(std::numeric_limits<double>::max());
     }
     /// For the same law on a tape.
@@ -107,7 +101,12 @@ public:
     const std::vector<int>& modes() const { return slides_; }
 
     /// For Hamilton's form (Canonical), at the angles of y = (q, …).
-    void take_angles(const State& y) { factor(y); }
+    void take_angles(const State& y) {
+        turned_[0] = y[0];
+        for (Eigen::Index i = 1; i < turned_.size(); ++i) turned_[i] = y[i] - y[i - 1];
+        take_sin_cos(turned_, sin_, cos_);
+        bodies_.factor(sin_, cos_);
+    }
     void solve_mass(const Half& f, Half& a) { bodies_.solve_mass(f, a); }
     /// Without Coulomb's friction.
     const PhysicalForces<Scalar>& forces_at(const Half& omega, const Scalar& t, const Planar<Scalar>& pivot_velocity) {
@@ -123,11 +122,6 @@ public:
     const std::vector<typename ArticulatedBodies<Scalar>::Link>& bodies() const { return bodies_.links(); }
 
 private:
-    /// What the pivot does to the chain.
-    struct Pivot {
-        Planar<Scalar> force, velocity;  // N, m/s
-    };
-
     static Eigen::Index links(const PhysicalPendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.chain.links()); }
     static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
     template <class Rates>
@@ -139,10 +133,11 @@ private:
     }
 
     bool is_held(Eigen::Index i) const { return has_coulomb(i) && slides_[at(i)] == 0; }
-    bool holds_any() const {
+    std::vector<Eigen::Index> held() const {
+        std::vector<Eigen::Index> joints;
         for (Eigen::Index i = 0; i < alpha_.size(); ++i)
-            if (is_held(i)) return true;
-        return false;
+            if (is_held(i)) joints.push_back(i);
+        return joints;
     }
     /// What a held joint bears of what friction gives; rounding alone lets none go.
     Scalar load(Eigen::Index i) const {
@@ -155,8 +150,8 @@ private:
     std::optional<Eigen::Index> overloaded() const {
         std::optional<Eigen::Index> worst;
         Scalar most(1);
-        for (Eigen::Index i = 0; i < alpha_.size(); ++i)
-            if (is_held(i) && load(i) > most) most = load(i), worst = i;
+        for (const auto i : held())
+            if (load(i) > most) most = load(i), worst = i;
         return worst;
     }
 
@@ -196,46 +191,35 @@ private:
             rates[i] = !is_held(i) ? Scalar(omega[i]) : i == 0 ? Scalar(0) : Scalar(rates[i - 1]);
     }
 
-    void factor(const State& y) {
-        turned_[0] = y[0];
-        for (Eigen::Index i = 1; i < turned_.size(); ++i) turned_[i] = y[i] - y[i - 1];
-        take_sin_cos(turned_, sin_, cos_);
-        bodies_.factor(sin_, cos_);
-    }
-
-    /// rates_ ← omega, where held joints rest, alpha_ at them, and holding_, the torques that hold these.
+    /// rates_ ← omega, where held joints rest, alpha_ at them, and holding_, the torques that hold these. Returns the power of
+    /// the pivot, W.
     template <class Rates>
-    Pivot accelerate(const State& y, const Rates& omega) {
-        factor(y);
+    Scalar accelerate(const State& y, const Rates& omega) {
+        take_angles(y);
         const Scalar t = layout.time_of(y);
         const PivotPlace<Scalar> pivot(pendulum.pivot, t);
         rest(omega, rates_);
         take_forces(t, pivot.velocity);
-        const auto solve = [&] {
-            return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity, pivot.acceleration,
-                                      alpha_) -
-                   forces_.at_pivot;
-        };
-        auto force = solve();
-        if (holds_any()) {
-            add_holding_torques();
-            force = solve();
+        auto force = pivot_force(pivot.acceleration);
+        if (const auto joints = held(); !joints.empty()) {
+            add_holding_torques(joints);
+            force = pivot_force(pivot.acceleration);
             const Half all = alpha_;
             rest(all, alpha_);
         }
-        return {force, pivot.velocity};
+        return dot(force, pivot.velocity);
     }
 
     void take_forces(const Scalar& t, const Planar<Scalar>& pivot_velocity) {
-        forces_.update(rates_, t, [&](Eigen::Index i) { return slides_[at(i)]; });
+        forces_.update(rates_, t, slides_);
         if (forces_.drag.empty()) return;
         Planar<Scalar> v = pivot_velocity;
         for (Eigen::Index i = 0; i < sin_.size(); ++i) {
             using std::abs;
-            const Scalar own = pendulum.chain.length[at(i)] * rates_[i];
-            const Planar<Scalar>& across = bodies_.links()[at(i)].across;
-            forces_.update_air(i, across, v, rates_[i]);
-            v = v + across * own;
+            const auto& link = bodies_.links()[at(i)];
+            const Scalar own = link.length * rates_[i];
+            forces_.update_air(i, link, v, rates_[i]);
+            v = v + link.across * own;
             // on a circle the speed vanishes again and again, and its root says so no more: |ω| does
             const bool on_circle = i == 0 && !pendulum.pivot.moves();
             forces_.update_drag(i, v, on_circle ? Scalar(abs(own)) : forces_.speed_of(v));
@@ -244,10 +228,7 @@ private:
 
     /// The torques λ that keep the held joints at rest: (D M⁻¹ Dᵀ) λ = −D θ″, where D takes the rates of links to those of
     /// joints.
-    void add_holding_torques() {
-        std::vector<Eigen::Index> joints;
-        for (Eigen::Index i = 0; i < alpha_.size(); ++i)
-            if (is_held(i)) joints.push_back(i);
+    void add_holding_torques(const std::vector<Eigen::Index>& joints) {
         const auto m = static_cast<Eigen::Index>(joints.size());
         Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> matrix(m, m);
         Half right(m), one(alpha_.size()), answer(alpha_.size());

@@ -81,17 +81,17 @@ public:
     Scalar power{0};
 
     explicit PhysicalForces(const PhysicalPendulum<Scalar>& p)
-        : torque(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))), friction_(p.friction), motors_(p.torques) {
+        : torque(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))),
+          friction_(p.friction),
+          motors_(p.torques),
+          is_none_(p.friction.is_none() && p.torques.empty()) {
         if (friction_.has_drag()) drag.resize(p.chain.links());
-        for (std::size_t i = 0; i < p.chain.links(); ++i) {
-            const Scalar first = p.chain.mass[i] * p.center[i];
-            by_arm_.push_back(first / (p.inertia[i] + first * p.center[i]));
-        }
     }
 
-    /// At the rates ω of the links and the time t. sign(i) is that of joint i in Coulomb's law; 0 where it is held.
-    template <class Rates, class Sign>
-    void update(const Rates& omega, const Scalar& t, const Sign& sign) {
+    /// At the rates ω of the links and the time t. slides[i] is the sign of joint i in Coulomb's law; 0 where it is held.
+    template <class Rates>
+    void update(const Rates& omega, const Scalar& t, const std::vector<int>& slides) {
+        if (is_none_) return;
         power = Scalar(0);
         torque.setZero();
         at_pivot = {Scalar(0), Scalar(0)};
@@ -100,16 +100,21 @@ public:
             const Scalar rate = i == 0 ? Scalar(omega[0]) : Scalar(omega[i] - omega[i - 1]);
             Scalar at_joint(0);
             if (!friction_.viscous.empty()) at_joint -= of(friction_.viscous, i) * rate;
-            if (!friction_.coulomb.empty()) {
-                if (const int s = sign(i); s != 0) at_joint -= Scalar(s) * of(friction_.coulomb, i);
-            }
+            if (const int sign = slides[static_cast<std::size_t>(i)]; sign != 0)
+                at_joint -= Scalar(sign) * of(friction_.coulomb, i);
             for (const auto& motor : motors_)
                 if (static_cast<Eigen::Index>(motor.joint) == i)
                     at_joint += motor.amplitude * SinCos<Scalar>(Scalar(motor.frequency * t + motor.phase)).cos;
-            add(i, at_joint, rate);
-            if (!friction_.arm_linear.empty()) on_arm(i, Scalar(-(of(friction_.arm_linear, i) * omega[i])), omega[i]);
+            torque[i] += at_joint;
+            if (i > 0) torque[i - 1] -= at_joint;
+            power += at_joint * rate;
+            const auto on_arm = [&](const Scalar& on_it) {
+                torque[i] += on_it;
+                power += on_it * omega[i];
+            };
+            if (!friction_.arm_linear.empty()) on_arm(Scalar(-(of(friction_.arm_linear, i) * omega[i])));
             if (!friction_.arm_quadratic.empty())
-                on_arm(i, Scalar(-(of(friction_.arm_quadratic, i) * (size(omega[i]) * omega[i]))), omega[i]);
+                on_arm(Scalar(-(of(friction_.arm_quadratic, i) * (size(omega[i]) * omega[i]))));
         }
     }
     /// On the end of link i, at its velocity and speed.
@@ -118,17 +123,20 @@ public:
         if (!friction_.drag_linear.empty()) force = force - v * of(friction_.drag_linear, i);
         if (!friction_.drag_quadratic.empty()) force = force - v * Scalar(of(friction_.drag_quadratic, i) * speed);
         power += dot(force, v);
-        add_force(i, force);
+        auto& sum = drag[static_cast<std::size_t>(i)];
+        sum = sum + force;
     }
-    /// Of the air that link i meets, across which t is, and whose joint has that velocity.
-    void update_air(Eigen::Index i, const Planar<Scalar>& across, const Planar<Scalar>& joint, const Scalar& rate) {
+    /// Of the air that link i (of ArticulatedBodies) meets, whose joint has that velocity.
+    template <class Link>
+    void update_air(Eigen::Index i, const Link& link, const Planar<Scalar>& joint, const Scalar& rate) {
         if (friction_.air_quadratic.empty()) return;
-        const Scalar& by_arm = by_arm_[static_cast<std::size_t>(i)];
-        const Scalar met = rate + by_arm * dot(across, joint);
+        const Scalar by_arm = link.first / link.second;
+        const Scalar met = rate + by_arm * dot(link.across, joint);
         const Scalar on_it = -(of(friction_.air_quadratic, i) * (size(met) * met));
         torque[i] += on_it;
         power += on_it * met;
-        add_force(i - 1, across * Scalar(on_it * by_arm));
+        auto& sum = i == 0 ? at_pivot : drag[static_cast<std::size_t>(i - 1)];
+        sum = sum + link.across * Scalar(on_it * by_arm);
     }
 
     /// |v|, whose derivatives at 0 are 0.
@@ -150,24 +158,10 @@ private:
         using std::abs;
         return abs(x);
     }
-    void add(Eigen::Index joint, const Scalar& at_joint, const Scalar& rate) {
-        torque[joint] += at_joint;
-        if (joint > 0) torque[joint - 1] -= at_joint;
-        power += at_joint * rate;
-    }
-    /// On the end of a link, or where its number is −1 at the pivot.
-    void add_force(Eigen::Index end, const Planar<Scalar>& force) {
-        auto& sum = end < 0 ? at_pivot : drag[static_cast<std::size_t>(end)];
-        sum = sum + force;
-    }
-    void on_arm(Eigen::Index i, const Scalar& on_it, const Scalar& rate) {
-        torque[i] += on_it;
-        power += on_it * rate;
-    }
 
     Friction<Scalar> friction_;
     std::vector<JointTorque<Scalar>> motors_;
-    std::vector<Scalar> by_arm_;  // m a / J of each link, 1/m
+    bool is_none_;  // neither friction nor motors
 };
 
 }  // namespace doppel

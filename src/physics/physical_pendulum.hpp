@@ -2,9 +2,6 @@
 
 #include "physics/pendulum.hpp"
 
-#include <algorithm>
-#include <vector>
-
 namespace doppel {
 
 /// What slows a chain down. A joint is where a link hangs: joint 1 at the pivot, joint i at the end of link i − 1; its rate
@@ -29,12 +26,13 @@ struct Friction {
     std::vector<Scalar> drag_quadratic;  // d2, N s²/m²
 
     friend bool operator==(const Friction&, const Friction&) = default;
+    auto members() const {
+        return std::tie(viscous, coulomb, arm_linear, arm_quadratic, air_quadratic, drag_linear, drag_quadratic);
+    }
 
     /// Whether forces act on the links' ends.
     bool has_drag() const { return !drag_linear.empty() || !drag_quadratic.empty() || !air_quadratic.empty(); }
-    bool is_none() const {
-        return viscous.empty() && coulomb.empty() && arm_linear.empty() && arm_quadratic.empty() && !has_drag();
-    }
+    bool is_none() const { return *this == Friction(); }
 };
 
 /// A pivot that moves: its place is a cos(ν t + φ) along one direction, from the origin.
@@ -45,6 +43,7 @@ struct PivotMotion {
     Scalar phase = Scalar(0);             // φ, rad
 
     friend bool operator==(const PivotMotion&, const PivotMotion&) = default;
+    auto members() const { return std::tie(x, y, frequency, phase); }
 
     bool moves() const { return x != Scalar(0) || y != Scalar(0); }
 };
@@ -58,6 +57,7 @@ struct JointTorque {
     Scalar phase = Scalar(0);      // φ, rad
 
     friend bool operator==(const JointTorque&, const JointTorque&) = default;
+    auto members() const { return std::tie(joint, amplitude, frequency, phase); }
 };
 
 /// A chain of rigid bodies (a physical or compound pendulum), with friction and a drive. `chain.mass` is that of the bodies.
@@ -77,35 +77,13 @@ struct PhysicalPendulum {
     bool conserves_energy() const { return friction.is_none() && !is_driven(); }
 
     /// Between hanging straight down and standing straight up, J.
-    Scalar potential_range() const {
-        Scalar range(0), reach(0);
-        for (std::size_t i = 0; i < chain.links(); ++i) {
-            range += Scalar(2) * chain.mass[i] * chain.gravity * (reach + center[i]);
-            reach += chain.length[i];
-        }
-        return range;
-    }
+    Scalar potential_range() const { return chain.potential_range(center); }
 
+    auto members() const { return std::tie(chain, center, inertia, friction, pivot, torques); }
     /// The same in another scalar.
     template <class To>
     PhysicalPendulum<To> cast() const {
-        const auto one = [](const Scalar& x) { return static_cast<To>(x); };
-        const auto all = [&](const std::vector<Scalar>& values) {
-            std::vector<To> made(values.size());
-            std::transform(values.begin(), values.end(), made.begin(), one);
-            return made;
-        };
-        const auto& f = friction;
-        PhysicalPendulum<To> made{chain.template cast<To>(),
-                                  all(center),
-                                  all(inertia),
-                                  {all(f.viscous), all(f.coulomb), all(f.arm_linear), all(f.arm_quadratic),
-                                   all(f.air_quadratic), all(f.drag_linear), all(f.drag_quadratic)},
-                                  {one(pivot.x), one(pivot.y), one(pivot.frequency), one(pivot.phase)},
-                                  {}};
-        for (const auto& t : torques)
-            made.torques.push_back({t.joint, one(t.amplitude), one(t.frequency), one(t.phase)});
-        return made;
+        return Cast<To>()(*this);
     }
 };
 

@@ -72,32 +72,22 @@ struct RodChain {
     /// The forces in the rods, N, > 0 where one pulls: on particle k acts λ_k r_k, so T_k = −λ_k |r_k|.
     std::vector<Scalar> tensions(const State& y) {
         using std::sqrt;
-        const auto n = w.size();
-        const auto q = y.head(2 * n);
-        find_multipliers(q, y.tail(2 * n));
+        find_multipliers(y.head(2 * w.size()), y.tail(2 * w.size()));
         std::vector<Scalar> all;
-        for (Eigen::Index k = 0; k < n; ++k) all.push_back(-lambda_[k] * sqrt(square(q, k)));
+        for (Eigen::Index k = 0; k < w.size(); ++k) all.push_back(-lambda_[k] * sqrt(square(y, k)));
         return all;
     }
 
-    // What methods that keep to the constraints themselves need (physics/constrained.hpp). Positions q, velocities v.
+    // Of the concept Constrained, which says what they do.
 
     Eigen::Index constraints() const { return w.size(); }
-
-    /// a ← M⁻¹ F, the accelerations without rods.
     void free_acceleration(const Half&, const Half&, Half& a) const {
-        for (Eigen::Index k = 0; k < w.size(); ++k) {
-            a[2 * k] = Scalar(0);
-            a[2 * k + 1] = -g;
-        }
+        a.setZero();
+        for (Eigen::Index k = 0; k < w.size(); ++k) a[2 * k + 1] = -g;
     }
-
-    /// c ← C(q), m²
     void residual(const Half& q, Multipliers& c) const {
         for (Eigen::Index k = 0; k < w.size(); ++k) c[k] = (square(q, k) - l2[k]) * Scalar(0.5);
     }
-
-    /// c ← ε |q| Σ_j |J_ij|, with the largest coordinate
     void rounding(const Half& q, Multipliers& c) const {
         using std::abs;
         const Scalar unit = Scalar(std::numeric_limits<Scalar>::epsilon()) * q.cwiseAbs().maxCoeff();
@@ -106,22 +96,21 @@ struct RodChain {
             c[k] = (k == 0 ? part : Scalar(part + part)) * unit;
         }
     }
-
-    /// s ← J(q) v
     void constraint_velocity(const Half& q, const Half& v, Multipliers& s) const {
         for (Eigen::Index k = 0; k < w.size(); ++k)
             s[k] = along(q, k, 0) * along(v, k, 0) + along(q, k, 1) * along(v, k, 1);
     }
-
-    /// s ← J̇ v, the part of C″ that is there without any acceleration
     void jdot_v(const Half&, const Half& v, Multipliers& s) const {
         for (Eigen::Index k = 0; k < w.size(); ++k) s[k] = square(v, k);
     }
-
-    /// v ← v + M⁻¹ Jᵀ(q) λ
-    void pull(const Half& q, const Multipliers& lambda, Half& v) const { pull_on(q, lambda, v); }
-
-    /// x ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ x
+    void pull(const Half& q, const Multipliers& lambda, Half& v) const {
+        for (Eigen::Index k = 0; k < w.size(); ++k)
+            for (Eigen::Index axis = 0; axis < 2; ++axis) {
+                Scalar force = lambda[k] * along(q, k, axis);
+                if (k + 1 < w.size()) force -= lambda[k + 1] * along(q, k + 1, axis);
+                v[2 * k + axis] += w[k] * force;
+            }
+    }
     void solve(const Half& q1, const Half& q0, Multipliers& x) {
         factor(q1, q0);
         matrix_.solve(x);
@@ -244,16 +233,6 @@ private:
             Scalar(1) / Scalar(whole * squares_[last]));
     }
 
-    template <class Positions, class Vector>
-    void pull_on(const Positions& q, const Multipliers& lambda, Vector& v) const {
-        for (Eigen::Index k = 0; k < w.size(); ++k)
-            for (Eigen::Index axis = 0; axis < 2; ++axis) {
-                Scalar force = lambda[k] * along(q, k, axis);
-                if (k + 1 < w.size()) force -= lambda[k + 1] * along(q, k + 1, axis);
-                v[2 * k + axis] += w[k] * force;
-            }
-    }
-
     ChainMatrix<Scalar, N> matrix_;
     Multipliers lambda_;                        // N/m
     Multipliers squares_, crosses_, products_;  // |r_k|², w_k r_k × r_{k+1}, its square (of RATTLE's two places)
@@ -262,19 +241,6 @@ private:
     Scalar by_rho2_{1};
     Scalar least_motion_{0};  // m²/s²: Σ |u_k|² above which pulls_ serves; infinite with a mass below 1/8 of the next
 };
-
-/// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) of bobs.
-template <class Scalar>
-State<Scalar, Eigen::Dynamic> particles_of(const Bobs<Scalar>& bobs) {
-    const auto n = static_cast<Eigen::Index>(bobs.size());
-    State<Scalar, Eigen::Dynamic> y(4 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const auto& bob = bobs[static_cast<std::size_t>(i)];
-        y.template segment<2>(2 * i) << bob.x, bob.y;
-        y.template segment<2>(2 * n + 2 * i) << bob.vx, bob.vy;
-    }
-    return y;
-}
 
 /// The forces in the rods of a chain whose bobs are there, N, from the pivot down: > 0 where a rod pulls, < 0 where it
 /// pushes. Whatever model the bobs are from, for they follow from places and velocities alone.

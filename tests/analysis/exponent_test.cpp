@@ -74,16 +74,6 @@ TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
     }
 }
 
-TEST(Exponent, OfPointMassesIsThatOfTheirChain) {
-    for (const std::size_t links : {1, 2, 3, 4}) {
-        const auto p = uneven(links);
-        const ExponentSpec of_one{.duration_s = 6, .transient_s = 1, .tolerance = 1e-12};
-        const auto one = largest_exponent(p, of_one, never), other = largest_exponent(physical(p), of_one, never);
-        EXPECT_NEAR(other.value, one.value, 3e-11) << links;              // measured 3e-12
-        EXPECT_NEAR(other.uncertainty, one.uncertainty, 3e-11) << links;  // measured 4.2e-12
-    }
-}
-
 TEST(Exponent, TellsRegularFromChaotic) {
     const auto exponent = [](const auto& p) { return largest_exponent(p, {.duration_s = 300}, never); };
     for (const double angle : {0.1, 10.0, 30.0, 45.0, 60.0})

@@ -158,13 +158,6 @@ TEST(Section, ReleasesAreSpreadByMultiplesOfThePlasticNumber) {
     }
 }
 
-TEST(Section, OfOneCrossingIsTheFirst) {
-    const auto release = releases_of_energy(odd_one(), 15, 3)[2];
-    const auto one = poincare_section(release, {.crossings = 1}, never);
-    ASSERT_EQ(one.size(), 1u);
-    EXPECT_EQ(one[0].time_s, poincare_section(release, {.crossings = 3}, never)[0].time_s);
-}
-
 TEST(Section, NeedsEnergyAndStopsWhenTold) {
     const std::atomic<bool> stop = true;
     EXPECT_THROW(poincare_section(uneven(2), {}, stop), Error);

@@ -4,7 +4,7 @@
 #include "analysis/physical_releases.hpp"
 #include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
-#include "physics/physical_chain.hpp"
+#include "physics/oracles.hpp"
 #include "physics/physical_pendulums.hpp"
 
 #include <Eigen/Dense>
@@ -55,35 +55,6 @@ TEST(Spectrum, DoesNotDependOnHowOftenTheFrameIsSetUpright) {
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_NEAR(rarely.exponents[i], often.exponents[i], 1e-11) << i;  // measured 1.4e-12
 }
-
-/// Lagrange's equations, by hand: M_ij = K_ij cos(θ_i − θ_j), K_ij = l_i S_j (i < j), S_j = m_j a_j + l_j Σ_{k>j} m_k.
-struct Lagrange {
-    Eigen::MatrixXd k, stiffness;  // of M, and of gravity about hanging
-
-    explicit Lagrange(const PhysicalPendulum<double>& p) : k(links(p), links(p)), stiffness(k) {
-        stiffness.setZero();
-        double below = 0;
-        for (Eigen::Index i = links(p) - 1; i >= 0; --i) {
-            const auto u = static_cast<std::size_t>(i);
-            const double mass = p.chain.mass[u], length = p.chain.length[u], center = p.center[u];
-            const double first = mass * center + length * below;
-            k(i, i) = p.inertia[u] + mass * center * center + length * length * below;
-            stiffness(i, i) = p.chain.gravity * first;
-            for (Eigen::Index j = 0; j < i; ++j)
-                k(i, j) = k(j, i) = p.chain.length[static_cast<std::size_t>(j)] * first;
-            below += mass;
-        }
-    }
-    Eigen::MatrixXd mass(const Eigen::VectorXd& theta) const {
-        Eigen::MatrixXd m = k;
-        for (Eigen::Index i = 0; i < k.rows(); ++i)
-            for (Eigen::Index j = 0; j < k.rows(); ++j) m(i, j) *= std::cos(theta[i] - theta[j]);
-        return m;
-    }
-
-private:
-    static Eigen::Index links(const PhysicalPendulum<double>& p) { return static_cast<Eigen::Index>(p.chain.links()); }
-};
 
 /// C_jk = −∂Q_j/∂ω_k of viscous joints, of drag on arms and on ends by their velocity.
 Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd& theta, const Eigen::VectorXd& omega) {
@@ -176,7 +147,7 @@ std::vector<double> real_parts(const PhysicalPendulum<double>& p) {
     const auto mass = lagrange.mass(none).ldlt();
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     all.topRightCorner(n, n).setIdentity();
-    all.bottomLeftCorner(n, n) = -mass.solve(lagrange.stiffness);
+    all.bottomLeftCorner(n, n) = -mass.solve(Eigen::MatrixXd((p.chain.gravity * lagrange.s).asDiagonal()));
     all.bottomRightCorner(n, n) = -mass.solve(damping(p, none, none));
     const Eigen::VectorXd real = all.eigenvalues().real();
     std::vector<double> parts(real.data(), real.data() + real.size());

@@ -14,7 +14,7 @@ Ladder ladder(const std::string& method, Model model, const std::vector<double>&
     double error = 1;
     for (const double cost : costs) {
         error /= 10;
-        made.rungs.push_back({{.setting = error, .error = error, .cpu_s = cost, .evaluations = 1 / cost}});
+        made.rungs.push_back({.setting = error, .error = error, .cpu_s = cost, .evaluations = 1 / cost});
     }
     return made;
 }

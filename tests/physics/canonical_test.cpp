@@ -123,19 +123,6 @@ TEST(Canonical, IsTheModelsMotion) {
     });
 }
 
-TEST(Canonical, OfTheDoublePendulumAndOfPointMassesIsThatOfTheChain) {
-    const auto expect_same = [](auto& f, const Pendulum<Quad>& p) {
-        Form<Angles, Pendulum<Quad>> chain(p);
-        EXPECT_LT(largest((f.momenta(f.y) - chain.momenta(f.y)).eval()), 8e-33);    // measured 1.5e-33
-        EXPECT_LT(largest((f.hamilton(f.y) - chain.hamilton(f.y)).eval()), 8e-33);  // measured 1.5e-33
-    };
-    Form<DoublePendulum<Quad>, Pendulum<Quad>> two(unequal(2));
-    expect_same(two, two.p);
-    const auto chain = bodies<Quad>(3).chain;
-    Form<Bodies, PhysicalPendulum<Quad>> points(physical(chain));
-    expect_same(points, chain);
-}
-
 TEST(Canonical, RefusesJointsThatStick) {
     auto p = bodies<Quad>(2);
     p.friction.coulomb = {Quad(0.1), Quad(0)};

@@ -21,34 +21,47 @@ Energies<Scalar> energies_at(const PhysicalPendulum<Scalar>& p, const PhysicalCh
     return energies(p, bobs, {Scalar(0), place.x, place.y, velocity.x, velocity.y});
 }
 
-/// θ″ of bodies without friction or drive, from Lagrange's equations M θ″ = f solved by elimination: another way to every
-/// model's accelerations. M_ij = K_ij cos(θ_i − θ_j), f_i = −Σ K_ij sin(θ_i − θ_j) ω_j² − g S_i sinθ_i, with
-/// S_i = m_i a_i + l_i Σ_{k>i} m_k, K_ij = l_i S_j (i < j), K_ii = I_i + m_i a_i² + l_i² Σ_{k>i} m_k.
-inline Eigen::VectorXd by_elimination(const PhysicalPendulum<double>& p) {
-    const auto n = static_cast<Eigen::Index>(p.chain.links());
-    Eigen::MatrixXd k(n, n), m(n, n);
-    Eigen::VectorXd s(n), f(n);
-    double below = 0;
-    for (Eigen::Index i = n - 1; i >= 0; --i) {
-        const auto u = static_cast<std::size_t>(i);
-        const double mass = p.chain.mass[u], length = p.chain.length[u], center = p.center[u];
-        s[i] = mass * center + length * below;
-        k(i, i) = p.inertia[u] + mass * center * center + length * length * below;
-        below += mass;
-    }
-    for (Eigen::Index i = 0; i < n; ++i)
-        for (Eigen::Index j = i + 1; j < n; ++j) k(i, j) = k(j, i) = p.chain.length[static_cast<std::size_t>(i)] * s[j];
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const double angle = p.chain.angle[static_cast<std::size_t>(i)];
-        f[i] = -p.chain.gravity * s[i] * std::sin(angle);
-        for (Eigen::Index j = 0; j < n; ++j) {
-            const auto v = static_cast<std::size_t>(j);
-            const double apart = angle - p.chain.angle[v];
-            m(i, j) = k(i, j) * std::cos(apart);
-            f[i] -= k(i, j) * std::sin(apart) * p.chain.rate[v] * p.chain.rate[v];
+/// Lagrange's equations of bodies, by hand: M_ij = K_ij cos(θ_i − θ_j), with S_i = m_i a_i + l_i Σ_{k>i} m_k,
+/// K_ij = l_i S_j (i < j), K_ii = I_i + m_i a_i² + l_i² Σ_{k>i} m_k.
+struct Lagrange {
+    Eigen::MatrixXd k;
+    Eigen::VectorXd s;
+
+    explicit Lagrange(const PhysicalPendulum<double>& p)
+        : k(p.chain.links(), p.chain.links()), s(static_cast<Eigen::Index>(p.chain.links())) {
+        double below = 0;
+        for (Eigen::Index i = s.size() - 1; i >= 0; --i) {
+            const auto u = static_cast<std::size_t>(i);
+            const double mass = p.chain.mass[u], length = p.chain.length[u], center = p.center[u];
+            s[i] = mass * center + length * below;
+            k(i, i) = p.inertia[u] + mass * center * center + length * length * below;
+            for (Eigen::Index j = 0; j < i; ++j) k(i, j) = k(j, i) = p.chain.length[static_cast<std::size_t>(j)] * s[i];
+            below += mass;
         }
     }
-    return m.ldlt().solve(f);
+    Eigen::MatrixXd mass(const Eigen::VectorXd& theta) const {
+        Eigen::MatrixXd m = k;
+        for (Eigen::Index i = 0; i < s.size(); ++i)
+            for (Eigen::Index j = 0; j < s.size(); ++j) m(i, j) *= std::cos(theta[i] - theta[j]);
+        return m;
+    }
+};
+
+/// θ″ of bodies without friction or drive by elimination, M θ″ = f: another way to every model's accelerations.
+/// f_i = −Σ K_ij sin(θ_i − θ_j) ω_j² − g S_i sinθ_i.
+inline Eigen::VectorXd by_elimination(const PhysicalPendulum<double>& p) {
+    const Lagrange lagrange(p);
+    const auto n = lagrange.s.size();
+    const Eigen::VectorXd theta = Eigen::VectorXd::Map(p.chain.angle.data(), n);
+    Eigen::VectorXd f(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        f[i] = -p.chain.gravity * lagrange.s[i] * std::sin(theta[i]);
+        for (Eigen::Index j = 0; j < n; ++j) {
+            const double rate = p.chain.rate[static_cast<std::size_t>(j)];
+            f[i] -= lagrange.k(i, j) * std::sin(theta[i] - theta[j]) * rate * rate;
+        }
+    }
+    return lagrange.mass(theta).ldlt().solve(f);
 }
 
 /// q_k″ = Σ_{j≤k} l_j (θ_j″ (cos, sin) + ω_j² (−sin, cos)) of the bobs of a chain, by elimination.

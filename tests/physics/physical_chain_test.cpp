@@ -1,7 +1,5 @@
 #include "physics/physical_chain.hpp"
 
-#include "numeric/dual.hpp"
-#include "physics/angle_chain.hpp"
 #include "physics/oracles.hpp"
 #include "physics/pendulums.hpp"
 
@@ -39,23 +37,6 @@ TEST(PhysicalChain, OfBodiesSolvesLagrangesEquations) {
         const auto expected = by_elimination(p);
         EXPECT_LE((accelerations(p) - expected).norm(), 1e-11 * expected.norm()) << i;  // measured 3e-13
     }
-}
-
-TEST(PhysicalChain, FrictionContractsThePhaseSpaceAsItsTraceSays) {
-    // for one link the divergence of (θ′, ω′) is −b/J
-    auto p = physical(Pendulum<double>{{1.2}, {0.8}, {2.0}, {1.0}});
-    p.inertia[0] = 0.1;
-    p.friction.viscous = {0.3};
-    using Number = Dual<double, 2>;
-    PhysicalChain<Number> chain(p.cast<Number>());
-    auto y = PhysicalChain<Number>::start(p.cast<Number>());
-    const auto half = chain.layout.half;
-    y[0] = Number::variable(p.chain.angle[0], 0);
-    y[half] = Number::variable(p.chain.rate[0], 1);
-    auto rate = y;
-    chain.rate(y, rate);
-    const double divergence = rate[0].tangent[0] + rate[half].tangent[1];
-    EXPECT_NEAR(divergence, -0.3 / (0.1 + 1.2 * 0.8 * 0.8), 1e-15);  // measured 0
 }
 
 TEST(PhysicalChain, AtRestBelowCoulombsTorqueStaysAtRestExactly) {

@@ -43,16 +43,6 @@ TEST(Tension, OfAChainInLineIsTheWeightBelow) {
     expect_near(in_parts(parts_of(upright)), {-3 * 9.8, -2 * 9.8}, 1e-13);
 }
 
-TEST(Tension, OfASinglePendulumIsWeightAndCentripetalForce) {
-    // T = m g cosθ + m l ω²
-    const double m = 1.5, l = 0.7, g = 9.8;
-    for (const double angle : {-150.0, -40.0, 0.0, 90.0, 120.0})
-        for (const double rate : {0.0, 3.0}) {
-            const double expected = m * g * std::cos(radians(angle)) + m * l * rate * rate;
-            expect_near(in_angles({{m}, {l}, {radians(angle)}, {rate}, g}), {expected}, 1e-13);  // measured 7e-15
-        }
-}
-
 double greatest(const Forces& forces) {
     double most = 0;
     for (const double force : forces) most = std::max(most, std::abs(force));
@@ -122,12 +112,6 @@ TEST(Tension, IsNoNumberWhereItIsNotDetermined) {
     const auto forces = Mechanism<double>(parts).tensions(Mechanism<double>::start(parts));
     ASSERT_EQ(forces.size(), 2u);
     EXPECT_TRUE(std::isnan(forces[0]) && std::isnan(forces[1]));
-}
-
-TEST(Tension, HasTheDigitsOfItsScalar) {
-    const Pendulum<Quad> p{{Quad(1)}, {Quad(1)}, {Quad(0)}, {Quad(0)}, parse_quad("9.8")};
-    const auto forces = tensions(p, bobs_of_angles(p, released_in_angles<Quad, Eigen::Dynamic>(p)));
-    EXPECT_LT(static_cast<double>(Quad(abs(forces[0] - parse_quad("9.8")))), 8e-33);  // measured 0
 }
 
 }  // namespace tension_test

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "numeric/state.hpp"
+
+#include <cstddef>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace doppel {
+
+/// A description in another scalar: numbers, places, and lists, choices and structs of such. A struct over its scalar tells its
+/// members() in the order of their declaration. Indices stay.
+template <class To>
+struct Cast {
+    std::size_t operator()(std::size_t index) const { return index; }
+    template <class Number>
+    To operator()(const Number& number) const {
+        return static_cast<To>(number);
+    }
+    template <class From, int N>
+    State<To, N> operator()(const State<From, N>& place) const {
+        return place.template cast<To>();
+    }
+    template <class Part>
+    auto operator()(const std::vector<Part>& all) const {
+        std::vector<decltype((*this)(all[0]))> made;
+        for (const auto& part : all) made.push_back((*this)(part));
+        return made;
+    }
+    template <class... Parts>
+    auto operator()(const std::variant<Parts...>& part) const {
+        using Made = std::variant<decltype((*this)(std::declval<const Parts&>()))...>;
+        return std::visit([&](const auto& one) -> Made { return (*this)(one); }, part);
+    }
+    template <template <class> class Struct, class From>
+    requires requires(const Struct<From>& from) { from.members(); }
+    Struct<To> operator()(const Struct<From>& from) const {
+        return std::apply([&](const auto&... member) { return Struct<To>{(*this)(member)...}; }, from.members());
+    }
+};
+
+}  // namespace doppel
