@@ -147,7 +147,7 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
     return check;
 }
 
-void print_scene(const SceneCheck& check) {
+void print(const SceneCheck& check) {
     const auto& scene = check.scene;
     const auto& estimate = check.simulation;
     const auto& video = scene.preset.video;
@@ -260,7 +260,7 @@ FigureCheck checked(const FigurePreset& figure, const std::atomic<bool>& stop) {
     return check;
 }
 
-void print_figure(const FigureCheck& check) {
+void print(const FigureCheck& check) {
     const auto& [figure, units, threads, estimate] = check;
     const auto layout = layout_of(figure.chart);
     constexpr double cm_per_pt = 2.54 / 72;
@@ -310,21 +310,16 @@ void check_presets(const CheckOptions& options) {
         if (const auto fault = schema_line_fault(preset)) warnings.push_back(*fault);
         if (!options.as_json)
             for (const auto& warning : warnings) print_line("{}", warning.get<std::string>());
-        if (is_figure(preset)) {
-            const auto figure = read_figure(preset, overrides_of(options), {}, stop);
-            const auto check = checked(figure, stop);
+        const auto report = [&](const auto& check) {
             if (options.as_json)
                 all.push_back(json_of(preset, check, std::move(warnings)));
             else
-                print_figure(check);
-        } else {
-            const auto scene = make_scene(read_preset(preset, overrides_of(options)), stop);
-            const auto check = checked(scene, stop);
-            if (options.as_json)
-                all.push_back(json_of(preset, check, std::move(warnings)));
-            else
-                print_scene(check);
-        }
+                print(check);
+        };
+        if (is_figure(preset))
+            report(checked(read_figure(preset, overrides_of(options), {}, stop), stop));
+        else
+            report(checked(make_scene(read_preset(preset, overrides_of(options)), stop), stop));
     }
     if (options.as_json) print_json(all);
 }

@@ -25,51 +25,22 @@ struct Candidate {
 };
 using Candidates = std::vector<Candidate>;
 
-/// A word of the command line without its quotes, and the quote that is open at its end.
-struct Word {
-    std::string text;
+/// A word of the command line without its quotes.
+std::string unquoted(std::string_view raw) {
+    std::string word;
     char quote = 0;
-};
-
-Word unquoted(std::string_view raw) {
-    Word word;
     for (std::size_t i = 0; i < raw.size(); ++i) {
         const char c = raw[i];
-        if (c == '\\' && word.quote != '\'' && i + 1 < raw.size())
-            word.text += raw[++i];
-        else if (c == word.quote)
-            word.quote = 0;
-        else if (word.quote == 0 && (c == '"' || c == '\''))
-            word.quote = c;
+        if (c == '\\' && quote != '\'' && i + 1 < raw.size())
+            word += raw[++i];
+        else if (c == quote)
+            quote = 0;
+        else if (quote == 0 && (c == '"' || c == '\''))
+            quote = c;
         else
-            word.text += c;
+            word += c;
     }
     return word;
-}
-
-/// As the shell wants it inside of that quote, or outside of any.
-std::string quoted(const std::string& text, char quote) {
-    constexpr std::string_view outside = " \t\"'\\$`&|;<>()[]{}*?!#~", inside = "\"\\$`";
-    std::string result;
-    for (const char c : text) {
-        if (quote != '\'' && (quote == 0 ? outside : inside).find(c) != std::string_view::npos) result += '\\';
-        result += c;
-    }
-    return result;
-}
-
-/// The words that bash cuts at = and : as they were written.
-std::vector<std::string> joined(const std::vector<std::string>& words) {
-    const auto cuts = [](const std::string& word) {
-        return !word.empty() && word.find_first_not_of("=:") == std::string::npos;
-    };
-    std::vector<std::string> all;
-    for (std::size_t i = 0; i < words.size(); ++i)
-        if (i > 0 && (cuts(words[i]) || cuts(words[i - 1])))
-            all.back() += words[i];
-        else
-            all.push_back(words[i]);
-    return all;
 }
 
 /// Presets that are built in, and those that lie here, of the kind that the command takes.
@@ -140,10 +111,9 @@ void add_keys(const FieldTable& table, const std::string& above, const std::stri
                 {key, field.unit.empty() ? std::string(field.help) : fmt::format("{}, {}", field.help, field.unit)});
             continue;
         }
-        const auto brackets = field.is_list() ? std::pair("[", "]") : std::pair("", "");
         for (const auto& choice : field.choices)
-            all.push_back({fmt::format("{}{}\"{}\"{}", key, brackets.first, choice, brackets.second)});
-        if (field.type.schema == truth_schema)
+            all.push_back({key + choice});  // text needs no quotes, nor one of a list
+        if (field.type.takes == Takes::truth)
             all.insert(all.end(), {{key + "true"}, {key + "false"}});
         else if (field.choices.empty())
             all.push_back({key + field.example()});
@@ -218,38 +188,18 @@ Candidates candidates(CLI::App& app, const std::vector<std::string>& words) {
     return all;
 }
 
-Candidates starting(Candidates all, const std::string& start) {
-    std::erase_if(all, [&](const Candidate& one) { return !one.text.starts_with(start); });
-    return all;
-}
-
 }  // namespace
 
-std::string completions(CLI::App& app, const std::vector<std::string>& arguments) {
-    if (arguments.size() < 2) return "";
-    const bool is_bash = arguments[0] == "bash";
-    const std::vector<std::string> typed(arguments.begin() + 1, arguments.end());
-    const auto raw = is_bash ? joined(typed) : typed;
-    std::vector<std::string> words;
-    for (const auto& word : raw) words.push_back(unquoted(word).text);
-    const auto last = unquoted(raw.back());
-    // bash replaces what stands behind the last cut alone
-    const auto& piece = typed.back();
-    const bool is_cut = piece.find_first_not_of("=:") == std::string::npos;
-    const auto kept = is_bash ? last.text.size() - (is_cut ? 0 : unquoted(piece).text.size()) : 0;
-    auto all = starting(candidates(app, words), last.text);
-    // bash closes a quote behind a single word, and after a key it would have to be opened again
-    if (is_bash && last.quote != 0 && all.size() == 1 && all[0].text.ends_with('=')) {
-        words.back() = all[0].text;
-        all = starting(candidates(app, words), words.back());
-    }
-    std::vector<std::string> lines;
-    for (const auto& [text, help] : all)
-        lines.push_back(is_bash ? quoted(text.substr(kept), last.quote)
-                                : fmt::format("{}\t{}", text, help.substr(0, help.find('\n'))));
+std::string completions(CLI::App& app, const std::vector<std::string>& typed) {
+    if (typed.empty()) return "";
+    std::vector<std::string> words, lines;
+    for (const auto& word : typed) words.push_back(unquoted(word));
+    for (const auto& [text, help] : candidates(app, words))
+        if (text.starts_with(words.back()))
+            lines.push_back(fmt::format("{}\t{}\n", text, help.substr(0, help.find('\n'))));
     std::sort(lines.begin(), lines.end());
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
-    return lines.empty() ? "" : fmt::format("{}\n", fmt::join(lines, "\n"));
+    return fmt::format("{}", fmt::join(lines, ""));
 }
 
 void add_completion(CLI::App& app) {

@@ -4,13 +4,27 @@
 
 namespace doppel {
 
-// What "doppel completion" prints: each asks "doppel complete SHELL WORD…".
+// What "doppel completion" prints: each asks "doppel complete WORD…".
 
 inline constexpr std::string_view bash_script = R"(# Completion of doppel for bash: source <(doppel completion bash)
 _doppel() {
-    local program=${COMP_WORDS[0]}
+    local program=${COMP_WORDS[0]} line=${COMP_LINE:0:COMP_POINT} words word quote before= _
     if [[ $program == ./doppel && -x build/release/doppel ]]; then program=build/release/doppel; fi  # without building it
-    mapfile -t COMPREPLY < <("$program" complete bash "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
+    read -a words <<<"$line"
+    if [[ $line == *[[:space:]] ]]; then words+=(''); fi
+    word=${words[-1]} quote=${word%%[!\'\"]*}
+    if [[ ! $quote ]]; then before=${word%"${word##*[=:]}"}; fi  # bash replaces what stands behind its last cut alone
+    for _ in key value; do
+        COMPREPLY=()
+        while IFS=$'\t' read -r word _; do
+            word=${word#"$before"}
+            if [[ ! $quote ]]; then printf -v word %q "$word" && word=${word//\\,/,}; fi
+            COMPREPLY+=("$word")
+        done < <("$program" complete "${words[@]:1}" 2>/dev/null)
+        # bash closes a quote behind a single word, and after a key it would have to be opened again
+        if [[ ! $quote || ${#COMPREPLY[@]} != 1 || ${COMPREPLY[0]} != *= ]]; then break; fi
+        words[-1]=${COMPREPLY[0]}
+    done
     # the word goes on after a key, a table or a folder
     if [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == *[=/] ]]; then compopt -o nospace 2>/dev/null; fi
     return 0
@@ -23,7 +37,7 @@ inline constexpr std::string_view zsh_script = R"(#compdef doppel
 _doppel() {
     local line
     local -a open whole open_help whole_help
-    for line in "${(@f)$("${words[1]}" complete zsh "${(@)words[2,CURRENT]}" 2>/dev/null)}"; do
+    for line in "${(@f)$("${words[1]}" complete "${(@)words[2,CURRENT]}" 2>/dev/null)}"; do
         [[ -n $line ]] || continue
         if [[ ${line%%$'\t'*} == *[=/] ]]; then
             open+=("${line%%$'\t'*}") open_help+=("${line/$'\t'/  }")
@@ -40,7 +54,7 @@ if [[ $funcstack[1] == _doppel ]]; then _doppel "$@"; else compdef _doppel doppe
 inline constexpr std::string_view fish_script = R"(# Completion of doppel for fish: doppel completion fish | source
 function __doppel_complete
     set -l words (commandline -opc) (commandline -ct)
-    $words[1] complete fish $words[2..-1] 2>/dev/null
+    $words[1] complete $words[2..-1] 2>/dev/null
 end
 complete -c doppel -f -a '(__doppel_complete)'
 )";

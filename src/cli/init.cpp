@@ -92,7 +92,7 @@ std::string side_lines(std::string_view side, std::string_view kind) {
 std::string starting_preset(const fs::path& file, std::string_view kind) {
     auto text = first_lines(file, kind);
     const auto tables = tables_of(kind);
-    const bool has_sides = std::ranges::find(tables, "a", &FieldTable::key) != tables.end();
+    const bool has_sides = std::ranges::any_of(tables, [](const auto& table) { return table.key() == "a"; });
     for (const auto& table : tables) {
         const auto key = table.key();
         const bool is_entry = table.name.starts_with("[[");

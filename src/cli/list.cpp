@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -57,21 +56,20 @@ std::vector<Entry> all_presets() {
 
 void list_presets() {
     const auto all = all_presets();
-    const auto print = [&](const char* heading, const std::function<bool(const Entry&)>& is_meant) {
+    const auto heading_of = [](const Entry& entry) {
+        return entry.kind.empty() ? "cannot be read:" : entry.kind == pair_kind ? "" : "figures, for doppel figure:";
+    };
+    for (const std::string_view heading : {"", "figures, for doppel figure:", "cannot be read:"}) {
         std::size_t width = 0;
         for (const auto& entry : all)
-            if (is_meant(entry)) width = std::max(width, entry.name.size());
-        if (width > 0 && *heading != 0) {
+            if (heading == heading_of(entry)) width = std::max(width, entry.name.size());
+        if (width > 0 && !heading.empty()) {
             print_line("");
             print_line("{}", heading);
         }
         for (const auto& entry : all)
-            if (is_meant(entry)) print_line("{:<{}}  {}", entry.name, width, entry.title);
-    };
-    print("", [](const Entry& entry) { return entry.kind == pair_kind; });
-    print("figures, for doppel figure:",
-          [](const Entry& entry) { return !entry.kind.empty() && entry.kind != pair_kind; });
-    print("cannot be read:", [](const Entry& entry) { return entry.kind.empty(); });
+            if (heading == heading_of(entry)) print_line("{:<{}}  {}", entry.name, width, entry.title);
+    }
 }
 
 void list_as_json() {

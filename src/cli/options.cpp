@@ -24,14 +24,6 @@ void add_preset_options(CLI::App& command, PresetOptions& options) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_beside_option(CLI::App& command, PresetOptions& options) {
-    command
-        .add_option("--beside", options.beside,
-                    "A measured track (CSV) as side a; side b starts as it does, fitted to its\n"
-                    "first two seconds, and runs as long")
-        ->type_name("TRACK");
-}
-
 CLI::Option* refuse_dash(CLI::Option* option) {
     return option->check([](const std::string& path) {
         return path == "-" ? "this is not written to standard output; give a name, or ./- for one of that name" : "";
@@ -97,18 +89,6 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
     command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
 }
 
-void add_columns_option(CLI::App& command, std::string& columns) {
-    command.add_option("--columns", columns, "Only these columns of the CSV, time_s,a,distance; a, b: all of a side")
-        ->type_name("LIST");
-}
-
-std::vector<std::string> columns_of_option(const std::string& text) {
-    std::vector<std::string> names;
-    if (!text.empty())
-        for (const auto& name : CLI::detail::split(text, ',')) names.push_back(CLI::detail::trim_copy(name));
-    return names;
-}
-
 void add_gl_option(CLI::App& command, std::string& gl) {
     command.add_option("--gl", gl, "What draws; auto: OSMesa, EGL where that is missing")
         ->type_name("NAME")
@@ -124,13 +104,6 @@ std::optional<std::pair<long, long>> two_numbers(const std::string& text, char s
     const auto [stop, second_fault] = std::from_chars(middle + 1, end, second);
     if (second_fault != std::errc() || stop != end) return std::nullopt;
     return std::pair{first, second};
-}
-
-Rational seconds_of_option(const std::string& option, const std::string& text) {
-    const auto seconds = parse_rational(text);
-    if (!seconds || seconds->numerator < 0)
-        throw bad_input("{} wants seconds ≥ 0, such as 6.8 or 1/3; it is \"{}\"", option, text);
-    return *seconds;
 }
 
 Override size_override(const std::string& key, const std::string& size) {
@@ -150,72 +123,6 @@ std::vector<Override> overrides_of(const PresetOptions& options) {
     std::vector<Override> overrides;
     for (const auto& set : options.sets) overrides.push_back(parse_set(set));
     return overrides;
-}
-
-std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
-    auto overrides = overrides_of(options);
-    overrides.insert(overrides.end(), more.begin(), more.end());
-    const auto& stop = watch_interrupts();
-    std::vector<Scene> scenes;
-    std::vector<std::string> names;
-    for (const auto& name : options.presets) {
-        const auto text = find_preset(name, &stop);
-        const auto& all = options.beside.empty() ? overrides : beside_overrides(text, overrides, options.beside, stop);
-        scenes.push_back(make_scene(read_preset(text, all), stop));
-        names.push_back(scenes.back().preset.name);
-        check_names(names, options.presets);
-    }
-    return scenes;
-}
-
-std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
-                                             const std::vector<Scene>& scenes) {
-    std::vector<std::filesystem::path> inputs;
-    for (const auto& name : presets)
-        if (std::error_code error; std::filesystem::is_regular_file(name, error)) inputs.emplace_back(name);
-    for (const auto& scene : scenes) {
-        const auto& preset = scene.preset;
-        for (const auto* side : {&preset.a, &preset.b})
-            if (!side->track.is_none()) inputs.emplace_back(side->track.file);
-        if (preset.video.text_font) inputs.emplace_back(*preset.video.text_font);
-    }
-    return inputs;
-}
-
-void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
-                 const std::string& streamed,
-                 const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
-    const auto style = progress_style(progress);
-    outlive_readers();
-    for (const auto& scene : scenes) {
-        ProgressReport report(style, scene.preset.name, unit, streamed);
-        try {
-            report.done(work(scene, std::ref(report)));
-        } catch (...) {
-            report.clear();
-            throw;
-        }
-    }
-}
-
-void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options) {
-    run_options.replacing = {inputs_of(options.presets, scenes), options.force};
-    const auto& stop = watch_interrupts();
-    for (const auto& scene : scenes) check_run(scene, run_options);
-    const auto& video = scenes.front().preset.video;
-    const bool is_sequence = run_options.pictures && video.format == FilmFormat::png;
-    if (options.out == "-" && is_sequence)
-        throw bad_input("-o -: a PNG sequence is many files; give --format apng, or use still for one picture");
-    if (options.list_outputs) {
-        for (const auto& scene : scenes)
-            list_outputs(options, scene.preset.name, run_files(scene, run_options.pictures));
-        return;
-    }
-    const Destination to(options.out, scenes.size(),
-                         run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
-    run_options.out = to.folder();
-    work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples", to.streamed(),
-                [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
 }
 
 }  // namespace doppel

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <functional>
 #include <memory>
 
 namespace doppel {
@@ -18,6 +19,105 @@ struct RenderOptions : RunCommandOptions {
 struct StillOptions : PresetOptions, OutOptions {
     std::string at, size, format = "png", gl = "auto";
 };
+
+void add_beside_option(CLI::App& command, PresetOptions& options) {
+    command
+        .add_option("--beside", options.beside,
+                    "A measured track (CSV) as side a; side b starts as it does, fitted to its\n"
+                    "first two seconds, and runs as long")
+        ->type_name("TRACK");
+}
+
+void add_columns_option(CLI::App& command, std::string& columns) {
+    command.add_option("--columns", columns, "Only these columns of the CSV, time_s,a,distance; a, b: all of a side")
+        ->type_name("LIST");
+}
+
+std::vector<std::string> columns_of_option(const std::string& text) {
+    std::vector<std::string> names;
+    if (!text.empty())
+        for (const auto& name : CLI::detail::split(text, ',')) names.push_back(CLI::detail::trim_copy(name));
+    return names;
+}
+
+/// The value of --at, --from or --to, "6.8" or "1/3". Throws Error (exit 2).
+Rational seconds_of_option(const std::string& option, const std::string& text) {
+    const auto seconds = parse_rational(text);
+    if (!seconds || seconds->numerator < 0)
+        throw bad_input("{} wants seconds ≥ 0, such as 6.8 or 1/3; it is \"{}\"", option, text);
+    return *seconds;
+}
+
+/// The scene of each preset, all of them read before the first one runs. `more` = overrides from other options.
+std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {}) {
+    auto overrides = overrides_of(options);
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    const auto& stop = watch_interrupts();
+    std::vector<Scene> scenes;
+    std::vector<std::string> names;
+    for (const auto& name : options.presets) {
+        const auto text = find_preset(name, &stop);
+        const auto& all = options.beside.empty() ? overrides : beside_overrides(text, overrides, options.beside, stop);
+        scenes.push_back(make_scene(read_preset(text, all), stop));
+        names.push_back(scenes.back().preset.name);
+        check_names(names, options.presets);
+    }
+    return scenes;
+}
+
+/// The files that the scenes are read from: presets, tracks and fonts.
+std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
+                                             const std::vector<Scene>& scenes) {
+    std::vector<std::filesystem::path> inputs;
+    for (const auto& name : presets)
+        if (std::error_code error; std::filesystem::is_regular_file(name, error)) inputs.emplace_back(name);
+    for (const auto& scene : scenes) {
+        const auto& preset = scene.preset;
+        for (const auto* side : {&preset.a, &preset.b})
+            if (!side->track.is_none()) inputs.emplace_back(side->track.file);
+        if (preset.video.text_font) inputs.emplace_back(*preset.video.text_font);
+    }
+    return inputs;
+}
+
+/// Calls work(scene, report) for one scene after the other and tells the person how far it is, in `unit`. `streamed` is
+/// as ProgressReport has it.
+void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+                 const std::string& streamed,
+                 const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
+    const auto style = progress_style(progress);
+    outlive_readers();
+    for (const auto& scene : scenes) {
+        ProgressReport report(style, scene.preset.name, unit, streamed);
+        try {
+            report.done(work(scene, std::ref(report)));
+        } catch (...) {
+            report.clear();
+            throw;
+        }
+    }
+}
+
+/// Runs the scenes one after the other and tells the person how far they are.
+void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options) {
+    run_options.replacing = {inputs_of(options.presets, scenes), options.force};
+    const auto& stop = watch_interrupts();
+    for (const auto& scene : scenes) check_run(scene, run_options);
+    const auto& video = scenes.front().preset.video;
+    const bool is_sequence = run_options.pictures && video.format == FilmFormat::png;
+    if (options.out == "-" && is_sequence)
+        throw bad_input("-o -: a PNG sequence is many files; give --format apng, or use still for one picture");
+    if (options.list_outputs) {
+        for (const auto& scene : scenes)
+            list_outputs(options, scene.preset.name, run_files(scene, run_options.pictures));
+        return;
+    }
+    const Destination to(options.out, scenes.size(),
+                         run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
+    run_options.out = to.folder();
+    work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples", to.streamed(),
+                [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
+}
 
 /// The frames of --frames, or the times of --from and --to.
 void take_range(const RenderOptions& options, RunOptions& run) {

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -111,10 +113,8 @@ void tell_of_files(std::string_view text) {
 }
 
 ProgressStyle progress_style(const std::string& name) {
-    if (name == "bar") return ProgressStyle::bar;
-    if (name == "plain") return ProgressStyle::plain;
-    if (name == "json") return ProgressStyle::json;
-    if (name == "none") return ProgressStyle::none;
+    constexpr std::array<std::string_view, 4> names{"bar", "plain", "json", "none"};
+    if (const auto at = std::ranges::find(names, name); at != names.end()) return ProgressStyle(at - names.begin());
     return isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
 }
 

@@ -40,7 +40,7 @@ void chart_fields(Visit& visit, Chart& chart) {
     };
     visit({"format", "what the picture is written as: pixels, or text and lines for a paper"}, chart.format);
     visit(size_field, chart.size);
-    theme_field(visit, chart.theme);
+    visit(theme_field, chart.theme);
     visit({.key = "width_cm",
            .help = "width on paper",
            .unit = "cm",

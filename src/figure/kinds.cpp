@@ -36,7 +36,7 @@ std::vector<TomlReader> FigureReader::entries(std::string_view key) {
 SideSpec FigureReader::release(bool physical) {
     SideSpec side;
     auto system = document.table(top, "system");
-    physical ? read_physical_release(system, side) : read_release(system, side);
+    read_release(system, side, physical);
     return side;
 }
 

@@ -67,7 +67,7 @@ void top_fields(Visit& visit, FigurePreset& figure) {
 
 /// [system] of figures that step a chain themselves.
 FieldTable release_table(FigureKind::System system) {
-    const SideSpec side;
+    SideSpec side;
     FieldTable release{"[system]"};
     const bool is_physical = system == FigureKind::System::physical_release;
     chain_fields(release, side, is_physical ? not_negative : positive);
@@ -194,7 +194,7 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
         if (figure.system == FigureKind::System::pair)
             all.insert(all.end(), pair.begin(), pair.end());
         else
-            all.push_back(named({"", "", {scene.fields.front()}}, "scene"));
+            all.emplace_back("[scene]").fields = {scene.fields.front()};
         if (figure.system == FigureKind::System::release || figure.system == FigureKind::System::physical_release)
             all.push_back(release_table(figure.system));
         all.push_back(figures[1]);

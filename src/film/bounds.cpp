@@ -14,7 +14,7 @@ namespace {
 bool stays_in_circle(const SideSpec& side) {
     return side.particles.empty() && side.constraints.empty() &&
            std::all_of(side.forces.begin(), side.forces.end(),
-                       [](const ForceSpec& force) { return std::holds_alternative<DropletSpec>(force.part); });
+                       [](const PartSpec& force) { return force.kind == PartKind::droplet; });
 }
 
 bool has_circle(const Scene& scene) {

@@ -142,13 +142,12 @@ std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDiffe
     for (const auto& difference : differences)
         if (difference.any().is_of_part) all.push_back({difference.words(of_b)});
     const auto place = [](const QuadPair& xy) { return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1])); };
-    const auto is_droplet = [](const ForceSpec& force) { return std::holds_alternative<DropletSpec>(force.part); };
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
     const auto droplet = std::find_if(spec.forces.begin(), spec.forces.end(), is_droplet);
     if (droplet != spec.forces.end()) {
-        const auto& body = std::get<DropletSpec>(droplet->part);
-        const auto kg = static_cast<double>(body.mass_kg);
-        const auto mass = kg < 0.001 ? scientific(kg) : text_of(body.mass_kg);
-        all.push_back({fmt::format("a droplet of {} kg at {} m", mass, place(*body.position_m))});
+        const auto kg = static_cast<double>(droplet->mass_kg);
+        const auto mass = kg < 0.001 ? scientific(kg) : text_of(droplet->mass_kg);
+        all.push_back({fmt::format("a droplet of {} kg at {} m", mass, place(*droplet->position_m))});
     } else if (std::any_of(other.forces.begin(), other.forces.end(), is_droplet)) {
         all.push_back({"no droplet"});
     }

@@ -8,13 +8,10 @@
 namespace doppel {
 namespace {
 
-struct WorkingPrecision {
-    std::string_view name, remedy;
-};
 template <class Scalar>
-constexpr WorkingPrecision working{"double", ". Set precision = \"quad\""};
-template <>
-constexpr WorkingPrecision working<Quad>{"quad", ""};
+constexpr std::string_view working = std::is_same_v<Scalar, Quad> ? "quad" : "double";
+template <class Scalar>
+constexpr std::string_view remedy = std::is_same_v<Scalar, Quad> ? "" : ". Set precision = \"quad\"";
 
 /// The pull of every droplet on the first particle, m/s².
 void check_droplets(const Scene& scene, const Side& side) {
@@ -30,7 +27,7 @@ void check_droplets(const Scene& scene, const Side& side) {
         throw bad_input(
             "{}: the droplet pulls with {:.2g} m/s², below the rounding of g in double ({:.2g}): both sides would move "
             "identically{}",
-            scene.preset.name, pull, rounding, working<double>.remedy);
+            scene.preset.name, pull, rounding, remedy<double>);
     }
 }
 
@@ -53,7 +50,7 @@ void check_numbers(const Scene& scene, const std::vector<KeyDifference>& differe
             throw bad_input(
                 "{}: {}{} is {} on side a and {} on side b, the same number in {}: both sides would move identically{}",
                 scene.preset.name, a->name(), a->numbers.size() > 1 ? fmt::format("[{}]", i) : "", text_of(of_a),
-                text_of(of_b), working<Scalar>.name, working<Scalar>.remedy);
+                text_of(of_b), working<Scalar>, remedy<Scalar>);
         }
     }
 }
@@ -98,7 +95,7 @@ void check_systems(const Scene& scene, const std::vector<KeyDifference>& differe
         if (const auto name = difference.any().name(); names.find(name) == std::string::npos)
             names += (names.empty() ? "" : ", ") + name;
     throw bad_input("{}: {} differ, but not in what is computed of them in {}: both sides would move identically{}",
-                    scene.preset.name, names, working<Scalar>.name, working<Scalar>.remedy);
+                    scene.preset.name, names, working<Scalar>, remedy<Scalar>);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ bool Faults::concern(std::string_view group) const {
 
 bool Faults::may_follow(const Entry& fault) const {
     if (!fault.beside) return false;
-    const auto& key = fault.beside->key;
+    const auto& key = *fault.beside;
     return std::any_of(faults_.begin(), faults_.end(), [&](const Entry& other) {
         return !other.beside && meet(other.group, fault.group) && (key.empty() || other.key == key);
     });
@@ -41,7 +41,7 @@ bool Faults::may_follow(const Entry& fault) const {
 bool Faults::may_be_one(const Entry& fault, const Entry& other) {
     if (fault.message == other.message) return true;
     if (!fault.beside || !other.beside || !meet(fault.group, other.group)) return false;
-    const auto &key = fault.beside->key, &third = other.beside->key;
+    const auto &key = *fault.beside, &third = *other.beside;
     return key == third || key.empty() || third.empty();
 }
 

@@ -22,25 +22,21 @@ struct FaultPlace {
     auto operator<=>(const FaultPlace&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 takes it for 0
 };
 
-/// A fault of several keys: the key is right or wrong by what others say, and so may be wrong because they are.
-struct BesideKeys {
-    std::string key = {};  // the one other key, which is in the same table; empty: any of the group
-};
-
-/// What is wrong with a key (exit 2).
+/// What is wrong with a key (exit 2). One that is right or wrong by what others say may be wrong because they are: it is a
+/// fault `beside` the one other key, which is in the same table; beside "", any of the group.
 class TomlFault : public Error {
 public:
-    TomlFault(const std::string& message, FaultPlace place, std::optional<BesideKeys> beside = {})
+    TomlFault(const std::string& message, FaultPlace place, std::optional<std::string> beside = {})
         : Error(ExitCode::bad_input, message), place_(place), beside_(std::move(beside)) {}
 
     FaultPlace place() const { return place_; }
-    const std::optional<BesideKeys>& beside() const { return beside_; }
+    const std::optional<std::string>& beside() const { return beside_; }
     /// The same fault as one of several keys.
-    TomlFault with(BesideKeys keys) const { return {what(), place_, std::move(keys)}; }
+    TomlFault with(std::string keys) const { return {what(), place_, std::move(keys)}; }
 
 private:
     FaultPlace place_;
-    std::optional<BesideKeys> beside_;
+    std::optional<std::string> beside_;
 };
 
 /// The faults of a preset, to be reported together. Each belongs to a group of tables that is read as one; that of the
@@ -56,7 +52,7 @@ public:
         std::string message;
         FaultPlace place;
         std::string group, key;
-        std::optional<BesideKeys> beside;
+        std::optional<std::string> beside;
     };
     void add(Entry fault) { faults_.push_back(std::move(fault)); }
     bool concern(std::string_view group) const;

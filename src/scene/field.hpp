@@ -42,7 +42,7 @@ struct Only {
     std::string_view beside = {};  // the key that decides, where one does
 };
 
-/// One key of a table. Lists of fields (preset_fields.hpp, and those of each kind of figure) serve the reader, the
+/// One key of a table. Lists of fields (preset_fields.cpp, and those of each kind of figure) serve the reader, the
 /// resolved preset, its JSON schema and docs/presets.md; type and default are those of the member that a list pairs it with.
 struct Field {
     std::string_view key, help;

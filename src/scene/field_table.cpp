@@ -7,22 +7,32 @@
 #include <algorithm>
 
 namespace doppel {
-namespace {
-
-template <class Spec>
-void add_part_tables(const std::string& name, std::vector<FieldTable>& tables) {
-    const auto add = [&]<class Part>(std::string_view kind, const Part& part) {
-        auto& table = tables.emplace_back(FieldTable{fmt::format("[[system.{}]] kind = \"{}\"", name, kind)});
-        table.fields.push_back({"name", value_type<std::string>(), "", "by which `[a]` and `[b]` change it", "none"});
-        part_fields(table, part, kind);
-    };
-    [&]<class... Parts>(const std::variant<Parts...>&) {
-        auto kind = Spec::kinds.begin();
-        (add(*kind++, Parts()), ...);
-    }(Spec().part);
+void FieldTable::key(const Field& field, const KeyMember& by_default) {
+    ListedField listed{field, value_type(by_default), {}, {field.names.begin(), field.names.end()}};
+    if (is_widest) listed.bounds = field.otherwise.value_or(field.bounds);
+    if (listed.choices.empty()) listed.choices.assign(field.known.begin(), field.known.end());
+    std::visit(
+        [&]<class M>(const M& member) {
+            if constexpr (std::is_same_v<M, ChosenName>)
+                listed.choices.assign(member.names.begin(), member.names.end());
+            if constexpr (std::is_same_v<M, Panels*>) {
+                listed.choices = {"pendulums"};
+                listed.choices.insert(listed.choices.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
+            }
+        },
+        by_default);
+    const auto value = toml_value(by_default);
+    listed.by_default = !field.needed_by.empty() ? must_be_given
+                        : !field.absent.empty()  ? field.absent
+                        : value.empty()          ? "none"
+                                                 : fmt::format("`{}`", value);
+    fields.push_back(std::move(listed));
 }
 
-}  // namespace
+void FieldTable::table(std::string_view key, const std::function<void(KeyVisitor&)>& list) {
+    // of "[system], [a], [b]" the first
+    list(tables.emplace_back(fmt::format("[{}.{}]", name.substr(1, name.find(']') - 1), key)));
+}
 
 std::string ListedField::range_text() const {
     if (bounds.is_open) return bounds.has_high() ? fmt::format("> 0, to {}", bounds.high) : "> 0";
@@ -54,7 +64,7 @@ std::string ListedField::example() const {
     const bool is_number = !first.empty() && first.find_first_not_of("0123456789.e-/") == std::string::npos;
     if (is_number) return first.find('/') == std::string::npos ? first : fmt::format("\"{}\"", first);
     if (!choices.empty()) return fmt::format("{}\"{}\"{}", is_list() ? "[" : "", choices.front(), is_list() ? "]" : "");
-    if (type.schema == integer_schema && bounds.has_low()) return fmt::format("{}", bounds.low);
+    if (type.takes == Takes::whole && bounds.has_low()) return fmt::format("{}", bounds.low);
     if (unit == "cm") return "8.6";  // a column of a journal
     return std::string(bounds.is_open ? type.positive_example : type.example);
 }
@@ -85,46 +95,54 @@ std::string FieldTable::markdown() const {
 }
 
 FieldTable side_text_table() {
-    FieldTable table{"[a], [b]", "What a picture says of a side.\n"};
-    side_text_fields(table, SideSpec());
+    FieldTable table("[a], [b]", "What a picture says of a side.\n");
+    SideSpec side;
+    side_text_fields(table, side);
     return table;
 }
 
 std::vector<FieldTable> film_tables() {
-    const Preset preset;
-    const SideSpec& side = preset.a;
-    const ParticleSpec released;
-    FieldTable top{"title, subtitle"}, scene{"[scene]"}, system{"[system], [a], [b]"}, video{"[video]"};
-    FieldTable torque{std::string(torque_table),
-                      "A motor at a joint of a chain: amplitude · cos(2π · frequency · t + phase).\n"};
-    FieldTable particle{
+    Preset preset;
+    const std::optional<std::string> no_name;
+    const Field name{.key = "name", .help = "by which `[a]` and `[b]` change it"};
+    FieldTable top("title, subtitle"), scene("[scene]"), system("[system], [a], [b]"), video("[video]");
+    FieldTable torque(std::string(torque_table),
+                      "A motor at a joint of a chain: amplitude · cos(2π · frequency · t + phase).\n");
+    FieldTable particle(
         "[[system.particle]]",
         "In place of a chain, a system may have particles; constraints and forces may stand on top of a chain, too, "
-        "whose\nbobs are called `bob1`, `bob2` …\n"};
+        "whose\nbobs are called `bob1`, `bob2` …\n");
     system.is_widest = video.is_widest = true;
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
     scene(kind_field, std::string(pair_kind));
     clock_fields(scene, preset);
     column_fields(scene, preset);
-    side_fields(system, side);
-    particle.fields.push_back(
-        {"name", value_type<std::string>(), "", "by which constraints and forces call it", std::string(must_be_given)});
-    particle.fields.back().is_drawn = true;
+    side_fields(system, preset.a);
+    particle(
+        {.key = "name", .help = "by which constraints and forces call it", .needed_by = "particle", .is_drawn = true},
+        std::string());
+    ParticleSpec released;
     part_fields(particle, released);
-    torque.fields.push_back({"name", value_type<std::string>(), "", "by which `[a]` and `[b]` change it", "none"});
-    part_fields(torque, static_cast<const TorqueSpec&>(TorqueSpec()));
+    std::vector<FieldTable> tables{top, scene, system, particle};
+    for (std::size_t i = 0; i < names_of<PartKind>.size(); ++i) {
+        PartSpec part{.kind = static_cast<PartKind>(i)};
+        auto& table = tables.emplace_back(fmt::format(
+            "[[system.{}]] kind = \"{}\"", i < constraint_kinds ? "constraint" : "force", name_of(part.kind)));
+        table(name, no_name);
+        part_fields(table, part);
+    }
+    torque(name, no_name);
+    TorqueSpec motor;
+    part_fields(torque, motor);
+    tables.push_back(torque);
+    tables.push_back(side_text_table());
     video(size_field, preset.video.size);
     video(preview_field, false);
     format_fields(video, preset.video);
     time_fields(video, preset.video);
     layout_fields(video, preset.video);
     style_fields(video, preset.video);
-    std::vector<FieldTable> tables{top, scene, system, particle};
-    add_part_tables<ConstraintSpec>("constraint", tables);
-    add_part_tables<ForceSpec>("force", tables);
-    tables.push_back(torque);
-    tables.push_back(side_text_table());
     tables.push_back(video);
     return tables;
 }

@@ -14,16 +14,8 @@ namespace {
 
 /// The smallest model that serves, and why.
 std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEntry& method) {
-    switch (spec.model) {
-        case ModelChoice::angles:
-            return {Model::angles, "the preset asks for it"};
-        case ModelChoice::constraints:
-            return {Model::constraints, "the preset asks for it"};
-        case ModelChoice::mechanism:
-            return {Model::mechanism, "the preset asks for it"};
-        case ModelChoice::automatic:
-            break;
-    }
+    if (spec.model != ModelChoice::automatic)
+        return {value_named<Model>(name_of(spec.model)), "the preset asks for it"};
     if (!spec.particles.empty())
         return {Model::mechanism, "particles, constraints and forces of its own take the general mechanism"};
     if (spec.is_mechanism())
@@ -121,8 +113,7 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
     motion.precision = spec.precision;
     motion.sample_interval = *quotient({1, 1}, sample_hz);
     if (side.method.adaptive) {
-        motion.tolerance =
-            spec.tolerance.value_or(spec.precision == Precision::in_quad ? usual_quad_tolerance : usual_tolerance);
+        motion.tolerance = spec.allowed_error();
     } else {
         side.step = spec.step();
         motion.steps_per_sample = quotient(motion.sample_interval, side.step)->numerator;
@@ -178,67 +169,54 @@ private:
     const Assembly<Quad>& assembly_;
 };
 
-/// Makes one constraint or force of what a preset says of it.
-struct PartBuilder {
-    const ParticleNames& by_name;
-    std::string_view kind;
-    std::string what;  // kind and name, for errors
+/// A constraint or a force of what a preset says of it.
+class PartBuilder {
+public:
+    PartBuilder(const ParticleNames& by_name, const PartSpec& part)
+        : by_name_(by_name),
+          part_(part),
+          what_(fmt::format("{}{}", name_of(part.kind), part.name.empty() ? "" : fmt::format(" \"{}\"", part.name))) {}
 
-    /// From a particle to whatever is at the other end; a fixed end goes second.
-    std::pair<std::size_t, End<Quad>> ends(const auto& part) const {
-        auto from = by_name.end(what, *part.from), to = by_name.end(what, *part.to);
-        if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
-        if (!std::holds_alternative<std::size_t>(from))
-            throw bad_input("a {} joins two fixed places; at least one end must be a particle", kind);
-        return {std::get<std::size_t>(from), to};
+    Constraint<Quad> constraint() const {
+        if (part_.kind == PartKind::rod) {
+            const auto [a, b] = ends();
+            return Rod<Quad>{a, b, length(a, b)};
+        }
+        const auto particle = by_name_.index(what_, part_.particle);
+        const auto at = part_.position_m ? place(*part_.position_m) : by_name_.start(particle);
+        if (part_.kind == PartKind::anchor) return Anchor<Quad>{particle, at};
+        if (part_.kind == PartKind::slot_line) return SlotLine<Quad>{particle, at, place(part_.direction)};
+        return SlotCircle<Quad>{particle, at, part_.radius_m ? *part_.radius_m : by_name_.apart(particle, at)};
     }
-    /// The particle, and where it is held.
-    std::pair<std::size_t, Place<Quad>> held(const auto& part) const {
-        const auto particle = by_name.index(what, part.particle);
-        return {particle, part.position_m ? place(*part.position_m) : by_name.start(particle)};
-    }
-
-    Constraint<Quad> operator()(const AnchorSpec& part) const {
-        const auto [particle, at] = held(part);
-        return Anchor<Quad>{particle, at};
-    }
-    Constraint<Quad> operator()(const RodSpec& part) const {
-        const auto [a, b] = ends(part);
-        return Rod<Quad>{a, b, part.length_m ? *part.length_m : by_name.apart(a, b)};
-    }
-    Constraint<Quad> operator()(const SlotLineSpec& part) const {
-        const auto [particle, at] = held(part);
-        return SlotLine<Quad>{particle, at, place(part.direction)};
-    }
-    Constraint<Quad> operator()(const SlotCircleSpec& part) const {
-        const auto [particle, at] = held(part);
-        return SlotCircle<Quad>{particle, at, part.radius_m ? *part.radius_m : by_name.apart(particle, at)};
-    }
-    Force<Quad> operator()(const SpringSpec& part) const {
-        const auto [a, b] = ends(part);
-        return Spring<Quad>{a, b, part.stiffness_N_per_m, part.length_m ? *part.length_m : by_name.apart(a, b),
-                            part.damping_N_s_per_m};
-    }
-    Force<Quad> operator()(const AttractionSpec& part) const {
-        const auto [a, b] = ends(part);
+    Force<Quad> force() const {
+        const auto constant = part_.constant_m3_per_kg_s2.value_or(newton_constant<Quad>());
+        if (part_.kind == PartKind::droplet) return Droplet<Quad>{place(*part_.position_m), part_.mass_kg, constant};
+        const auto [a, b] = ends();
+        if (part_.kind == PartKind::spring)
+            return Spring<Quad>{a, b, part_.stiffness_N_per_m, length(a, b), part_.damping_N_s_per_m};
         const auto* other = std::get_if<std::size_t>(&b);
         if (!other)
             throw bad_input("an attraction is between two particles; a body that stays in place is a \"droplet\"");
-        return Attraction<Quad>{a, *other, part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>())};
+        return Attraction<Quad>{a, *other, constant};
     }
-    Force<Quad> operator()(const DropletSpec& part) const {
-        return Droplet<Quad>{place(*part.position_m), part.mass_kg,
-                             part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>())};
-    }
-};
 
-auto made(const ParticleNames& by_name, const auto& spec) {
-    const auto kind = kind_name(spec);
-    return std::visit(
-        PartBuilder{by_name, kind,
-                    fmt::format("{}{}", kind, spec.name.empty() ? "" : fmt::format(" \"{}\"", spec.name))},
-        spec.part);
-}
+private:
+    /// From a particle to whatever is at the other end; a fixed end goes second.
+    std::pair<std::size_t, End<Quad>> ends() const {
+        auto from = by_name_.end(what_, *part_.from), to = by_name_.end(what_, *part_.to);
+        if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
+        if (!std::holds_alternative<std::size_t>(from))
+            throw bad_input("a {} joins two fixed places; at least one end must be a particle", name_of(part_.kind));
+        return {std::get<std::size_t>(from), to};
+    }
+    Quad length(const End<Quad>& a, const End<Quad>& b) const {
+        return part_.length_m ? *part_.length_m : by_name_.apart(a, b);
+    }
+
+    const ParticleNames& by_name_;
+    const PartSpec& part_;
+    std::string what_;  // kind and name, for errors
+};
 
 }  // namespace
 
@@ -254,10 +232,10 @@ Assembly<Quad> assembly_of(const SideSpec& spec) {
         names.push_back(particle.name);
     }
     const ParticleNames by_name(names, assembly);
-    for (const auto& part : spec.constraints) assembly.constraints.push_back(made(by_name, part));
+    for (const auto& part : spec.constraints) assembly.constraints.push_back(PartBuilder(by_name, part).constraint());
     if (!spec.particles.empty() && spec.gravity_m_per_s2 != 0)
         assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
-    for (const auto& part : spec.forces) assembly.forces.push_back(made(by_name, part));
+    for (const auto& part : spec.forces) assembly.forces.push_back(PartBuilder(by_name, part).force());
     return assembly;
 }
 

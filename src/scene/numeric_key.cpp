@@ -7,8 +7,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 
 namespace doppel {
@@ -17,19 +15,12 @@ namespace {
 template <class T>
 constexpr bool holds_numbers =
     std::is_same_v<T, Quad> || std::is_same_v<T, QuadPair> || std::is_same_v<T, std::vector<Quad>>;
-template <class T>
-constexpr bool holds_numbers<std::optional<T>> = holds_numbers<T>;
 
-template <class T>
-std::span<Quad> numbers_in(T& member) {
-    if constexpr (is_optional<T>) {
-        if (!member) member.emplace();
-        return numbers_in(*member);
-    } else if constexpr (std::is_same_v<T, Quad>) {
-        return {&member, 1};
-    } else {
-        return member;
-    }
+std::span<Quad> numbers_in(Quad& number) {
+    return {&number, 1};
+}
+std::span<Quad> numbers_in(auto& numbers) {
+    return numbers;
 }
 
 /// "force.spring.stiffness_N_per_m": the table's key, the entry's name and the entry's key; or the last alone.
@@ -57,14 +48,12 @@ struct FoundNumber {
 /// The number of the entry that is meant: by its name, or else the only one of that kind; 0 = the side itself, or its pivot.
 int entry_meant(SideSpec& side, const Place& place) {
     if (place.table.empty() || place.table == "pivot") return 0;
-    std::vector<int> named, of_kind;
-    int number = 0;
-    for_each_entry(side, [&](std::string_view table, std::string_view kind, std::string_view name, const auto&) {
-        ++number;
-        if (table == place.table && name == place.entry) named.push_back(number);
-        if (table == place.table && kind == place.entry && kind != table) of_kind.push_back(number);
-    });
-    if (!named.empty()) return named.front();
+    std::vector<int> of_kind;
+    for (const auto& entry : entries_of(side)) {
+        if (entry.table != place.table) continue;
+        if (entry.name == place.entry) return entry.number;
+        if (entry.kind == place.entry && entry.kind != entry.table) of_kind.push_back(entry.number);
+    }
     return of_kind.size() == 1 ? of_kind.front() : -1;
 }
 
@@ -72,23 +61,30 @@ int entry_meant(SideSpec& side, const Place& place) {
 FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> put_whole = {}) {
     FoundNumber found;
     const int entry = entry_meant(side, place);
-    for_each_key(side, [&]<class T>(const KeyOwner& owner, const Field& field, T& member) {
-        constexpr bool is_int = std::is_same_v<T, int>, is_step = std::is_same_v<T, std::optional<Rational>>;
-        if (owner.table != place.table || owner.number != entry) return;
-        if constexpr (is_int || is_step || holds_numbers<T>) {
-            if constexpr (is_optional<T> && !is_step)
-                if (!member && field.absent.empty()) return;  // no number holds in its place
-            found.names.push_back(field.key);
-            if (field.key != place.key) return;
-            found.field = field;
-            found.is_whole = is_int;
-            if constexpr (is_int)
-                member = put_whole.value_or(member);
-            else if constexpr (is_step)
-                found.step = &member;
-            else
-                found.values = numbers_in(member);
-        }
+    const auto is_meant = [&](const Field& field) {
+        found.names.push_back(field.key);
+        if (field.key == place.key) found.field = field;
+        return field.key == place.key;
+    };
+    for_each_key(side, [&](const SideEntry& owner, const Field& field, const KeyMember& any) {
+        const auto look = [&]<class M>(const M& member) {
+            using T = std::remove_pointer_t<M>;
+            if constexpr (std::is_same_v<T, int>) {
+                if (!is_meant(field)) return;
+                *member = put_whole.value_or(*member);
+                found.is_whole = true;
+            } else if constexpr (std::is_same_v<T, std::optional<Rational>>) {
+                if (is_meant(field)) found.step = member;
+            } else if constexpr (holds_numbers<T>) {
+                if (is_meant(field)) found.values = numbers_in(*member);
+            } else if constexpr (is_optional<T>) {
+                if constexpr (holds_numbers<typename T::value_type>) {
+                    if (!*member && field.absent.empty()) return;  // no number holds in its place
+                    if (is_meant(field)) found.values = numbers_in(*member ? **member : member->emplace());
+                }
+            }
+        };
+        if (owner.table == place.table && owner.number == entry) std::visit(look, any);
     });
     return found;
 }
@@ -96,8 +92,11 @@ FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> p
 /// All numbers of a chain and of what it has besides, an array as one.
 std::vector<std::span<Quad>> all_numbers(SideSpec& side) {
     std::vector<std::span<Quad>> all;
-    for_each_key(side, [&]<class T>(const KeyOwner&, const Field&, T& member) {
-        if constexpr (holds_numbers<T> && !is_optional<T>) all.push_back(numbers_in(member));
+    for_each_key(side, [&](const SideEntry&, const Field&, const KeyMember& any) {
+        const auto add = [&]<class M>(const M& member) {
+            if constexpr (holds_numbers<std::remove_pointer_t<M>>) all.push_back(numbers_in(*member));
+        };
+        std::visit(add, any);
     });
     return all;
 }
@@ -129,15 +128,8 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
                           "must be a numeric key such as \"system.gravity_m_per_s2\" or \"b.mass_kg[1]\", or "
                           "\"theta1_deg\", \"theta2_deg\", \"mass_ratio\" or \"length_ratio\"; it is \"{}\"",
                           into.path);
-    const auto bracket = into.inside.find('[');
-    if (bracket == std::string::npos) return;
-    std::size_t element = 0;
-    const char *first = into.inside.data() + bracket + 1, *end = into.inside.data() + into.inside.size();
-    const auto [after, fault] = std::from_chars(first, end, element);
-    if (fault != std::errc() || after + 1 != end || *after != ']')
+    if (!take_element(into.inside, into.element))
         throw table.fault(key, "must end like \"mass_kg[1]\" where it is one of several; it is \"{}\"", into.path);
-    into.element = element;
-    into.inside.resize(bracket);
 }
 
 /// Checks the number against one side, and takes what its field says.

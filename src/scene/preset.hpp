@@ -55,52 +55,25 @@ struct ParticleSpec {
     QuadPair position_m{}, velocity_m_per_s{};
 };
 
-// Kinds of constraints and forces. Lengths and places that are not given are those of the start.
-struct AnchorSpec {
-    std::string particle;
-    std::optional<QuadPair> position_m;
-};
-struct RodSpec {
-    std::optional<EndSpec> from, to;
-    std::optional<Quad> length_m;
-};
-struct SlotLineSpec {
-    std::string particle;
-    std::optional<QuadPair> position_m;  // a point of the line
-    QuadPair direction{1, 0};
-};
-struct SlotCircleSpec {
-    std::string particle;
-    std::optional<QuadPair> position_m;  // the centre
-    std::optional<Quad> radius_m;
-};
-struct SpringSpec {
-    std::optional<EndSpec> from, to;
-    std::optional<Quad> length_m;  // at rest
-    Quad stiffness_N_per_m = 1, damping_N_s_per_m = 0;
-};
-struct AttractionSpec {
-    std::optional<EndSpec> from, to;
-    std::optional<Quad> constant_m3_per_kg_s2;  // G
-};
-struct DropletSpec {
-    std::optional<QuadPair> position_m;
-    Quad mass_kg = 1;
-    std::optional<Quad> constant_m3_per_kg_s2;  // G
-};
+/// What [[system.constraint]] and [[system.force]] hold: constraints first, then forces.
+enum class PartKind { anchor, rod, slot_line, slot_circle, spring, attraction, droplet };
+template <>
+inline constexpr auto names_of<PartKind> = std::to_array<std::string_view>({"anchor", "rod", "slot-line", "slot-circle",
+                                                                            "spring", "attraction", "droplet"});
+inline constexpr std::size_t constraint_kinds = 4;
 
-/// [[system.constraint]]
-struct ConstraintSpec {
-    static constexpr std::array<std::string_view, 4> kinds{"anchor", "rod", "slot-line", "slot-circle"};
-    std::string name;
-    std::variant<AnchorSpec, RodSpec, SlotLineSpec, SlotCircleSpec> part;
-};
-
-/// [[system.force]]
-struct ForceSpec {
-    static constexpr std::array<std::string_view, 3> kinds{"spring", "attraction", "droplet"};
-    std::string name;
-    std::variant<SpringSpec, AttractionSpec, DropletSpec> part;
+/// A constraint or a force. Which keys it has is a matter of its kind (part_fields()); lengths and places that are not
+/// given are those of the start.
+struct PartSpec {
+    std::string name = {};
+    PartKind kind = PartKind::anchor;
+    std::string particle = {};                  // of an anchor and of slots
+    std::optional<EndSpec> from = {}, to = {};  // of rods, springs and attractions
+    std::optional<QuadPair> position_m = {};    // of an anchor; a point of a line; the centre of a circle; of a droplet
+    QuadPair direction{1, 0};                   // of a slot-line
+    std::optional<Quad> length_m = {}, radius_m = {};  // of a rod, of a spring at rest; of a slot-circle
+    Quad stiffness_N_per_m = 1, damping_N_s_per_m = 0, mass_kg = 1;
+    std::optional<Quad> constant_m3_per_kg_s2 = {};  // G
 };
 
 /// [system.pivot]: a pivot that moves to and fro, at amplitude · cos(2π · frequency · t + phase).
@@ -133,23 +106,19 @@ struct PhysicalSpec {
     PivotSpec pivot;
     std::vector<TorqueSpec> torques;
 
+    /// With a number a link, all but center_m.
+    static constexpr std::array<std::vector<Quad> PhysicalSpec::*, 9> lists{&PhysicalSpec::rod_mass_kg,
+                                                                            &PhysicalSpec::inertia_kg_m2,
+                                                                            &PhysicalSpec::joint_viscous_N_m_s,
+                                                                            &PhysicalSpec::joint_coulomb_N_m,
+                                                                            &PhysicalSpec::arm_drag_linear_N_m_s,
+                                                                            &PhysicalSpec::arm_drag_quadratic_N_m_s2,
+                                                                            &PhysicalSpec::air_drag_quadratic_N_m_s2,
+                                                                            &PhysicalSpec::drag_linear_N_s_per_m,
+                                                                            &PhysicalSpec::drag_quadratic_N_s2_per_m2};
+
     friend bool operator==(const PhysicalSpec&, const PhysicalSpec&) = default;
 
-    template <class Physical>
-    static auto lists_of(Physical& of) {
-        return std::array{&of.rod_mass_kg,
-                          &of.inertia_kg_m2,
-                          &of.joint_viscous_N_m_s,
-                          &of.joint_coulomb_N_m,
-                          &of.arm_drag_linear_N_m_s,
-                          &of.arm_drag_quadratic_N_m_s2,
-                          &of.air_drag_quadratic_N_m_s2,
-                          &of.drag_linear_N_s_per_m,
-                          &of.drag_quadratic_N_s2_per_m2};
-    }
-    /// All the lists with a number a link but center_m.
-    auto lists() { return lists_of(*this); }
-    auto lists() const { return lists_of(*this); }
     /// Whether any of it is there.
     bool is_none() const;
     bool has_coulomb() const;
@@ -168,11 +137,6 @@ struct TrackSpec {
 
     bool is_none() const { return file.empty(); }
 };
-
-template <class Spec>
-std::string_view kind_name(const Spec& spec) {
-    return Spec::kinds[spec.part.index()];
-}
 
 /// One side of the pair, as [system] with [a] or [b] on top describes it. Numbers are those written, to 34 digits;
 /// angles stay in degrees.
@@ -195,8 +159,7 @@ struct SideSpec {
     PhysicalSpec physical;
     TrackSpec track;
     std::vector<ParticleSpec> particles;  // in place of a chain
-    std::vector<ConstraintSpec> constraints;
-    std::vector<ForceSpec> forces;
+    std::vector<PartSpec> constraints, forces;
     std::optional<std::string> label, note;  // in place of what pictures say of the side by themselves
 
     /// How finely to step where nothing was given, too.
@@ -287,10 +250,9 @@ std::string read_kind(TomlReader& scene);
 /// [system], [a] or [b]; `has_text` = with side_text_fields().
 void read_side(TomlReader& table, SideSpec& side, bool has_text = false);
 
-/// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say.
-void read_release(TomlReader& table, SideSpec& side);
-/// The same with what a real chain has besides.
-void read_physical_release(TomlReader& table, SideSpec& side);
+/// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say; `is_physical`:
+/// with what a real chain has besides.
+void read_release(TomlReader& table, SideSpec& side, bool is_physical);
 
 /// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier. Those
 /// of a film have texts of their own.

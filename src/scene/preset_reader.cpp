@@ -13,20 +13,15 @@ namespace {
 
 /// The whole-number rates next to `rate` (rounded) that divide `steps_per_second`, for the error that has to name them.
 std::string rates_that_divide(const Rational& steps_per_second, double rate) {
-    const auto divides = [&](long n) {
-        const auto ratio = n > 0 ? quotient(steps_per_second, {n, 1}) : std::nullopt;
-        return ratio && ratio->is_whole();
+    const auto next = [&](long from, long step) {
+        for (long n = from; n > 0 && std::abs(n - from) < 10000; n += step)
+            if (const auto ratio = quotient(steps_per_second, {n, 1}); ratio && ratio->is_whole()) return n;
+        return 0L;
     };
-    const long start = std::lround(std::min(rate, 1e6));
-    std::string text;
-    for (long n = start; n > 0 && n > start - 10000; --n)
-        if (divides(n)) {
-            text = fmt::format("{}", n);
-            break;
-        }
-    for (long n = start + 1; n < start + 10000; ++n)
-        if (divides(n)) return text.empty() ? fmt::format("{} would", n) : fmt::format("{} or {} would", text, n);
-    return text.empty() ? "a longer or shorter step_s would" : text + " would";
+    const long start = std::lround(std::min(rate, 1e6)), below = next(start, -1), above = next(start + 1, 1);
+    if (below == 0 && above == 0) return "a longer or shorter step_s would";
+    if (below == 0 || above == 0) return fmt::format("{} would", std::max(below, above));
+    return fmt::format("{} or {} would", below, above);
 }
 
 /// What layouts and strips ask of the system.
@@ -117,7 +112,7 @@ void check_style(const TomlReader& table, const VideoSpec& video) {
 
 /// A quarter of the pixels and the least effort, but what the command line says stays.
 void make_preview(TomlReader& table, VideoSpec& video) {
-    const auto half = [](int pixels) { return std::max(pixels / 4 * 2, static_cast<int>(picture_sizes.low)); };
+    const auto half = [](int pixels) { return std::max(pixels / 4 * 2, static_cast<int>(size_field.bounds.low)); };
     if (!table.from_command_line("size")) video.size = {half(video.size.width), half(video.size.height)};
     if (!video.format_row().is_encoded()) return;
     if (!table.from_command_line("preset")) video.preset = "ultrafast";

@@ -62,40 +62,60 @@ std::string toml_value(const Members& members) {
     return members.angles_deg.empty() ? toml_value(members.count) : toml_value(members.angles_deg);
 }
 
+std::string toml_value(const KeyMember& member) {
+    return std::visit(
+        []<class M>(const M& of) -> std::string {
+            if constexpr (std::is_same_v<M, ChosenName>)
+                return toml_text(std::string(of.name));
+            else if constexpr (is_optional<std::remove_pointer_t<M>>)
+                return *of ? toml_value(**of) : "";
+            else
+                return toml_value(*of);
+        },
+        member);
+}
+
+void TomlWriter::key(const Field& field, const KeyMember& member) {
+    const auto value = field.only.holds ? toml_value(member) : "";
+    const auto* text = std::get_if<std::string*>(&member);
+    if (!value.empty() && !(text && (*text)->empty())) add(field.key, value);
+}
+
+void TomlWriter::table(std::string_view key, const std::function<void(KeyVisitor&)>& fields) {
+    TomlWriter inside;
+    fields(inside);
+    if (!inside.text_.empty()) tables_ += fmt::format("\n[{}.{}]\n{}", name_, key, inside.text_);
+}
+
 namespace {
 
-template <class Fields>
-std::string table_text(const std::string& name, const Fields& fields) {
+std::string table_text(const std::string& name, const std::function<void(TomlWriter&)>& fields) {
     TomlWriter writer(name.substr(1, name.size() - 2));
     fields(writer);
     return fmt::format("\n{}\n{}", name, writer.text());
 }
 
-std::string entries_toml(const std::string& name, const SideSpec& side) {
+std::string entries_toml(const std::string& name, SideSpec& side) {
     std::string text;
-    for_each_entry(side,
-                   [&](std::string_view table, std::string_view kind, const std::string& entry, const auto& fields) {
-                       text += table_text(fmt::format("[[{}.{}]]", name, table), [&](TomlWriter& writer) {
-                           if (kind != table) writer.add("kind", toml_text(std::string(kind)));
-                           writer({.key = "name"}, entry);
-                           fields(writer);
-                       });
-                   });
+    for (const auto& entry : entries_of(side))
+        text += table_text(fmt::format("[[{}.{}]]", name, entry.table), [&](TomlWriter& writer) {
+            if (entry.kind != entry.table) writer.add("kind", toml_text(std::string(entry.kind)));
+            writer({.key = "name"}, entry.name);
+            entry.fields(writer);
+        });
     return text;
 }
 
 /// [a] or [b] with everything in it.
-std::string side_toml(const std::string& name, const SideSpec& side) {
-    auto complete = side;
+std::string side_toml(const std::string& name, SideSpec side) {
     if (find_method(side.integrator)->adaptive)
-        complete.tolerance = side.allowed_error();
+        side.tolerance = side.allowed_error();
     else
-        complete.step_s = side.step();
+        side.step_s = side.step();
     return table_text(fmt::format("[{}]", name),
                       [&](TomlWriter& writer) {
-                          const auto& all = complete;
-                          side_text_fields(writer, all);
-                          side_fields(writer, all, !all.physical.is_none());
+                          side_text_fields(writer, side);
+                          side_fields(writer, side, !side.physical.is_none());
                       }) +
            entries_toml(name, side);
 }
@@ -104,8 +124,9 @@ std::string side_toml(const std::string& name, const SideSpec& side) {
 
 std::string resolved_pair(const Preset& preset) {
     TomlWriter writer;
-    clock_fields(writer, preset);
-    if (preset.energy_columns) column_fields(writer, preset);
+    auto clock = preset;
+    clock_fields(writer, clock);
+    if (preset.energy_columns) column_fields(writer, clock);
     return writer.text() + resolved_sides(preset);
 }
 
@@ -113,7 +134,7 @@ std::string resolved_sides(const Preset& preset, const std::string& above) {
     return side_toml(above + "a", preset.a) + side_toml(above + "b", preset.b);
 }
 
-std::string resolved_release(const SideSpec& side) {
+std::string resolved_release(SideSpec side) {
     return table_text("[system]",
                       [&](TomlWriter& writer) {
                           chain_fields(writer, side);
@@ -123,7 +144,7 @@ std::string resolved_release(const SideSpec& side) {
            entries_toml("system", side);
 }
 
-std::string resolved_chain(const SideSpec& side) {
+std::string resolved_chain(SideSpec side) {
     return table_text("[system]", [&](TomlWriter& writer) {
         link_fields(writer, side);
         gravity_field(writer, side);
@@ -135,8 +156,7 @@ std::string resolved_toml(const Preset& preset) {
     top.add("title", toml_text(preset.title));
     top(subtitle_field, preset.subtitle);
     return fmt::format("{}\n[scene]\nkind = \"{}\"\n", top.text(), pair_kind) + resolved_pair(preset) +
-           table_text("[video]", [&](TomlWriter& writer) {
-               const auto& video = preset.video;
+           table_text("[video]", [video = preset.video](TomlWriter& writer) mutable {
                writer(size_field, video.size);
                format_fields(writer, video);
                time_fields(writer, video);

@@ -2,7 +2,7 @@
 
 #include "output/sink.hpp"
 #include "output/transaction.hpp"
-#include "scene/preset.hpp"
+#include "scene/member.hpp"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -50,32 +50,19 @@ std::string toml_value(const T& value) {
     }
 }
 
+/// That of a key; empty of an optional one that is not given.
+std::string toml_value(const KeyMember& member);
+
 /// Writes a table key by key: writer(field, member). Keys that do not count, and what is not given, are left out.
-class TomlWriter {
+class TomlWriter : public KeyVisitor {
 public:
     /// `name` = that of the table, "video".
     explicit TomlWriter(std::string name = "") : name_(std::move(name)) {}
 
-    template <class T>
-    void operator()(const Field& field, const T& value) {
-        if (!field.only.holds) return;
-        if constexpr (is_optional<T>) {
-            if (value) add(field.key, toml_value(*value));
-        } else if constexpr (std::is_same_v<T, std::string>) {
-            if (!value.empty()) add(field.key, toml_value(value));
-        } else {
-            add(field.key, toml_value(value));
-        }
-    }
+    void key(const Field& field, const KeyMember& member) override;
     void add(std::string_view key, const std::string& value) { text_ += fmt::format("{} = {}\n", key, value); }
     /// The fields of [NAME.key], after all others; nothing where it is empty.
-    template <class Visit>
-    void table(std::string_view key, const Visit& visit) {
-        TomlWriter inside;
-        visit(inside);
-        if (!inside.text_.empty()) tables_ += fmt::format("\n[{}.{}]\n{}", name_, key, inside.text_);
-    }
-    static bool from_command_line(std::string_view) { return false; }
+    void table(std::string_view key, const std::function<void(KeyVisitor&)>& fields) override;
 
     std::string text() const { return text_ + tables_; }
 
@@ -92,10 +79,10 @@ std::string resolved_pair(const Preset& preset);
 std::string resolved_sides(const Preset& preset, const std::string& above = "");
 
 /// [system] where only a chain and its release matter.
-std::string resolved_release(const SideSpec& side);
+std::string resolved_release(SideSpec side);
 
 /// The same without the release.
-std::string resolved_chain(const SideSpec& side);
+std::string resolved_chain(SideSpec side);
 
 // What the manifests of films and of figures are made of.
 

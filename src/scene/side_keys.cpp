@@ -16,7 +16,11 @@ namespace {
 /// What the key holds; whether it holds anything.
 template <class T>
 bool hold(const T& value, SideKey& key) {
-    if constexpr (is_optional<T>)
+    if constexpr (std::is_same_v<T, ChosenName>)
+        key.text = toml_text(std::string(value.name));
+    else if constexpr (std::is_pointer_v<T>)
+        return hold(*value, key);
+    else if constexpr (is_optional<T>)
         return value && hold(*value, key);
     else if constexpr (std::is_same_v<T, EndSpec>)
         return std::visit([&](const auto& end) { return hold(end, key); }, value);
@@ -36,8 +40,7 @@ std::vector<SideKey> keys_of(SideSpec side) {
     std::map<std::string_view, int> counts;  // of entries, by their kinds
     int entry = 0;
     std::string place;
-    const auto& spec = side;
-    for_each_key(spec, [&](const KeyOwner& owner, const Field& field, const auto& value) {
+    for_each_key(side, [&](const SideEntry& owner, const Field& field, const KeyMember& member) {
         const bool is_part = (owner.table == "constraint" || owner.table == "force") && owner.kind != "droplet";
         if (owner.number == 0) {
             place = owner.table;
@@ -56,7 +59,7 @@ std::vector<SideKey> keys_of(SideSpec side) {
                     .counts = field.only.holds,
                     .is_of_links = !field.each.empty() && field.symbol.empty() && place.empty(),
                     .is_of_part = is_part};
-        if (hold(value, key)) all.push_back(std::move(key));
+        if (std::visit([&](const auto& value) { return hold(value, key); }, member)) all.push_back(std::move(key));
     });
     return all;
 }

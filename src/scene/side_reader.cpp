@@ -78,40 +78,20 @@ bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
     return true;
 }
 
-/// The variant's alternative of that number; what it has in common with the old one stays.
-template <std::size_t I = 0, class... Parts>
-void change_kind(std::variant<Parts...>& part, std::size_t kind) {
-    if (I != kind) {
-        if constexpr (I + 1 < sizeof...(Parts)) change_kind<I + 1>(part, kind);
-        return;
-    }
-    std::variant_alternative_t<I, std::variant<Parts...>> changed;
-    std::visit(
-        [&](const auto& old) {
-            if constexpr (requires { changed.from = old.from; }) changed.from = old.from, changed.to = old.to;
-            if constexpr (requires { changed.particle = old.particle; }) changed.particle = old.particle;
-            if constexpr (requires { changed.position_m = old.position_m; }) changed.position_m = old.position_m;
-        },
-        part);
-    part = changed;
-}
-
 /// The keys of one constraint or force: those of its kind, and no others.
-template <class Spec>
-bool read_part(TomlReader& entry, Spec& spec, bool is_new) {
+bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const std::string_view> kinds) {
     const bool has_kind = entry.has("kind");
     if (is_new && !has_kind) {
-        entry.refuse(entry.fault("kind", "is missing; there is \"{}\"", fmt::join(Spec::kinds, "\", \"")).with({}),
-                     "kind");
+        entry.refuse(entry.fault("kind", "is missing; there is \"{}\"", fmt::join(kinds, "\", \"")).with({}), "kind");
         return false;
     }
-    std::string kind(has_kind ? "" : kind_name(spec));
-    entry({.key = "kind", .names = Spec::kinds}, kind);
-    if (kind.empty()) return false;
-    if (kind != kind_name(spec))
-        change_kind(spec.part, static_cast<std::size_t>(std::find(Spec::kinds.begin(), Spec::kinds.end(), kind) -
-                                                        Spec::kinds.begin()));
-    std::visit([&](auto& part) { part_fields(entry, part, kind); }, spec.part);
+    std::string name(has_kind ? "" : name_of(part.kind));
+    entry({.key = "kind", .names = kinds}, name);
+    if (name.empty()) return false;
+    // what it has in common with another kind stays
+    if (const auto kind = value_named<PartKind>(name); kind != part.kind)
+        part = {part.name, kind, part.particle, part.from, part.to, part.position_m};
+    part_fields(entry, part);
     return true;
 }
 
@@ -136,8 +116,12 @@ void read_physical_chain(TomlReader& table, SideSpec& side) {
 
 void read_mechanism(TomlReader& table, SideSpec& side) {
     read_entries(table, "particle", side.particles, read_particle);
-    read_entries(table, "constraint", side.constraints, read_part<ConstraintSpec>);
-    read_entries(table, "force", side.forces, read_part<ForceSpec>);
+    const auto kinds = std::span(names_of<PartKind>);
+    const auto read_of = [](std::span<const std::string_view> some) {
+        return [=](TomlReader& entry, PartSpec& part, bool is_new) { return read_part(entry, part, is_new, some); };
+    };
+    read_entries(table, "constraint", side.constraints, read_of(kinds.first(constraint_kinds)));
+    read_entries(table, "force", side.forces, read_of(kinds.subspan(constraint_kinds)));
     if (side.particles.empty()) return;
     for (const auto* key : {"links", "mass_kg", "length_m", "angle_deg", "omega_deg_per_s"})
         if (table.has(key))
@@ -187,11 +171,8 @@ void check_choices(TomlReader& table, const SideSpec& side) {
     const auto& method = *find_method(side.integrator);
     if (side.is_mechanism() && !method.mechanism)
         throw table.fault("integrator", "\"{}\" serves {}, not a mechanism", side.integrator, served(method));
-    const bool possible = side.model == ModelChoice::automatic ||
-                          (side.model == ModelChoice::angles && method.angles) ||
-                          (side.model == ModelChoice::constraints && method.constraints) ||
-                          (side.model == ModelChoice::mechanism && method.mechanism);
-    if (!possible)
+    const auto models = models_of(method);
+    if (side.model != ModelChoice::automatic && std::ranges::find(models, name_of(side.model)) == models.end())
         throw table.fault(table.has("integrator") ? "integrator" : "model", "\"{}\" serves {}, not model = \"{}\"",
                           side.integrator, served(method), name_of(side.model));
     if (side.stabilise != Stabilise::none && !method.angles)
@@ -215,7 +196,7 @@ void SideSpec::set_links(std::size_t links) {
     length_m.assign(links, 1);
     angle_deg.assign(links, 90);
     omega_deg_per_s.assign(links, 0);
-    for (auto* list : physical.lists()) list->assign(links, 0);
+    for (const auto list : PhysicalSpec::lists) (physical.*list).assign(links, 0);
     physical.center_m.clear();
 }
 
@@ -228,9 +209,8 @@ bool PhysicalSpec::has_coulomb() const {
 }
 
 bool PhysicalSpec::is_none() const {
-    const auto all = lists();
     return center_m.empty() && torques.empty() && pivot.amplitude_m == 0 &&
-           std::all_of(all.begin(), all.end(), [](const auto* list) { return is_zero(*list); });
+           std::ranges::all_of(lists, [&](auto list) { return is_zero(this->*list); });
 }
 
 bool differ_in_kind(const SideSpec& a, const SideSpec& b) {
@@ -238,17 +218,14 @@ bool differ_in_kind(const SideSpec& a, const SideSpec& b) {
     return a.particles.empty() ? a.links() != b.links() : a.particles.size() != b.particles.size();
 }
 
-void read_release(TomlReader& table, SideSpec& side) {
-    chain_fields(table, side);
+void read_release(TomlReader& table, SideSpec& side, bool is_physical) {
+    if (is_physical)
+        read_physical_chain(table, side);
+    else
+        chain_fields(table, side);
     gravity_field(table, side);
     table.finish();
-}
-
-void read_physical_release(TomlReader& table, SideSpec& side) {
-    read_physical_chain(table, side);
-    gravity_field(table, side);
-    table.finish();
-    table.check_together([&] { check_masses(table, side); });
+    if (is_physical) table.check_together([&] { check_masses(table, side); });
 }
 
 void read_side(TomlReader& table, SideSpec& side, bool has_text) {

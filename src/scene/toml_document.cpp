@@ -6,10 +6,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <iterator>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 namespace doppel {
@@ -120,19 +122,6 @@ toml::table given_by(const Override& change, TomlTexts& texts) {
     }
 }
 
-/// "mass_kg[1]" → "mass_kg" and 1.
-std::optional<std::size_t> take_element(std::string& key, const Override& change) {
-    const auto bracket = key.find('[');
-    if (bracket == std::string::npos) return std::nullopt;
-    std::size_t element = 0;
-    const char *first = key.data() + bracket + 1, *end = key.data() + key.size();
-    const auto [after, fault] = std::from_chars(first, end, element);
-    if (fault != std::errc() || after + 1 != end || *after != ']')
-        throw bad_input("{}: an element of a list is written like system.mass_kg[1], the second", change.origin);
-    key.resize(bracket);
-    return element;
-}
-
 std::string text_in(const toml::table& table, std::string_view key) {
     return table[key].value_or(std::string());
 }
@@ -141,11 +130,10 @@ std::string text_in(const toml::table& table, std::string_view key) {
 std::vector<std::string> literals_of(const toml::node& node, std::size_t links, const Override& change,
                                      const TomlTexts& texts) {
     const auto literal = [&](const toml::node& number) {
-        const auto& source = number.source();
-        const auto text = source.path ? texts.find(*source.path) : texts.end();
-        if (!number.is_number() || text == texts.end())
+        const auto text = literal_of(number, texts);
+        if (!number.is_number() || !text)
             throw bad_input("{}: an element is set of a list of numbers; {}", change.origin, found(node));
-        return text->second.literal_at(source.begin.line, source.begin.column);
+        return *text;
     };
     std::vector<std::string> literals;
     if (const auto* array = node.as_array())
@@ -242,7 +230,9 @@ toml::table& table_of(toml::table& root, const Override& change, std::string& ke
 void apply(toml::table& root, const Override& change, TomlTexts& texts) {
     std::string key = change.key;
     auto& table = table_of(root, change, key);
-    const auto element = take_element(key, change);
+    std::optional<std::size_t> element;
+    if (!take_element(key, element))
+        throw bad_input("{}: an element of a list is written like system.mass_kg[1], the second", change.origin);
     auto given = given_by(change, texts);
     if (element) {
         if (const auto& value = *given.get("value"); !value.is_number())
@@ -283,6 +273,16 @@ TomlDocument parse_document(const PresetText& source, const std::vector<Override
     return document;
 }
 
+bool take_element(std::string& key, std::optional<std::size_t>& element) {
+    const auto bracket = key.find('[');
+    if (bracket == std::string::npos) return true;
+    const char *first = key.data() + bracket + 1, *end = key.data() + key.size();
+    const auto [after, fault] = std::from_chars(first, end, element.emplace());
+    const bool is_one = fault == std::errc() && after + 1 == end && *after == ']';
+    key.resize(bracket);
+    return is_one;
+}
+
 Override parse_set(const std::string& argument) {
     const auto equals = argument.find('=');
     const auto key = argument.substr(0, equals);
@@ -306,53 +306,35 @@ std::string written(const toml::node& node) {
     return out.str();
 }
 
-TomlText::TomlText(std::string text) : text_(std::move(text)) {
-    constexpr std::size_t apart = 256;
-    std::size_t characters = 0;
-    for (Place place{1, 1, 0}; place.offset < text_.size(); step(place))
-        if (characters++ % apart == 0) milestones_.push_back(place);
-}
-
-/// On to the next character of UTF-8.
-void TomlText::step(Place& place) const {
-    const bool ends_line = text_[place.offset] == '\n';
-    const auto continues = [&] { return (static_cast<unsigned char>(text_[place.offset]) & 0xC0) == 0x80; };
-    do ++place.offset;
-    while (place.offset < text_.size() && continues());
-    ++place.column;
-    if (ends_line) ++place.line, place.column = 1;
-}
-
 std::string TomlText::literal_at(std::size_t line, std::size_t column) const {
-    auto place = Place{1, 1, 0};
-    const auto next = std::partition_point(milestones_.begin(), milestones_.end(),
-                                           [&](const Place& stone) { return stone.is_before(line, column); });
-    if (next != milestones_.begin()) place = *std::prev(next);
-    while (place.is_before(line, column) && place.offset < text_.size()) step(place);
-    const auto rest = std::string_view(text_).substr(place.offset);
+    if (std::tie(line, column) < std::tie(last_.line, last_.column)) last_ = {};
+    auto& [now, at, offset] = last_;
+    while (std::tie(now, at) < std::tie(line, column) && offset < text_.size()) {
+        const bool ends_line = text_[offset] == '\n';
+        do ++offset;
+        while (offset < text_.size() && (static_cast<unsigned char>(text_[offset]) & 0xC0) == 0x80);  // of UTF-8
+        now += ends_line ? 1 : 0;
+        at = ends_line ? 1 : at + 1;
+    }
+    const auto rest = std::string_view(text_).substr(offset);
     std::string digits;
     for (const char byte : rest.substr(0, rest.find_first_not_of("0123456789+-._eE")))
         if (byte != '_') digits += byte;
     return digits;
 }
 
+std::optional<std::string> literal_of(const toml::node& node, const TomlTexts& texts) {
+    const auto& [begin, end, path] = node.source();
+    const auto text = path ? texts.find(*path) : texts.end();
+    return text == texts.end() ? std::nullopt : std::optional(text->second.literal_at(begin.line, begin.column));
+}
+
 std::string kind_of(const toml::node& node) {
-    switch (node.type()) {
-        case toml::node_type::table:
-            return "a table";
-        case toml::node_type::array:
-            return "an array";
-        case toml::node_type::string:
-            return "a string";
-        case toml::node_type::integer:
-            return "a whole number";
-        case toml::node_type::floating_point:
-            return "a decimal number";
-        case toml::node_type::boolean:
-            return "a boolean";
-        default:
-            return "a date or time";
-    }
+    // in the order of toml::node_type
+    constexpr std::array<std::string_view, 7> kinds{"nothing",        "a table",          "an array", "a string",
+                                                    "a whole number", "a decimal number", "a boolean"};
+    const auto kind = static_cast<std::size_t>(node.type());
+    return std::string(kind < kinds.size() ? kinds[kind] : "a date or time");
 }
 
 std::string shown(const toml::node& node) {

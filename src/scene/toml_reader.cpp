@@ -6,8 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
 namespace doppel {
 namespace {
@@ -65,11 +63,8 @@ TomlReader::TomlReader(const toml::table* table, std::string name, std::string p
 /// Of the key's name, with the option of the command line that gave it; nothing where the key is absent.
 std::optional<toml::source_region> TomlReader::source_of(std::string_view key) const {
     if (!table_) return std::nullopt;
-    for (auto&& [name, node] : *table_) {
-        if (name.str() != key) continue;
-        const auto& origin = node.source().path;
-        return origin && origin->starts_with(command_line) ? node.source() : name.source();
-    }
+    for (auto&& [name, node] : *table_)
+        if (name.str() == key) return is_typed(node) ? node.source() : name.source();
     return std::nullopt;
 }
 
@@ -116,7 +111,7 @@ bool TomlReader::has(std::string_view key) {
 
 bool TomlReader::from_command_line(std::string_view key) {
     const auto* node = find(key);
-    return node && node->source().path && node->source().path->starts_with(command_line);
+    return node && is_typed(*node);
 }
 
 void TomlReader::demand_drawable(std::string_view key, std::string_view text) const {
@@ -130,9 +125,7 @@ void TomlReader::demand_drawable(std::string_view key, std::string_view text) co
 void TomlReader::demand_title(const std::string& name) {
     if (has("title") || !typeface_) return;
     if (const auto fault = not_drawable(name, *typeface_))
-        refuse({fmt::format("{}: title is missing, and the preset's name in its place {}", path_, *fault),
-                {},
-                BesideKeys{}},
+        refuse({fmt::format("{}: title is missing, and the preset's name in its place {}", path_, *fault), {}, ""},
                "title");
 }
 
@@ -173,58 +166,45 @@ void TomlReader::finish() const {
     }
 }
 
-/// One speed, or times with speeds.
-void TomlReader::read(const Field& field, const toml::node& node, Speed& into) {
-    const auto* array = node.as_array();
-    into.changes.clear();
-    if (!array) return read(field, node, into.constant);
-    constexpr std::string_view form = "must be a speed, or times, s, with speeds such as [[0, 1], [6.8, 0.25]]";
-    if (array->empty()) throw fault(field.key, "{}; it is []", form);
-    for (const auto& element : *array) {
-        const auto* pair = element.as_array();
-        if (!pair || pair->size() != 2) throw fault(field.key, "{}; {} is none", form, shown(element));
-        auto& [at_s, speed] = into.changes.emplace_back();
-        read({.key = field.key, .bounds = not_negative}, *pair->get(0), at_s);
-        read({.key = field.key, .bounds = changing_speeds}, *pair->get(1), speed);
+void TomlReader::table(std::string_view key, const std::function<void(KeyVisitor&)>& fields) {
+    auto inside = inner(read_table(key), fmt::format("[{}.{}]", bare_name(), key));
+    fields(inside);
+    inside.finish();
+}
+
+void TomlReader::check_together(const std::function<void()>& check) const {
+    if (!faults_) return check();
+    if (faults_->concern(group_)) return;
+    try {
+        check();
+    } catch (const TomlFault& fault) {
+        refuse(fault.with(""), "");
     }
 }
 
-void TomlReader::read(const Field& field, const toml::node& node, Color& into) {
-    const auto* text = node.as_string();
-    const auto color = text ? parse_color(text->get()) : std::nullopt;
-    if (!color) throw fault(field.key, "must be a colour such as \"#ff9f40\"; {}", found(node));
-    into = *color;
+/// Whether the file gives a hidden key, and the command line another value of what hides it: then that is no error.
+bool TomlReader::is_ruled_out(const Field& field) const {
+    const auto* node = table_ ? table_->get(field.key) : nullptr;
+    return node && !is_typed(*node) && std::any_of(table_->begin(), table_->end(), [&](const auto& entry) {
+               return (field.only.beside.empty() || entry.first.str() == field.only.beside) && is_typed(entry.second);
+           });
 }
 
-void TomlReader::read(const Field& field, const toml::node& node, std::array<Color, 2>& into) {
-    const auto colors = texts_in(field, node);
-    if (colors.size() != 2) throw fault(field.key, "must have 2 colours, a and b; it has {}", colors.size());
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto color = parse_color(colors[i]);
-        if (!color) throw fault(field.key, "must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
-        into[i] = *color;
+bool TomlReader::counts(const Field& field) {
+    const auto& only = field.only;
+    if (only.hides && !only.holds) {
+        hidden_.emplace(field.key, only.beside);
+        if (is_ruled_out(field)) known_.emplace(field.key);
     }
+    if (only.hides || only.holds || only.fault.empty()) return !only.hides || only.holds;
+    if (has(field.key) && (!only.drops || from_command_line(field.key)))
+        throw fault(field.key, "{}", only.fault).with(beside(only.beside));
+    return false;
 }
 
-/// "pendulums" and the strips, in their order.
-void TomlReader::read(const Field& field, const toml::node& node, Panels& into) {
-    const auto panels = texts_in(field, node);
-    const auto& names = names_of<StripKind>;
-    into = {false, {}};
-    for (const auto& panel : panels) {
-        const auto strip = std::find(names.begin(), names.end(), panel);
-        if (panel == "pendulums") {
-            into.pendulums = true;
-        } else if (strip == names.end()) {
-            throw fault(field.key, "may hold \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
-                        panel);
-        } else if (const auto kind = static_cast<StripKind>(strip - names.begin());
-                   std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end()) {
-            into.strips.push_back(kind);
-        }
-    }
-    if (panels.empty())
-        throw fault(field.key, "must hold at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
+void TomlReader::demand(const Field& field, bool given) const {
+    if (!given && !field.needed_by.empty())
+        throw fault(field.key, "is missing; a {} needs it", field.needed_by).with(beside("kind"));
 }
 
 }  // namespace doppel

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace doppel {
 namespace {
@@ -17,28 +18,353 @@ std::string listed(std::span<const std::string_view> choices) {
     return text;
 }
 
-/// Given on the command line: there, one number or text is a list of one.
-bool is_typed(const toml::node& node) {
-    const auto& origin = node.source().path;
-    return origin && origin->starts_with("--");
-}
+/// {1} of key[1]; its text is made for errors alone.
+using Element = std::initializer_list<std::size_t>;
 
-/// Whether the file gives a hidden key, and the command line another value of what hides it: then that is no error.
-bool is_ruled_out(const Field& field, const toml::table* table) {
-    const auto* node = table ? table->get(field.key) : nullptr;
-    if (!node || is_typed(*node)) return false;
-    return std::any_of(table->begin(), table->end(), [&](const auto& entry) {
-        return (field.only.beside.empty() || entry.first.str() == field.only.beside) && is_typed(entry.second);
-    });
-}
-
-std::string index_text(std::initializer_list<std::size_t> element) {
+std::string index_text(Element element) {
     std::string text;
     for (const auto index : element) text += fmt::format("[{}]", index);
     return text;
 }
 
+/// Reads a value of a key into a member, by its type.
+class ValueReader {
+public:
+    ValueReader(const TomlReader& table, const Field& field) : table_(table), field_(field) {}
+
+    void read(const toml::node& node, std::string& into) const {
+        if (!node.is_string()) throw fault("must be a string; {}", found(node));
+        into = node.as_string()->get();
+        if (field_.is_drawn) table_.demand_drawable(field_.key, into);
+        const auto& names = field_.names;
+        if (names.empty() || std::find(names.begin(), names.end(), into) != names.end()) return;
+        const auto meant = nearest(into, names);
+        throw fault("must be {}; it is \"{}\"{}", listed(names), into,
+                    meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
+    }
+
+    void read(const toml::node& node, int& into) const {
+        if (!node.is_integer()) throw fault("must be a whole number; {}", found(node));
+        const auto value = node.as_integer()->get();
+        const auto& [low, high] = std::pair(field_.bounds.low, field_.bounds.high);
+        if (static_cast<double>(value) < low || static_cast<double>(value) > high)
+            throw faulty_number(static_cast<double>(value), fault("must be from {} to {}; it is {}", low, high, value));
+        into = static_cast<int>(value);
+    }
+
+    void read(const toml::node& node, bool& into) const {
+        if (!node.is_boolean()) throw fault("must be true or false; {}", found(node));
+        into = node.as_boolean()->get();
+    }
+
+    template <class Number>
+    requires std::is_same_v<Number, double> || std::is_same_v<Number, Quad>
+    void read(const toml::node& node, Number& into) const {
+        into = number(node, {}, into);
+        check(into);
+    }
+
+    /// A number, or "a/b" in quotes.
+    void read(const toml::node& node, Rational& into) const {
+        std::optional<Rational> value;
+        if (const auto* text = node.as_string()) {
+            value = parse_rational(text->get());
+            if (!value) throw fault("must be a number or a fraction such as \"1/30000\"; it is {}", shown(node));
+        } else if (const auto* whole = node.as_integer()) {
+            value = reduced(whole->get(), 1);
+        } else {
+            // of all digits that are written, or of none
+            const Quad decimal = number(node, {}, Quad());
+            value = rational_from_decimal(static_cast<double>(decimal));
+            const Quad rounding = parse_quad("1e-32") * abs(decimal);
+            if (value && abs(Quad(value->as<Quad>() - decimal)) > rounding) value.reset();
+        }
+        if (!value) throw fault("has more digits than Doppel counts with; it is {}", shown(node));
+        const bool is_open = field_.bounds.is_open;
+        if (value->numerator < (is_open ? 1 : 0))
+            throw fault("must be {} 0; it is {}", is_open ? ">" : "≥", shown(node));
+        check(value->value());
+        into = *value;
+    }
+
+    /// 1 to `most`.
+    void read(const toml::node& node, std::vector<double>& into) const {
+        if (node.is_number() && is_typed(node)) {
+            into.resize(1);
+            return read(node, into[0]);
+        }
+        into.resize(some_of(node, "numbers").size());
+        read_array(node, std::span(into));
+    }
+
+    /// One number for all, or as many as there are already: other keys say how many.
+    void read(const toml::node& node, std::vector<Quad>& into) const {
+        if (node.is_array()) return read_array(node, std::span(into), "links");
+        if (!node.is_number())
+            throw fault("must be a number, or an array of {} numbers, {}; {}", into.size(), field_.each, found(node));
+        std::fill(into.begin(), into.end(), number(node, {}, Quad()));
+        check(into[0], {0});
+    }
+
+    void read(const toml::node& node, QuadPair& into) const {
+        if (!node.is_array()) throw fault("must be two numbers, [x, y]; {}", found(node));
+        ValueReader(table_, {.key = field_.key, .each = "x and y"}).read_array(node, std::span<Quad>(into));
+    }
+
+    void read(const toml::node& node, EndSpec& into) const {
+        if (node.is_string())
+            read(node, into.emplace<std::string>());
+        else
+            read(node, into.emplace<QuadPair>());
+    }
+
+    void read(const toml::node& node, std::array<int, 2>& into) const {
+        read_whole_pair(node, "two whole numbers", into[0], into[1]);
+    }
+    void read(const toml::node& node, Size& into) const {
+        read_whole_pair(node, "whole numbers", into.width, into.height);
+    }
+
+    /// Bounds above 0: an axis by powers of ten.
+    void read(const toml::node& node, Range& into) const {
+        const auto [low, high] = two_numbers(node);
+        if (field_.bounds.is_open && (!(high >= 10 * low) || high / low > 1e60))
+            throw fault("must rise by 1 to 60 powers of ten; it is [{}, {}]", low, high);
+        if (!(high > low) || !std::isfinite(high - low)) throw fault("must rise; it is [{}, {}]", low, high);
+        into = {low, high};
+    }
+
+    /// Each of `names`, if there are some.
+    void read(const toml::node& node, std::vector<std::string>& into) const {
+        auto texts = texts_in(node);
+        for (const auto& text : texts) {
+            if (field_.is_drawn) table_.demand_drawable(field_.key, text);
+            if (!field_.names.empty() &&
+                std::find(field_.names.begin(), field_.names.end(), text) == field_.names.end())
+                throw fault("are of {}; \"{}\" is not", fmt::join(field_.names, ", "), text);
+        }
+        into = std::move(texts);
+    }
+
+    void read(const toml::node& node, ChosenText& into) const {
+        into = {};
+        if (node.is_boolean()) return read(node, into.shown);
+        if (node.is_string()) return read(node, into.own.emplace().emplace_back());
+        if (!node.is_array()) throw fault("must be true, false, text or a list of text; {}", found(node));
+        read(node, into.own.emplace());
+    }
+
+    /// 1 to `most`.
+    void read(const toml::node& node, TomlValues& into) const {
+        into.texts.clear();
+        for (const auto& element : some_of(node, "values"))
+            into.texts.push_back(element.is_number() ? text_of(number(element, {}, Quad())) : written(element));
+    }
+
+    void read(const toml::node& node, Members& into) const {
+        into.angles_deg.clear();
+        const auto* releases = node.as_array();
+        if (!releases) return read(node, into.count);
+        const auto refuse = [&](const std::string& what) {
+            throw fault("must be a whole number, or 2 to {} lists of angles; {}", Members::most_releases, what);
+        };
+        if (releases->size() < 2 || releases->size() > Members::most_releases) refuse(found(node));
+        const Field angle{.key = field_.key, .bounds = {.low = -1e6, .high = 1e6}};
+        for (const auto& release : *releases) {
+            auto& angles = into.angles_deg.emplace_back();
+            const auto add = [&](const toml::node& element) {
+                const Element place{into.angles_deg.size() - 1, angles.size()};
+                angles.push_back(number(element, place, Quad()));
+                ValueReader(table_, angle).check(angles.back(), place);
+            };
+            const auto* list = release.as_array();
+            if (release.is_number() && is_typed(node))
+                add(release);
+            else if (!list || list->empty())
+                refuse(fmt::format("{} is {}", shown(release), kind_of(release)));
+            else
+                for (const auto& element : *list) add(element);
+        }
+    }
+
+    /// One speed, or times with speeds.
+    void read(const toml::node& node, Speed& into) const {
+        const auto* array = node.as_array();
+        into.changes.clear();
+        if (!array) return read(node, into.constant);
+        constexpr std::string_view form = "must be a speed, or times, s, with speeds such as [[0, 1], [6.8, 0.25]]";
+        if (array->empty()) throw fault("{}; it is []", form);
+        for (const auto& element : *array) {
+            const auto* pair = element.as_array();
+            if (!pair || pair->size() != 2) throw fault("{}; {} is none", form, shown(element));
+            auto& [at_s, speed] = into.changes.emplace_back();
+            ValueReader(table_, {.key = field_.key, .bounds = not_negative}).read(*pair->get(0), at_s);
+            ValueReader(table_, {.key = field_.key, .bounds = changing_speeds}).read(*pair->get(1), speed);
+        }
+    }
+
+    /// "#rrggbb"
+    void read(const toml::node& node, Color& into) const {
+        const auto* text = node.as_string();
+        const auto color = text ? parse_color(text->get()) : std::nullopt;
+        if (!color) throw fault("must be a colour such as \"#ff9f40\"; {}", found(node));
+        into = *color;
+    }
+
+    void read(const toml::node& node, std::array<Color, 2>& into) const {
+        const auto colors = texts_in(node);
+        if (colors.size() != 2) throw fault("must have 2 colours, a and b; it has {}", colors.size());
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto color = parse_color(colors[i]);
+            if (!color) throw fault("must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
+            into[i] = *color;
+        }
+    }
+
+    /// "pendulums" and the strips, in their order.
+    void read(const toml::node& node, Panels& into) const {
+        const auto panels = texts_in(node);
+        const auto& names = names_of<StripKind>;
+        into = {false, {}};
+        for (const auto& panel : panels) {
+            if (panel == "pendulums") {
+                into.pendulums = true;
+                continue;
+            }
+            if (std::find(names.begin(), names.end(), panel) == names.end())
+                throw fault("may hold \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
+                            panel);
+            const auto kind = value_named<StripKind>(panel);
+            if (std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end())
+                into.strips.push_back(kind);
+        }
+        if (panels.empty()) throw fault("must hold at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
+    }
+
+private:
+    template <class... Args>
+    TomlFault fault(fmt::format_string<Args...> format, Args&&... args) const {
+        return table_.fault(field_.key, format, std::forward<Args>(args)...);
+    }
+    /// Of an element of the key's array.
+    template <class... Args>
+    TomlFault fault_of(Element element, fmt::format_string<Args...> format, Args&&... args) const {
+        return {fmt::format("{}: {}{} {}", table_.place(field_.key), table_.subject(field_.key), index_text(element),
+                            fmt::format(format, std::forward<Args>(args)...)),
+                table_.fault_place(field_.key)};
+    }
+    /// The fault as one of several keys, where beside others the key would take the number.
+    TomlFault faulty_number(double value, const TomlFault& fault) const {
+        const auto& widest = field_.otherwise;
+        const bool is_possible = widest && value >= widest->low && value <= widest->high;
+        return is_possible ? fault.with(table_.beside(field_.only.beside)) : fault;
+    }
+
+    template <class Number>
+    void check(const Number& value, Element element = {}) const {
+        const auto& bounds = field_.bounds;
+        const auto& [low, high, is_open, zero, why, is_positive] = bounds;
+        if ((is_open ? value > low : value >= low) && value <= high) return;
+        // keys mostly name the unit
+        const auto unit =
+            field_.unit.empty() || field_.key.ends_with(field_.unit) ? "" : fmt::format(" {}", field_.unit);
+        const auto right = is_positive && !(value > 0) ? "> 0"
+                           : is_open && !(value > low) ? fmt::format("> {}", low)
+                           : is_open                   ? fmt::format("at most {}{}", high, unit)
+                           : !bounds.has_high()
+                               ? fmt::format("{} {}", is_positive ? "at least" : "≥", low)
+                               : fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero),
+                                             high, unit, why.empty() ? "" : fmt::format(": {}", why));
+        throw faulty_number(static_cast<double>(value),
+                            fault_of(why.empty() ? element : Element{}, "must be {}; {} is {}", right,
+                                     why.empty() ? "it" : "one", toml_value(value)));
+    }
+
+    /// Finite.
+    double number(const toml::node& node, Element element, double) const {
+        const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+        if (!value) throw fault_of(element, "must be a number; {}", found(node));
+        if (!std::isfinite(*value)) throw fault_of(element, "must be finite; it is {}", *value);
+        return *value + 0.0;  // −0 is 0
+    }
+    /// To all digits of what is written.
+    Quad number(const toml::node& node, Element element, const Quad&) const {
+        const double rounded = number(node, element, 0.0);
+        if (const auto* whole = node.as_integer()) return Quad(whole->get());
+        const auto literal = literal_of(node, table_.texts());
+        if (!literal) return Quad(rounded);
+        const Quad value = parse_quad(*literal) + 0;
+        // the literal found must be the number that was read, or its place was mistaken
+        constexpr double rounding = 1e-15, least = 1e-322;
+        if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))
+            throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", table_.place(field_.key),
+                            table_.subject(field_.key), rounded);
+        constexpr std::size_t always_held = 33;
+        if (literal->size() <= always_held) return value;
+        const auto digits = significant_digits(*literal);
+        if (digits.size() > always_held && digits != significant_digits(text_of(value)))
+            throw fault_of(element, "must have at most 34 digits, which quad holds; it has {}", digits.size());
+        return value;
+    }
+
+    /// `other` = the key that says how many there are.
+    template <class Number>
+    void read_array(const toml::node& node, std::span<Number> into, std::string_view other = "") const {
+        const auto& array = *node.as_array();
+        if (array.size() != into.size()) {
+            const auto length =
+                fault("must have {} numbers, {}; it has {}: {}", into.size(), field_.each, array.size(), shown(node));
+            throw other.empty() ? length : length.with(table_.beside(other));
+        }
+        for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(*array.get(i), {i}, into[i]);
+        for (std::size_t i = 0; i < into.size(); ++i) check(into[i], {i});
+    }
+    std::array<double, 2> two_numbers(const toml::node& node) const {
+        if (!node.is_array()) throw fault("must be an array of 2 numbers, {}; {}", field_.each, found(node));
+        std::array<double, 2> pair{};
+        read_array(node, std::span<double>(pair));
+        return pair;
+    }
+    void read_whole_pair(const toml::node& node, std::string_view what, int& first, int& second) const {
+        const auto pair = ValueReader(table_, {.key = field_.key, .each = field_.each}).two_numbers(node);
+        const auto& [low, high] = std::pair(field_.bounds.low, field_.bounds.high);
+        for (const double number : pair)
+            if (number != std::floor(number) || number < low || number > high)
+                throw fault("must be {} from {} to {}; it is [{}, {}]", what, low, high, pair[0], pair[1]);
+        first = static_cast<int>(pair[0]);
+        second = static_cast<int>(pair[1]);
+    }
+    const toml::array& some_of(const toml::node& node, std::string_view what) const {
+        const auto* array = node.as_array();
+        if (!array || array->empty() || array->size() > field_.most)
+            throw fault("must be an array of 1 to {} {}; {}", field_.most, what, found(node));
+        return *array;
+    }
+    std::vector<std::string> texts_in(const toml::node& node) const {
+        if (const auto* text = node.as_string(); text && is_typed(node)) return {text->get()};
+        const auto* array = node.as_array();
+        if (!array) throw fault("must be an array of strings; {}", found(node));
+        std::vector<std::string> texts;
+        for (const auto& element : *array) {
+            if (!element.is_string())
+                throw fault("must be an array of strings; {} is {}", shown(element), kind_of(element));
+            texts.push_back(element.as_string()->get());
+        }
+        if (field_.is_drawn && texts.size() > most_texts)
+            throw fault("must be at most {} texts; they are {}", most_texts, texts.size());
+        return texts;
+    }
+
+    const TomlReader& table_;
+    const Field& field_;
+};
+
 }  // namespace
+
+bool is_typed(const toml::node& node) {
+    const auto& origin = node.source().path;
+    return origin && origin->starts_with("--");
+}
 
 std::string significant_digits(std::string_view decimal) {
     std::string digits;
@@ -48,296 +374,38 @@ std::string significant_digits(std::string_view decimal) {
     return digits;
 }
 
-bool TomlReader::counts(const Field& field) {
-    const auto& only = field.only;
-    if (only.hides && !only.holds) {
-        hidden_.emplace(field.key, only.beside);
-        if (is_ruled_out(field, table_)) known_.emplace(field.key);
-    }
-    if (only.hides || only.holds || only.fault.empty()) return only.hides ? only.holds : true;
-    if (has(field.key) && (!only.drops || from_command_line(field.key)))
-        throw fault(field.key, "{}", only.fault).with(beside(only.beside));
-    return false;
-}
-
-void TomlReader::demand(const Field& field, bool given) const {
-    if (!given && !field.needed_by.empty())
-        throw fault(field.key, "is missing; a {} needs it", field.needed_by).with(beside("kind"));
-}
-
-/// The fault as one of several keys, where beside others the key would take the number.
-TomlFault TomlReader::faulty_number(const Field& field, double value, const TomlFault& fault) const {
-    const auto& widest = field.otherwise;
-    const bool is_possible = widest && value >= widest->low && value <= widest->high;
-    return is_possible ? fault.with(beside(field.only.beside)) : fault;
-}
-
-template <class Number>
-void TomlReader::check(const Field& field, Element element, const Number& value) const {
-    const auto& [low, high, is_open, zero, reason, is_positive] = field.bounds;
-    const std::string_view why = reason;  // clang 14 captures no structured binding
-    if (is_open ? value > low : value >= low)
-        if (value <= high) return;
-    const auto refuse = [&](const std::string& what) {
-        const auto message =
-            fmt::format("{}: {}{} must be {}; {} is {}", place(field.key), subject(field.key),
-                        why.empty() ? index_text(element) : "", what, why.empty() ? "it" : "one", toml_value(value));
-        return faulty_number(field, static_cast<double>(value), {message, fault_place(field.key)});
+void TomlReader::key(const Field& field, const KeyMember& member) {
+    const auto read = [&]<class M>(M into) {
+        const bool does_count = counts(field);
+        const auto* node = does_count ? find(field.key) : nullptr;
+        if constexpr (std::is_same_v<M, ChosenName>) {
+            std::string name(into.name);
+            if (node) ValueReader(*this, {.key = field.key, .names = into.names}).read(*node, name);
+            into.choose(static_cast<std::size_t>(std::ranges::find(into.names, name) - into.names.begin()));
+        } else if constexpr (is_optional<std::remove_pointer_t<M>>) {
+            if (!does_count) return into->reset();
+            if (node) {
+                typename std::remove_pointer_t<M>::value_type value{};
+                ValueReader(*this, field).read(*node, value);
+                *into = std::move(value);
+            }
+            demand(field, into->has_value());
+        } else {
+            if (node) {
+                auto value = *into;
+                ValueReader(*this, field).read(*node, value);
+                *into = std::move(value);
+            }
+            if constexpr (requires { into->empty(); })
+                if (does_count) demand(field, !into->empty());
+        }
     };
-    // keys mostly name the unit
-    const auto unit = field.unit.empty() || field.key.ends_with(field.unit) ? "" : fmt::format(" {}", field.unit);
-    if (is_positive && !(value > 0)) throw refuse("> 0");
-    if (is_open && !(value > low)) throw refuse(fmt::format("> {}", low));
-    if (is_open) throw refuse(fmt::format("at most {}{}", high, unit));
-    if (!field.bounds.has_high()) throw refuse(fmt::format("{} {}", is_positive ? "at least" : "≥", low));
-    throw refuse(fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero), high, unit,
-                             why.empty() ? "" : fmt::format(": {}", why)));
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, std::string& into) {
-    if (!node.is_string()) throw fault(field.key, "must be a string; {}", found(node));
-    into = node.as_string()->get();
-    if (field.is_drawn) demand_drawable(field.key, into);
-    if (field.names.empty() || std::find(field.names.begin(), field.names.end(), into) != field.names.end()) return;
-    const auto meant = nearest(into, field.names);
-    throw fault(field.key, "must be {}; it is \"{}\"{}", listed(field.names), into,
-                meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, int& into) {
-    if (!node.is_integer()) throw fault(field.key, "must be a whole number; {}", found(node));
-    const auto value = node.as_integer()->get();
-    if (static_cast<double>(value) < field.bounds.low || static_cast<double>(value) > field.bounds.high)
-        throw faulty_number(
-            field, static_cast<double>(value),
-            fault(field.key, "must be from {} to {}; it is {}", field.bounds.low, field.bounds.high, value));
-    into = static_cast<int>(value);
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, bool& into) {
-    if (!node.is_boolean()) throw fault(field.key, "must be true or false; {}", found(node));
-    into = node.as_boolean()->get();
-}
-
-double TomlReader::number(std::string_view key, Element element, const toml::node& node, double) const {
-    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    if (value && std::isfinite(*value)) return *value + 0.0;  // −0 is 0
-    const auto name = subject(fmt::format("{}{}", key, index_text(element)));
-    if (!value) throw bad_input("{}: {} must be a number; {}", place(key), name, found(node));
-    throw bad_input("{}: {} must be finite; it is {}", place(key), name, *value);
-}
-
-Quad TomlReader::number(std::string_view key, Element element, const toml::node& node, const Quad&) const {
-    const double rounded = number(key, element, node, 0.0);
-    if (const auto* whole = node.as_integer()) return Quad(whole->get());
-    const auto& origin = node.source().path;
-    const auto text = texts_->find(origin ? *origin : path_);
-    if (text == texts_->end()) return Quad(rounded);
-    const auto& at = node.source().begin;
-    const auto literal = text->second.literal_at(at.line, at.column);
-    const Quad value = parse_quad(literal) + 0;
-    // the literal found must be the number that was read, or its place was mistaken
-    constexpr double rounding = 1e-15, least = 1e-322;
-    if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))
-        throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", place(key), subject(key),
-                        rounded);
-    constexpr std::size_t always_held = 33;
-    if (literal.size() <= always_held) return value;
-    const auto digits = significant_digits(literal);
-    if (digits.size() > always_held && digits != significant_digits(text_of(value)))
-        throw bad_input("{}: {} must have at most 34 digits, which quad holds; it has {}", place(key),
-                        subject(fmt::format("{}{}", key, index_text(element))), digits.size());
-    return value;
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, double& into) {
-    into = number(field.key, {}, node, into);
-    check(field, {}, into);
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, Quad& into) {
-    into = number(field.key, {}, node, into);
-    check(field, {}, into);
-}
-
-template <class Number>
-void TomlReader::read_array(const Field& field, const toml::node& node, std::span<Number> into) {
-    const auto& array = *node.as_array();
-    if (array.size() != into.size())
-        throw fault(field.key, "must have {} numbers, {}; it has {}: {}", into.size(), field.each, array.size(),
-                    shown(node));
-    for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(field.key, {i}, *array.get(i), into[i]);
-    for (std::size_t i = 0; i < into.size(); ++i) check(field, {i}, into[i]);
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, std::span<double> into) {
-    if (!node.is_array())
-        throw fault(field.key, "must be an array of {} numbers, {}; {}", into.size(), field.each, found(node));
-    read_array(field, node, into);
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, std::vector<double>& into) {
-    if (node.is_number() && is_typed(node)) {
-        into.resize(1);
-        return read(field, node, into[0]);
-    }
-    const auto* array = node.as_array();
-    if (!array || array->empty() || array->size() > field.most)
-        throw fault(field.key, "must be an array of 1 to {} numbers; {}", field.most, found(node));
-    into.resize(array->size());
-    read_array(field, node, std::span(into));
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, Members& into) {
-    into.angles_deg.clear();
-    const auto* releases = node.as_array();
-    if (!releases) return read(field, node, into.count);
-    if (releases->size() < 2 || releases->size() > Members::most_releases)
-        throw fault(field.key, "must be a whole number, or 2 to {} lists of angles; {}", Members::most_releases,
-                    found(node));
-    for (const auto& release : *releases) {
-        auto& angles = into.angles_deg.emplace_back();
-        const auto add = [&](const toml::node& angle) {
-            const Element element{into.angles_deg.size() - 1, angles.size()};
-            angles.push_back(number(field.key, element, angle, Quad()));
-            check({.key = field.key, .bounds = {.low = -1e6, .high = 1e6}}, element, angles.back());
-        };
-        const auto* list = release.as_array();
-        if (release.is_number() && is_typed(node))
-            add(release);
-        else if (!list || list->empty())
-            throw fault(field.key, "must be a whole number, or 2 to {} lists of angles; {} is {}",
-                        Members::most_releases, shown(release), kind_of(release));
-        else
-            for (const auto& angle : *list) add(angle);
-    }
-}
-
-std::vector<std::string> TomlReader::texts_in(const Field& field, const toml::node& node) const {
-    if (const auto* text = node.as_string(); text && is_typed(node)) return {text->get()};
-    const auto* array = node.as_array();
-    if (!array) throw fault(field.key, "must be an array of strings; {}", found(node));
-    std::vector<std::string> texts;
-    for (const auto& element : *array) {
-        if (!element.is_string())
-            throw fault(field.key, "must be an array of strings; {} is {}", shown(element), kind_of(element));
-        texts.push_back(element.as_string()->get());
-    }
-    if (field.is_drawn && texts.size() > most_texts)
-        throw fault(field.key, "must be at most {} texts; they are {}", most_texts, texts.size());
-    return texts;
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, std::vector<std::string>& into) {
-    auto texts = texts_in(field, node);
-    for (const auto& text : texts) {
-        if (field.is_drawn) demand_drawable(field.key, text);
-        if (!field.names.empty() && std::find(field.names.begin(), field.names.end(), text) == field.names.end())
-            throw fault(field.key, "are of {}; \"{}\" is not", fmt::join(field.names, ", "), text);
-    }
-    into = std::move(texts);
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, ChosenText& into) {
-    into = {};
-    if (node.is_boolean()) return read(field, node, into.shown);
-    if (node.is_string()) return read(field, node, into.own.emplace().emplace_back());
-    if (!node.is_array()) throw fault(field.key, "must be true, false, text or a list of text; {}", found(node));
-    read(field, node, into.own.emplace());
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, TomlValues& into) {
-    const auto* array = node.as_array();
-    if (!array || array->empty() || array->size() > field.most)
-        throw fault(field.key, "must be an array of 1 to {} values; {}", field.most, found(node));
-    into.texts.clear();
-    for (const auto& element : *array)
-        into.texts.push_back(element.is_number() ? text_of(number(field.key, {}, element, Quad())) : written(element));
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, std::span<Quad> into) {
-    if (node.is_array()) return read_array(field, node, into);
-    if (!node.is_number())
-        throw fault(field.key, "must be a number, or an array of {} numbers, {}; {}", into.size(), field.each,
-                    found(node));
-    std::fill(into.begin(), into.end(), number(field.key, {}, node, Quad()));
-    check(field, {0}, into[0]);
-}
-
-/// As many numbers as there are already: other keys say how many.
-void TomlReader::read(const Field& field, const toml::node& node, std::vector<Quad>& into) {
-    const auto* array = node.as_array();
-    const bool is_of_other_length = array && array->size() != into.size();
     try {
-        read(field, node, std::span(into));
-    } catch (const TomlFault& fault) {
-        throw is_of_other_length ? fault.with(beside("links")) : fault;
+        std::visit(read, member);
+    } catch (const Error& fault) {
+        if (!faults_ || fault.code() != ExitCode::bad_input) throw;
+        note(field.key, fault);
     }
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, QuadPair& into) {
-    if (!node.is_array()) throw fault(field.key, "must be two numbers, [x, y]; {}", found(node));
-    read_array({.key = field.key, .each = "x and y"}, node, std::span<Quad>(into));
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, EndSpec& into) {
-    if (node.is_string())
-        read(field, node, into.emplace<std::string>());
-    else
-        read(field, node, into.emplace<QuadPair>());
-}
-
-void TomlReader::read_whole_pair(const Field& field, const toml::node& node, std::string_view what,
-                                 std::array<int, 2>& into) {
-    std::array<double, 2> pair{double(into[0]), double(into[1])};
-    read({.key = field.key, .each = field.each}, node, std::span<double>(pair));
-    for (const double number : pair)
-        if (number != std::floor(number) || number < field.bounds.low || number > field.bounds.high)
-            throw fault(field.key, "must be {} from {} to {}; it is [{}, {}]", what, field.bounds.low,
-                        field.bounds.high, pair[0], pair[1]);
-    into = {static_cast<int>(pair[0]), static_cast<int>(pair[1])};
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, std::array<int, 2>& into) {
-    read_whole_pair(field, node, "two whole numbers", into);
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, Size& into) {
-    std::array<int, 2> size{into.width, into.height};
-    read_whole_pair(field, node, "whole numbers", size);
-    into = {size[0], size[1]};
-}
-
-/// Bounds above 0: an axis by powers of ten.
-void TomlReader::read(const Field& field, const toml::node& node, Range& into) {
-    std::array<double, 2> ends{};
-    read(field, node, std::span<double>(ends));
-    if (field.bounds.is_open && (!(ends[1] >= 10 * ends[0]) || ends[1] / ends[0] > 1e60))
-        throw fault(field.key, "must rise by 1 to 60 powers of ten; it is [{}, {}]", ends[0], ends[1]);
-    if (!(ends[1] > ends[0]) || !std::isfinite(ends[1] - ends[0]))
-        throw fault(field.key, "must rise; it is [{}, {}]", ends[0], ends[1]);
-    into = {ends[0], ends[1]};
-}
-
-void TomlReader::read(const Field& field, const toml::node& node, Rational& into) {
-    std::optional<Rational> value;
-    if (const auto* text = node.as_string()) {
-        value = parse_rational(text->get());
-        if (!value) throw fault(field.key, "must be a number or a fraction such as \"1/30000\"; it is {}", shown(node));
-    } else if (const auto* whole = node.as_integer()) {
-        value = reduced(whole->get(), 1);
-    } else {
-        // of all digits that are written, or of none
-        const Quad decimal = number(field.key, {}, node, Quad());
-        value = rational_from_decimal(static_cast<double>(decimal));
-        const Quad rounding = parse_quad("1e-32") * abs(decimal);
-        if (value && abs(Quad(value->as<Quad>() - decimal)) > rounding) value.reset();
-    }
-    if (!value) throw fault(field.key, "has more digits than Doppel counts with; it is {}", shown(node));
-    if (value->numerator < (field.bounds.is_open ? 1 : 0))
-        throw fault(field.key, "must be {} 0; it is {}", field.bounds.is_open ? ">" : "≥", shown(node));
-    check(field, {}, value->value());
-    into = *value;
 }
 
 }  // namespace doppel

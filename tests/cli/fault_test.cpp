@@ -316,19 +316,5 @@ TEST(Faults, MemoryStaysFlatOverALongFilm) {
     }
 }
 
-TEST(Faults, AMessageIsOneLineWhateverItQuotes) {
-    const auto folder = fresh_folder();
-    write_bytes(folder / "keys.toml", "\"a\\nb\\u001b[31m\" = 1\n");
-    write_bytes(folder / "number.toml", "title = in\n");
-    write_bytes(folder / "nul.toml", "[system]\nmodel = \"a\\u0000b\"\n");
-    for (const char* preset : {"keys.toml", "number.toml", "nul.toml"}) {
-        const auto result = doppel(folder, {"check", preset});
-        EXPECT_EQ(result.code, 2);
-        EXPECT_TRUE(one_line(result.err)) << result.err;
-        EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
-    }
-    EXPECT_TRUE(doppel(folder, {"check", "nul.toml"}).err.ends_with("it is \"a b\"\n"));
-}
-
 }  // namespace fault_test
 }  // namespace doppel

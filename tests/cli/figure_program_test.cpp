@@ -56,59 +56,15 @@ TEST(FigureProgram, DrawsByNameAndByPath) {
     EXPECT_EQ(read_png(folder / "figures/mine/mine.png").size, (Size{640, 360}));
 }
 
-TEST(FigureProgram, IsListedCheckedAndExplained) {
+TEST(FigureProgram, IsChecked) {
     const auto folder = fresh_folder();
-    EXPECT_TRUE(contains(doppel(folder, {"list"}).out, "fig2-right"));
-    const auto shown = doppel(folder, {"show", "fig6"}).out;
-    EXPECT_TRUE(bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/figures/fig6.toml").ends_with("\n" + shown));
     const auto check = doppel(folder, with({"check", "fig2-right"}, {"--set", "grid.x.to=9"}));
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_TRUE(contains(check.out, "10 pairs")) << check.out;
     // a row of exponents takes more than the second that it may take
     const auto map = doppel(folder, {"check", "parting-map", "--set", "grid.quantity=exponent"});
     EXPECT_TRUE(contains(map.out, "takes  about ")) << map.out << map.err;
-    const auto help = doppel(folder, {"figure", "--help"}).out;
-    for (const char* words : {"--shard", "--merge", "--scale", "--jobs"}) EXPECT_TRUE(contains(help, words)) << words;
     EXPECT_FALSE(fs::exists(folder / "out"));
-}
-
-TEST(FigureProgram, ExitsWith2OnBadUsageAndWritesNothing) {
-    const auto folder = fresh_folder();
-    test::write_bytes(folder / "bad.toml", "[scene]\nkind = \"grid\"\n[grid.x]\nstep = 0\n");
-    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-        {{"figure"}, "PRESET is required"},
-        {{"figure", "fig2-rihgt"}, "there is no preset \"fig2-rihgt\"; did you mean \"fig2-right\"?"},
-        {{"figure", "butterfly"}, "doppel render butterfly"},
-        {{"render", "fig2-right"}, "doppel figure fig2-right"},
-        {{"simulate", "fig2-right"}, "doppel figure fig2-right"},
-        {{"figure", "bad.toml"}, "bad.toml:4:1: [grid.x] step must be > 0; it is 0"},
-        {{"figure", "fig6", "fig6"}, "would both be written to fig6/"},
-        {{"figure", "all", "fig6"}, "would both be written to fig6/"},
-        {{"figure", "fig6", "--shard", "0/3"}, "--shard wants I/N"},
-        {{"figure", "fig6", "--shard", "4/3"}, "\"4/3\""},
-        {{"figure", "fig6", "--shard", "x"}, "\"x\""},
-        {{"figure", "fig6", "--shard", "1/0"}, "\"1/0\""},
-        {{"figure", "fig6", "--shard", "-1/2"}, "--shard"},
-        {{"figure", "fig6", "--shard", "1/2/3"}, "\"1/2/3\""},
-        {{"figure", "fig6", "--shard", "1.0/2"}, "\"1.0/2\""},
-        {{"figure", "fig6", "--shard", "1/9999999999999999999"}, "--shard"},
-        {{"figure", "fig6", "--shard", "1/2", "--merge"}, "--shard makes a part and --merge joins them"},
-        {{"figure", "fig6", "--merge"}, "--shard I/N"},
-        {{"figure", "fig6", "--size", "wide"}, "--size wants WIDTHxHEIGHT"},
-        {{"figure", "fig6", "--scale", "0"}, "--scale"},
-        {{"figure", "fig6", "--scale", "2", "--set", "chart.scale=3"}, "chart.scale is given twice"},
-        {{"figure", "fig6", "--jobs", "0"}, "--jobs"},
-        {{"figure", "poincare", "--set", "system.integrator=\"rk4\""}, "[system] has no \"integrator\""},
-    };
-    for (const auto& [arguments, words] : cases) {
-        const auto result = doppel(folder, arguments);
-        EXPECT_EQ(result.code, 2) << words << "\n" << result.err;
-        EXPECT_EQ(result.err.rfind("doppel: ", 0), 0u) << result.err;
-        EXPECT_TRUE(contains(result.err, words)) << result.err;
-        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-        EXPECT_EQ(result.out, "");
-    }
-    EXPECT_TRUE(left_nothing(folder));
 }
 
 TEST(FigureProgram, ReportsProgressAsJson) {
@@ -124,21 +80,6 @@ TEST(FigureProgram, ReportsProgressAsJson) {
     EXPECT_EQ(event["unit"], "pairs");
     EXPECT_EQ(event["done"], 10);
     EXPECT_EQ(event["files"].size(), 3u);
-}
-
-TEST(FigureProgram, ExitsWith4WhereNothingCanBeWritten) {
-    const auto folder = fresh_folder();
-    test::write_bytes(folder / "taken", "a file");
-    const auto taken = doppel(folder, with({"figure", "fig2-right", "-o", "taken"}, small));
-    EXPECT_EQ(taken.code, 4);
-    EXPECT_TRUE(contains(taken.err, "taken")) << taken.err;
-    EXPECT_EQ(bytes_of(folder / "taken"), "a file");
-
-    fs::create_directories(folder / "out/fig2-right/fig2-right.csv");
-    const auto in_place = doppel(folder, with({"figure", "fig2-right"}, small));
-    EXPECT_EQ(in_place.code, 4);
-    EXPECT_TRUE(contains(in_place.err, "fig2-right.csv is a folder")) << in_place.err;
-    EXPECT_FALSE(fs::exists(folder / "out/fig2-right/fig2-right.png"));
 }
 
 TEST(FigureProgram, ExitsWith130WithinASecondOfCtrlC) {
@@ -269,14 +210,6 @@ TEST(Recipe, GnuParallel) {
                                 "fi");
     EXPECT_EQ(jobs.code, 0) << jobs.err;
     expect_merged(folder);
-}
-
-TEST(Recipe, FigureImagesInCi) {
-    const auto folder = fresh_folder();
-    const auto result =
-        shell(folder, "set -e\nfor name in fig2-right fig4-right; do \"$DOPPEL\" figure $name -o figures" + settings +
-                          "; done\ntest -s figures/fig4-right/fig4-right.png");
-    EXPECT_EQ(result.code, 0) << result.err;
 }
 
 }  // namespace figure_program_test

@@ -24,7 +24,7 @@ TEST(Streams, WhatCannotBePrintedIsExit4) {
         shell(folder, "\"$DOPPEL\" render triple --format png --size 64x64 --frames 0:2 -o two --progress none").code,
         0);
     for (const std::string command :
-         {"show butterfly", "list", "list methods", "schema", "completion bash", "complete bash sim", "check calm",
+         {"show butterfly", "list", "list methods", "schema", "completion bash", "complete sim", "check calm",
           "check fig6", "--help", "render --help", "--version", "compare one/calm/frames one/calm/frames",
           "compare one/calm/frames two/triple/frames"}) {
         for (const auto& [to, why] :
@@ -169,7 +169,10 @@ TEST(Streams, APresetsWordsAreShownAndNotObeyed) {
     write_bytes(folder / "choice.toml", "[system]\nmodel = \"" + evil + "\"\n");
     write_bytes(folder / "parts.toml",
                 "[[system.force]]\nkind = \"spring\"\nname = \"" + evil + "\"\nfrom = \"" + evil + "\"\nto = [0, 1]\n");
-    for (const char* preset : {"film.toml", "figure.toml", "key.toml", "choice.toml", "parts.toml"}) {
+    write_bytes(folder / "number.toml", "title = in\n");
+    write_bytes(folder / "nul.toml", "[system]\nmodel = \"a\\u0000b\"\n");
+    for (const char* preset :
+         {"film.toml", "figure.toml", "key.toml", "choice.toml", "parts.toml", "number.toml", "nul.toml"}) {
         const auto result = doppel(folder, {"check", preset});
         EXPECT_EQ(result.code, 2) << preset << result.out;
         EXPECT_TRUE(one_line(result.err)) << result.err;

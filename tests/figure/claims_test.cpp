@@ -70,10 +70,10 @@ SideTwins mass_twins(int theta1_deg, int theta2_deg, double ratio) {
 SideSpec with_droplet(SideSpec spec, bool droplet) {
     spec.model = ModelChoice::mechanism;
     if (droplet)
-        spec.forces.push_back({.name = {},
-                               .part = DropletSpec{.position_m = QuadPair{1609, 0},
-                                                   .mass_kg = parse_quad("0.000034"),
-                                                   .constant_m3_per_kg_s2 = parse_quad("6.674e-11")}});
+        spec.forces.push_back({.kind = PartKind::droplet,
+                               .position_m = QuadPair{1609, 0},
+                               .mass_kg = parse_quad("0.000034"),
+                               .constant_m3_per_kg_s2 = parse_quad("6.674e-11")});
     return spec;
 }
 

@@ -67,7 +67,7 @@ to = [0, 1]
 )");
     EXPECT_EQ(scene.preset.a.forces.size(), 1u);
     EXPECT_EQ(scene.preset.b.forces.size(), 2u);
-    EXPECT_EQ(std::get<SpringSpec>(scene.preset.b.forces[0].part).stiffness_N_per_m, 4);
+    EXPECT_EQ(scene.preset.b.forces[0].stiffness_N_per_m, 4);
     EXPECT_EQ(scene.preset.b.particles.size(), 1u);
     EXPECT_EQ(scene.preset.b.particles[0].position_m[0], parse_quad("1.001"));
     // a spring whose rest length is not given is at rest at the start

@@ -84,11 +84,10 @@ inline const std::vector<Kind> kinds{
     {"chain on a spring",
      [](Lot& lot) {
          auto side = chain_by(lot, 1 + lot.of(3), 200);
-         side.forces.push_back({.name = "",
-                                .part = SpringSpec{.from = EndSpec("bob1"),
-                                                   .to = EndSpec(QuadPair{Quad(1), Quad(-1)}),
-                                                   .length_m = {},
-                                                   .stiffness_N_per_m = lot.between(1, 30)}});
+         side.forces.push_back({.kind = PartKind::spring,
+                                .from = EndSpec("bob1"),
+                                .to = EndSpec(QuadPair{Quad(1), Quad(-1)}),
+                                .stiffness_N_per_m = lot.between(1, 30)});
          return side;
      }},
     {"light mass",

@@ -79,16 +79,14 @@ TEST(NumericKey, OfAnEntryIsFoundByNameOrByItsKind) {
     Found left("system.force.left.stiffness_N_per_m", "", true);
     ASSERT_TRUE(left.key) << left.message;
     EXPECT_EQ(left.key->label, "stiffness of left, N/m");
-    const auto stiffness = [](const SideSpec& side, std::size_t i) {
-        return std::get<SpringSpec>(side.forces[i].part).stiffness_N_per_m;
-    };
+    const auto stiffness = [](const SideSpec& side, std::size_t i) { return side.forces[i].stiffness_N_per_m; };
     const auto set = left.with(50);
     EXPECT_EQ(stiffness(set.a, 0), 50);
     EXPECT_EQ(stiffness(set.b, 0), 50);
     EXPECT_EQ(stiffness(set.a, 1), 5);
     Found line("system.constraint.slot-line.direction[1]", "", true);
     ASSERT_TRUE(line.key) << line.message;
-    EXPECT_EQ(std::get<SlotLineSpec>(line.with(0.5).a.constraints[0].part).direction[1], Quad(0.5));
+    EXPECT_EQ(line.with(0.5).a.constraints[0].direction[1], Quad(0.5));
     // two springs: which one?
     EXPECT_NE(Found("system.force.spring.stiffness_N_per_m", "", true).message.find("of no particle"),
               std::string::npos);

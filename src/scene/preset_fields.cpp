@@ -1,0 +1,382 @@
+#include "scene/preset_fields.hpp"
+
+#include <algorithm>
+
+namespace doppel {
+namespace {
+
+constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL takes, which says so itself
+constexpr double most_hz = 1e6;                     // of a drive: far above what a pendulum follows
+
+std::vector<std::string_view> theme_names() {
+    std::vector<std::string_view> names;
+    for (const auto& known : themes) names.push_back(known.name);
+    return names;
+}
+const auto known_themes = theme_names();
+
+}  // namespace
+
+const Field title_field{
+    .key = "title", .help = "shown above the pictures", .absent = "the file's name", .is_drawn = true};
+const Field subtitle_field{.key = "subtitle",
+                           .help = "the line below the title; \"\" = none",
+                           .absent = "what both sides have in common",
+                           .is_drawn = true};
+const Field kind_field{.key = "kind", .help = "\"pair\" is a film, the others are figures", .names = scene_kinds};
+const Field model_field{.key = "model", .help = "the equations; auto: the smallest that serves"};
+const Field accuracy_field{"accuracy",
+                           "largest error of an angle, or of a place as a part of the size of a mechanism; "
+                           "chooses integrator, step_s and tolerance",
+                           "rad",
+                           {.low = 0, .high = 1, .is_open = true}};
+const Field size_field{"size", "width and height", "px", picture_sizes, "", {}, "width and height"};
+const Field preview_field{"preview",
+                          "for trying out: half as wide and high (unless the command line gives a size), fast "
+                          "and coarse encoding"};
+const Field theme_field{.key = "theme", .help = "colours", .names = known_themes};
+
+void clock_fields(KeyVisitor& visit, Preset& preset) {
+    visit({"duration_s", "a whole number of samples", "s", positive}, preset.duration_s);
+    visit({"sample_hz", "samples a second; divides the steps a second", "Hz", positive}, preset.sample_hz);
+}
+
+void column_fields(KeyVisitor& visit, Preset& preset) {
+    visit({"energy_columns", "kinetic and potential energies as last columns of the CSV"}, preset.energy_columns);
+}
+
+namespace {
+
+/// A key with one number a link.
+Field of_links(std::string_view key, std::string_view help, std::string_view unit, const Bounds& bounds,
+               std::string_view symbol = "", std::string_view caption = "") {
+    return {.key = key,
+            .help = help,
+            .unit = unit,
+            .bounds = bounds,
+            .each = "one a link",
+            .caption = caption,
+            .symbol = symbol};
+}
+
+}  // namespace
+
+void link_fields(KeyVisitor& visit, SideSpec& side, const Bounds& masses) {
+    auto links = static_cast<int>(side.links());
+    visit({"links", "links of the chain", "", from_to(1, 10'000)}, links);
+    side.set_links(static_cast<std::size_t>(links));
+    auto mass = of_links("mass_kg", "masses at the ends of the links; may be 0 beside rod_mass_kg", "kg", masses, "m");
+    mass.otherwise = not_negative;
+    visit(mass, side.mass_kg);
+    visit(of_links("length_m", "lengths of the links", "m", positive, "l"), side.length_m);
+}
+
+void chain_fields(KeyVisitor& visit, SideSpec& side, const Bounds& masses) {
+    link_fields(visit, side, masses);
+    visit(of_links("angle_deg", "at the start, from the downward vertical, counter-clockwise", "deg", angle_bounds, "θ",
+                   "release angle"),
+          side.angle_deg);
+    visit(of_links("omega_deg_per_s", "rates at the start", "deg/s", {}, "ω", "rate at the start"),
+          side.omega_deg_per_s);
+}
+
+void physical_fields(KeyVisitor& visit, PhysicalSpec& physical) {
+    const auto list = [&](std::string_view key, std::string_view caption, std::string_view unit, std::string_view help,
+                          std::vector<Quad>& values) {
+        auto field = of_links(key, help, unit, not_negative, "", caption);
+        field.only.holds = !is_zero(values);
+        visit(field, values);
+    };
+    list("rod_mass_kg", "", "kg", "mass of each rod, evenly along it, besides mass_kg", physical.rod_mass_kg);
+    auto center = of_links("center_m", "of a link whose mass_kg is a body: from its joint to the centre of mass", "m",
+                           not_negative, "", "centre of mass");
+    center.absent = "at the end";
+    center.only.holds = !physical.center_m.empty();
+    visit(center, physical.center_m);
+    list("inertia_kg_m2", "", "kg m²", "of such a body, about its centre of mass", physical.inertia_kg_m2);
+    list("joint_viscous_N_m_s", "viscous friction", "N m s", "friction at each joint, by its rate",
+         physical.joint_viscous_N_m_s);
+    list("joint_coulomb_N_m", "Coulomb friction", "N m", "friction at each joint, whatever its rate (Coulomb)",
+         physical.joint_coulomb_N_m);
+    visit({"joint_coulomb_width_deg_per_s", "has no effect any more: a joint comes to rest where its rate is 0",
+           "deg/s", positive},
+          physical.joint_coulomb_width_deg_per_s);
+    list("arm_drag_linear_N_m_s", "linear drag on arms", "N m s", "drag on each link, by its own rate",
+         physical.arm_drag_linear_N_m_s);
+    list("arm_drag_quadratic_N_m_s2", "drag on arms", "N m s²", "the same, by the square of its rate",
+         physical.arm_drag_quadratic_N_m_s2);
+    list("air_drag_quadratic_N_m_s2", "air drag", "N m s²",
+         "drag on each link, by the square of the rate with which its centre of oscillation meets the air broadside",
+         physical.air_drag_quadratic_N_m_s2);
+    list("drag_linear_N_s_per_m", "linear drag", "N s/m", "drag on each end of a link, by its speed",
+         physical.drag_linear_N_s_per_m);
+    list("drag_quadratic_N_s2_per_m2", "quadratic drag", "N s²/m²", "the same, by the square of its speed",
+         physical.drag_quadratic_N_s2_per_m2);
+    visit.table("pivot", [&pivot = physical.pivot](KeyVisitor& table) {
+        table({"direction_deg", "of the motion, from the x axis: 90 = up", "deg", angle_bounds}, pivot.direction_deg);
+        table({"amplitude_m", "half the way to and fro; 0 = the pivot stays where it is", "m", not_negative},
+              pivot.amplitude_m);
+        table({"frequency_hz", "swings a second", "Hz", {.low = 0, .high = most_hz, .is_open = true}},
+              pivot.frequency_hz);
+        table({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, pivot.phase_deg);
+    });
+}
+
+void gravity_field(KeyVisitor& visit, SideSpec& side) {
+    visit({.key = "gravity_m_per_s2",
+           .help = "may be 0 with particles, constraints or forces",
+           .unit = "m/s²",
+           .bounds = side.is_mechanism() ? not_negative : positive,
+           .otherwise = not_negative},
+          side.gravity_m_per_s2);
+}
+
+void method_fields(KeyVisitor& visit, SideSpec& side) {
+    visit({.key = "integrator", .help = "the method", .names = names_of_methods()}, side.integrator);
+    const bool adaptive = find_method(side.integrator)->adaptive;
+    const auto only = [&](bool holds, const char* what) {
+        return Only{
+            holds,
+            fmt::format("is for {}; \"{}\" goes by {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
+            side.integrator_from_command_line, false, "integrator"};
+    };
+    visit({"step_s", "of methods with a fixed step", "s", positive, "1/30000",
+           only(!adaptive, "methods with a fixed step")},
+          side.step_s);
+    visit({"tolerance", "of adaptive methods: relative error of a step", "", positive, "1e-12; in quad 1e-28",
+           only(adaptive, "adaptive methods")},
+          side.tolerance);
+}
+
+void precision_fields(KeyVisitor& visit, SideSpec& side) {
+    visit({"precision", "53 bits or 113 (34 digits)"}, side.precision);
+    visit({"stabilise", "what keeps constraints from drifting"}, side.stabilise);
+    visit({"stabilise_rate_per_s",
+           "of Baumgarte's method, α = β",
+           "1/s",
+           positive,
+           "",
+           {.holds = side.stabilise == Stabilise::baumgarte}},
+          side.stabilise_rate_per_s);
+}
+
+void side_fields(KeyVisitor& visit, SideSpec& side, bool is_physical) {
+    if (side.particles.empty()) {
+        chain_fields(visit, side);
+        if (is_physical) physical_fields(visit, side.physical);
+    }
+    gravity_field(visit, side);
+    visit(model_field, side.model);
+    visit(accuracy_field, side.accuracy);
+    if (!side.accuracy) method_fields(visit, side);
+    precision_fields(visit, side);
+}
+
+void side_text_fields(KeyVisitor& visit, SideSpec& side) {
+    visit({.key = "label",
+           .help = "what the side is called in the picture; \"\" = nothing",
+           .absent = "what sets it apart",
+           .is_drawn = true},
+          side.label);
+    visit({.key = "note", .help = "the line below the label; \"\" = none", .absent = "how it starts", .is_drawn = true},
+          side.note);
+    visit.table("track", [&track = side.track](KeyVisitor& table) {
+        table({.key = "file",
+               .help = "CSV of a measured double pendulum, which the side shows instead of a simulation; beside the "
+                       "preset, from here, or one that came with the program",
+               .absent = "none"},
+              track.file);
+        const Only of_file{.holds = !track.is_none()};
+        table({"start_s", "the file's time at which the motion begins", "s", {}, "the first sample", of_file},
+              track.start_s);
+        table({"offset_deg", "what the encoders show at rest, which is subtracted", "deg", angle_bounds, "", of_file,
+               "one an arm"},
+              track.offset_deg);
+    });
+}
+
+void part_fields(KeyVisitor& visit, TorqueSpec& torque) {
+    visit({"joint", "where: 1 is the pivot, 2 the end of link 1; the link above takes the opposite", "",
+           from_to(1, 10'000)},
+          torque.joint);
+    visit({"amplitude_N_m", "torque", "N m"}, torque.amplitude_N_m);
+    visit({"frequency_hz", "swings a second", "Hz", from_to(0, most_hz)}, torque.frequency_hz);
+    visit({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, torque.phase_deg);
+}
+
+void part_fields(KeyVisitor& visit, ParticleSpec& particle) {
+    visit({"mass_kg", "mass", "kg", positive}, particle.mass_kg);
+    visit({"position_m", "place at the start, [x, y]", "m"}, particle.position_m);
+    visit({"velocity_m_per_s", "velocity at the start, [x, y]", "m/s"}, particle.velocity_m_per_s);
+}
+
+void part_fields(KeyVisitor& visit, PartSpec& part) {
+    using enum PartKind;
+    const auto is = [&](auto... kinds) { return ((part.kind == kinds) || ...); };
+    const auto kind = name_of(part.kind);
+    constexpr std::string_view as_released = "that of the start";
+    if (is(anchor, slot_line, slot_circle))
+        visit({.key = "particle", .help = "name of the particle", .needed_by = kind}, part.particle);
+    if (is(rod, spring, attraction)) {
+        visit({.key = "from", .help = "name of a particle, or a fixed place [x, y]", .needed_by = kind}, part.from);
+        visit({.key = "to", .help = "the other end", .needed_by = kind}, part.to);
+    }
+    if (is(anchor, slot_line, slot_circle, droplet))
+        visit({.key = "position_m",
+               .help = is(slot_circle) ? "the centre" : "place; of a line, a point of it",
+               .unit = "m",
+               .absent = as_released,
+               .needed_by = is(slot_circle, droplet) ? kind : ""},
+              part.position_m);
+    if (is(slot_line)) visit({"direction", "of the line, [x, y]"}, part.direction);
+    if (is(rod, spring))
+        visit({"length_m", "length; of a spring at rest", "m", is(spring) ? not_negative : positive, as_released},
+              part.length_m);
+    if (is(slot_circle)) visit({"radius_m", "radius", "m", positive, as_released}, part.radius_m);
+    if (is(spring)) {
+        visit({"stiffness_N_per_m", "stiffness", "N/m", positive}, part.stiffness_N_per_m);
+        visit({"damping_N_s_per_m", "damping", "N s/m", not_negative}, part.damping_N_s_per_m);
+    }
+    if (is(droplet)) visit({"mass_kg", "mass", "kg", positive}, part.mass_kg);
+    if (is(attraction, droplet))
+        visit({"constant_m3_per_kg_s2", "gravitational constant", "m³/(kg s²)", positive, "Newton's"},
+              part.constant_m3_per_kg_s2);
+}
+
+void format_fields(KeyVisitor& visit, VideoSpec& video) {
+    static constexpr std::array<std::string_view, 2> codecs{"vp9", "av1"};
+    visit({"format", "the file; png: a picture a frame"}, video.format);
+    const auto only = [&](bool holds, const char* what) {
+        return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
+                    visit.from_command_line("format"), false, "format"};
+    };
+    const FormatRow& row = format_row(video.format, video.codec);
+    const bool is_webm = video.format == FilmFormat::webm;
+    const auto encoded = only(row.is_encoded(), "of mp4 and webm");
+    visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
+    visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
+    visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.holds = video.transparent}},
+          video.transparent);
+    constexpr std::string_view effort = "of mp4 and webm: effort of the encoder; \"doppel\": chosen for such pictures";
+    visit({"preset", effort, "", {}, "", encoded, "", encoder_presets}, video.preset);
+    visit({.key = "crf",
+           .help = "of mp4 and webm: lower is better; of mp4 up to 51",
+           .bounds = from_to(0, row.largest_crf),
+           .only = encoded,
+           .otherwise = from_to(0, 63)},
+          video.crf);
+}
+
+void time_fields(KeyVisitor& visit, VideoSpec& video) {
+    constexpr auto seconds = from_to(0, 3600, "none");
+    constexpr std::string_view all_samples = "sample_hz · speed, of a gif up to 30; where the speed changes sample_hz";
+    constexpr std::string_view rates =
+        "frames a second; 23.976, 29.97 and 59.94 mean 24000/1001, 30000/1001, 60000/1001";
+    visit({"fps", rates, "1/s", positive, all_samples}, video.fps);
+    visit({"speed", "seconds of motion a second of film; a list: each speed is reached at its time", "", positive},
+          video.speed);
+    const Only of_changes{video.speed.changes_over_time(), "is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]",
+                          false, false, "speed"};
+    constexpr std::string_view ease =
+        "of motion before a change of speed, in which the film's pace goes over by 3u² − 2u³";
+    visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
+    visit({"hold_start_s", "how long the first frame stands", "s", seconds}, video.hold_start_s);
+    visit({"hold_end_s", "how long the last frame stands", "s", seconds}, video.hold_end_s);
+    visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);
+    visit({"end_card_s", "a card with the outcome after the film", "s", seconds}, video.end_card_s);
+    visit({"poster_s", "NAME.poster.png: the frame nearest to this time", "s", not_negative}, video.poster_s);
+    constexpr std::string_view moments = "NAME.contact.png: pendulums and time at so many moments, across and down";
+    visit({"contact_sheet", moments, "", from_to(1, 32), "", {}, "frames across and down"}, video.contact_sheet);
+}
+
+void layout_fields(KeyVisitor& visit, VideoSpec& video) {
+    visit({"layout", "how the pendulums are placed"}, video.layout);
+    const auto only = [&](Arrangement layout) {
+        return Only{video.layout == layout,
+                    fmt::format("is of the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)), false,
+                    false, "layout"};
+    };
+    const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
+    constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
+    constexpr std::string_view members =
+        "of an ensemble: pendulums from side a to side b, or the angles of each, [[120, 120], [120.01, 120]]";
+    visit({"members", members, "", some, "", of_ensemble}, video.members);
+    visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
+          video.phase);
+    visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
+    visit({.key = "panels", .help = "\"pendulums\" and strips, in their order"}, static_cast<Panels&>(video));
+    visit({.key = "show",
+           .help = "what is said around the pendulums; credit: by whom, on the end card",
+           .names = shown_parts},
+          video.show);
+    constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
+    for (std::size_t i = 0; i < strip_kinds; ++i) {
+        const auto bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{};
+        visit({range_keys[i], help, "", bounds, fitted, {}, "lowest and highest"}, video.ranges[i]);
+    }
+}
+
+void style_fields(KeyVisitor& visit, VideoSpec& video) {
+    visit(theme_field, video.theme);
+    constexpr std::string_view of_theme = "the theme's";
+    visit({"side_colors", "of side a and side b", "", {}, of_theme}, video.side_colors);
+    visit.table("colors", [&](KeyVisitor& table) {
+        for (std::size_t i = 0; i < color_names.size(); ++i)
+            table({color_names[i].key, color_names[i].help, "", {}, of_theme}, video.colors[i]);
+    });
+    visit.table("widths_px", [&](KeyVisitor& table) {
+        for (const auto& [key, member, help] : width_names)
+            table({key, help, "px", from_to(0, 200)}, video.widths.*member);
+    });
+    visit.table("fonts", [&](KeyVisitor& table) {
+        table({"text", "font file (TrueType, OpenType), beside the preset or from here", "", {}, "built in"},
+              video.text_font);
+    });
+    visit.table("fonts_px", [&](KeyVisitor& table) {
+        for (const auto& [key, member, help] : font_size_names)
+            table({key, help, "px", from_to(4, 400)}, video.fonts.*member);
+    });
+    constexpr auto glow = from_to(0, 100, "none"), trail = from_to(0, 3600, "none");
+    visit({"glow_px", "how far the light of trails and bobs reaches", "px", glow, of_theme}, video.glow_px);
+    visit({"trail_s", "how long the path behind the last bob lasts; 0.3 of an ensemble, 1 of one with a list", "s",
+           trail},
+          video.trail_s);
+}
+
+std::vector<SideEntry> entries_of(SideSpec& side) {
+    std::vector<SideEntry> all;
+    const auto add = [&](std::string_view table, auto& entries) {
+        for (auto& entry : entries) {
+            auto kind = table;
+            if constexpr (requires { entry.kind; }) kind = name_of(entry.kind);
+            all.push_back({table, kind, entry.name, static_cast<int>(all.size()) + 1,
+                           [&entry](KeyVisitor& visit) { part_fields(visit, entry); }});
+        }
+    };
+    add("torque", side.physical.torques);
+    add("particle", side.particles);
+    add("constraint", side.constraints);
+    add("force", side.forces);
+    return all;
+}
+
+void for_each_key(SideSpec& side, const UseKey& use) {
+    struct Visitor : KeyVisitor {
+        explicit Visitor(const UseKey& use_key) : use(use_key) {}
+        void key(const Field& field, const KeyMember& member) override { use(owner, field, member); }
+        void table(std::string_view name, const std::function<void(KeyVisitor&)>& fields) override {
+            owner.table = name;
+            fields(*this);
+            owner = {};
+        }
+        const UseKey& use;
+        SideEntry owner;
+    } visit(use);
+    side_fields(visit, side);
+    for (const auto& entry : entries_of(side)) {
+        visit.owner = entry;
+        entry.fields(visit);
+    }
+}
+
+}  // namespace doppel
