@@ -82,7 +82,6 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     add_warnings(scene, record, stop);
     const auto csv = failed_name(name, ".csv"), manifest = failed_name(name, ".json");
     parts.keep_only(name + ".csv", csv);
-    parts.finished(csv);
     write_manifest(parts, manifest, scene, record);
     const auto files = parts.publish();
     throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());
