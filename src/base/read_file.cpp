@@ -8,22 +8,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
+#include <memory>
 #include <system_error>
 
 namespace doppel {
 namespace {
-
-/// A descriptor, closed with its owner.
-struct OpenFile {
-    int number;
-    explicit OpenFile(const std::filesystem::path& path)
-        : number(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
-    OpenFile(const OpenFile&) = delete;
-    OpenFile& operator=(const OpenFile&) = delete;
-    ~OpenFile() {
-        if (number >= 0) close(number);
-    }
-};
 
 /// Waits until there is something to read. Throws Error (exit 130) soon after `stop` is set.
 void wait_for_bytes(int pipe, const std::atomic<bool>& stop) {
@@ -41,11 +31,11 @@ std::string read_whole_file(const std::filesystem::path& path, const WantedFile&
     const auto reason = [] { return std::generic_category().message(errno); };
     if (path.native().find('\0') != std::string::npos)  // the system would open what is named before it
         throw bad_input("{}: has a NUL in it, which no name of a file has", path.string());
-    const OpenFile file(path);
-    if (file.number < 0)
-        throw bad_input("{}: {}", path.string(), errno == ENOENT ? std::string(wanted.missing) : reason());
+    const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> owner(file < 0 ? nullptr : fdopen(file, "r"), std::fclose);
+    if (!owner) throw bad_input("{}: {}", path.string(), errno == ENOENT ? std::string(wanted.missing) : reason());
     struct stat status {};
-    if (fstat(file.number, &status) != 0) throw io_failed("{}: cannot be read: {}", path.string(), reason());
+    if (fstat(file, &status) != 0) throw io_failed("{}: cannot be read: {}", path.string(), reason());
     if (S_ISDIR(status.st_mode)) throw bad_input("{} is a folder; {}", path.string(), wanted.what);
     const bool is_pipe = S_ISFIFO(status.st_mode) && stop;
     if (!S_ISREG(status.st_mode) && !is_pipe) throw bad_input("{} is not a file; {}", path.string(), wanted.what);
@@ -56,8 +46,8 @@ std::string read_whole_file(const std::filesystem::path& path, const WantedFile&
     bound(static_cast<std::size_t>(status.st_size));
     std::string text, portion(std::size_t{1} << 16, '\0');
     for (;;) {
-        if (is_pipe) wait_for_bytes(file.number, *stop);
-        const auto count = read(file.number, portion.data(), portion.size());
+        if (is_pipe) wait_for_bytes(file, *stop);
+        const auto count = read(file, portion.data(), portion.size());
         if (count == 0) return text;
         if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
         if (count < 0) throw io_failed("{}: cannot be read: {}", path.string(), reason());

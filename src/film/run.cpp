@@ -73,7 +73,6 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     add_warnings(scene, record, stop);
     const auto csv = failed_name(name, ".csv");
     parts.keep_only(name + ".csv", csv);
-    parts.finished(csv);
     write_manifest(parts, failed_name(name, ".json"), scene, record);
     const auto files = parts.publish();
     throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());

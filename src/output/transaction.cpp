@@ -249,7 +249,7 @@ void Transaction::keep_only(const std::string& name, const std::string& new_name
     for (const Part& part : parts_)
         if (part.name != name) fs::remove_all(hidden(part.name));
     rename_file(hidden(name), hidden(new_name));
-    parts_ = {{new_name}};
+    parts_ = {{new_name, true}};
 }
 
 std::vector<std::pair<std::string, WrittenFile>> Transaction::finished_files() const {

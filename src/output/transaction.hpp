@@ -52,7 +52,7 @@ public:
     std::vector<std::filesystem::path> keeping_finished(
         const std::function<std::vector<std::filesystem::path>()>& last);
 
-    /// Removes all files of the run but `name`, which will be published as `new_name`.
+    /// Removes all files of the run but `name`, which is complete and will be published as `new_name`.
     void keep_only(const std::string& name, const std::string& new_name);
 
     /// The files that are finished, those in folders too: "frames/000000.png".
