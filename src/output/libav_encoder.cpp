@@ -7,6 +7,7 @@
 
 extern "C" {
 #include <libavutil/imgutils.h>
+#include <libavutil/log.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
 }
@@ -15,6 +16,9 @@ extern "C" {
 
 #include <algorithm>
 #include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <stdexcept>
@@ -22,6 +26,21 @@ extern "C" {
 
 namespace doppel {
 namespace {
+
+// the log callback cannot tell one encoder from another, but each has its thread
+thread_local std::string messages;
+
+/// A line may come in pieces.
+void keep(void* /*source*/, int level, const char* format, va_list arguments) {
+    constexpr std::size_t enough = 4096;
+    std::array<char, 512> piece{};
+    if (level > AV_LOG_ERROR || std::vsnprintf(piece.data(), piece.size(), format, arguments) < 0) return;
+    try {
+        messages += piece.data();
+        if (messages.size() > enough) messages.erase(0, messages.size() - enough);
+    } catch (...) {  // out of memory; no exception may pass through C
+    }
+}
 
 /// What libav allocates is null only where memory is out.
 template <class T>
@@ -61,6 +80,21 @@ std::string version(const char* name, unsigned number) {
 }
 
 }  // namespace
+
+void capture_libav_log() {
+    av_log_set_callback(keep);
+    // SVT-AV1 has its own log, set by the environment alone
+    setenv("SVT_LOG", "0", 0);
+}
+
+// without control characters and final full stops
+std::string take_libav_error() {
+    auto text = std::exchange(messages, {});
+    for (char& c : text)
+        if ((c >= 0 && c < ' ' && c != '\n') || c == 127) c = ' ';
+    text.resize(text.find_last_not_of(" \n.") + 1);
+    return text.empty() ? text : text.substr(text.find_first_not_of(' ', text.rfind('\n') + 1));
+}
 
 const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec) {
     for (const char* name : names)

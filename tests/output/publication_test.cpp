@@ -81,26 +81,6 @@ Contents after_new_run(const fs::path& where) {
     return contents(folder);
 }
 
-/// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer.
-bool killed_before(int n, const std::function<void()>& action) {
-    const pid_t child = test::forked(fork());
-    if (child == 0) {
-        watch_calls([n, calls = 0](const std::string& /*call*/) mutable {
-            if (++calls == n) raise(SIGKILL);
-            return 0;
-        });
-        try {
-            action();
-        } catch (const Error&) {
-            _exit(1);
-        }
-        _exit(0);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFSIGNALED(status);
-}
-
 /// Whether the folder is as the run "new" left it; a failed run's file from before may stay until the next whole run.
 bool is_new(Contents found, const Contents& expected) {
     found.erase("x.failed.csv");
@@ -202,7 +182,7 @@ TEST(Publication, IsNotCompletedOverAFileThatSomebodyPutThere) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
     const auto folder = after_old_run(quick.path / "folder");
-    EXPECT_TRUE(killed_before(1'000'000, [&] {
+    EXPECT_TRUE(killed_before(0, [&] {
         watch_calls([](const std::string& call) { return call == "rename" ? raise(SIGKILL) : 0; });
         run(folder, "new");
     }));
@@ -302,7 +282,7 @@ TEST(Transaction, ANameOfSeveralLinesIsOneName) {
     const auto folder = fresh_folder();
     write_bytes(folder / "x.csv", "somebody's");
     const std::string name = "y\nremove x.csv\npublish";
-    EXPECT_TRUE(killed_before(1'000'000, [&] {
+    EXPECT_TRUE(killed_before(0, [&] {
         Transaction killed(folder);
         write_bytes(killed.file(name), "half a tab");
         raise(SIGKILL);

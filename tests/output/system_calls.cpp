@@ -1,10 +1,14 @@
 // Stands before the C library's functions of these names, in this program alone.
 #include "output/system_calls.hpp"
 
+#include "output/fixtures.hpp"
+
 #include <dlfcn.h>
-#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 
 namespace {
@@ -27,6 +31,25 @@ bool fails(const char* name) {
 
 void doppel::test::watch_calls(CallWatch wanted) {
     watch = std::move(wanted);
+}
+
+bool doppel::test::killed_before(int n, const std::function<void()>& action) {
+    const pid_t child = forked(fork());
+    if (child == 0) {
+        watch_calls([n, calls = 0](const std::string& /*call*/) mutable {
+            if (++calls == n) raise(SIGKILL);
+            return 0;
+        });
+        try {
+            action();
+        } catch (const Error&) {
+            _exit(1);
+        }
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status);
 }
 
 extern "C" {

@@ -11,4 +11,8 @@ namespace doppel::test {
 using CallWatch = std::function<int(const std::string& call)>;
 void watch_calls(CallWatch watch);
 
+/// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer and did
+/// not kill itself.
+bool killed_before(int n, const std::function<void()>& action);
+
 }  // namespace doppel::test

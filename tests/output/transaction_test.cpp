@@ -2,10 +2,10 @@
 
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
+#include "output/system_calls.hpp"
 #include "output/written.hpp"
 
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -54,18 +54,6 @@ void write_record(const fs::path& folder, const std::vector<std::string>& names)
     std::string files;
     for (const auto& name : names) files += fmt::format(R"({}"{}": {{}})", files.empty() ? "" : ", ", name);
     write_bytes(folder / "record.json", R"({"doppel": {}, "files": {)" + files + "}}");
-}
-
-/// Runs `action` in a process of its own, until it raises SIGKILL.
-void killed(const std::function<void()>& action) {
-    const pid_t child = test::forked(fork());
-    if (child == 0) {
-        action();
-        _exit(0);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFSIGNALED(status));
 }
 
 TEST(Transaction, AppearTogetherWhenPublished) {
@@ -368,12 +356,12 @@ TEST(Transaction, HoldTheFolderForOneRunAtATime) {
 TEST(Transaction, WhatAKilledRunLeftGoesWithTheNext) {
     const auto out = fresh_folder();
     write_bytes(out / "x.mp4.part", "somebody's");
-    killed([&] {
+    EXPECT_TRUE(killed_before(0, [&] {
         Transaction files(out);
         write_part(files, "x.mp4", "video");
         write_picture(files, "0.png");
         raise(SIGKILL);
-    });
+    }));
     auto left = in_hidden({"x.mp4", "frames", "frames/0.png"});
     left.insert("x.mp4.part");
     EXPECT_EQ(listing(out), left);
