@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <set>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -19,8 +21,8 @@ namespace fs = std::filesystem;
 
 using Type = fs::file_type;
 
-constexpr const char* lock_name = ".lock";  // holds the process, then, after commit(), "publish"
-constexpr const char* backup = ".old-";     // a folder that is replaced, before its name
+constexpr const char* lock_name = ".lock";  // holds the process, then, after commit(), "publish INODE …" of new folders
+constexpr const char* backup_name = ".old";  // of a folder, where the file system cannot exchange two names
 
 Error not_ours(const fs::path& path) {
     return io_failed("{} was not written by Doppel, as far as it knows; move it, or give another folder with --out",
@@ -37,6 +39,11 @@ void demand_type(const fs::path& path, bool is_folder) {
                     : type == Type::regular   ? "a file"
                                               : "neither a file nor a folder",
                     is_folder ? "make a folder" : "write a file");
+}
+
+ino_t inode_of(const fs::path& path) {
+    struct stat status {};
+    return lstat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
 void append(const Stream& file, const std::string& text, const fs::path& path) {
@@ -113,10 +120,9 @@ bool Transaction::lock() {
     if (!file && errno == ENOENT) return false;
     if (!file) throw cannot(folder_, "written to");
     const int fault = flock(fileno(file.get()), LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
-    struct stat ours {
-    }, there{};
-    const bool is_there = fstat(fileno(file.get()), &ours) == 0 && lstat(path.c_str(), &there) == 0;
-    if (fault == EINTR || (fault == 0 && !(is_there && ours.st_ino == there.st_ino))) return false;
+    struct stat status {};
+    fstat(fileno(file.get()), &status);
+    if (fault == EINTR || (fault == 0 && inode_of(path) != status.st_ino)) return false;
     const bool knows_no_locks = fault == ENOLCK || fault == EOPNOTSUPP || fault == ENOSYS;
     if (fault == 0 || (knows_no_locks && is_new)) {
         lock_ = std::move(file);
@@ -136,14 +142,20 @@ bool Transaction::lock() {
 
 /// Moves in what an earlier run had committed itself to, and did not come to.
 void Transaction::recover() {
-    std::string notes(64, '\0');
-    const auto got = pread(fileno(lock_.get()), notes.data(), notes.size(), 0);
+    std::string text(4096, '\0'), process, word;
+    const auto got = pread(fileno(lock_.get()), text.data(), text.size(), 0);
     if (got < 0) throw cannot(hidden(lock_name), "read");
-    notes.resize(static_cast<std::size_t>(got));
-    if (!notes.ends_with("\npublish\n")) return;
+    text.resize(static_cast<std::size_t>(got));
+    std::istringstream notes(text);
+    if (!std::getline(notes, process) || !(notes >> word) || !text.ends_with('\n')) return;
     keeps_hidden_ = true;  // where this fails
+    std::set<ino_t> fresh;
+    for (ino_t inode = 0; notes >> inode;) fresh.insert(inode);
     auto names = names_in(hidden_);
-    std::erase_if(names, [](const auto& name) { return name == lock_name || name.starts_with(backup); });
+    std::erase_if(names, [&](const std::string& name) {
+        const bool is_older = fs::is_directory(hidden(name)) && !fresh.contains(inode_of(hidden(name)));
+        return name == lock_name || name == backup_name || is_older;
+    });
     std::stable_partition(names.begin(), names.end(), [](const auto& name) { return !name.ends_with(".json"); });
     for (const auto& name : names) refuse_foreign_files(name, fs::is_directory(hidden(name)));
     for (const auto& name : names) move_in(name);
@@ -258,11 +270,9 @@ std::vector<std::pair<std::string, WrittenFile>> Transaction::finished_files() c
         files.push_back({name, {fs::file_size(hidden(name)), sha256_of_file(hidden(name))}});
     };
     for (const auto& [name, finished] : parts_) {
-        if (!finished) continue;
-        if (!fs::is_directory(hidden(name)))
-            add(name);
-        else
-            for (const auto& file : names_in(hidden(name))) add(name + "/" + file);
+        if (finished && !fs::is_directory(hidden(name))) add(name);
+        if (!finished || !fs::is_directory(hidden(name))) continue;
+        for (const auto& file : names_in(hidden(name))) add(name + "/" + file);
     }
     return files;
 }
@@ -305,24 +315,31 @@ std::vector<fs::path> Transaction::publish() {
 
 /// Has all files on the disk, and notes there that they are to be moved in, by the next run if not by this one.
 void Transaction::commit() {
+    std::string line = "publish";
     for (const Part& part : parts_) {
         const auto path = hidden(part.name);
-        if (fs::is_directory(path))
+        if (fs::is_directory(path)) {
             sync_folder(path, true);
-        else
+            line += fmt::format(" {}", inode_of(path));
+        } else {
             sync(fileno(open_file(path).get()), path);
+        }
     }
     sync_folder(hidden_);
-    append(lock_, "publish\n", hidden(lock_name));
+    append(lock_, line + "\n", hidden(lock_name));
     keeps_hidden_ = true;
     sync(fileno(lock_.get()), hidden(lock_name));
 }
 
-/// Gives it its place.
+/// Gives it its place; an older folder takes its place here.
 void Transaction::move_in(const std::string& name) const {
-    const auto to = folder_ / name;
-    if (type_of(to) == Type::directory) rename_file(to, hidden(backup + name));
-    rename_file(hidden(name), to);
+    const auto from = hidden(name), to = folder_ / name;
+    if (type_of(to) == Type::directory) {
+        if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
+        if (errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP) throw cannot(from, "renamed to " + to.string());
+        rename_file(to, hidden(backup_name));
+    }
+    rename_file(from, to);
 }
 
 }  // namespace doppel

@@ -81,6 +81,30 @@ Contents after_new_run(const fs::path& where) {
     return contents(folder);
 }
 
+/// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer.
+bool killed_before(int n, const std::function<void()>& action, const CallWatch& other = {}) {
+    const pid_t child = test::forked(fork());
+    if (child == 0) {
+        watch_calls([&, calls = 0](const std::string& call) mutable {
+            if (++calls == n) raise(SIGKILL);
+            return other ? other(call) : 0;
+        });
+        try {
+            action();
+        } catch (const Error&) {
+            _exit(1);
+        }
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status);
+}
+
+int no_exchange(const std::string& call) {
+    return call == "renameat2" ? EINVAL : 0;
+}
+
 /// Whether the folder is as the run "new" left it; a failed run's file from before may stay until the next whole run.
 bool is_new(Contents found, const Contents& expected) {
     found.erase("x.failed.csv");
@@ -94,44 +118,52 @@ void expect_old_or_new(const Contents& found, const Contents& old, const Content
 TEST(Publication, IsAllNewOrAllOldWheneverItIsKilled) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
-    int kills = 0, old = 0;
-    for (bool killed = true; killed;) {
-        const auto folder = after_old_run(quick.path / fmt::format("killed-{}", kills));
-        const auto expected_old = contents(folder);
-        killed = killed_before(++kills, [&] { run(folder, "new"); });
-        // at any moment something whole has every name of a file
-        for (const char* name : {"x.mp4", "x.json", "notes.txt"})
-            EXPECT_TRUE(fs::exists(folder / name)) << kills << ", " << name;
-        watch_calls(as_always);
-        { Transaction next(folder); }
-        const auto found = contents(folder);
-        expect_old_or_new(found, expected_old, expected_new, std::to_string(kills));
-        old += found == expected_old;
-        run(folder, "new");
-        EXPECT_EQ(contents(folder), expected_new) << kills;
-        watch_calls({});
+    for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)}) {
+        int kills = 0, old = 0;
+        for (bool killed = true; killed;) {
+            const auto folder =
+                after_old_run(quick.path / fmt::format("killed-{}-{}", system ? "backup" : "exchange", kills));
+            const auto expected_old = contents(folder);
+            killed = killed_before(
+                ++kills, [&] { run(folder, "new"); }, system);
+            // at any moment something whole has every name, where two names can be exchanged
+            for (const auto& [name, word] : expected_old)
+                EXPECT_TRUE(system || name == "x.failed.csv" || fs::exists(folder / name)) << kills << ", " << name;
+            watch_calls(as_always);
+            { Transaction next(folder); }
+            const auto found = contents(folder);
+            expect_old_or_new(found, expected_old, expected_new, std::to_string(kills));
+            old += found == expected_old;
+            run(folder, "new");
+            EXPECT_EQ(contents(folder), expected_new) << kills;
+            watch_calls({});
+        }
+        EXPECT_GT(kills, 20);
+        EXPECT_GT(old, 8);
+        EXPECT_LT(old, kills - 6);
     }
-    EXPECT_GT(kills, 20);
-    EXPECT_GT(old, 8);
-    EXPECT_LT(old, kills - 6);
 }
 
 TEST(Publication, IsAllNewOrAllOldWhereItsRecoveryIsKilledToo) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
-    bool killed = true;
-    for (int first = 8, count = 0; killed; first += 3) {
-        bool killed_again = true;
-        for (int again = 1; killed_again; ++again, ++count) {
-            const auto folder = after_old_run(quick.path / fmt::format("twice-{}", count));
-            const auto expected_old = contents(folder);
-            killed = killed_before(first, [&] { run(folder, "new"); });
-            killed_again = killed_before(again, [&] { Transaction next(folder); });
-            watch_calls(as_always);
-            { Transaction next(folder); }
-            expect_old_or_new(contents(folder), expected_old, expected_new, fmt::format("{}, {}", first, again));
+    for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)})
+        for (int first = 8, count = 0; first > 0; first += 3) {
+            bool killed = false, killed_again = true;
+            for (int again = 1; killed_again; ++again, ++count) {
+                const auto folder =
+                    after_old_run(quick.path / fmt::format("twice-{}-{}", system ? "backup" : "exchange", count));
+                const auto expected_old = contents(folder);
+                killed = killed_before(
+                    first, [&] { run(folder, "new"); }, system);
+                killed_again = killed_before(
+                    again, [&] { Transaction next(folder); }, system);
+                watch_calls(as_always);
+                { Transaction next(folder); }
+                expect_old_or_new(contents(folder), expected_old, expected_new, fmt::format("{}, {}", first, again));
+            }
+            if (!killed) break;
         }
-    }
     watch_calls({});
 }
 
@@ -142,7 +174,7 @@ TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
         after;  // calls before a name of the folder changes, and after the last that does
     bool begun = false;
     watch_calls([&](const std::string& call) {
-        const bool moves = call == "rename";
+        const bool moves = call == "renameat2" || call == "rename";
         begun = begun || moves;
         if (moves) after.clear();
         ++(begun ? after : before)[call];
@@ -158,22 +190,28 @@ TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
 TEST(Publication, WhereAFileCannotTakeItsPlaceTheNextRunMovesItIn) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
-    constexpr int moves = 4;  // the film, the older folder, the new one, the manifest
-    for (int failing = 1; failing <= moves + 1; ++failing) {
-        const auto folder = after_old_run(quick.path / fmt::format("fails-{}", failing));
-        watch_calls([&, calls = 0](const std::string& call) mutable {
-            return call == "rename" && ++calls >= failing ? EPERM : 0;
-        });
-        if (failing > moves) {
-            run(folder, "new");
-        } else {
-            expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { run(folder, "new"); });
-            expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { Transaction next(folder); });
+    for (const CallWatch& system : {CallWatch(), CallWatch(no_exchange)}) {
+        const int moves = system ? 4 : 3;
+        for (int failing = 1; failing <= moves + 1; ++failing) {
+            const auto folder =
+                after_old_run(quick.path / fmt::format("fails-{}-{}", system ? "backup" : "exchange", failing));
+            int calls = 0;
+            watch_calls([&](const std::string& call) {
+                const bool moves_one = call == "rename" || (call == "renameat2" && !system);
+                if (moves_one && ++calls >= failing) return EPERM;
+                return system ? system(call) : 0;
+            });
+            if (failing > moves) {
+                run(folder, "new");
+            } else {
+                expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { run(folder, "new"); });
+                expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { Transaction next(folder); });
+            }
+            watch_calls(as_always);
+            { Transaction next(folder); }
+            watch_calls({});
+            EXPECT_TRUE(is_new(contents(folder), expected_new)) << failing;
         }
-        watch_calls(as_always);
-        { Transaction next(folder); }
-        watch_calls({});
-        EXPECT_TRUE(is_new(contents(folder), expected_new)) << failing;
     }
 }
 
@@ -182,7 +220,7 @@ TEST(Publication, IsNotCompletedOverAFileThatSomebodyPutThere) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
     const auto folder = after_old_run(quick.path / "folder");
-    EXPECT_TRUE(killed_before(0, [&] {
+    EXPECT_TRUE(killed_before(1'000'000, [&] {
         watch_calls([](const std::string& call) { return call == "rename" ? raise(SIGKILL) : 0; });
         run(folder, "new");
     }));
@@ -282,7 +320,7 @@ TEST(Transaction, ANameOfSeveralLinesIsOneName) {
     const auto folder = fresh_folder();
     write_bytes(folder / "x.csv", "somebody's");
     const std::string name = "y\nremove x.csv\npublish";
-    EXPECT_TRUE(killed_before(0, [&] {
+    EXPECT_TRUE(killed_before(1'000'000, [&] {
         Transaction killed(folder);
         write_bytes(killed.file(name), "half a tab");
         raise(SIGKILL);

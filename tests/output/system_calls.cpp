@@ -79,6 +79,10 @@ int remove(const char* name) noexcept {
 int rename(const char* old_name, const char* name) noexcept {
     return fails("rename") ? -1 : next<int(const char*, const char*)>("rename")(old_name, name);
 }
+int renameat2(int from, const char* old_name, int to, const char* name, unsigned flags) noexcept {
+    if (fails("renameat2")) return -1;
+    return next<int(int, const char*, int, const char*, unsigned)>("renameat2")(from, old_name, to, name, flags);
+}
 int ftruncate(int file, off_t size) noexcept {
     return fails("ftruncate") ? -1 : next<int(int, off_t)>("ftruncate")(file, size);
 }
