@@ -90,18 +90,14 @@ VideoOptions video_options(const Scene& scene) {
     return options;
 }
 
-Film::Film(const Scene& scene, Recording& recording, const RunOptions& options, long first, long last,
-           Transaction& parts, RunRecord& record, const std::atomic<bool>& stop)
+Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, Transaction& parts,
+           RunRecord& record, const std::atomic<bool>& stop)
     : scene_(scene),
-      recording_(recording),
-      options_(options),
-      first_(first),
-      last_(last),
       parts_(parts),
       record_(record),
       stop_(stop),
       schedule_(schedule_of(scene)),
-      composer_(scene, recording.bounds()) {
+      composer_(scene, bounds) {
     const auto& video = scene.preset.video;
     if (video.format == FilmFormat::png) {
         film_name_ = "frames";
@@ -161,17 +157,15 @@ void Film::write_frame(long number) {
 void Film::finish() {
     sink_->finish();
     parts_.finished(film_name_);
-    const auto& preset = scene_.preset;
-    const auto write = [&](const std::string& ending, const Picture& picture) {
-        const auto name = preset.name + ending;
-        write_png(parts_.file(name), picture,
-                  {.with_alpha = preset.video.transparent, .metadata = film_metadata(preset)}, stop_);
-        parts_.finished(name);
-    };
     if (poster_) write(".poster.png", *poster_);
-    if (!preset.video.contact_sheet) return;
-    Stopwatch watch(record_.draw_cpu_s);
-    write(".contact.png", contact_sheet_of(scene_, recording_, first_, last_, options_.gl, stop_));
+}
+
+void Film::write(const std::string& ending, const Picture& picture) const {
+    const auto& preset = scene_.preset;
+    const auto name = preset.name + ending;
+    write_png(parts_.file(name), picture, {.with_alpha = preset.video.transparent, .metadata = film_metadata(preset)},
+              stop_);
+    parts_.finished(name);
 }
 
 }  // namespace doppel

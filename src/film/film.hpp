@@ -78,8 +78,8 @@ private:
 /// Draws the frames of a run and hands them to the video or the sequence; keeps the poster.
 class Film {
 public:
-    /// For the frames first … last − 1. Adds its files to `parts`. All may throw Error (exit 130) soon after `stop` is set.
-    Film(const Scene& scene, Recording& recording, const RunOptions& options, long first, long last, Transaction& parts,
+    /// From frame `first` on. Adds its files to `parts`. All may throw Error (exit 130) soon after `stop` is set.
+    Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, Transaction& parts,
          RunRecord& record, const std::atomic<bool>& stop);
 
     /// Every sample and frame, from 0 on.
@@ -88,17 +88,16 @@ public:
     /// The snapshot added last becomes frame `number`; before the first of all comes the title, after the last the end.
     void write_frame(long number);
 
-    /// The film is whole; writes the poster and the contact sheet.
+    /// The film is whole; writes the poster.
     void finish();
+    /// Writes a further picture, "NAME.ENDING".
+    void write(const std::string& ending, const Picture& picture) const;
 
 private:
     const Picture& take(const DisplayList& list);
     void take_card(long frames, bool fades_in);
 
     const Scene& scene_;
-    Recording& recording_;
-    const RunOptions& options_;
-    const long first_, last_;
     Transaction& parts_;
     RunRecord& record_;
     const std::atomic<bool>& stop_;

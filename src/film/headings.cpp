@@ -183,10 +183,11 @@ float place_header(Layout& layout, const Scene& scene) {
     const auto& page = layout.page;
     const float t = layout.text, gap = 30 * t;
     const bool tall = is_tall(video), changes = video.speed.changes_over_time(), has_clock = video.shows("clock");
-    if (layout.title.empty() && layout.subtitle.empty() && !has_clock) return page.top;
+    const auto title = video.shows("title") ? scene.preset.title : "";
+    auto below = video.shows("subtitle") ? scene_caption(scene, tall ? Wording::plain : Wording::exact) : "";
+    if (title.empty() && below.empty() && !has_clock) return page.top;
     const float first = page.top + 36 * t, second = first + (tall ? 52 : 30) * t;
     const auto time = clock_text(scene, scene.time(scene.samples));
-    auto below = layout.subtitle;
     // a little picture says what moves, in words that can be read, and not how it is stepped
     constexpr float least = 0.8f;
     if (!scene.preset.subtitle && layout.style.type.width(below, least * px(font.subtitle)) > 0.85f * page.width())
@@ -202,7 +203,7 @@ float place_header(Layout& layout, const Scene& scene) {
     };
     const float clock = has_clock ? layout.style.type.width(time, px(font.clock)) : 0;
     const float beside_title = !tall ? clock : changes ? layout.style.type.width(speed, px(font.subtitle)) : 0;
-    add(layout.title, first, font.title, Weight::bold, theme.text, beside_title);
+    add(title, first, font.title, Weight::bold, theme.text, beside_title);
     add(below, second, font.subtitle, Weight::regular, theme.quiet_text,
         tall ? clock : layout.style.type.width(speed, px(font.subtitle)));
     if (has_clock) {

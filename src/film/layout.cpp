@@ -236,8 +236,6 @@ Layout make_layout(const Scene& scene, const MotionBounds& seen, Dress dress) {
     const float u = layout.unit;
     const float top = is_portrait ? 0.06f * height : 28 * u, bottom = is_portrait ? 0.14f * height : 26 * u;
     layout.page = {std::round(60 * u), std::round(top), width - std::round(60 * u), height - std::round(bottom)};
-    if (video.shows("title")) layout.title = scene.preset.title;
-    if (video.shows("subtitle")) layout.subtitle = scene_caption(scene, tall ? Wording::plain : Wording::exact);
 
     const float header = std::round(place_header(layout, scene));
     const auto rooms = place_headings(layout, scene, {layout.page.left, header, layout.page.right, layout.page.bottom},

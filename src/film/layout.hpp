@@ -84,8 +84,7 @@ struct Layout {
     float unit = 1;  // 1 px of a 1920×1080 picture
     float text = 1;  // the same for text, which stays legible in small pictures and on telephones
     Style style;
-    Area page;  // within the margins
-    std::string title, subtitle;
+    Area page;          // within the margins
     DisplayList words;  // that never change: the title, what is said beside it, the headings above panels
     std::optional<Label> clock, speed;  // without their texts; the speed where it changes
     std::vector<PendulumPanel> panels;

@@ -16,29 +16,22 @@ void add(SideRecord& record, const Observation& seen, std::optional<double> ener
     record.length_error = std::max(record.length_error, seen.length_error);
 }
 
-double thread_s() {
-    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
-}
-
 }  // namespace
 
 Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
                      Report report, double most_bytes)
     : scene_(scene), end_(end), with_pictures_(with_pictures), stop_(stop), report_(std::move(report)) {
-    is_bounded_ = with_pictures && depends_on_motion(scene);
-    is_kept_ = with_pictures && (is_bounded_ || scene.preset.video.contact_sheet) && bytes() <= most_bytes;
-    if (!is_bounded_ && !is_kept_) return;
+    const bool is_bounded = with_pictures && depends_on_motion(scene);
+    is_kept_ = with_pictures && (is_bounded || scene.preset.video.contact_sheet) && bytes() <= most_bytes;
+    if (!is_bounded && !is_kept_) return;
     try {
-        simulate([&](const Snapshot& snapshot) {
+        simulate(is_bounded ? scene.samples : no_bounds, [&](const Snapshot& snapshot) {
             if (is_kept_) kept_.push_back(snapshot);
         });
     } catch (const Error& error) {
         if (error.code() == ExitCode::interrupted) throw;
         fault_ = std::current_exception();
     }
-    if (is_bounded_ && !fault_) look_beyond();
-    is_bounded_ = false;
-    pair_.reset();
 }
 
 /// About what keeping it takes.
@@ -53,17 +46,24 @@ double Recording::bytes() const {
 }
 
 void Recording::play(const Visit& visit) {
-    if (!is_kept_) return simulate(visit);
+    if (!is_kept_) return simulate(no_bounds, visit);
     for (const auto& snapshot : kept_) visit(snapshot);
     if (fault_) std::rethrow_exception(fault_);
 }
 
-void Recording::simulate(const Visit& visit) {
+/// The moments that are wanted; then on to sample `last`, for the bounds alone.
+void Recording::simulate(long last, const Visit& visit) {
+    const bool is_bounded = last != no_bounds;
     record_ = {};
-    auto& pair = pair_.emplace(scene_);
+    PairRun pair(scene_);
     std::optional<MotionBatch> members;
-    if (with_pictures_ && !scene_.members.empty() && (is_kept_ || !is_bounded_)) members.emplace(scene_.members, 1);
-    double begun = thread_s() + pair.other_cpu_s();
+    if (with_pictures_ && !scene_.members.empty() && (is_kept_ || !is_bounded)) members.emplace(scene_.members, 1);
+    const auto spent_s = [&] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + pair.other_cpu_s(); };
+    double begun = spent_s();
+    const auto add_sample = [&](const PairState& state) {
+        if (is_bounded) bounds_.add(scene_, state, record_.outcome.start_distance);
+        if (report_) report_({state.sample + 1, is_bounded ? last + 1 : end_.sample});
+    };
     const auto take = [&](PairState state) {
         check_distance(scene_, state);
         record_.a.effort = pair.effort_a();
@@ -72,23 +72,23 @@ void Recording::simulate(const Visit& visit) {
             add(record_.a, state.a, state.energy_error_a);
             add(record_.b, state.b, state.energy_error_b);
             record_.outcome.add(scene_.time(state.sample), state);
-            if (is_bounded_) bounds_.add(scene_, state, record_.outcome.start_distance);
-            if (report_) report_({state.sample + 1, is_bounded_ ? scene_.samples + 1 : end_.sample});
+            add_sample(state);
         }
         Snapshot snapshot{std::move(state), {}};
         for (std::size_t k = 0; members && k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
-        cpu_s_ += thread_s() + pair.other_cpu_s() - begun;
+        cpu_s_ += spent_s() - begun;
         visit(snapshot);
-        begun = thread_s() + pair.other_cpu_s();
+        begun = spent_s();
     };
     const auto& frames = scene_.frames;
     long frame = 0;
-    for (Moment sample; sample < end_; ++sample.sample) {
+    Moment sample;
+    for (; sample < end_; ++sample.sample) {
         auto state = pair.next(stop_);
         if (members && sample.sample > 0) members->advance(stop_);
         take(std::move(state));
-        if (!with_pictures_) continue;
-        for (; frame < frames.count && frames.at(frame) < std::min(end_, {sample.sample + 1}); ++frame) {
+        for (; with_pictures_ && frame < frames.count && frames.at(frame) < std::min(end_, {sample.sample + 1});
+             ++frame) {
             const auto moment = frames.at(frame);
             if (moment.share == 0) continue;
             auto between = pair.advance_to(moment, stop_);
@@ -96,19 +96,11 @@ void Recording::simulate(const Visit& visit) {
             take(std::move(between));
         }
     }
-}
-
-/// On to the end of the scene, for the bounds alone. Where a side breaks down there the part that is wanted is whole.
-void Recording::look_beyond() {
-    const double begun = thread_s() + pair_->other_cpu_s();
     try {
-        for (long sample = end_.share > 0 ? end_.sample + 1 : end_.sample; sample <= scene_.samples; ++sample) {
-            bounds_.add(scene_, pair_->next(stop_), record_.outcome.start_distance);
-            if (report_) report_({sample + 1, scene_.samples + 1});
-        }
-    } catch (const BreakDown&) {
+        for (; sample.sample <= last; ++sample.sample) add_sample(pair.next(stop_));
+    } catch (const BreakDown&) {  // what is wanted is whole
     }
-    cpu_s_ += thread_s() + pair_->other_cpu_s() - begun;
+    cpu_s_ += spent_s() - begun;
 }
 
 }  // namespace doppel

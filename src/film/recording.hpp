@@ -7,10 +7,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstddef>
+#include <deque>
 #include <exception>
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace doppel {
@@ -55,7 +54,7 @@ using Report = std::function<void(const Progress&)>;
 
 /// The motion of a scene up to a moment: its samples, and with pictures the frames between them and the members of an
 /// ensemble. Where a picture depends on the whole motion (depends_on_motion()), or is drawn after the others (the contact
-/// sheet), it is simulated at once and kept, some 0.8 kB a sample of a double pendulum, 29 kB of 256 links; where that
+/// sheet), it is simulated at once and kept, some 0.7 kB a sample of a double pendulum, 29 kB of 256 links; where that
 /// would take more than `most_bytes`, and for all other runs, it is simulated as it is played.
 class Recording {
 public:
@@ -84,22 +83,21 @@ public:
     double cpu_s() const { return cpu_s_; }
 
 private:
+    static constexpr long no_bounds = -1;
     double bytes() const;
-    void simulate(const Visit& visit);
-    void look_beyond();
+    void simulate(long last, const Visit& visit);
 
     const Scene& scene_;
     const Moment end_;
     const bool with_pictures_;
     const std::atomic<bool>& stop_;
     const Report report_;
-    std::optional<PairRun> pair_;
-    std::vector<Snapshot> kept_;
+    std::deque<Snapshot> kept_;
     std::exception_ptr fault_;
     MotionBounds bounds_;
     MotionRecord record_;
     double cpu_s_ = 0;
-    bool is_kept_ = false, is_bounded_ = false;
+    bool is_kept_ = false;
 };
 
 }  // namespace doppel

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -160,7 +161,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     Recording recording(scene, part.end, options.pictures, stop);
     std::optional<Film> film;
     if (options.pictures && !recording.fails())
-        film.emplace(scene, recording, options, part.first, part.last, parts, record, stop);
+        film.emplace(scene, recording.bounds(), options, part.first, parts, record, stop);
     const auto csv_name = scene.preset.name + ".csv";
     PairTable table(parts.file(csv_name), scene, options.columns);
     long frame = part.first, done = 0;
@@ -185,6 +186,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     }
     const auto finish = [&] {
         if (film) film->finish();
+        if (film && scene.preset.video.contact_sheet)
+            film->write(".contact.png", contact_sheet_of(scene, recording, part.first, part.last, options.gl, stop));
         table.finish();
         parts.finished(csv_name);
         record.motion = recording.record();

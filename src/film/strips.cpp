@@ -57,28 +57,18 @@ std::vector<std::string> curve_names(StripKind kind, const Scene& scene) {
     return names;
 }
 
-/// What a strip's words take, px.
-struct CaptionWidths {
-    float one_line = 0;     // name and value, and when they parted
-    float second_line = 0;  // the value and what the name leaves out
-    float parted = 0;       // when they parted; of the first strip
-
-    int lines(float room) const {
-        if (one_line <= room) return 1;
-        return parted == 0 || second_line + parted <= room ? 2 : 3;
-    }
-};
-
-CaptionWidths caption_widths(const Layout& layout, const Scene& scene, StripKind kind, bool is_first) {
+/// How many lines the words above a strip take in a room that wide, and the width of all in one, px.
+std::pair<int, float> caption_size(const Layout& layout, const Scene& scene, StripKind kind, bool is_first,
+                                   float room) {
     const float t = layout.text, gap = 14 * t;
     const auto width = [&](const std::string& text) {
         return layout.style.type.width(text, px(layout.style.font.strip));
     };
     const auto words = strip_words(kind, scene);
-    float value = 0, second = 0;  // beside the name, below it
+    float value = 0;  // beside the name; below it
     const auto names = curve_names(kind, scene);
     for (const auto& name : names) value += width(name) + (&name == &names.back() ? 0 : gap);
-    second = value;
+    float second = value;
     if (kind == StripKind::distance) value = second = value_room * t;
     if (kind == StripKind::exponent) {
         const float none = width(alike_words);
@@ -89,11 +79,11 @@ CaptionWidths caption_widths(const Layout& layout, const Scene& scene, StripKind
         value = width(no_error_words(kind, scene));
         second = value > 0 ? value : width(words.how);
     }
-    CaptionWidths widths{width(words.what) + (words.how.empty() ? 0 : width(", " + words.how)), second};
-    if (value > 0) widths.one_line += 18 * t + value;
-    if (is_first) widths.parted = width("parted at 00.0 s");
-    if (is_first) widths.one_line += gap + widths.parted;
-    return widths;
+    const float parted = is_first ? width("parted at 00.0 s") : 0;
+    float one_line = width(words.what) + (words.how.empty() ? 0 : width(", " + words.how));
+    if (value > 0) one_line += 18 * t + value;
+    if (is_first) one_line += gap + parted;
+    return {one_line <= room ? 1 : !is_first || second + parted <= room ? 2 : 3, one_line};
 }
 
 }  // namespace
@@ -182,9 +172,9 @@ CaptionPlan plan_captions(const Layout& layout, const Scene& scene, const Area& 
     CaptionPlan plan{.line = caption_line * t, .edge = 2 * t};
     plan.from_edge = room.width() < 0.3f * layout.page.width();
     for (const auto kind : strips) {
-        const auto widths = caption_widths(layout, scene, kind, plan.lines.empty());
-        plan.lines.push_back(widths.lines(room.width()));
-        plan.from_edge |= plan.lines.back() > 1 || widths.one_line > room.width() - labels;
+        const auto [lines, width] = caption_size(layout, scene, kind, plan.lines.empty(), room.width());
+        plan.lines.push_back(lines);
+        plan.from_edge |= lines > 1 || width > room.width() - labels;
     }
     plan.apart = (plan.from_edge ? 20 : 14) * t;
     // where many strips share a little room, curves come before words

@@ -76,22 +76,5 @@ TEST(KeptEncoders, NoSettingTakesLessOfBothThanTheDefault) {
     }
 }
 
-TEST(KeptEncoders, EqualQualityIsByTheWorstMeasure) {
-    const auto rows = [](double cpu_ms, double db_more) {
-        std::vector<EncodedRow> all;
-        for (const double crf : {15., 18., 21.})
-            all.push_back(
-                {crf, cpu_ms, 1000 * std::pow(2, (18 - crf) / 6), 50 + db_more + (18 - crf), 40, 0.999, 0.998});
-        return all;
-    };
-    const auto reference = rows(10, 0), better = rows(5, 3);
-    // 3 dB more are 3 of crf, of which 6 are twice the bytes
-    EXPECT_NEAR(equal_quality(better, reference).bytes, 1 / std::sqrt(2), 1e-12);
-    EXPECT_NEAR(equal_quality(better, reference).cpu, 0.5, 1e-12);
-    auto coarser = better;
-    for (std::size_t q = 0; q < 3; ++q) coarser[q].moving_psnr_db = 46 - 3 * static_cast<double>(q + 2);
-    EXPECT_NEAR(equal_quality(coarser, reference).bytes, std::sqrt(2), 1e-12);  // 40 dB, at crf 15
-}
-
 }  // namespace kept_encoders_test
 }  // namespace doppel

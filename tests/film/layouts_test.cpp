@@ -97,12 +97,6 @@ TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
         EXPECT_EQ(snapshot.members.front().back().x, snapshot.pair.a.bobs.back().x) << snapshot.pair.sample;
         EXPECT_EQ(snapshot.members.back().back().y, snapshot.pair.b.bobs.back().y) << snapshot.pair.sample;
     });
-    // one for each at sample 0 on the line from member to member, the first in front
-    const auto layout = make_layout(scene);
-    const auto picture = frame_of(scene, 0);
-    const double angle = radians(120.0);
-    EXPECT_TRUE(is_color(pixel_at(picture, layout.panels[0].at(2 * std::sin(angle), -2 * std::cos(angle))),
-                         member_color(layout.style, 0)));
 }
 
 TEST(Layouts, ExponentSoFarIsTheSlopeOfTheLogarithm) {

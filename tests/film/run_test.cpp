@@ -33,23 +33,6 @@ TEST(Run, VideoHasTheFramesThatWereDrawn) {
     EXPECT_EQ(video.average_rate, (test::Ratio{120, 1}));
 }
 
-TEST(Run, DrawsTheSameInSequenceAsAlone) {
-    // the renderer redraws only what changes; no pixel may depend on it
-    const auto out = fresh_folder();
-    const auto scene = small_scene({"video.format=\"png\""}, "1.5");
-    render(scene, {.out = out});
-    for (const long sample : {0L, 1L, 90L, 180L})
-        EXPECT_EQ(read_png(out / fmt::format("butterfly/frames/{:06}.png", sample)).rgba, frame_of(scene, sample).rgba)
-            << sample;
-}
-
-TEST(Run, ShowsEveryOtherSampleAtHalfTheRate) {
-    const auto out = fresh_folder();
-    const auto scene = small_scene({"video.format=\"png\"", "video.fps=60"});
-    EXPECT_EQ(render(scene, {.out = out}).frames, 31);
-    EXPECT_EQ(read_png(out / "butterfly/frames/000030.png").rgba, frame_of(scene, 60).rgba);
-}
-
 TEST(Run, OfAChangingSpeedHasTheSameTableAndMoreFrames) {
     const auto out = fresh_folder();
     const auto even = small_scene(),

@@ -55,7 +55,8 @@ TEST(Schedule, FramesComeInItsOrderAndRangesGiveTheSameOnes) {
     const auto first = frame_of(scene, 0).rgba, last = frame_of(scene, 30).rgba;
     EXPECT_NE(frame(0), first) << "a card hides it";
     for (const long k : {24L, 29L, 30L}) EXPECT_EQ(frame(k), first) << k;
-    EXPECT_EQ(frame(35), frame_of(scene, 5).rgba);
+    // the renderer redraws only what changes; no pixel may depend on it
+    for (const long sample : {1, 5, 15, 29}) EXPECT_EQ(frame(30 + sample), frame_of(scene, sample).rgba) << sample;
     for (const long k : {60L, 61L, 72L}) EXPECT_EQ(frame(k), last) << k;
     EXPECT_NE(frame(90), last);
 
