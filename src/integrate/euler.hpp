@@ -30,13 +30,27 @@ public:
     }
 
     void advance(long steps) {
-        take_steps(model_, y_, steps, h_, [&](State& y, const Scalar& h) { step(y, h); });
+        if constexpr (is_flattened<Model>)
+            repeat_flattened(steps);
+        else
+            repeat(steps);
     }
 
     const State& state() const { return y_; }
     long evaluations() const { return evaluations_; }
 
 private:
+    [[gnu::flatten]] void repeat_flattened(long steps) { repeat(steps); }
+    void repeat(long steps) {
+        for (long i = 0; i < steps; ++i) {
+            if constexpr (HasEvents<Model>)
+                if (model_.switches()) {
+                    step_through_events(model_, y_, h_, [&](State& y, const Scalar& h) { step(y, h); });
+                    continue;
+                }
+            step(y_, h_);
+        }
+    }
     void step(State& y, const Scalar& h) {
         const auto n = y.size() / 2;
         model_.rate(y, dydt_);

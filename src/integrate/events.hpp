@@ -92,7 +92,7 @@ private:
     int count_ = 0;
 };
 
-/// A step of h, s, in parts where events are: `take(y, t)` is one of t.
+/// A step of h, s, of a method at fixed step, in parts where events are: `take(y, t)` is one of t.
 template <HasEvents Model, class State, class Scalar, class Take>
 void step_through_events(Model& model, State& y, const Scalar& h, Take&& take) {
     State from = y, at = y;
@@ -113,19 +113,6 @@ void step_through_events(Model& model, State& y, const Scalar& h, Take&& take) {
         stall.note(event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * h);
         left -= event;
         if (!(left > Scalar(0))) return;
-    }
-}
-
-/// Steps of h, s, of a method at fixed step.
-template <class Model, class State, class Scalar, class Take>
-[[gnu::always_inline]] inline void take_steps(Model& model, State& y, long steps, const Scalar& h, const Take& take) {
-    for (; steps > 0; --steps) {
-        if constexpr (HasEvents<Model>)
-            if (model.switches()) {
-                step_through_events(model, y, h, take);
-                continue;
-            }
-        take(y, h);
     }
 }
 

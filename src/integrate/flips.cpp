@@ -23,27 +23,6 @@ double weight(const Pendulum<double>& p, std::size_t rod) {
     return p.gravity * p.length[rod] * below;
 }
 
-/// J above hanging at rest; so measured, a heavy rod that hangs takes no digits from a light one.
-double energy_of(const Pendulum<double>& p) {
-    double energy = 0, vx = 0, vy = 0;
-    for (std::size_t i = 0; i < p.links(); ++i) {
-        const SinCos<double> turn(p.angle[i]);
-        const double half = SinCos<double>(0.5 * p.angle[i]).sin;
-        vx += p.length[i] * p.rate[i] * turn.cos;
-        vy += p.length[i] * p.rate[i] * turn.sin;
-        energy += 2 * weight(p, i) * half * half + 0.5 * p.mass[i] * (vx * vx + vy * vy);
-    }
-    return energy;
-}
-
-/// The least of it with a rod upright, J; where gravity pulls up, standing upright takes none.
-double least_energy_to_flip(const Pendulum<double>& p) {
-    if (p.gravity < 0) return -never;
-    double least = never;
-    for (std::size_t i = 0; i < p.links(); ++i) least = std::min(least, 2 * weight(p, i));
-    return least;
-}
-
 /// A rod's angle on a step in the sense in which it flips, and its rate there.
 struct Outward {
     double value, rate;  // rad beyond the upright, rad/s
@@ -115,8 +94,19 @@ double flip_tolerance(double duration) {
     return std::pow(10, -std::clamp(8 + std::ceil((duration - 20) / 2), 8.0, 14.0));
 }
 
-bool flip_is_forbidden(const Pendulum<double>& pendulum) {
-    return energy_of(pendulum) < least_energy_to_flip(pendulum);
+bool flip_is_forbidden(const Pendulum<double>& p) {
+    if (p.gravity < 0) return false;  // it takes none to stand upright
+    // J above hanging at rest; so measured, a heavy rod that hangs takes no digits from a light one
+    double energy = 0, least = never, vx = 0, vy = 0;
+    for (std::size_t i = 0; i < p.links(); ++i) {
+        const SinCos<double> turn(p.angle[i]);
+        const double half = SinCos<double>(0.5 * p.angle[i]).sin, upright = 2 * weight(p, i);
+        vx += p.length[i] * p.rate[i] * turn.cos;
+        vy += p.length[i] * p.rate[i] * turn.sin;
+        energy += upright * half * half + 0.5 * p.mass[i] * (vx * vx + vy * vy);
+        least = std::min(least, upright);
+    }
+    return energy < least;
 }
 
 void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times,

@@ -158,6 +158,17 @@ private:
     State at_;
 };
 
+/// Short states of doubles: whether the compiler inlines a right-hand side of its own accord depends on what else is in
+/// the file. Others gain nothing by it. With sanitizers, two test files took more than six minutes each.
+#ifdef __SANITIZE_ADDRESS__
+template <class Model>
+inline constexpr bool is_flattened = false;
+#else
+template <class Model>
+inline constexpr bool is_flattened =
+    is_machine_number<typename Model::Scalar>&& Model::State::RowsAtCompileTime != Eigen::Dynamic;
+#endif
+
 /// An explicit Runge–Kutta method with `table`, at fixed step: any system, any scalar (integrate/stepper.hpp).
 template <System Model, const auto& table>
 class RungeKutta {
@@ -173,10 +184,13 @@ public:
     }
 
     void advance(long steps) {
-        if constexpr (flattened)
+        if constexpr (HasEvents<Model>)
+            if (model_.switches()) return advance_through_events(steps);
+        if constexpr (is_flattened<Model>)
             repeat_flattened(steps);
         else
             repeat(steps);
+        evaluations_ += steps * static_cast<long>(stages);
     }
 
     const State& state() const { return y_; }
@@ -186,24 +200,23 @@ private:
     static constexpr std::size_t stages = table.b.size();
     static constexpr bool reuses_angles = stages > 1 && HasStageAngles<Model>;
 
-    [[gnu::always_inline]] void repeat(long steps) {
-        take_steps(
-            model_, y_, steps, h_, [&](State & y, const Scalar& h) __attribute__((always_inline)) { step(y, h); });
+    void repeat(long steps) {
+        for (long i = 0; i < steps; ++i) step(y_);
+    }
+    void advance_through_events(long steps) {
+        const Scalar h = h_;
+        for (long i = 0; i < steps; ++i)
+            step_through_events(model_, y_, h, [&](State& y, const Scalar& t) {
+                h_ = t;
+                step(y);
+                evaluations_ += static_cast<long>(stages);
+            });
+        h_ = h;
     }
 
-    /// Short states of doubles: whether the compiler inlines a right-hand side of its own accord depends on what else is
-    /// in the file. Others gain nothing by it. With sanitizers, two test files took more than six minutes each.
-#ifdef __SANITIZE_ADDRESS__
-    static constexpr bool flattened = false;
-#else
-    static constexpr bool flattened = is_machine_number<Scalar> && State::RowsAtCompileTime != Eigen::Dynamic;
-#endif
+    [[gnu::flatten]] void repeat_flattened(long steps) { repeat(steps); }
 
-    [[gnu::flatten]] void repeat_flattened(long steps) {
-        repeat(steps);
-    }
-
-    void step(State& y, const Scalar& h) {
+    void step(State& y) {
         // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)
         const auto slope = [&]<std::size_t i>() {
             if constexpr (i == 0) {
@@ -214,7 +227,7 @@ private:
             } else {
                 static constexpr auto row = table.a[i];
                 at_ = y;
-                move<row>(at_, h);
+                move<row>(at_, std::make_index_sequence<i>());
                 if constexpr (reuses_angles)
                     model_.rate_of_stage(at_, slopes_[i], angles_);
                 else
@@ -228,27 +241,22 @@ private:
 
         // y + h Σ b_i k_i
         static constexpr auto b = table.b;
-        move<b>(y, h);
+        move<b>(y, std::make_index_sequence<stages>());
         project(model_, y);
-        evaluations_ += static_cast<long>(stages);
     }
 
     /// y ← y + h Σ_j weight_j k_j over the weights that are not zero; which those are is known to the compiler.
-    template <const auto& weights>
-    void move(State& y, const Scalar& h) {
-        [&]<std::size_t... J>(std::index_sequence<J...>) {
-            const std::array<Scalar, stages> share{
-                is_zero(weights[J]) ? Scalar(0) : Scalar(h * value<Scalar>(weights[J]))...};  // s
-            for (Eigen::Index i = 0; i < y.size(); ++i) {
-                Scalar change(-0.0);  // unlike +0, it changes no sum and costs no addition
-                const auto add = [&]<std::size_t j>() {
-                    if constexpr (!is_zero(weights[j])) change += share[j] * slopes_[j][i];
-                };
-                (add.template operator()<J>(), ...);
-                y[i] += change;
-            }
+    template <const auto& weights, std::size_t... J>
+    void move(State& y, std::index_sequence<J...>) {
+        [[maybe_unused]] const std::array<Scalar, sizeof...(J)> share{Scalar(h_ * value<Scalar>(weights[J]))...};  // s
+        for (Eigen::Index i = 0; i < y.size(); ++i) {
+            Scalar change(-0.0);  // unlike +0, it changes no sum and costs no addition
+            [[maybe_unused]] const auto add = [&]<std::size_t j>() {
+                if constexpr (!is_zero(weights[j])) change += share[j] * slopes_[j][i];
+            };
+            (add.template operator()<J>(), ...);
+            y[i] += change;
         }
-        (std::make_index_sequence<stages>());
     }
 
     Model& model_;

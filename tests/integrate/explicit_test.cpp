@@ -40,8 +40,8 @@ double size_after(double step, long steps) {
 TEST(RungeKutta, MultipliesTheEnergyByItsStabilityFunction) {
     for (const double z : {0.01, 0.3, 1.5, 2.8}) {
         const double z2 = z * z, z4 = z2 * z2;
-        EXPECT_NEAR((size_after<Euler, Oscillator>(z, 1)), std::sqrt(1 + z2), 1e-15);
-        EXPECT_NEAR((size_after<Midpoint, Oscillator>(z, 1)), std::sqrt(1 + z4 / 4), 1e-15);
+        EXPECT_NEAR((size_after<Euler, Oscillator>(z, 1)), std::sqrt(1 + z2), 2e-15);
+        EXPECT_NEAR((size_after<Midpoint, Oscillator>(z, 1)), std::sqrt(1 + z4 / 4), 2e-15);
         EXPECT_NEAR((size_after<Rk4, Oscillator>(z, 1)), std::sqrt(1 - z2 * z4 / 72 + z4 * z4 / 576), 2e-15);
     }
 }

@@ -45,16 +45,6 @@ TEST(Rattle, KeepsItsOrderUnderFriction) {
     EXPECT_NEAR((measured_order<Rattle6, Dragged<Quad, 2>>(2, 128)), 6, 0.01);  // measured 5.999
 }
 
-TEST(Rattle, ConvergesToTheMotionInAngles) {
-    const auto p = unequal<Quad>();
-    using Angles = DoublePendulum<Quad>;
-    const auto bobs = bobs_of_particles<Quad>(
-        p, after<Rattle6, RodChain<Quad, 2>>(p, RodChain<Quad, 2>::start(p), Quad(1) / Quad(1000), 500));
-    const auto truth = after<Rk4, Angles>(p, Angles::start(p), Quad(1) / Quad(20000), 10000);
-    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[0].theta - truth[0]))), 2e-16);  // measured 4e-17
-    EXPECT_LT(std::abs(static_cast<double>(Quad(bobs[1].theta - truth[1]))), 2e-16);  // measured 4e-17
-}
-
 TEST(Rattle6, MeetsTheConditionsOfOrderSix) {
     // Σγ = 1 by construction, Σγ³ = Σγ⁵ = Σγ³m² = 0
     std::vector<Quad> gammas;
