@@ -10,8 +10,19 @@
 
 namespace doppel {
 
-/// A description in another scalar: numbers, places, and lists, choices and structs of such. A struct over its scalar tells its
-/// members() in the order of their declaration. Indices stay.
+/// A struct over its scalar that tells its members, in the order of their declaration.
+template <class Struct>
+concept Described = requires(const Struct& described) {
+    described.members();
+};
+
+template <template <class> class Struct, class Scalar>
+requires Described<Struct<Scalar>>
+bool operator==(const Struct<Scalar>& one, const Struct<Scalar>& other) {
+    return one.members() == other.members();
+}
+
+/// A description in another scalar: numbers, places, and lists, choices and structs of such. Indices stay.
 template <class To>
 struct Cast {
     std::size_t operator()(std::size_t index) const { return index; }
@@ -35,8 +46,8 @@ struct Cast {
         return std::visit([&](const auto& one) -> Made { return (*this)(one); }, part);
     }
     template <template <class> class Struct, class From>
-    requires requires(const Struct<From>& from) { from.members(); }
-    Struct<To> operator()(const Struct<From>& from) const {
+    requires Described<Struct<From>> Struct<To>
+    operator()(const Struct<From>& from) const {
         return std::apply([&](const auto&... member) { return Struct<To>{(*this)(member)...}; }, from.members());
     }
 };

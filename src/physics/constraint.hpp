@@ -57,7 +57,6 @@ struct Anchor {
     std::size_t particle;
     Place<Scalar> place;  // m
 
-    friend bool operator==(const Anchor&, const Anchor&) = default;
     auto members() const { return std::tie(particle, place); }
 };
 
@@ -70,7 +69,6 @@ struct Rod {
     End<Scalar> b;
     Scalar length;  // m, > 0
 
-    friend bool operator==(const Rod&, const Rod&) = default;
     auto members() const { return std::tie(a, b, length); }
 };
 
@@ -83,7 +81,6 @@ struct SlotLine {
     Place<Scalar> point;      // m
     Place<Scalar> direction;  // not zero; a picture draws the slot from `point` to `point` + `direction`
 
-    friend bool operator==(const SlotLine&, const SlotLine&) = default;
     auto members() const { return std::tie(particle, point, direction); }
 };
 
@@ -96,7 +93,6 @@ struct SlotCircle {
     Place<Scalar> centre;  // m
     Scalar radius;         // m, > 0
 
-    friend bool operator==(const SlotCircle&, const SlotCircle&) = default;
     auto members() const { return std::tie(particle, centre, radius); }
 };
 

@@ -29,7 +29,6 @@ struct Gravity {
 
     Scalar g = Scalar(98) / Scalar(10);  // m/s²
 
-    friend bool operator==(const Gravity&, const Gravity&) = default;
     auto members() const { return std::tie(g); }
 
     template <class Vector, class Sum>
@@ -57,7 +56,6 @@ struct Spring {
     Scalar length;               // m, ≥ 0, at rest
     Scalar damping = Scalar(0);  // N s/m, ≥ 0
 
-    friend bool operator==(const Spring&, const Spring&) = default;
     auto members() const { return std::tie(a, b, stiffness, length, damping); }
 
     template <class Vector, class Sum>
@@ -103,7 +101,6 @@ struct Attraction {
     std::size_t a, b;
     Scalar constant = newton_constant<Scalar>();  // G, m³/(kg s²)
 
-    friend bool operator==(const Attraction&, const Attraction&) = default;
     auto members() const { return std::tie(a, b, constant); }
 
     template <class Vector, class Sum>
@@ -133,7 +130,6 @@ struct Droplet {
     Scalar mass;                                  // M, kg, > 0
     Scalar constant = newton_constant<Scalar>();  // G, m³/(kg s²)
 
-    friend bool operator==(const Droplet&, const Droplet&) = default;
     auto members() const { return std::tie(place, mass, constant); }
 
     template <class Vector, class Sum>

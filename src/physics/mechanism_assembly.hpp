@@ -19,7 +19,6 @@ struct Particle {
     Place<Scalar> place;                                           // m, at t = 0
     Place<Scalar> velocity = Place<Scalar>(Scalar(0), Scalar(0));  // m/s, at t = 0
 
-    friend bool operator==(const Particle&, const Particle&) = default;
     auto members() const { return std::tie(mass, place, velocity); }
 };
 
@@ -30,8 +29,6 @@ struct Assembly {
     std::vector<Particle<Scalar>> particles;
     std::vector<Constraint<Scalar>> constraints;
     std::vector<Force<Scalar>> forces;
-
-    friend bool operator==(const Assembly&, const Assembly&) = default;
 
     auto members() const { return std::tie(particles, constraints, forces); }
     /// The same in another scalar.
@@ -69,11 +66,10 @@ template <class Part>
 std::string words_for(const Part& part) {
     if constexpr (requires { part.particle; }) {
         return fmt::format("{} of particle {}", Part::kind, part.particle + 1);
-    } else if constexpr (requires { std::get<std::size_t>(part.b); }) {
-        const auto* b = std::get_if<std::size_t>(&part.b);
-        return fmt::format("{} {}–{}", Part::kind, part.a + 1, b ? fmt::to_string(*b + 1) : "fixed");
     } else if constexpr (requires { part.b; }) {
-        return fmt::format("{} {}–{}", Part::kind, part.a + 1, part.b + 1);
+        const End<double> end = Cast<double>()(part.b);
+        const auto* b = std::get_if<std::size_t>(&end);
+        return fmt::format("{} {}–{}", Part::kind, part.a + 1, b ? fmt::to_string(*b + 1) : "fixed");
     } else {
         return std::string(Part::kind);
     }

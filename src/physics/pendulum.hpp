@@ -21,8 +21,6 @@ struct Pendulum {
     std::vector<Scalar> rate{0, 0};            // rad/s, at t = 0
     Scalar gravity = Scalar(98) / Scalar(10);  // m/s²
 
-    friend bool operator==(const Pendulum&, const Pendulum&) = default;
-
     std::size_t links() const { return mass.size(); }
 
     auto members() const { return std::tie(mass, length, angle, rate, gravity); }

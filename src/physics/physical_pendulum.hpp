@@ -25,7 +25,6 @@ struct Friction {
     std::vector<Scalar> drag_linear;     // d1, N s/m
     std::vector<Scalar> drag_quadratic;  // d2, N s²/m²
 
-    friend bool operator==(const Friction&, const Friction&) = default;
     auto members() const {
         return std::tie(viscous, coulomb, arm_linear, arm_quadratic, air_quadratic, drag_linear, drag_quadratic);
     }
@@ -42,7 +41,6 @@ struct PivotMotion {
     Scalar frequency = Scalar(0);         // ν, rad/s
     Scalar phase = Scalar(0);             // φ, rad
 
-    friend bool operator==(const PivotMotion&, const PivotMotion&) = default;
     auto members() const { return std::tie(x, y, frequency, phase); }
 
     bool moves() const { return x != Scalar(0) || y != Scalar(0); }
@@ -56,7 +54,6 @@ struct JointTorque {
     Scalar frequency = Scalar(0);  // ν, rad/s
     Scalar phase = Scalar(0);      // φ, rad
 
-    friend bool operator==(const JointTorque&, const JointTorque&) = default;
     auto members() const { return std::tie(joint, amplitude, frequency, phase); }
 };
 
@@ -70,8 +67,6 @@ struct PhysicalPendulum {
     Friction<Scalar> friction;
     PivotMotion<Scalar> pivot;
     std::vector<JointTorque<Scalar>> torques;
-
-    friend bool operator==(const PhysicalPendulum&, const PhysicalPendulum&) = default;
 
     bool is_driven() const { return pivot.moves() || !torques.empty(); }
     bool conserves_energy() const { return friction.is_none() && !is_driven(); }
