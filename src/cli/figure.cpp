@@ -88,9 +88,8 @@ private:
 std::vector<std::string> files_of(const FigurePreset& figure, const FigureCommandOptions& options) {
     const auto& name = figure.name;
     const auto shard = shard_of(options);
-    if (options.tiles && shard) return {name + ".tiles/"};
-    if (options.tiles) return {name + ".tiles/", name + ".html", name + ".tiles.json"};
     if (shard) return {shard_name(header_of(figure, shard->number, shard->of))};
+    if (options.tiles) return {name + ".tiles/", name + ".html", name + ".tiles.json"};
     return {fmt::format("{}.{}", name, name_of(figure.chart.format)), name + ".csv", name + ".json"};
 }
 

@@ -33,13 +33,10 @@ constexpr std::array<std::string_view, 9> used_keys{"title",     "duration_s",  
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> unused_keys{
     {{"section", "angle_deg"}, {"section", "omega_deg_per_s"}}};
 
-/// Which compare methods, and so give them.
-constexpr std::array<std::string_view, 2> exact_kinds{"convergence", "stability"};
-
 bool is_used(const FieldTable& table, std::string_view key, std::string_view kind) {
     if (table.name.starts_with("[[")) return key == "scene" || key == "column";
     if (key == "difference") return true;
-    if (table.key() == "system" && key == "accuracy") return std::ranges::find(exact_kinds, kind) == exact_kinds.end();
+    if (table.key() == "system" && key == "accuracy") return true;
     return (table.key() == "scene" || table.key() == "system") &&
            std::ranges::find(used_keys, key) != used_keys.end() &&
            std::ranges::find(unused_keys, std::pair(kind, key)) == unused_keys.end();

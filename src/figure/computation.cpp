@@ -2,7 +2,6 @@
 
 #include "base/clock.hpp"
 #include "base/threads.hpp"
-#include "figure/map_figure.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -25,36 +24,49 @@ std::string duration_words(double seconds) {
 }  // namespace
 
 Computation::Computation(const FigurePreset& figure, const PartHeader& header,
-                         std::optional<std::filesystem::path> record, int threads, ComputationReport report)
+                         std::optional<std::filesystem::path> folder, int threads, ComputationReport report)
     : figure_(figure),
       header_(header),
-      record_(std::move(record)),
+      folder_(std::move(folder)),
       threads_(threads),
       report_(std::move(report)),
       known_(header.trials) {
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial)
         total_units_ += figure_.experiment->units(trial);
-    take_record();
+    if (folder_) {
+        record_ = *folder_ / resume_name(header_);
+        if (header_.of == 1 || !take(shard(), false)) take(record_, true);
+    }
     find_groups();
 }
 
-void Computation::take_record() {
-    std::error_code ignored;
-    if (!record_ || !std::filesystem::exists(std::filesystem::symlink_status(*record_, ignored))) return;
-    auto part = read_part_file(*record_);
+/// Whether there is such a file of these trials, which then are known; where it is of others, nothing is taken.
+bool Computation::take(const std::filesystem::path& path, bool must_be) {
+    if (type_of(path) == std::filesystem::file_type::not_found) return false;
+    auto part = read_part_file(path);
+    if (part.header != header_ && !must_be) return false;
     if (part.header != header_)
         throw io_failed("{} belongs to another preset or version; remove it, or give another folder with --out",
-                        record_->string());
+                        path.string());
     part.take(*figure_.experiment, known_);
     has_record_ = true;
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.experiment->units(trial);
     kept_units_ = done_units_;
     report_.note(fmt::format(
-        "goes on from {}: {:.0f} % is done{}", record_->string(), percent(done_units_),
+        "goes on from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
         part.damaged_line == 0
             ? ""
             : fmt::format("; line {} is damaged, and what follows it is computed anew", part.damaged_line)));
+    return true;
+}
+
+std::filesystem::path Computation::publish_shard() {
+    if (groups_.empty() && type_of(record_) == std::filesystem::file_type::not_found && has_record_) return shard();
+    if (!writer_) writer_.emplace(record_, header_, known_);
+    writer_->close();
+    rename_file(record_, shard());
+    return shard();
 }
 
 /// Runs of unknown trials, cut to what is best computed together. Of many groups, some evenly spaced ones come first, to
@@ -101,7 +113,7 @@ Error Computation::with_record(const Error& fault) {
     if (!has_record_) return fault;
     if (writer_) writer_->flush();
     return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command goes on from there",
-                                      fault.what(), percent(kept_units_), record_->string())};
+                                      fault.what(), percent(kept_units_), record_.string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
@@ -117,8 +129,8 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
     const double time = now();
     const bool is_last = groups_done_ == groups_.size();
     const bool pays = time - start_s_ > record_after_s && !is_last;
-    if (!writer_ && pays && record_) {
-        writer_.emplace(*record_, header_, known_);
+    if (!writer_ && pays && folder_) {
+        writer_.emplace(record_, header_, known_);
         has_record_ = true;
     } else if (writer_) {
         for (std::size_t trial = group.first; trial < group.second; ++trial) writer_->add(trial, known_[trial]);
@@ -139,95 +151,44 @@ void Computation::tell_estimate(double time) {
                              figure_.experiment->unit(), roughly(rate), threads_, duration_words(left / rate)));
 }
 
-namespace {
-
-/// Some of a figure's trials, or of a map's cells, and what they took.
-struct Sampled {
-    double done = 0, seconds = 0;
-};
-
-/// Calls sample(place, seen) with places 0…1 that are spread evenly, however many there are, until the time is over or it
-/// returns false; it adds to `seen` what it has done.
-template <class Sample>
-Sampled sampled(const TimeLimit& limit, const std::atomic<bool>& stop, const Sample& sample) {
-    constexpr double golden = 0.6180339887498949;
-    Sampled seen;
-    const double start = now();
-    try {
-        for (double place = 0.5; !limit.reached() && sample(place, seen);
-             place += golden - std::floor(place + golden)) {
-        }
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::interrupted || stop) throw;
-    }
-    if (seen.done == 0) seen.seconds = now() - start;
-    return seen;
-}
-
-/// Cells of a map: a row of slow ones would take too long, and neighbours may be computed together. Pieces of rows,
-/// longer ones as long as they take little; the longest count.
-Sampled sampled_cells(const MapFigure& map, std::size_t rows, const TimeLimit& limit, const std::atomic<bool>& stop) {
-    constexpr double brief_s = 0.05;
-    constexpr std::size_t longest = 512;
-    const auto columns = static_cast<std::size_t>(map.frame().x.count);
-    std::size_t length = 1;
-    bool is_longer = true;
-    return sampled(limit, stop, [&](double place, Sampled& seen) {
-        const double row = place * static_cast<double>(rows), in_row = row - std::floor(row);
-        std::vector<TrialNumbers> cells(length);
-        const double start = now();
-        map.find(static_cast<int>(row), static_cast<int>(in_row * static_cast<double>(columns - length)), cells,
-                 limit.reached());
-        const double seconds = now() - start;
-        if (is_longer) seen = {};
-        seen = {seen.done + static_cast<double>(length), seen.seconds + seconds};
-        is_longer = seconds < brief_s && length < std::min(longest, columns);
-        if (is_longer) length = std::min({4 * length, longest, columns});
-        return true;
-    });
-}
-
-Sampled sampled_trials(const Experiment& experiment, const TimeLimit& limit, const std::atomic<bool>& stop) {
-    const std::size_t trials = experiment.trials(), together = experiment.together();
-    const std::size_t groups = (trials + together - 1) / together;
-    std::size_t calls = 0;
-    return sampled(limit, stop, [&](double place, Sampled& seen) {
-        if (calls++ == groups) return false;
-        const auto first = static_cast<std::size_t>(place * static_cast<double>(groups)) * together;
-        if (experiment.units(first) == 0) return true;
-        std::vector<TrialNumbers> numbers(std::min(together, trials - first));
-        const double start = now();
-        experiment.compute(first, numbers, limit.reached());
-        seen.seconds += now() - start;
-        for (std::size_t k = 0; k < numbers.size(); ++k) seen.done += experiment.units(first + k);
-        return true;
-    });
-}
-
-}  // namespace
-
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
-    constexpr double allowed_s = 1;
+    constexpr double allowed_s = 1, golden = 0.6180339887498949;
     const auto& experiment = *figure.experiment;
-    const auto* map = experiment.map();
+    const std::size_t trials = experiment.trials(), together = experiment.together();
     double total = 0;
     std::size_t counted = 0;
     const double before = now();
-    for (std::size_t trial = 0; trial < experiment.trials(); ++trial) {
+    for (std::size_t trial = 0; trial < trials; ++trial) {
         const double units = experiment.units(trial);
         // trials of 0 units are what others need: computed first, outside the estimate
         TrialNumbers numbers;
         if (units == 0) experiment.compute(trial, {&numbers, 1}, stop);
         if (units > 0) ++counted;
-        total += map && units > 0 ? map->frame().x.count : units;
+        total += units;
     }
-    const double needed_s = now() - before;
+    const double start = now(), needed_s = start - before;
+    // groups that are spread evenly, until the time is over
     const TimeLimit limit(allowed_s, stop);
-    const auto seen = map ? sampled_cells(*map, counted, limit, stop) : sampled_trials(experiment, limit, stop);
-    const std::size_t groups = (counted + experiment.together() - 1) / experiment.together();
-    const double of_all = seen.done > 0 ? total / seen.done : map ? total : static_cast<double>(groups);
-    const double shared = std::min(static_cast<double>(threads), static_cast<double>(groups));
-    return {(needed_s + seen.seconds * of_all) / shared, seen.done == 0};
+    const std::size_t all_groups = (trials + together - 1) / together;
+    double done = 0, seconds = 0, place = 0.5;
+    try {
+        for (std::size_t calls = 0; calls < all_groups && !limit.reached(); ++calls) {
+            const auto first = static_cast<std::size_t>(place * static_cast<double>(all_groups)) * together;
+            place += golden - std::floor(place + golden);
+            if (experiment.units(first) == 0) continue;
+            std::vector<TrialNumbers> numbers(std::min(together, trials - first));
+            const double from = now();
+            experiment.compute(first, numbers, limit.reached());
+            seconds += now() - from;
+            for (std::size_t k = 0; k < numbers.size(); ++k) done += experiment.units(first + k);
+        }
+    } catch (const Error& fault) {
+        if (fault.code() != ExitCode::interrupted || stop) throw;
+    }
+    if (done == 0) seconds = now() - start;
+    const auto groups = static_cast<double>((counted + together - 1) / together);
+    const double shared = std::min(static_cast<double>(threads), groups);
+    return {(needed_s + seconds * (done > 0 ? total / done : groups)) / shared, done == 0};
 }
 
 }  // namespace doppel

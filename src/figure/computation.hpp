@@ -22,24 +22,26 @@ struct ComputationReport {
 };
 
 /// The unknown trials of a part of a figure, in groups for threads to take, and the file that records them once the
-/// computation takes some seconds. Destroyed before it is complete, it leaves that file.
+/// computation takes some seconds (resume_name). Destroyed before it is complete, it leaves that file.
 class Computation {
 public:
-    /// `record` = the file; where it exists, its trials up to the first damaged one are known. `threads` is for
-    /// messages. Throws Error (exit 4) where the record is another file, which is left alone.
-    Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> record,
+    /// `folder` = where the files are. The trials of a finished shard there, or else of the record, are known, up to the
+    /// first damaged one. `threads` is for messages. Throws Error (exit 4) where the record is another file, which is
+    /// left alone.
+    Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
                 int threads, ComputationReport report);
 
     std::size_t groups() const { return groups_.size(); }
     /// Computes a group, each once, on any thread. True for the last one: then all trials are known. Throws Error: what
     /// a trial throws, with the place of the record; exit 3 where its numbers do not fit.
     bool compute(std::size_t group, const std::atomic<bool>& stop);
-    KnownTrials take() { return std::move(known_); }
+    KnownTrials take_all() { return std::move(known_); }
     /// The same fault, with the share that is kept in the record, and its path.
     Error with_record(const Error& fault);
 
-    const PartHeader& header() const { return header_; }
-    const std::optional<std::filesystem::path>& record() const { return record_; }
+    /// The record of all trials becomes the shard. Throws Error (exit 4).
+    std::filesystem::path publish_shard();
+    const std::filesystem::path& record() const { return record_; }
     double computed_units() const { return computed_units_; }  // without those read
     double cpu_s() const { return cpu_s_; }                    // of the threads while they computed
     double start_s() const { return start_s_; }                // of the first group, by CLOCK_MONOTONIC
@@ -47,7 +49,8 @@ public:
 private:
     using Group = std::pair<std::size_t, std::size_t>;  // trials first … last − 1
 
-    void take_record();
+    bool take(const std::filesystem::path& path, bool must_be);
+    std::filesystem::path shard() const { return *folder_ / shard_name(header_); }
     void find_groups();
     bool keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s);
     void tell_estimate(double time);
@@ -55,7 +58,8 @@ private:
 
     const FigurePreset& figure_;
     PartHeader header_;
-    std::optional<std::filesystem::path> record_;
+    std::optional<std::filesystem::path> folder_;
+    std::filesystem::path record_;
     int threads_;
     ComputationReport report_;
     std::vector<Group> groups_;

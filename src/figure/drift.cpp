@@ -1,6 +1,6 @@
 #include "analysis/drift.hpp"
 
-#include "figure/kinds.hpp"
+#include "figure/series.hpp"
 #include "figure/system_words.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
@@ -41,47 +41,23 @@ std::vector<double> worst_so_far(std::vector<double> worst) {
 /// Errors of energy and rods over a long time, every method at the same cost.
 class Drift final : public Experiment {
 public:
-    static constexpr std::string_view table_key = "drift";
-    Drift() {
-        for (const auto& method : doppel::methods())
-            if (method.angles || method.constraints) methods_.emplace_back(method.name);
-    }
-    explicit Drift(FigureReader& reader) : Drift() {
-        release_ = reader.release();
-        auto table = reader.settings(*this);
-        find_times();
-        if (methods_.empty()) throw table.fault("methods", "must name at least one");
-        for (const auto& name : methods_)
+    Drift(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
+        : release_(reader.release()), duration_s_(keys.duration_s), evaluations_per_s_(keys.evaluations_per_s) {
+        find_times(keys.points_per_decade);
+        const auto &methods = keys.methods, &projected = keys.projected;
+        if (methods.empty()) throw table.fault("methods", "must name at least one");
+        for (const auto& name : methods)
             if (known(table, "methods", name).angles) add_run(name, Model::angles);
-        for (const auto& name : methods_)
+        for (const auto& name : methods)
             if (find_method(name)->constraints) add_run(name, Model::constraints);
-        for (const auto& name : projected_) {
+        for (const auto& name : projected) {
             if (!known(table, "projected", name).constraints)
                 throw table.fault("projected", "takes methods that step constraints; \"{}\" does not", name);
             add_run(name, Model::constraints, Stabilise::projection);
         }
-        check_distinct(table, "methods", methods_);
-        check_distinct(table, "projected", projected_);
-        settings_ = resolved_release(release_) + table.finish();
-    }
-
-    template <class Visit>
-    void fields(Visit& visit) {
-        constexpr Bounds durations{.low = 10, .high = 1e8, .is_positive = true},
-            costs{.low = 10, .high = 1e6, .is_positive = true};
-        visit({"duration_s", "of the motion", "s", durations}, duration_s_);
-        visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100)}, points_per_decade_);
-        visit({"evaluations_per_s", "of the right-hand side, a second of motion: the same for all methods", "", costs},
-              evaluations_per_s_);
-        visit({.key = "methods",
-               .help = "names of methods",
-               .absent = "all that step chains",
-               .known = names_of_methods()},
-              methods_);
-        visit({.key = "projected",
-               .help = "methods that are also shown with projection onto the constraints",
-               .known = names_of_methods()},
-              projected_);
+        check_distinct(table, "methods", methods);
+        check_distinct(table, "projected", projected);
+        settings_ = resolved_release(release_) + resolved;
     }
 
     std::size_t trials() const override { return runs_.size(); }
@@ -164,10 +140,10 @@ public:
 
 private:
     /// From the first second on, at three digits.
-    void find_times() {
+    void find_times(int points_per_decade) {
         for (int i = 0;; ++i) {
-            const int decade = i / points_per_decade_;
-            const double part = std::pow(10, static_cast<double>(i % points_per_decade_) / points_per_decade_);
+            const int decade = i / points_per_decade;
+            const double part = std::pow(10, static_cast<double>(i % points_per_decade) / points_per_decade);
             const double time = std::round(100 * part) / 100 * std::pow(10, decade);
             if (time >= duration_s_) break;
             times_s_.push_back(time);
@@ -266,15 +242,16 @@ private:
     }
 
     SideSpec release_;
-    double duration_s_ = 1e5, evaluations_per_s_ = 500;
+    double duration_s_, evaluations_per_s_;
     std::vector<double> times_s_;  // of the points, rising; the last is the end
-    int points_per_decade_ = 10;
-    std::vector<std::string> methods_, projected_;
     std::vector<MotionSpec> runs_;
 };
 
 }  // namespace
 
-const FigureKind drift_kind = kind_of<Drift>("drift", FigureKind::System::release);
+std::shared_ptr<const Experiment> make_drift(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys,
+                                             const std::string& resolved) {
+    return std::make_shared<Drift>(reader, table, keys, resolved);
+}
 
 }  // namespace doppel

@@ -98,7 +98,11 @@ struct Finding {
     std::variant<double, std::string, bool> value;
 };
 
-class MapFigure;
+/// The cells of a figure of maps: of each panel so many, each of so many numbers.
+struct MapCells {
+    int columns, rows;
+    std::size_t panels, numbers;
+};
 
 /// What a figure computes and shows: independent trials, and the table, picture and findings of their numbers. They may be computed in any
 /// order, by any thread, in several runs on several machines; the numbers are the same to the bit.
@@ -139,8 +143,8 @@ public:
     /// What a picture says below its title where the preset has no subtitle: what moves, and how it is stepped.
     virtual std::string subtitle() const { return {}; }
 
-    /// The figure where it is one map, whose cells can be found one by one; null where it is another.
-    virtual const MapFigure* map() const { return nullptr; }
+    /// Of a figure of maps: its panels each draw one; nothing of other figures.
+    virtual std::optional<MapCells> map() const { return std::nullopt; }
 
     /// Everything that the numbers depend on, as the preset's tables would say it (TOML).
     const std::string& resolved() const { return settings_; }

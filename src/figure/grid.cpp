@@ -1,53 +1,25 @@
-#include "figure/flip_checks.hpp"
+#include "analysis/stability.hpp"
 #include "figure/grid_axis.hpp"
-#include "figure/map_figure.hpp"
 #include "figure/overlay.hpp"
 #include "figure/quantity.hpp"
+#include "figure/system_words.hpp"
 #include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace doppel {
 namespace {
 
 constexpr std::string_view key_help =
     "what the pairs differ in: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
-    "theta1_deg, theta2_deg, mass_ratio, length_ratio, links";
-
-/// Throws Error (exit 2), of the table's `difference` or `quantity`, where a quantity that compares the two of a pair has
-/// nothing to compare in the first and the last pair: they are one in all pairs, or `difference` is lost in rounding in
-/// one of them, or `divergence` has no first distance.
-void demand_apart(const TomlReader& table, Quantity quantity, const GridAxis& x, const Quad& difference,
-                  const std::array<Scene, 2>& ends) {
-    if (!is_of_distance(quantity)) return;
-    const auto name = name_of(quantity);
-    const auto same = std::count_if(ends.begin(), ends.end(), are_one);
-    const bool are_all = same == std::ssize(ends);
-    if (are_all && x.is_of_one_side)
-        throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
-                          name);
-    if (are_all || (difference != 0 && same > 0))
-        throw table.fault(
-            "difference", "must set the two of a pair apart, which \"{}\" compares; {}: give {}grid.difference", name,
-            difference == 0 ? "it is 0, and both sides are the same" : text_of(difference) + " is lost in rounding",
-            difference == 0 ? "" : "a greater ");
-    const auto start = [](const Scene& scene) -> double {
-        try {
-            return PairRun(scene).next(false).distance;
-        } catch (const BreakDown&) {  // told when it is run
-            return NAN;
-        }
-    };
-    if (quantity == Quantity::divergence &&
-        std::all_of(ends.begin(), ends.end(), [&](const Scene& scene) { return start(scene) == 0; }))
-        throw table.fault(
-            "quantity",
-            "\"divergence\" takes sides that are released differently: there is no ratio to a distance of "
-            "0; \"distance_at_end\" and \"parting_time\" need none");
-}
+    "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an adaptive "
+    "method";
 
 /// Whether some of the line lies inside the axes of the map.
 bool shows(const Plot& plot, const Curve& line) {
@@ -58,9 +30,9 @@ bool shows(const Plot& plot, const Curve& line) {
 }
 
 /// A quantity of pairs over the values of one to four keys: curves over x, of several colours; maps over x and y; panels of
-/// either. A trial is a value of x of a curve, or a row of a map's cells from below; of a mirrored map the lower half of
-/// them. The trials after those check times to the first flip.
-class Grid final : public Experiment, public MapFigure {
+/// either. A trial is a value of x of a curve, or some cells side by side in a row of a map, from below; of a mirrored map in
+/// the lower half of them.
+class Grid final : public Experiment {
 public:
     static constexpr std::string_view table_key = "grid";
     Grid() { x_.key = "theta1_deg"; }
@@ -74,6 +46,8 @@ public:
             for (std::size_t c = 0; c < color_.count; ++c) add_group(reader, table, p, c);
         for (const auto& measurement : measurements()) cell_numbers_ += measurement.numbers();
         if (is_map()) make_map(table);
+        std::size_t first = 0;
+        for (auto& group : groups_) group.first = std::exchange(first, first + rows_computed() * trials_of_row(group));
         make_subtitle();
     }
 
@@ -101,9 +75,6 @@ public:
                "1e-8 up to 20 s, for longer times less",
                of_flips},
               options_.flip_tolerance);
-        visit({"checked", "random releases of a map of flip_time that are compared with a reference", "",
-               from_to(0, 100'000), "", of_flips},
-              checked_);
         const Only strobed{.holds = quantity_ == Quantity::stroboscopic, .hides = true};
         auto& strobe = options_.stroboscope;
         visit({"link", "whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
@@ -112,8 +83,15 @@ public:
         visit({"periods", "of the drive, shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
         visit({"overlay",
                "lines of theory on a map: where a shaken pivot holds one link upright, or where two links released at "
-               "rest have the energy to flip"},
+               "rest have the energy to flip, or the step at which linear theory has a method blow up"},
               overlay_);
+        visit({"mark_step_s",
+               "a step that a line marks",
+               "s",
+               positive,
+               "",
+               {.holds = quantity_ == Quantity::convergence, .hides = true}},
+              mark_step_);
         visit({"color_range", "of the colours of a map, [lowest, highest]", "", {}, "that of the numbers"},
               color_range_);
         visit.table("x", [&](auto& table) { x_.fields(table, key_help); });
@@ -122,45 +100,42 @@ public:
         visit.table("panel", [&](auto& table) { panel_.fields(table, "a panel for each value"); });
     }
 
-    std::size_t trials() const override { return cell_trials() + (checks_ ? checks_->trials() : 0); }
+    std::size_t trials() const override {
+        return groups_.back().first + rows_computed() * trials_of_row(groups_.back());
+    }
     std::size_t together() const override {
         const bool is_shared = difference_ == x_.step && !x_.points && !x_.values;
         return is_map() ? 1 : measurements().front().together(is_shared);
     }
     std::string unit() const override { return "pairs"; }
     double units(std::size_t trial) const override {
-        if (trial >= cell_trials() || !is_map()) return trial < cell_trials() ? 1 : 0;
-        const auto row = trial % trials_of_group();
-        return static_cast<double>(x_.count * (frame_.is_mirrored && row != y_.count - 1 - row ? 2 : 1));
+        const auto row = place_of(trial).row;
+        return static_cast<double>(cells_of(trial) * (is_mirrored_ && row != y_.count - 1 - row ? 2 : 1));
     }
     std::string subtitle() const override { return subtitle_; }
-    const MapFigure* map() const override { return is_map() ? this : nullptr; }
+    std::optional<MapCells> map() const override {
+        if (!is_map()) return std::nullopt;
+        return MapCells{static_cast<int>(groups_[0].x.count), static_cast<int>(y_.count), groups_.size(),
+                        cell_numbers_};
+    }
 
     void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override {
-        constexpr std::size_t most = 512;  // cells of a row
         for (std::size_t done = 1; !numbers.empty(); first += done, numbers = numbers.subspan(done)) {
-            const auto group = first / trials_of_group(), place = first % trials_of_group();
             done = 1;
-            if (first >= cell_trials()) {
-                numbers[0] = checks_->compute(first - cell_trials(), stop);
-            } else if (!is_map()) {
-                done = std::min(numbers.size(), trials_of_group() - place);
-                find_cells({group, 0, place}, numbers.first(done), stop);
-            }
-            for (std::size_t column = 0; is_map() && first < cell_trials() && column < x_.count; column += most) {
-                std::vector<TrialNumbers> cells(std::min(most, x_.count - column));
-                find_cells({group, place, column}, cells, stop);
+            if (is_map()) {
+                std::vector<TrialNumbers> cells(cells_of(first));
+                find_cells(place_of(first), cells, stop);
                 for (const auto& cell : cells) numbers[0].insert(numbers[0].end(), cell.begin(), cell.end());
+            } else {
+                const auto place = place_of(first);
+                done = std::min(numbers.size(), groups_[place.group].x.count - place.column);
+                find_cells(place, numbers.first(done), stop);
             }
         }
     }
-    void find(int row, int column, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const override {
-        find_cells({0, static_cast<std::size_t>(row), static_cast<std::size_t>(column)}, cells, stop);
-    }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        if (trial >= cell_trials()) return checks_->fits(trial - cell_trials(), numbers);
-        if (numbers.size() != cell_numbers_ * (is_map() ? x_.count : 1)) return false;
+        if (numbers.size() != cell_numbers_ * cells_of(trial)) return false;
         while (!numbers.empty())
             for (const auto& measurement : measurements()) {
                 if (!measurement.fits(numbers.first(measurement.numbers()))) return false;
@@ -171,8 +146,9 @@ public:
 
     std::vector<std::string> columns() const override {
         std::vector<std::string> names, last;
-        for (const auto* axis : {&panel_, &color_, &x_, &y_})
-            if (axis->is_there()) names.push_back(axis->key);
+        for (const auto* axis : {&color_, &panel_, &x_, &y_})
+            if (axis != &x_ || words().drawn == 0)
+                for (const auto& name : axis->columns()) names.push_back(name);
         if (!words().counted.empty()) names.push_back(words().counted);
         for (const auto& measurement : measurements()) {
             const auto& of = measurement.words();
@@ -186,9 +162,9 @@ public:
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         for_each_cell([&](const Cell& cell) {
             for (std::size_t row = 0; row < words().rows; ++row) {
-                panel_.write(cell.group / color_.count, table);
                 color_.write(cell.group % color_.count, table);
-                x_.write(cell.column, table);
+                panel_.write(cell.group / color_.count, table);
+                if (words().drawn == 0) groups_[cell.group].x.write(cell.column, table);
                 y_.write(cell.row, table);
                 if (!words().counted.empty()) table.add(words().first_row + static_cast<long>(row));
                 std::vector<double> last;
@@ -209,18 +185,20 @@ public:
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
         figure.shares_axes = panel_.is_there() && is_map();
         for (std::size_t p = 0; p < panel_.count; ++p) {
-            auto& plot = figure.panels.emplace_back(Plot{.x = x_.plot_axis()});
+            auto& plot = figure.panels.emplace_back(Plot{.x = groups_[p * color_.count].x.plot_axis()});
             if (panel_.is_there()) plot.title = panel_.words(p);
             if (is_map()) {
                 plot.y = y_.plot_axis();
                 plot.square = x_.angle && y_.angle;
                 plot.map = heat_map(numbers, p);
                 plot.curves = overlay_curves(overlay_, groups_[p].pair.a);
+                if (overlay_ == Overlay::linear_limit) add_limit(p, plot);
             }
             for (std::size_t c = 0; c < color_.count && !is_map(); ++c)
                 draw_curves(numbers, p * color_.count + c, plot, figure);
         }
         if (is_map()) finish_maps(numbers, figure);
+        if (quantity_ == Quantity::convergence) finish_convergence(numbers, figure);
         if (quantity_ == Quantity::stroboscopic)
             figure.captions.push_back(fmt::format("{} periods of the drive each, after {} that pass first.",
                                                   grouped(options_.stroboscope.periods),
@@ -230,7 +208,7 @@ public:
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         if (right_) return std::nullopt;
         Drawn drawn;
-        for_each_cell([&](const Cell& cell) { drawn.add(at(numbers, cell)[0]); });
+        for_each_cell([&](const Cell& cell) { drawn.add(value_at(numbers, cell)); });
         if (quantity_ == Quantity::stroboscopic && !drawn.any) return "the motion broke down at every value";
         const auto pairs = fmt::format("{}{}", x_.count, is_map() ? fmt::format(" × {}", y_.count) : "");
         return nothing_drawn(quantity_, words(), drawn, pairs, seconds_text(pair_));
@@ -238,14 +216,17 @@ public:
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         if (quantity_ == Quantity::stroboscopic) return period_findings(numbers);
-        const auto& column = words().columns.front();
+        const auto& column = words().columns[words().drawn];
         double least = NAN, most = NAN, regular = 0, missing = 0, forbidden = 0;
         const bool is_bounded = overlay_ == Overlay::energy_bound;
+        double cells = 0;
         auto released = is_bounded ? chain_of(pair_.a).cast<double>() : Pendulum<double>();
         for_each_cell([&](const Cell& cell) {
             const auto of_cell = at(numbers, cell);
-            if (std::isfinite(of_cell[0])) least = std::fmin(least, of_cell[0]), most = std::fmax(most, of_cell[0]);
-            missing += is_missing(cell, of_cell[0]);
+            const double value = value_at(numbers, cell);
+            if (std::isfinite(value)) least = std::fmin(least, value), most = std::fmax(most, value);
+            missing += is_missing(cell, value);
+            ++cells;
             if (const auto place = exponent_place()) regular += is_regular({of_cell[*place], of_cell[*place + 1]});
             if (!is_bounded) return;
             released.angle = {radians(static_cast<double>(x_.value(cell.column))),
@@ -253,14 +234,13 @@ public:
             forbidden += flip_is_forbidden(released);
         });
         std::vector<Finding> all{{"least_" + column, least}, {"greatest_" + column, most}};
-        const auto cells = static_cast<double>(groups_.size() * x_.count * y_.count);
         if (is_map()) all.push_back({"share_without", missing / cells});
         if (!is_map() && missing > 0)
             all.push_back({words().none_is_bad ? "trials_broken_down" : "trials_without", missing});
         if (is_bounded) all.push_back({"share_forbidden_by_energy", forbidden / cells});
         if (exponent_place()) all.push_back({"regular_trials", regular});
-        if (checks_)
-            for (auto& finding : checks_->findings(numbers.subspan(cell_trials()))) all.push_back(std::move(finding));
+        for (std::size_t group = 0; group < groups_.size() && quantity_ == Quantity::convergence; ++group)
+            all.push_back({"slope_" + joined_words(group, "_"), slope(numbers, group)});
         return all;
     }
 
@@ -268,6 +248,8 @@ private:
     /// The pairs of one panel and colour, which differ along x and y alone.
     struct Group {
         Preset pair;
+        GridAxis x;
+        std::size_t first = 0;                  // trial
         std::vector<Measurement> measurements;  // of the quantity, and of the one at the right
     };
     struct Cell {
@@ -289,9 +271,12 @@ private:
                 throw table.fault("x", "and the other axes must have different keys; \"{}\" is there twice", axis->key);
             names.push_back(axis->key);
         }
-        for (const auto& [role, axis] : {std::pair("x", &x_), {"y", &y_}})
-            if (!axis->levels.empty())
+        for (const auto& [role, axis] : {std::pair("x", &x_), {"y", &y_}, {"color", &color_}, {"panel", &panel_}}) {
+            const bool is_curves = axis == &color_ || axis == &panel_;
+            if (!axis->levels.empty() && !is_curves)
                 throw table.fault(role, "takes numbers; \"{}\" is for panel or color", axis->key);
+            if (axis->is_setting() && axis != &x_) throw table.fault(role, "cannot be the setting, which is for x");
+        }
         if (x_.is_of_one_side && difference_ != 0)
             throw table.fault("difference", "must be 0 for {}, which both sides do not differ in", x_.key);
         for (const auto& end : {x_.value(0), x_.value(x_.count - 1)})
@@ -301,6 +286,8 @@ private:
         if (is_map() && right_) throw table.fault("right", "is of curves; a map has one quantity");
         if (right_ == name_of(quantity_) || right_ == name_of(Quantity::stroboscopic))
             throw table.fault("right", "must be another quantity, of one number a pair; it is \"{}\"", *right_);
+        if (quantity_ == Quantity::convergence && (!x_.is_setting() || is_map() || right_))
+            throw table.fault("quantity", "\"convergence\" takes [grid.x] key = \"setting\", and no [grid.y] or right");
         if (quantity_ == Quantity::stroboscopic && (is_map() || right_))
             throw table.fault("quantity", "\"stroboscopic\" has many numbers, which are points over x alone");
         if (!is_map() && color_range_) throw table.fault("color_range", "is of maps, which have [grid.y]");
@@ -318,6 +305,8 @@ private:
             throw table.fault("overlay",
                               "is of one link whose pivot moves up and down, over system.pivot.frequency_hz and "
                               "system.pivot.amplitude_m");
+        if (overlay_ == Overlay::linear_limit && !(is_map() && quantity_ == Quantity::stability && x_.is_setting()))
+            throw table.fault("overlay", "\"linear-limit\" is of a map of stability over the setting");
     }
 
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c) {
@@ -326,19 +315,20 @@ private:
             if (!axis->levels.empty()) levels.push_back(axis->levels[i].top());
         std::vector<TomlReader*> more;
         for (auto& level : levels) more.push_back(&level);
-        auto& group = groups_.emplace_back(Group{levels.empty() ? pair_ : reader.pair(more), {}});
+        auto& group = groups_.emplace_back(Group{levels.empty() ? pair_ : reader.pair(more), x_, 0, {}});
         panel_.demand_in(table, "panel", group.pair);
         panel_.put(group.pair, p);
         color_.demand_in(table, "color", group.pair);
         color_.put(group.pair, c);
+        group.x.settle(group.pair);
         x_.demand_in(table, "x", group.pair);
         y_.demand_in(table, "y", group.pair);
         const auto number = groups_.size() - 1;
         if (!x_.is_of_method && !y_.is_of_method) step_all_alike(group.pair, pair_at({number, 0, 0}), reader.stop);
-        const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, x_.count - 1});
+        const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, group.x.count - 1});
         const auto measure = [&](std::string_view key, Quantity quantity) {
             group.measurements.emplace_back(table, key, quantity, first, x_.keeps_method && y_.keeps_method, options_);
-            demand_apart(table, quantity, x_, difference_, {make_scene(first), make_scene(last)});
+            demand_apart(table, quantity, x_.is_of_one_side, difference_, {make_scene(first), make_scene(last)});
             if (quantity == Quantity::stroboscopic) demand_drive(table, key, options_.stroboscope, last.a);
         };
         measure("quantity", quantity_);
@@ -346,32 +336,32 @@ private:
         const auto spec = group.measurements.front().flips_in_lanes();
         if (options_.flip_tolerance && !spec)
             throw table.fault("flip_tolerance", "is of flips of two ideal links; other flips go by the integrator");
-        if (checked_ == 0) return;
-        if (!spec || !is_of_releases() || panel_.is_there())
-            throw table.fault("checked", "takes one map of flips of two links, theta2_deg over theta1_deg");
-        const auto x = x_.cells(), y = y_.cells();
-        checks_.emplace(checked_, chain_of(pair_.a).cast<double>(), *spec, Range{x.from, x.to}, Range{y.from, y.to});
     }
 
     void make_map(const TomlReader& table) {
-        frame_ = {.x = x_.cells(), .y = y_.cells(), .x_axis = x_.plot_axis(), .y_axis = y_.plot_axis()};
-        frame_.numbers = cell_numbers_;
-        frame_.panels = groups_.size();
-        frame_.look = {.label = words().label,
-                       .none_label = words().none,
-                       .none_is_bad = words().none_is_bad,
-                       .logarithmic = words().logarithmic,
-                       .shares_bar = panel_.is_there()};
-        if (quantity_ == Quantity::flip_time) frame_.look.high = pair_.duration_s.value();
-        const auto is_even = [](const CellRange& cells) { return !cells.is_logarithmic() && cells.from == -cells.to; };
-        frame_.is_mirrored = measurements().front().flips_in_lanes() && is_of_releases() && is_even(frame_.x) &&
-                             is_even(frame_.y) && is_zero(pair_.a.omega_deg_per_s);
+        look_ = {.rows = y_.count,
+                 .y_low = static_cast<double>(y_.from),
+                 .y_high = static_cast<double>(y_.to),
+                 .label = words().label,
+                 .none_label = words().none,
+                 .none_is_bad = words().none_is_bad,
+                 .logarithmic = words().logarithmic,
+                 .shares_bar = panel_.is_there()};
+        if (const auto& range = words().range) look_.low = range->low, look_.high = range->high;
+        if (quantity_ == Quantity::flip_time) look_.high = pair_.duration_s.value();
+        const auto is_even = [](const GridAxis& axis) {
+            return axis.spacing == Spacing::linear && axis.from == -axis.to;
+        };
+        is_mirrored_ = measurements().front().flips_in_lanes() && is_of_releases() && is_even(x_) && is_even(y_) &&
+                       is_zero(pair_.a.omega_deg_per_s);
+        constexpr std::size_t most_in_row = 256;  // trials
+        piece_ = std::max(measurements().front().together(false), (x_.count + most_in_row - 1) / most_in_row);
         if (!color_range_) return;
         if (words().logarithmic && !(color_range_->low > 0))
             throw table.fault("color_range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]",
                               name_of(quantity_), color_range_->low, color_range_->high);
-        frame_.look.low = color_range_->low;
-        frame_.look.high = color_range_->high;
+        look_.low = color_range_->low;
+        look_.high = color_range_->high;
     }
 
     /// What moves, how it is stepped and how far twins are apart, of pairs that are alike but for the axes.
@@ -393,9 +383,8 @@ private:
         return x_.key == "theta1_deg" && y_.key == "theta2_deg" && !pair_.a.is_mechanism() &&
                pair_.a.physical.is_none() && pair_.a.links() == 2;
     }
-    std::size_t rows_computed() const { return frame_.is_mirrored ? (y_.count + 1) / 2 : y_.count; }
-    std::size_t trials_of_group() const { return is_map() ? rows_computed() : x_.count; }
-    std::size_t cell_trials() const { return groups_.size() * trials_of_group(); }
+    std::size_t rows_computed() const { return is_mirrored_ ? (y_.count + 1) / 2 : y_.count; }
+    std::size_t trials_of_row(const Group& group) const { return (group.x.count + piece_ - 1) / piece_; }
     const std::vector<Measurement>& measurements() const { return groups_.front().measurements; }
     const QuantityWords& words() const { return measurements().front().words(); }
     /// Of an exponent's first number among those of a curve's value.
@@ -407,8 +396,21 @@ private:
     Preset pair_at(const Cell& cell) const {
         auto pair = groups_[cell.group].pair;
         y_.put(pair, cell.row);
-        x_.put(pair, cell.column, difference_);
+        groups_[cell.group].x.put(pair, cell.column, difference_);
         return pair;
+    }
+
+    /// The first cell of a trial, and how many are its own.
+    Cell place_of(std::size_t trial) const {
+        const auto next = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.first > trial; });
+        const auto& group = *std::prev(next);
+        const auto row = (trial - group.first) / trials_of_row(group);
+        return {static_cast<std::size_t>(&group - groups_.data()), row,
+                (trial - group.first) % trials_of_row(group) * piece_};
+    }
+    std::size_t cells_of(std::size_t trial) const {
+        const auto place = place_of(trial);
+        return std::min(piece_, groups_[place.group].x.count - place.column);
     }
 
     /// Of cells side by side.
@@ -421,7 +423,7 @@ private:
                 pair.a = group.pair.a;
                 if (right_ || !words().is_of_side_a) pair.b = group.pair.b;  // else nothing is found of it
                 y_.put(pair, first.row);
-                x_.put(pair, first.column + i, difference_);
+                group.x.put(pair, first.column + i, difference_);
                 return pair;
             };
             for (const auto& measurement : group.measurements)
@@ -431,18 +433,24 @@ private:
 
     /// The numbers of a cell, computed or those of its mirror image.
     std::span<const double> at(std::span<const TrialNumbers> numbers, const Cell& cell) const {
-        if (!is_map()) return numbers[cell.group * x_.count + cell.column];
         const bool is_there = cell.row < rows_computed();
         const auto row = is_there ? cell.row : y_.count - 1 - cell.row;
-        const auto column = is_there ? cell.column : x_.count - 1 - cell.column;
-        return std::span(numbers[cell.group * trials_of_group() + row]).subspan(column * cell_numbers_, cell_numbers_);
+        const auto& group = groups_[cell.group];
+        const auto column = is_there ? cell.column : group.x.count - 1 - cell.column;
+        const auto trial = group.first + row * trials_of_row(group) + column / piece_;
+        return std::span(numbers[trial]).subspan(column % piece_ * cell_numbers_, cell_numbers_);
+    }
+
+    /// What is drawn of it.
+    double value_at(std::span<const TrialNumbers> numbers, const Cell& cell) const {
+        return at(numbers, cell)[words().drawn];
     }
 
     template <class Visit>
     void for_each_cell(const Visit& visit) const {
         for (std::size_t group = 0; group < groups_.size(); ++group)
             for (std::size_t row = 0; row < y_.count; ++row)
-                for (std::size_t column = 0; column < x_.count; ++column) visit(Cell{group, row, column});
+                for (std::size_t column = 0; column < groups_[group].x.count; ++column) visit(Cell{group, row, column});
     }
 
     /// Of two that are one there is no ratio to their first distance: of a curve it is not missing.
@@ -456,9 +464,11 @@ private:
         const bool is_one = words().rows == 1;
         const auto in_row = words().columns.size();
         Curve made{.mark = is_one ? Mark::line : Mark::points};
-        for (std::size_t i = 0; i < x_.count; ++i) {
+        if (words().drawn > 0) made.mark = Mark::both;
+        const auto& x = groups_[group].x;
+        for (std::size_t i = 0; i < x.count; ++i) {
             const auto all = at(numbers, {group, 0, i});
-            const auto value = static_cast<double>(x_.value(i));
+            const auto value = words().drawn > 0 ? all[0] : static_cast<double>(x.value(i));
             if (is_one) add_point(made, value, all[column]);
             for (std::size_t n = in_row - 1; !is_one && n < all.size(); n += in_row) add_point(made, value, all[n]);
         }
@@ -467,24 +477,25 @@ private:
 
     /// The curves of one panel and colour: of the quantity, and of the one at the right.
     void draw_curves(std::span<const TrialNumbers> numbers, std::size_t group, Plot& plot, Figure& figure) const {
-        std::size_t column = 0;
+        std::size_t column = words().drawn;
         for (const auto& measurement : groups_[group].measurements) {
             const auto& of = measurement.words();
-            const bool is_right = column > 0;
+            const bool is_right = column > words().drawn;
             (is_right ? plot.right.emplace() : plot.y) = {.label = of.label, .logarithmic = of.logarithmic};
             for (std::size_t i = 0; i < std::max<std::size_t>(1, of.curves.size()); ++i) {
                 auto drawn = curve(numbers, group, column + i);
                 drawn.right = is_right;
                 drawn.hue = static_cast<int>(color_.is_there() ? group % color_.count : plot.curves.size());
-                drawn.dashed = color_.is_there() && column + i > 0;
+                drawn.dashed = color_.is_there() && column + i > words().drawn;
                 if (color_.is_there())
                     drawn.label = drawn.dashed ? "" : color_.words(group % color_.count);
                 else if (!of.curves.empty() || right_)
                     drawn.label = of.curves.empty() ? of.short_label : of.curves[i];
                 if (measurement.quantity() == Quantity::exponent) {
                     drawn.uncertainty = curve(numbers, group, column + 1).y;
-                    figure.captions.push_back(group_words(group) +
-                                              exponent_words(drawn, curve(numbers, group, column + 2).y));
+                    figure.captions.push_back(group_words(group) + exponent_words(drawn,
+                                                                                  curve(numbers, group, column + 2).y,
+                                                                                  x_.angle ? "°" : ""));
                 }
                 plot.curves.push_back(std::move(drawn));
             }
@@ -494,53 +505,88 @@ private:
 
     /// "rk4, θ₂ = 30°: "; empty where there is one group.
     std::string group_words(std::size_t group) const {
-        std::string said;
-        if (panel_.is_there()) said = panel_.words(group / color_.count) + (color_.is_there() ? ", " : ": ");
-        return color_.is_there() ? said + color_.words(group % color_.count) + ": " : said;
+        const auto said = joined_words(group, ", ");
+        return said.empty() ? "" : said + ": ";
+    }
+    std::string joined_words(std::size_t group, const char* between) const {
+        const auto panel = panel_.is_there() ? panel_.words(group / color_.count) : "";
+        if (!color_.is_there()) return panel;
+        return panel + (panel.empty() ? "" : between) + color_.words(group % color_.count);
     }
 
-    /// Counts the regular releases, and takes equilibria out of the curve: their exponent is not that of a motion.
-    std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled) const {
-        long regular = 0, changing = 0;
-        bool contracts = false;
-        std::string equilibria;
-        for (std::size_t i = 0; i < x_.count; ++i) {
-            const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
-            regular += is_regular({exponent, uncertainty});
-            changing += !is_regular({exponent, uncertainty}) && unsettled[i] != 0;
-            contracts = contracts || exponent < -1.5 * uncertainty;
-            if (exponent == 0 || uncertainty != 0) continue;
-            equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i],
-                                      x_.angle ? "°" : "", exponent > 0 ? "an unstable" : "a stable", exponent);
-            exponents.y[i] = NAN;
+    /// The order of convergence: with steps between the two finest, with tolerances over the middle third.
+    double slope(std::span<const TrialNumbers> numbers, std::size_t group) const {
+        const auto count = groups_[group].x.count;
+        const bool is_adaptive = find_method(groups_[group].pair.a.integrator)->adaptive;
+        const auto coarse = at(numbers, {group, 0, is_adaptive ? count / 3 : count - 2});
+        const auto fine = at(numbers, {group, 0, is_adaptive ? 2 * count / 3 : count - 1});
+        return std::log(coarse[1] / fine[1]) / std::log(coarse[0] / fine[0]);
+    }
+
+    void finish_convergence(std::span<const TrialNumbers> numbers, Figure& figure) const {
+        constexpr double steepest = 15;  // a slope beyond is that of a method without an order of its own
+        std::vector<std::string> slopes, least;
+        PlotAxis y = figure.panels.front().y;  // one scale for all
+        for (std::size_t p = 0; p < panel_.count; ++p) {
+            double nearest = NAN;
+            for (std::size_t c = 0; c < color_.count; ++c) {
+                const auto group = p * color_.count + c;
+                for (std::size_t i = 0; i < groups_[group].x.count; ++i) {
+                    const double distance = value_at(numbers, {group, 0, i});
+                    if (!(distance > 0)) continue;
+                    nearest = std::fmin(nearest, distance);
+                    y.low = std::fmin(y.low.value_or(NAN), distance / 3);
+                    y.high = std::fmax(y.high.value_or(NAN), distance * 3);
+                }
+                if (const double of = slope(numbers, group); p + 1 == panel_.count && of < steepest)
+                    slopes.push_back(fmt::format("{} {:.2f}", color_.is_there() ? color_.words(c) : "", of));
+            }
+            least.push_back(scientific(nearest) + (panel_.is_there() ? " in " + panel_.words(p) : ""));
         }
-        return fmt::format("{} of {} releases are {}. Its band holds two of three runs four times as long{}.{}",
-                           regular, x_.count,
-                           contracts ? "regular or settle: their exponent is not above 0"
-                                     : "regular: their exponent cannot be told from 0",
-                           changing == 0 ? ""
-                                         : fmt::format(", but not for {} whose stretches differ by more than chance (a "
-                                                       "transient, or orbits that stick): there it is too narrow",
-                                                       changing),
-                           equilibria);
+        figure.captions.push_back(
+            fmt::format("The distance falls by the power of each method's order; slopes{}: {}. The least is {}.",
+                        panel_.is_there() ? " in " + panel_.words(panel_.count - 1) : "", fmt::join(slopes, ", "),
+                        fmt::join(least, " and ")));
+        for (auto& plot : figure.panels) {
+            plot.x = {.label = "step, s (the mean, where a tolerance chooses it)", .logarithmic = true};
+            plot.y = y;
+            if (mark_step_)
+                plot.rules.push_back(
+                    {Rule::Orientation::vertical, mark_step_->value(), fmt::format("{} s", mark_step_->text())});
+        }
+        figure.shares_axes = true;
+    }
+
+    /// The limit of linear theory in the map of panel p.
+    void add_limit(std::size_t p, Plot& plot) const {
+        std::vector<Preset> pairs;
+        std::vector<double> y;
+        for (std::size_t row = 0; row < y_.count; ++row) {
+            pairs.push_back(pair_at({p, row, 0}));
+            y.push_back(static_cast<double>(y_.value(row)));
+        }
+        draw_linear_limit(pairs, y, plot);
     }
 
     HeatMap heat_map(std::span<const TrialNumbers> numbers, std::size_t group) const {
-        HeatMap map = frame_.look;
-        map.columns = x_.count, map.rows = y_.count;
-        map.x_low = frame_.x.from, map.x_high = frame_.x.to, map.y_low = frame_.y.from, map.y_high = frame_.y.to;
+        HeatMap map = look_;
+        const auto axis = groups_[group].x.plot_axis();
+        map.columns = groups_[group].x.count;
+        map.x_low = *axis.low;
+        map.x_high = *axis.high;
         map.values.reserve(map.columns * map.rows);
         for (std::size_t row = 0; row < map.rows; ++row)
             for (std::size_t column = 0; column < map.columns; ++column) {
                 const double number = at(numbers, {group, row, column})[0];
-                map.values.push_back(static_cast<float>(std::isfinite(number) ? number : NAN));
+                const double shown = words().range && number < words().range->low ? words().range->low : number;
+                map.values.push_back(static_cast<float>(std::isfinite(shown) ? shown : NAN));
             }
         return map;
     }
 
     /// What all panels have in common: one scale of colours, and words for cells without a number; then the captions.
     void finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) const {
-        HeatMap all = frame_.look;
+        HeatMap all = look_;
         for (const auto& plot : figure.panels)
             all.values.insert(all.values.end(), plot.map->values.begin(), plot.map->values.end());
         if (std::none_of(all.values.begin(), all.values.end(), [](float cell) { return std::isnan(cell); }))
@@ -558,15 +604,30 @@ private:
         const bool has_outline = overlay_ == Overlay::energy_bound && shows(plot, plot.curves.front());
         if (spec)
             figure.captions.push_back(fmt::format(
-                "{} × {} releases{}.{} Taylor series of order 16 in SIMD lanes at tolerance {}{}.", x_.count, y_.count,
+                "{} × {} releases{}.{} Taylor series of order 16 in SIMD lanes at tolerance {}.", x_.count, y_.count,
                 is_zero(pair_.a.omega_deg_per_s) ? " from rest" : "",
-                has_outline ? " Inside the line no rod has the energy to flip." : "", scientific(spec->tolerance),
-                checks_ ? checks_->words(numbers.subspan(cell_trials())) : ""));
+                has_outline ? " Inside the line no rod has the energy to flip." : "", scientific(spec->tolerance)));
         if (broken > 0)
             figure.captions.push_back(fmt::format(
                 "{} of the releases broke down (no step of 10⁻⁹ s met the tolerance): their cells are empty, as those "
                 "without a flip.",
                 broken));
+        if (quantity_ != Quantity::stability) return;
+        // as many columns as leave methods of either sort rows of their own
+        constexpr std::size_t many = 6, few = 3;
+        const auto stepped = std::count_if(groups_.begin(), groups_.end(), [](const Group& group) {
+            return group.x.is_setting() && !find_method(group.pair.a.integrator)->adaptive;
+        });
+        if (groups_.size() > many) figure.columns = stepped % few == 0 ? few : few + 1;
+        figure.captions.push_back(fmt::format(
+            "{}A blow-up: an error beyond {:g} times the energy released, NaN, or a method "
+            "that gives up, as gauss and rattle do where they do not find their stages or multipliers.",
+            overlay_ == Overlay::linear_limit
+                ? fmt::format("Dashed: the step at which linear theory has small oscillations gain {:g} times their "
+                              "energy in {} s; Gauss collocation has none. ",
+                              blow_up, seconds_text(pair_))
+                : "",
+            blow_up));
     }
 
     Preset pair_;
@@ -575,12 +636,13 @@ private:
     std::optional<std::string> right_;
     Quad difference_ = 0;
     QuantityOptions options_;
-    int checked_ = 0;
     Overlay overlay_ = Overlay::none;
+    std::optional<Rational> mark_step_;
     std::optional<Range> color_range_;
-    std::vector<Group> groups_;  // panel by panel, of each its colours
-    std::size_t cell_numbers_ = 0;
-    std::optional<FlipChecks> checks_;
+    std::vector<Group> groups_;                 // panel by panel, of each its colours
+    std::size_t cell_numbers_ = 0, piece_ = 1;  // of a cell; cells of a trial
+    HeatMap look_;                              // of maps: all but the numbers
+    bool is_mirrored_ = false;                  // the cell at (−x, −y) has the same numbers
     std::string subtitle_;
 };
 

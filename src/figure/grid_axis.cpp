@@ -9,8 +9,6 @@
 namespace doppel {
 namespace {
 
-constexpr std::array<std::string_view, 4> of_releases{"theta1_deg", "theta2_deg", "mass_ratio", "length_ratio"};
-
 bool is_number(const std::string& text) {
     return text.find_first_not_of("0123456789+-.eE") == std::string::npos;
 }
@@ -32,11 +30,66 @@ void demand_last_word(FigureReader& reader, const TomlReader& table, const std::
 
 }  // namespace
 
+const std::array<GridAxis::ReleaseParameter, 4> GridAxis::releases{
+    {{"theta1_deg", "release angle θ₁, °", 1, [](SideSpec& s, const Quad& x) { s.angle_deg[0] = x; }, false},
+     {"theta2_deg", "release angle θ₂, °", 2, [](SideSpec& s, const Quad& x) { s.angle_deg[1] = x; }, false},
+     {"mass_ratio", "mass ratio m₁/m₂", 2, [](SideSpec& s, const Quad& x) { s.mass_kg[0] = x * s.mass_kg[1]; }, true},
+     {"length_ratio", "length ratio l₁/l₂", 2, [](SideSpec& s, const Quad& x) { s.length_m[0] = x * s.length_m[1]; },
+      true}}};
+
 void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset& pair) {
     if (!is_there()) return;
     if (values && !std::all_of(values->texts.begin(), values->texts.end(), is_number)) return find_texts(reader, table);
+    if (is_setting()) return find_settings(table, pair);
     find_number(reader, table, pair);
     find_values(table, pair);
+}
+
+void GridAxis::find_settings(const TomlReader& table, const Preset& pair) {
+    if (values || !points) throw table.fault("points", "must say how many settings there are, from `from` to `to`");
+    if (!(from > 0 && to > 0)) throw table.fault("from", "must be > 0 and to as well, in s; it is {}", text_of(from));
+    if (are_cells && !(from < to && tolerance_from < tolerance_to))
+        throw table.fault("to", "must be above from, and tolerance_to above tolerance_from, for the cells of a map");
+    constexpr double most_steps = 1e8;
+    const double finest = static_cast<double>(from < to ? from : to), duration = pair.duration_s.value();
+    if (duration / finest > most_steps || from > duration || to > duration)
+        throw table.fault("from", "and to must leave 1 to {} steps in {} s; they are {} and {}", most_steps, duration,
+                          text_of(from), text_of(to));
+    spacing = Spacing::logarithmic;
+    keeps_method = false;
+    is_of_method = true;
+    settle(pair);
+}
+
+void GridAxis::settle(const Preset& pair) {
+    if (!is_setting()) return;
+    auto all = *this;  // as even_value() has them
+    const auto* method = find_method(pair.a.integrator);
+    is_adaptive_ = method && method->adaptive;
+    if (is_adaptive_) {
+        all.from = tolerance_from, all.to = tolerance_to;
+        if (tolerance_points) all.points = tolerance_points;
+    }
+    all.count = static_cast<std::size_t>(*all.points);
+    label = is_adaptive_ ? "tolerance" : "step, s";
+    numbers_.clear();
+    steps_.clear();
+    const double least = pair.a.precision == Precision::in_double ? 5e-15 : 0;
+    const double samples = pair.duration_s.value() * pair.sample_hz.value();
+    for (std::size_t i = 0; i < all.count; ++i) {
+        const auto number = all.even_value(i);
+        if (is_adaptive_ && number < least && !numbers_.empty()) continue;
+        numbers_.push_back(number);
+        if (is_adaptive_) continue;
+        // whole steps to a sample, whole samples to the duration
+        const double steps = pair.duration_s.value() / static_cast<double>(number);
+        constexpr double slack = 1e-9;  // of decimals
+        const long each = std::max(1L, static_cast<long>(std::ceil(steps / samples - slack)));
+        const auto rate = quotient({std::max(1L, std::lround(steps / static_cast<double>(each))), 1}, pair.duration_s);
+        steps_.emplace_back(*rate, *quotient({1, each}, *rate));
+        numbers_.back() = steps_.back().second.as<Quad>();
+    }
+    count = numbers_.size();
 }
 
 void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
@@ -49,14 +102,19 @@ void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
     for (const auto& text : values->texts) {
         table.demand_drawable("values", text);
         auto keys = fmt::format("{} = {}\n", key, text);
-        if (key.starts_with("system."))  // the sides have the last word
+        if (const auto slash = text.find('/'); key == "system.integrator" && slash != std::string::npos)
+            keys = fmt::format("a.integrator = {0}{2}\nb.integrator = {2}{1}\n", text.substr(0, slash),
+                               text.substr(slash + 1), text[0]);
+        else if (key.starts_with("system."))  // the sides have the last word
             keys = fmt::format("a.{0} = {1}\nb.{0} = {1}\n", key.substr(7), text);
         levels.push_back(parse_document({"", origin, keys, ""}, {}));
     }
 }
 
 void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const Preset& pair) {
-    if (std::find(of_releases.begin(), of_releases.end(), key) == of_releases.end()) {
+    release_ = std::find_if(releases.begin(), releases.end(), [&](const auto& release) { return release.name == key; });
+    if (release_ == releases.end()) {
+        release_ = nullptr;
         const auto& number = number_.emplace(table, "key", key == "links" ? "system.links" : key, pair);
         table.demand_drawable("key", number.label);  // an entry's name may have other letters
         if (!number.element && number.inside.find('.') == std::string::npos)
@@ -69,7 +127,6 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
         if (number.inside == "angle_deg") angle = number.element;
         return;
     }
-    release_ = &release_parameter(key);
     demand_in(table, "key", pair);
     constexpr double most_degrees = 1e6;  // as of [system] angle_deg
     label = release_->label;
@@ -153,15 +210,32 @@ std::string GridAxis::words(std::size_t i) const {
                        unit);
 }
 
+std::vector<std::string> GridAxis::columns() const {
+    if (!is_there()) return {};
+    if (is_setting()) return {"step_s", "tolerance"};
+    if (key == "system.integrator") return {"method"};
+    return {key == "system.precision" ? "precision" : key};
+}
+
 void GridAxis::write(std::size_t i, Csv& table) const {
+    if (is_setting() && is_adaptive_) table.add_or_empty(NAN);
     if (!levels.empty())
         table.add(std::string_view(unquoted(values->texts[i])));
     else if (is_there())
         table.add(static_cast<double>(value(i)));
+    if (is_setting() && !is_adaptive_) table.add_or_empty(NAN);
 }
 
 void GridAxis::put(Preset& pair, std::size_t i, const Quad& difference) const {
     if (number_) number_->set(pair, value(i), difference);
+    for (auto* side : {&pair.a, &pair.b}) {
+        if (!is_setting()) break;
+        side->step_s.reset(), side->tolerance.reset(), side->accuracy.reset();
+        if (is_adaptive_)
+            side->tolerance = value(i);
+        else
+            std::tie(pair.sample_hz, side->step_s) = steps_[i];
+    }
     if (!release_) return;
     release_->set(pair.a, value(i));
     release_->set(pair.b, value(i) + difference);
@@ -176,8 +250,8 @@ void GridAxis::put_both(Preset& pair) const {
 PlotAxis GridAxis::plot_axis() const {
     PlotAxis axis{.label = label, .logarithmic = spacing == Spacing::logarithmic};
     const auto [least, most] = std::minmax_element(numbers_.begin(), numbers_.end());
-    axis.low = static_cast<double>(values ? *least : from);
-    axis.high = static_cast<double>(values ? *most : to);
+    axis.low = static_cast<double>(values ? *least : is_adaptive_ ? tolerance_from : from);
+    axis.high = static_cast<double>(values ? *most : is_adaptive_ ? tolerance_to : to);
     constexpr double turn = 360;  // degrees
     if (angle) axis.every = *axis.high - *axis.low < turn ? 30 : 45;
     if (number_ && number_->is_whole) axis.every = 1;

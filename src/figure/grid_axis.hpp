@@ -4,6 +4,7 @@
 #include "figure/spacing.hpp"
 #include "scene/numeric_key.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,9 +14,11 @@ namespace doppel {
 /// An axis of a grid: [grid.x], [grid.y], [grid.color] or [grid.panel]. Without a key there is no such axis, and its one value
 /// changes nothing.
 struct GridAxis {
-    std::string key;                   // what the pairs differ in; the column of the table
+    std::string key;                   // what the pairs differ in
     std::optional<TomlValues> values;  // in place of what follows
     Quad from = 0, to = 180, step = 1;
+    Quad tolerance_from = 1e-13, tolerance_to = 1;  // of a setting, where the method takes one
+    std::optional<int> tolerance_points;
     Spacing spacing = Spacing::linear;
     std::optional<int> points;
 
@@ -30,13 +33,21 @@ struct GridAxis {
     std::vector<TomlDocument> levels;  // where it is of text: what each value puts on top of the preset's tables
 
     bool is_there() const { return !key.empty(); }
+    /// How finely to step: the step, or the tolerance of an adaptive method.
+    bool is_setting() const { return key == "setting"; }
     template <class Visit>
     void fields(Visit& visit, std::string_view help);
 
     /// `table` = that of the axis. Throws Error (exit 2) where the pair has no such key, or cannot take a value.
     void find(FigureReader& reader, const TomlReader& table, const Preset& pair);
 
+    /// Of a setting, the values for the methods of this pair: steps that divide its duration, or tolerances that its
+    /// precision can keep.
+    void settle(const Preset& pair);
+
     const Quad& value(std::size_t i) const { return numbers_[i]; }
+    /// Of the table.
+    std::vector<std::string> columns() const;
     /// "θ₁ = 30°", "rk4"
     std::string words(std::size_t i) const;
     void write(std::size_t i, Csv& table) const;
@@ -58,13 +69,24 @@ private:
     void find_number(FigureReader& reader, const TomlReader& table, const Preset& pair);
     void find_values(const TomlReader& table, const Preset& pair);
     void find_even_values(const TomlReader& table);
+    void find_settings(const TomlReader& table, const Preset& pair);
     Quad even_value(std::size_t i) const;
     std::size_t even_steps(const TomlReader& table) const;
 
+    /// What sweeps and maps vary in a release.
+    struct ReleaseParameter {
+        std::string_view name, label;
+        std::size_t links;  // that it takes, at least
+        void (*set)(SideSpec&, const Quad&);
+        bool is_ratio;  // > 0
+    };
+    static const std::array<ReleaseParameter, 4> releases;
     const ReleaseParameter* release_ = nullptr;
     std::optional<NumericKey> number_;
     std::vector<Quad> numbers_;  // all values
     Bounds bounds_;
+    bool is_adaptive_ = false;                          // of a setting
+    std::vector<std::pair<Rational, Rational>> steps_;  // of a setting: samples a second, and the step, s
 };
 
 template <class Visit>
@@ -74,7 +96,7 @@ void GridAxis::fields(Visit& visit, std::string_view help) {
     visit({.key = "key",
            .help = help,
            .absent = is_there() ? "" : "no such axis",
-           .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|(system|a|b)\..+)$)"},
+           .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|setting|(system|a|b)\..+)$)"},
           key);
     visit({.key = "values",
            .help = "one by one: numbers, or of any other key what it takes",
@@ -98,6 +120,23 @@ void GridAxis::fields(Visit& visit, std::string_view help) {
            Only{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
                 visit.from_command_line("points") || visit.from_command_line("spacing")}},
           step);
+    const Only of_setting{is_setting(), "is of key = \"setting\""};
+    visit({"tolerance_from",
+           "of adaptive methods, in place of `from`",
+           "",
+           {.low = 1e-32, .is_positive = true},
+           "",
+           of_setting},
+          tolerance_from);
+    visit({"tolerance_to",
+           "of adaptive methods, in place of `to`",
+           "",
+           {.low = 1e-32, .is_positive = true},
+           "",
+           of_setting},
+          tolerance_to);
+    visit({"tolerance_points", "of adaptive methods", "", from_to(2, most_points), "as `points`", of_setting},
+          tolerance_points);
 }
 
 }  // namespace doppel

@@ -89,38 +89,8 @@ Preset film_named(const std::string& name, const TomlReader& table);
 /// As lines of a comment in TOML: what numbers depend on and no key says, such as what is in a film's file.
 std::string commented(std::string_view text);
 
-/// What sweeps and maps vary in a release.
-struct ReleaseParameter {
-    std::string_view name, label;  // the column's, the axis's
-    std::size_t links;             // that it takes, at least
-    void (*set)(SideSpec&, const Quad&);
-    double every;   // between ticks; 0 = as fits
-    bool is_ratio;  // > 0
-};
-const ReleaseParameter& release_parameter(std::string_view name);
-/// `parameter`, one of these names.
-template <class Visit>
-void parameter_field(Visit& visit, std::span<const std::string_view> names, const ReleaseParameter*& parameter) {
-    std::string name(parameter->name);
-    visit({.key = "parameter", .help = "what the releases differ in", .names = names}, name);
-    parameter = &release_parameter(name);
-}
-
 /// Throws Error (exit 2) where one of the names of a key is there twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
-
-/// What moves in a figure of pairs, and how it is stepped: "two links in angles, θ₂ = 0, twins 0.003° apart; explicit
-/// Euler, 1/30 000 s". What sets the sides apart follows as "m₁ = 1 kg against m₁ = 1.01 kg".
-///
-/// `varied`  what is not the same in all pairs and so is left out
-/// `apart`   what else sets the sides of all pairs apart, "twins 0.003° apart"; then it is not part of `scene`
-struct Varied {
-    std::vector<std::size_t> angles;     // of release: links, from 0
-    bool step = false;                   // and how finely to step
-    std::vector<std::string> keys = {};  // "system.integrator": whose values are words
-    std::string method = {};             // in place of the preset's, where the figure itself steps
-};
-std::string pair_subtitle(const Scene& scene, const Varied& varied = {}, const std::string& apart = "");
 
 /// Whether both sides are released alike: then their distance at the start is 0.
 bool released_alike(const SideSpec& a, const SideSpec& b);
@@ -130,8 +100,8 @@ bool are_one(const Scene& scene);
 
 /// An entry of the list of kinds.
 struct FigureKind {
-    enum class System { none, release, physical_release, pair };  // what moves
-    std::string_view name;                                        // of [scene] kind
+    enum class System { none, release, pair };  // what moves
+    std::string_view name;                      // of [scene] kind
     System system;
     std::shared_ptr<const Experiment> (*read)(FigureReader&);
     void (*read_keys)(FigureReader&, System);  // each by itself, so that all their faults are found
@@ -145,7 +115,6 @@ template <class Kind>
 void read_keys_of(FigureReader& reader, FigureKind::System system) {
     if (system == FigureKind::System::pair) reader.read_pair();
     if (system == FigureKind::System::release) reader.release();
-    if (system == FigureKind::System::physical_release) reader.release(true);
     if constexpr (requires { Kind::table_key; }) {
         Kind kind;
         reader.settings(kind).finish();
@@ -171,7 +140,6 @@ constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
 std::span<const FigureKind> figure_kinds();
 
 // One file each.
-extern const FigureKind grid_kind, curves_kind, convergence_kind, spectrum_kind, section_kind, work_precision_kind,
-    stability_kind, drift_kind;
+extern const FigureKind grid_kind, series_kind, section_kind, work_precision_kind;
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #include "figure/overlay.hpp"
 
+#include "analysis/stability.hpp"
 #include "figure/experiment.hpp"
 #include "scene/scene.hpp"
 
@@ -55,9 +56,30 @@ Curve energy_bound(const Pendulum<double>& p) {
 }  // namespace
 
 std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side) {
-    if (overlay == Overlay::none) return {};
+    if (overlay == Overlay::none || overlay == Overlay::linear_limit) return {};
     if (overlay == Overlay::energy_bound) return {energy_bound(chain_of(side).cast<double>())};
     return shaken_edges(overlay, physical_of(side).cast<double>());
+}
+
+void draw_linear_limit(const std::vector<Preset>& pairs, const std::vector<double>& y, Plot& plot) {
+    Curve curve{.y = y, .dashed = true, .quiet = true};
+    const auto* method = find_method(pairs.front().a.integrator);
+    if (!method || method->adaptive) return;
+    for (const auto& pair : pairs) {
+        const auto modes = small_oscillations(chain_of(pair.a).cast<double>());
+        curve.x.push_back(step_limit(method->name, modes, pair.duration_s.value(), blow_up).value_or(NAN));
+    }
+    const auto [least, most] = std::minmax_element(curve.x.begin(), curve.x.end());
+    constexpr double alike = 1e-4;
+    if (std::isnan(*least)) return;
+    if (*most < *least * (1 + alike)) {
+        plot.rules.push_back({Rule::Orientation::vertical, *least, ""});
+        plot.note = fmt::format("limit {:.3g} s", *least);
+        return;
+    }
+    curve.y.front() = *plot.y.low;
+    curve.y.back() = *plot.y.high;
+    plot.curves.push_back(std::move(curve));
 }
 
 }  // namespace doppel

@@ -10,10 +10,10 @@
 namespace doppel {
 
 /// Lines of theory on a map.
-enum class Overlay { none, kapitza, mathieu, energy_bound };
+enum class Overlay { none, kapitza, mathieu, energy_bound, linear_limit };
 template <>
-inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none", "kapitza", "mathieu",
-                                                                           "energy-bound"});
+inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none", "kapitza", "mathieu", "energy-bound",
+                                                                           "linear-limit"});
 
 /// `kapitza`, `mathieu`: where a pivot that moves up and down begins to hold one link upright, and where it shakes it over:
 /// the amplitude a, m, over the frequency, Hz. With l = J/(m c) the length of the ideal pendulum that swings alike, and
@@ -23,7 +23,12 @@ inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none
 /// from the power series of the characteristic values, good to 1e-3 for q ≤ 1.2.
 /// `energy_bound`: where a double pendulum released at rest has just the energy for a flip: θ2 over θ1, degrees, with
 ///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
+/// `linear_limit`: of each panel, the step at which linear theory has small oscillations blow up (analysis/stability.hpp).
 /// Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
 std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side);
+
+/// The limit of the step, s, for each pair, over `y`; nothing where the method of side a has none. Where they are all the same,
+/// a rule takes their place.
+void draw_linear_limit(const std::vector<Preset>& pairs, const std::vector<double>& y, Plot& plot);
 
 }  // namespace doppel

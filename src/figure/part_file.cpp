@@ -129,12 +129,9 @@ std::string stem(const PartHeader& header) {
 /// The files NAME.*.shard of a folder.
 std::vector<fs::path> shards_in(const fs::path& folder, const std::string& name) {
     std::vector<fs::path> found;
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const auto file = entry.path().filename().string();
-        if (file.starts_with(name + ".") && file.ends_with(".shard")) found.push_back(entry.path());
-    }
-    std::sort(found.begin(), found.end());
+    if (type_of(folder) != fs::file_type::directory) return found;
+    for (const auto& file : names_in(folder))
+        if (file.starts_with(name + ".") && file.ends_with(".shard")) found.push_back(folder / file);
     return found;
 }
 
@@ -191,18 +188,11 @@ std::string resume_name(const PartHeader& header) {
 }
 
 std::vector<fs::path> other_resumes(const fs::path& folder, const PartHeader& header) {
-    const auto start = stem(header), own = resume_name(header);
-    const auto is_hexadecimal = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+    const auto own = resume_name(header);
     std::vector<fs::path> found;
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const auto name = entry.path().filename().string();
-        const auto digits = name.begin() + static_cast<std::ptrdiff_t>(start.size());
-        if (name != own && name.size() == own.size() && name.starts_with(start) && name.ends_with(".resume") &&
-            std::all_of(digits, digits + name_digits, is_hexadecimal))
-            found.push_back(entry.path());
-    }
-    std::sort(found.begin(), found.end());
+    for (const auto& name : names_in(folder))
+        if (name != own && name.size() == own.size() && name.starts_with(stem(header)) && name.ends_with(".resume"))
+            found.push_back(folder / name);
     return found;
 }
 

@@ -66,12 +66,10 @@ void top_fields(Visit& visit, FigurePreset& figure) {
 }
 
 /// [system] of figures that step a chain themselves.
-FieldTable release_table(FigureKind::System system) {
+FieldTable release_table() {
     SideSpec side;
     FieldTable release{"[system]"};
-    const bool is_physical = system == FigureKind::System::physical_release;
-    chain_fields(release, side, is_physical ? not_negative : positive);
-    if (is_physical) physical_fields(release, side.physical);
+    chain_fields(release, side, positive);
     gravity_field(release, side);
     return release;
 }
@@ -84,36 +82,44 @@ std::string what_moves(FigureKind::System system) {
         return " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and `sample_hz` of `[scene]`, as in a "
                "film.";
     std::vector<std::string_view> keys;
-    const auto table = release_table(system);
+    const auto table = release_table();
     for (const auto& field : table.fields) keys.push_back(field.key);
-    return fmt::format(" What moves: `[system]`, of which it takes\n`{}`{}.", fmt::join(keys, "`, `"),
-                       system == System::release ? "" : ",\n`[system.pivot]` and `[[system.torque]]`");
+    return fmt::format(" What moves: `[system]`, of which it takes\n`{}`.", fmt::join(keys, "`, `"));
 }
 
-/// Throws all faults that keys have by themselves; read_figure() finds those of several keys.
-void find_faults(const PresetText& source, const TomlDocument& document, const std::vector<Override>& overrides) {
-    Faults faults(overrides);
+/// Reads the keys alone where `faults` are given, and throws all that they have by themselves; else the figure, with what
+/// keys say together.
+FigurePreset read_once(const PresetText& source, const TomlDocument& document, Faults* faults,
+                       std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
     FigurePreset figure;
-    auto top = document.top(&faults);
-    top.demand_title(source.name);
+    figure.name = figure.title = source.name;
+    auto top = document.top(faults);
+    top.demand_title(figure.name);
     top_fields(top, figure);
     auto scene = document.table(top, "scene");
-    const auto name = read_kind(scene);
-    if (faults.concern("scene")) faults.throw_if_any();  // which tables there may be is not known
-    if (name == pair_kind) return;
+    figure.kind = read_kind(scene);
+    if (faults && faults->concern("scene")) faults->throw_if_any();  // which tables there may be is not known
+    if (figure.kind == pair_kind)
+        throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");
-    FigureReader reader{source.name, document, top, scene, chart};
+    FigureReader reader{source.name, document, top, scene, chart, external_methods, stop};
+    const auto& kind = *std::ranges::find(figure_kinds(), figure.kind, &FigureKind::name);
     try {
-        for (const auto& kind : figure_kinds())
-            if (kind.name == name) kind.read_keys(reader, kind.system);
+        if (faults)
+            kind.read_keys(reader, kind.system);
+        else
+            figure.experiment = kind.read(reader);
     } catch (const TomlFault& fault) {
+        if (!faults) throw;
         top.refuse(fault.with({}), "");
-        faults.throw_if_any();
+        faults->throw_if_any();
     }
+    if (!faults && !top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();
     scene.finish();
     read_chart(chart, figure.chart);
     top.finish();
-    faults.throw_if_any();
+    if (faults) faults->throw_if_any();
+    return figure;
 }
 
 }  // namespace
@@ -133,26 +139,9 @@ std::string FigurePreset::resolved() const {
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
                          std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
     const auto document = parse_document(source, overrides);
-    find_faults(source, document, overrides);
-    FigurePreset figure;
-    figure.name = figure.title = source.name;
-    auto top = document.top();
-    top.demand_title(figure.name);
-    top_fields(top, figure);
-
-    auto scene = document.table(top, "scene");
-    figure.kind = read_kind(scene);
-    if (figure.kind == pair_kind)
-        throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
-    auto chart = document.table(top, "chart");
-    FigureReader reader{source.name, document, top, scene, chart, external_methods, stop};
-    for (const auto& kind : figure_kinds())
-        if (kind.name == figure.kind) figure.experiment = kind.read(reader);
-    if (!top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();
-    scene.finish();
-    read_chart(chart, figure.chart);
-    top.finish();
-    return figure;
+    Faults faults(overrides);
+    read_once(source, document, &faults, external_methods, stop);
+    return read_once(source, document, nullptr, external_methods, stop);
 }
 
 std::vector<FieldTable> figure_tables() {
@@ -195,8 +184,7 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
             all.insert(all.end(), pair.begin(), pair.end());
         else
             all.emplace_back("[scene]").fields = {scene.fields.front()};
-        if (figure.system == FigureKind::System::release || figure.system == FigureKind::System::physical_release)
-            all.push_back(release_table(figure.system));
+        if (figure.system == FigureKind::System::release) all.push_back(release_table());
         all.push_back(figures[1]);
         for (auto& table : figure.tables())
             if (table.key() == "chart")

@@ -1,6 +1,7 @@
 #include "figure/quantity.hpp"
 
 #include "analysis/difference.hpp"
+#include "analysis/stability.hpp"
 #include "base/clock.hpp"
 #include "figure/kinds.hpp"
 #include "numeric/roots.hpp"
@@ -19,12 +20,11 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
         case Quantity::divergence:
             return {.label = fmt::format("average of ln(d/d₀) over {} s", seconds),
                     .columns = {"average_log_ratio"},
-                    .none = "broke down",
-                    .none_is_bad = true,
                     .short_label = "average of ln(d/d₀)"};
         case Quantity::exponent:
             return {.label = "largest Lyapunov exponent, 1/s",
                     .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
+                    .none = "",
                     .is_of_side_a = true,
                     .method = "tangent equations by Dormand–Prince 8",
                     .short_label = "Lyapunov exponent",
@@ -38,27 +38,19 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
         case Quantity::distance_at_end:
             return {.label = fmt::format("distance after {} s", seconds),
                     .columns = {"distance_at_end"},
-                    .logarithmic = true,
-                    .none = "broke down",
-                    .none_is_bad = true};
+                    .logarithmic = true};
         case Quantity::greatest_distance:
             return {.label = fmt::format("greatest distance within {} s", seconds),
                     .columns = {"greatest_distance"},
-                    .logarithmic = true,
-                    .none = "broke down",
-                    .none_is_bad = true};
+                    .logarithmic = true};
         case Quantity::energy_error:
             return {.label = "largest energy error, of the potential range",
                     .columns = {"energy_error"},
                     .logarithmic = true,
-                    .none = "broke down",
-                    .none_is_bad = true,
                     .is_of_side_a = true};
         case Quantity::deviation:
             return {.label = fmt::format("how far an angle goes from its start within {} s, °", seconds),
                     .columns = {"deviation_deg"},
-                    .none = "broke down",
-                    .none_is_bad = true,
                     .is_of_side_a = true};
         case Quantity::period:
             return {.label = "period, s",
@@ -79,6 +71,19 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
                     .curves = {"in angles", "in constraints"},
                     .is_of_side_a = true,
                     .method = "explicit Euler"};
+        case Quantity::stability:
+            return {.label = fmt::format("greatest energy error in {} s, of the energy released", seconds),
+                    .columns = {"energy_error"},
+                    .logarithmic = true,
+                    .none = "blow-up",
+                    .none_is_bad = true,
+                    .is_of_side_a = true,
+                    .range = Range{1e-12, blow_up}};
+        case Quantity::convergence:
+            return {.label = fmt::format("greatest distance within {} s", seconds),
+                    .columns = {"step_s", "distance", "steps"},
+                    .logarithmic = true,
+                    .drawn = 1};
         case Quantity::parting_time:
             return {.label = "time at which the two part, s",
                     .columns = {"parting_time_s"},
@@ -103,6 +108,20 @@ TrialNumbers step_costs(const SideSpec& side, const std::atomic<bool>& stop) {
             least[i] = std::min(least[i], 1e9 * spent / static_cast<double>(MotionSpec().steps_per_sample));
         }
     return least;
+}
+
+/// The mean step, s, the greatest distance of the two, and how many steps they took; no distance where one broke down.
+TrialNumbers distance_and_steps(const Preset& pair, const std::atomic<bool>& stop) {
+    const auto scene = make_scene(pair, stop);
+    PairRun run(scene);
+    double most = 0;
+    try {
+        for (long n = 0; n <= scene.samples; ++n) most = std::fmax(most, run.next(stop).distance);
+    } catch (const BreakDown&) {
+        return {NAN, NAN, 0};
+    }
+    const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
+    return {2 * pair.duration_s.value() / steps, most, steps};
 }
 
 /// How all pairs are stepped in lanes, where they can be: plain chains in double by the methods of Batch.
@@ -194,6 +213,61 @@ private:
 
 }  // namespace
 
+void demand_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
+                  const std::array<Scene, 2>& ends) {
+    if (!is_of_distance(quantity)) return;
+    const auto name = name_of(quantity);
+    const auto same = std::count_if(ends.begin(), ends.end(), are_one);
+    const bool are_all = same == std::ssize(ends);
+    if (are_all && is_of_one_side)
+        throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
+                          name);
+    if (are_all || (difference != 0 && same > 0))
+        throw table.fault(
+            "difference", "must set the two of a pair apart, which \"{}\" compares; {}: give {}grid.difference", name,
+            difference == 0 ? "it is 0, and both sides are the same" : text_of(difference) + " is lost in rounding",
+            difference == 0 ? "" : "a greater ");
+    const auto start = [](const Scene& scene) -> double {
+        try {
+            return PairRun(scene).next(false).distance;
+        } catch (const BreakDown&) {  // told when it is run
+            return NAN;
+        }
+    };
+    if (quantity == Quantity::divergence &&
+        std::all_of(ends.begin(), ends.end(), [&](const Scene& scene) { return start(scene) == 0; }))
+        throw table.fault(
+            "quantity",
+            "\"divergence\" takes sides that are released differently: there is no ratio to a distance of "
+            "0; \"distance_at_end\" and \"parting_time\" need none");
+}
+
+std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit) {
+    long regular = 0, changing = 0;
+    bool contracts = false;
+    std::string equilibria;
+    const auto count = exponents.x.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
+        regular += is_regular({exponent, uncertainty});
+        changing += !is_regular({exponent, uncertainty}) && unsettled[i] != 0;
+        contracts = contracts || exponent < -1.5 * uncertainty;
+        if (exponent == 0 || uncertainty != 0) continue;
+        equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i], unit,
+                                  exponent > 0 ? "an unstable" : "a stable", exponent);
+        exponents.y[i] = NAN;
+    }
+    return fmt::format("{} of {} releases are {}. Its band holds two of three runs four times as long{}.{}", regular,
+                       count,
+                       contracts ? "regular or settle: their exponent is not above 0"
+                                 : "regular: their exponent cannot be told from 0",
+                       changing == 0 ? ""
+                                     : fmt::format(", but not for {} whose stretches differ by more than chance (a "
+                                                   "transient, or orbits that stick): there it is too narrow",
+                                                   changing),
+                       equilibria);
+}
+
 std::string seconds_text(const Preset& pair) {
     return fmt::format("{:.10g}", pair.duration_s.value());
 }
@@ -224,8 +298,8 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
       flip_{pair.duration_s.value(), options.flip_tolerance.value_or(flip_tolerance(pair.duration_s.value()))} {
     if (words_.short_label.empty()) words_.short_label = words_.label.substr(0, words_.label.rfind(", "));
     const auto& a = pair.a;
-    const bool is_of_chain = quantity == Quantity::exponent || quantity == Quantity::step_cost;
-    if (is_of_chain && (a.is_mechanism() || (quantity == Quantity::step_cost && !a.physical.is_none())))
+    const bool is_ideal = quantity == Quantity::step_cost || quantity == Quantity::stability;
+    if ((is_ideal || quantity == Quantity::exponent) && (a.is_mechanism() || (is_ideal && !a.physical.is_none())))
         throw table.fault(key, "is that of a plain chain, without forces and constraints of its own");
     if (quantity == Quantity::exponent && a.physical.has_coulomb())
         throw table.fault(key,
@@ -240,6 +314,10 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
         throw table.fault(key, "\"{}\" takes sides of as many masses", name_of(quantity));
     if (quantity == Quantity::stroboscopic) demand_drive(table, key, stroboscope_, a);
     const auto scene = make_scene(pair);
+    motion_ = scene.a.motion;
+    if (quantity == Quantity::stability &&
+        !(released_energy(chain_of(a).cast<double>()) > 1e-10 * chain_of(a).cast<double>().potential_range()))
+        throw table.fault(key, "\"stability\" is of a release with energy to keep, above hanging at rest");
     if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
         throw table.fault(key, "\"energy_error\" takes a system that keeps its energy; a spring is damped");
     flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.physical.is_none() && a.links() == 2;
@@ -260,22 +338,22 @@ void Measurement::append(const PairAt& pair, std::span<TrialNumbers> into, const
     if (flips_in_lanes_) return append_flips(pair, into, stop);
     if (run_) return append_in_lanes(pair, into, stop);
     for (std::size_t i = 0; i < into.size(); ++i) {
-        if (quantity_ == Quantity::stroboscopic || quantity_ == Quantity::step_cost) {
-            const auto numbers = quantity_ == Quantity::step_cost
-                                     ? step_costs(pair(i).a, stop)
-                                     : stroboscope(make_scene(pair(i), stop), stroboscope_, stop);
-            into[i].insert(into[i].end(), numbers.begin(), numbers.end());
-            continue;
-        }
-        if (quantity_ != Quantity::exponent) {
-            into[i].push_back(watched(pair(i), stop));
-            continue;
-        }
-        const auto& a = pair(i).a;
-        const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), exponent_, stop)
-                                                   : largest_exponent(physical_of(a).cast<double>(), exponent_, stop);
-        into[i].insert(into[i].end(), {exponent.value, exponent.uncertainty, exponent.is_settled ? 0.0 : 1.0});
+        const auto numbers = found(pair(i), stop);
+        into[i].insert(into[i].end(), numbers.begin(), numbers.end());
     }
+}
+
+/// The numbers of one pair.
+TrialNumbers Measurement::found(const Preset& pair, const std::atomic<bool>& stop) const {
+    const auto& a = pair.a;
+    if (quantity_ == Quantity::step_cost) return step_costs(a, stop);
+    if (quantity_ == Quantity::convergence) return distance_and_steps(pair, stop);
+    if (quantity_ == Quantity::stroboscopic) return stroboscope(make_scene(pair, stop), stroboscope_, stop);
+    if (quantity_ == Quantity::stability) return {energy_kept(pair, stop)};
+    if (quantity_ != Quantity::exponent) return {watched(pair, stop)};
+    const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), exponent_, stop)
+                                               : largest_exponent(physical_of(a).cast<double>(), exponent_, stop);
+    return {exponent.value, exponent.uncertainty, exponent.is_settled ? 0.0 : 1.0};
 }
 
 void Measurement::append_flips(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const {
@@ -355,10 +433,24 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
     }
 }
 
+/// As greatest_energy_errors() finds it.
+double Measurement::energy_kept(const Preset& pair, const std::atomic<bool>& stop) const {
+    auto motion = motion_;
+    motion.follows_turns = false;
+    motion.sample_interval = *quotient({1, 1}, pair.sample_hz);
+    motion.tolerance = pair.a.allowed_error();
+    if (pair.a.step_s) motion.steps_per_sample = std::lround(motion.sample_interval.value() / pair.a.step_s->value());
+    const auto chain = chain_of(pair.a);
+    const long samples = std::lround(pair.duration_s.value() * pair.sample_hz.value());
+    return greatest_energy_errors(motion, std::span(&chain, 1), samples, stop).front();
+}
+
 bool Measurement::fits(std::span<const double> numbers) const {
     if (numbers.size() != this->numbers()) return false;
     if (quantity_ == Quantity::exponent || quantity_ == Quantity::step_cost) return all_finite(numbers);
     if (quantity_ == Quantity::stroboscopic) return finite_or_none(numbers);
+    if (quantity_ == Quantity::convergence)
+        return is_count(numbers[2]) && (all_finite(numbers) || (std::isnan(numbers[0]) && std::isnan(numbers[1])));
     if (quantity_ == Quantity::flip_time) return !(numbers[0] < 0);  // broken down: NaN
     return !std::isinf(numbers[0]);
 }

@@ -5,6 +5,7 @@
 #include "figure/experiment.hpp"
 #include "figure/stroboscope.hpp"
 #include "integrate/flips.hpp"
+#include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <array>
@@ -28,24 +29,28 @@ enum class Quantity {
     deviation,
     period,
     stroboscopic,
-    step_cost
+    step_cost,
+    stability,
+    convergence
 };
 template <>
-inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>({"divergence", "exponent", "flip_time",
-                                                                            "distance_at_end", "greatest_distance",
-                                                                            "energy_error", "parting_time", "deviation",
-                                                                            "period", "stroboscopic", "step_cost"});
+inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>(
+    {"divergence", "exponent", "flip_time", "distance_at_end", "greatest_distance", "energy_error", "parting_time",
+     "deviation", "period", "stroboscopic", "step_cost", "stability", "convergence"});
 inline constexpr std::string_view quantity_help =
     "what is found of each pair: the mean of ln(d/d₀), or the distance at the end, or the greatest; when they part; of "
     "side a the largest Lyapunov exponent, the time of the first flip, the largest energy error, how far an angle goes "
     "from its start, of one link the period of its swing, of a driven one the rate once a period of its drive, or what "
     "a step "
-    "of Euler costs on either model";
+    "of Euler costs on either model, or the largest energy error, of the energy released, none for a blow-up; of pairs "
+    "that "
+    "differ in their setting the greatest distance over the step";
 
 /// Whether it compares the two of a pair by their distances.
 constexpr bool is_of_distance(Quantity quantity) {
     return quantity == Quantity::divergence || quantity == Quantity::distance_at_end ||
-           quantity == Quantity::greatest_distance || quantity == Quantity::parting_time;
+           quantity == Quantity::greatest_distance || quantity == Quantity::parting_time ||
+           quantity == Quantity::convergence;
 }
 
 /// What figures say of a quantity.
@@ -54,8 +59,8 @@ struct QuantityWords {
     std::vector<std::string> columns;      // of the table, one a number
     std::vector<std::string> curves = {};  // the names of the numbers where each is a curve of its own
     bool logarithmic = false;
-    std::string none;  // what it means where there is none
-    bool none_is_bad = false;
+    std::string none = "broke down";  // what it means where there is none
+    bool none_is_bad = none == "broke down";
     bool is_of_side_a = false;     // alone: what sets the two apart does not matter
     std::string method = {};       // by which it is found, where not by the preset's
     std::string short_label = {};  // of a curve beside that of another quantity
@@ -63,6 +68,8 @@ struct QuantityWords {
     std::size_t rows = 1;          // of the table to a pair, each with numbers of its own
     std::string counted = {};      // the column that counts them
     long first_row = 0;
+    std::size_t drawn = 0;            // which of the numbers is drawn; where not the first, over the first
+    std::optional<Range> range = {};  // of the colours of a map
 };
 
 /// Whether any of the numbers is one, and one above 0.
@@ -79,6 +86,15 @@ std::string seconds_text(const Preset& pair);
 /// each over so many seconds.
 std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
                                          const std::string& pairs, const std::string& seconds);
+
+/// Throws Error (exit 2), of the table's `difference` or `quantity`, where a quantity that compares the two of a pair has
+/// nothing to compare in the first and the last pair: they are one in all pairs, or `difference` is lost in rounding in
+/// one of them, or `divergence` has no first distance.
+void demand_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
+                  const std::array<Scene, 2>& ends);
+
+/// Counts the regular releases of a curve, and takes equilibria out of it: their exponent is not that of a motion.
+std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit);
 
 /// How quantities are found, where keys of [grid] say.
 struct QuantityOptions {
@@ -120,7 +136,9 @@ public:
 private:
     void append_in_lanes(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
     void append_flips(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
+    TrialNumbers found(const Preset& pair, const std::atomic<bool>& stop) const;
     double watched(const Preset& pair, const std::atomic<bool>& stop) const;
+    double energy_kept(const Preset& pair, const std::atomic<bool>& stop) const;
 
     Quantity quantity_;
     QuantityWords words_;
@@ -128,6 +146,7 @@ private:
     StroboscopeSpec stroboscope_;
     FlipSpec flip_;
     std::optional<TwinRun> run_;
+    MotionSpec motion_;  // of side a of the first pair
     bool flips_in_lanes_ = false;
 };
 

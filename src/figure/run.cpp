@@ -3,13 +3,14 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "base/threads.hpp"
-#include "figure/map_figure.hpp"
 #include "figure/tiles.hpp"
 #include "integrate/widths.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
 #include "output/workers.hpp"
+#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
@@ -56,10 +57,31 @@ KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atom
     Computation computation(figure, header_of(figure), std::nullopt, jobs,
                             {[](const FigureProgress&) {}, [](const std::string&) {}});
     parallel_for(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, stop); });
-    return computation.take();
+    return computation.take_all();
 }
 
 namespace {
+
+/// Throws Error (exit 2) where the trials of `header` are so many cells of maps that memory, or the disk of `folder`,
+/// does not hold them. Nothing of other figures.
+void demand_room(const FigurePreset& figure, const PartHeader& header, const fs::path& folder) {
+    const auto map = figure.experiment->map();
+    if (!map) return;
+    const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
+    const auto numbers = static_cast<double>(map->numbers);
+    const double cells = share * map->columns * map->rows * static_cast<double>(map->panels);
+    const auto refuse = [&](const char* what, double needed, double there) {
+        return bad_input("{}: {} × {} cells take {} of {}, and there are {}; take fewer", figure.name,
+                         grouped(map->columns), grouped(map->rows), bytes_text(needed), what, bytes_text(there));
+    };
+    // the numbers of all trials, and where a picture is drawn twice a float
+    const double memory = cells * (8 * numbers + 8), owned = static_cast<double>(this_machine().memory);
+    if (memory > 0.8 * owned) throw refuse("memory", memory, owned);
+    std::error_code unknown;
+    const auto space = fs::space(folder, unknown);
+    const double table = cells * (30 + 18 * numbers), free = static_cast<double>(space.available);
+    if (!unknown && table > free) throw refuse("disk", table, free);
+}
 
 /// Of the run, for the manifest.
 struct FigureRecord {
@@ -68,8 +90,9 @@ struct FigureRecord {
     double draw_cpu_s = 0;                         // picture and table
 };
 
+/// `tiles` = of a pyramid, else null.
 void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
-                    const FigureRecord& record) {
+                    const FigureRecord& record, const Json& tiles) {
     Json findings = Json::object();
     for (const auto& finding : figure.experiment->findings(trials))
         std::visit([&](const auto& value) { findings[finding.key] = value; }, finding.value);  // not a number: null
@@ -92,7 +115,8 @@ void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownT
           {"compute_cpu_s", record.compute_cpu_s},
           {"draw_cpu_s", record.draw_cpu_s}}},
     };
-    doppel::write_manifest(parts, figure.name + ".json", std::move(manifest));
+    if (!tiles.is_null()) manifest["tiles"] = tiles;
+    doppel::write_manifest(parts, figure.name + (tiles.is_null() ? ".json" : ".tiles.json"), std::move(manifest));
 }
 
 /// Draws and writes figures whose numbers are known.
@@ -101,28 +125,28 @@ public:
     FigureWriter(const FigureOptions& options, int jobs, const std::atomic<bool>& stop)
         : options_(options), jobs_(jobs), stop_(stop) {}
 
-    RunResult write(const FigurePreset& figure, const PartHeader& header, const KnownTrials& trials,
-                    FigureRecord record, Transaction& files) {
-        if (options_.shard) {
-            PartWriter(files.file(shard_name(header)), header, trials).close();
-            return {.files = files.publish()};
-        }
+    RunResult write(const FigurePreset& figure, const KnownTrials& trials, FigureRecord record, Transaction& files) {
         record.jobs = jobs_;
-        const auto csv = figure.name + ".csv";
         std::vector<std::string> warnings;
         const auto finish = [&] {
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-            const auto page = compose_figure(figure, trials);
-            write_picture(figure, page, files);
-            for (const auto& note : page.notes) warnings.push_back(fmt::format("{}: {}", figure.name, note));
-            check_stop();
-            Csv table(files.file(csv), figure.experiment->columns());
-            figure.experiment->write_rows(trials, table);
-            table.finish();
-            files.finished(csv);
+            const auto tiles = options_.tiles ? write_tiles(figure, page_of(figure, trials),
+                                                            theme_named(figure.chart.theme), files, jobs_, stop_)
+                                              : Json();
+            if (!options_.tiles) {
+                const auto page = compose_figure(figure, trials);
+                write_picture(figure, page, files);
+                for (const auto& note : page.notes) warnings.push_back(fmt::format("{}: {}", figure.name, note));
+                check_stop();
+                const auto csv = figure.name + ".csv";
+                Csv table(files.file(csv), figure.experiment->columns());
+                figure.experiment->write_rows(trials, table);
+                table.finish();
+                files.finished(csv);
+            }
             record.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
             check_stop();
-            write_manifest(files, figure, trials, record);
+            write_manifest(files, figure, trials, record, tiles);
             check_stop();
             return files.publish();
         };
@@ -175,12 +199,11 @@ public:
             const auto header = header_for(figure, options);
             const auto& folder = files[k]->folder();
             demand_room(figure, header, folder);
-            const auto record = folder / resume_name(header);
             if (const auto others = other_resumes(folder, header);
-                !others.empty() && type_of(record) == fs::file_type::not_found)
+                !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
                 report.note(k, fmt::format("leaves {}{} alone, of another preset or version", others.front().string(),
                                            others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-            computations_.push_back(std::make_unique<Computation>(figure, header, record, jobs, report_of(report, k)));
+            computations_.push_back(std::make_unique<Computation>(figure, header, folder, jobs, report_of(report, k)));
             auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
@@ -235,18 +258,13 @@ private:
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report) {
     const int jobs = options.jobs > 0 ? options.jobs : cores();
-    if (options.tiles) {
-        for (std::size_t k = 0; k < figures.size(); ++k)
-            make_tiles(figures[k], options, stop, report_of(report, k), [&](const RunResult& r) { report.done(k, r); });
-        return;
-    }
     FigureWriter writer(options, jobs, stop);
     if (options.merge) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
             const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
             Transaction files(options.out / figures[k].name, "run", "figure", options.replacing);
-            auto result = writer.write(figures[k], header_of(figures[k]), trials, {}, files);
+            auto result = writer.write(figures[k], trials, {}, files);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
         }
@@ -257,8 +275,9 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     for (const auto& figure : figures) {
         files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, "figure", options.replacing));
         if (options.shard) continue;
-        for (const auto ending : {name_of(figure.chart.format), std::string_view("csv"), std::string_view("json")})
-            files.back()->demand(fmt::format("{}.{}", figure.name, ending));
+        std::vector<std::string_view> endings{name_of(figure.chart.format), "csv", "json"};
+        if (options.tiles) endings = {"html", "tiles.json"};
+        for (const auto ending : endings) files.back()->demand(fmt::format("{}.{}", figure.name, ending));
     }
     Scheduler scheduler(figures, options, jobs, files, stop, report);
     while (const auto k = scheduler.next()) {
@@ -268,16 +287,19 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         record.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         RunResult result;
         try {
-            result = writer.write(figures[*k], computation.header(), computation.take(), record, *files[*k]);
+            if (options.shard)
+                result.files = {computation.publish_shard()};
+            else
+                result = writer.write(figures[*k], computation.take_all(), record, *files[*k]);
         } catch (const Error& fault) {
             // the same command would find no more to draw
             if (fault.code() == ExitCode::method_failed) {
-                fs::remove(*computation.record());
+                fs::remove(computation.record());
                 throw;
             }
             throw computation.with_record(fault);
         }
-        fs::remove(*computation.record());
+        fs::remove(computation.record());
         result.samples = std::lround(computation.computed_units());
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         report.done(*k, result);

@@ -32,7 +32,7 @@ struct FigureReport {
 /// Makes figures. Threads compute the trials, figure after figure, while the caller's thread draws and writes what is
 /// complete. The numbers, and so the tables, are the same to the byte for any number of threads and any register width.
 /// A figure that takes more than some seconds records its trials in a file (part_file.hpp, resume_name), from which the
-/// same command goes on after an interruption.
+/// same command goes on after an interruption. Of a shard that is the file for the merge; where it is whole, nothing is done.
 ///
 /// Files of a figure appear complete or not at all; those that are complete stay where a later one fails. Throws Error:
 /// exit 2 where parts belong to something else, 75 where one is missing, 3, 4 or, soon after `stop` is set, 130.

@@ -1,6 +1,4 @@
-#include "analysis/spectrum.hpp"
-
-#include "figure/kinds.hpp"
+#include "figure/series.hpp"
 #include "figure/system_words.hpp"
 #include "scene/captions.hpp"
 
@@ -13,29 +11,18 @@ namespace {
 /// All Lyapunov exponents of one motion, as their estimates settle.
 class Spectrum final : public Experiment {
 public:
-    static constexpr std::string_view table_key = "spectrum";
-    Spectrum() = default;
-    explicit Spectrum(FigureReader& reader) : release_(reader.release(true)) {
+    Spectrum(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
+        : release_(reader.release(true)), spec_{keys.duration_s, keys.samples, keys.tolerance} {
         if (release_.physical.has_coulomb())
             throw reader.document.table(reader.top, "system")
                 .fault("joint_coulomb_N_m",
                        "is not for Lyapunov exponents, which are those of smooth motions: such joints come to "
                        "rest and let go again");
-        auto table = reader.settings(*this);
         constexpr std::size_t most_links = 4;
         if (release_.links() > most_links)
-            throw table.fault("duration_s", "is for 1 to {} links; there are {}", most_links, release_.links());
-        settings_ = resolved_release(release_) + table.finish();
-    }
-
-    template <class Visit>
-    void fields(Visit& visit) {
-        visit({"duration_s", "of the motion", "s", positive}, spec_.duration_s);
-        visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000)},
-              spec_.samples);
-        constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true};
-        visit({"tolerance", "relative error of a step of dop853, of the motion and of its tangents", "", tolerances},
-              spec_.tolerance);
+            throw table.fault("quantity", "= \"exponents\" is for 1 to {} links; there are {}", most_links,
+                              release_.links());
+        settings_ = resolved_release(release_) + resolved;
     }
 
     std::size_t trials() const override { return 1; }
@@ -137,6 +124,9 @@ private:
 
 }  // namespace
 
-const FigureKind spectrum_kind = kind_of<Spectrum>("spectrum", FigureKind::System::physical_release);
+std::shared_ptr<const Experiment> make_spectrum(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys,
+                                                const std::string& resolved) {
+    return std::make_shared<Spectrum>(reader, table, keys, resolved);
+}
 
 }  // namespace doppel

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 namespace doppel {
 namespace {
@@ -25,29 +26,104 @@ std::vector<double> doubles(const std::vector<Quad>& numbers) {
     return all;
 }
 
+/// Of many equal ones the first; of many others none.
+std::vector<Quad> named(const std::vector<Quad>& numbers) {
+    if (numbers.size() <= most_named) return numbers;
+    const bool are_one = std::count(numbers.begin(), numbers.end(), numbers.front()) == std::ssize(numbers);
+    return are_one ? std::vector{numbers.front()} : std::vector<Quad>{};
+}
+
+std::string number_words(std::size_t number) {
+    constexpr std::array words{"no", "one", "two", "three", "four", "five", "six"};
+    return number < words.size() ? words[number] : grouped(static_cast<long>(number));
+}
+
+std::string degrees(const Quad& angle) {
+    return angle == 0 ? "0" : text_of(angle) + "°";
+}
+
+bool is_varied(const Varied& varied, std::string_view key) {
+    return std::any_of(varied.keys.begin(), varied.keys.end(), [&](const auto& path) { return path.ends_with(key); });
+}
+
+std::string model_words(const Scene& scene, const Varied& varied) {
+    const auto model = scene.a.motion.model;
+    const auto count = scene.preset.a.particles.empty() ? scene.preset.a.links() : scene.preset.a.particles.size();
+    const bool particles = !scene.preset.a.particles.empty() || model == Model::constraints;
+    auto words = is_varied(varied, "links") ? "chains"
+                                            : fmt::format("{} {}{}", number_words(count),
+                                                          particles ? "particle" : "link", count == 1 ? "" : "s");
+    if (model == scene.b.motion.model && !is_varied(varied, ".model") && !is_varied(varied, ".integrator"))
+        words += model == Model::angles ? " in angles" : model == Model::constraints ? " on rods" : " as a mechanism";
+    return words;
+}
+
+/// The angles that both sides are released at: "90°/90°", or those that are named, "θ₂ = θ₃ = 0".
+std::string release_words(const Scene& scene, const Varied& varied) {
+    constexpr std::size_t most = 3;
+    const auto &angles = scene.preset.a.angle_deg, &others = scene.preset.b.angle_deg;
+    if (!scene.preset.a.particles.empty() || angles.size() > most || is_varied(varied, ".angle_deg")) return "";
+    if (is_varied(varied, "links")) return fmt::format("released from {}", degrees(angles.front()));
+    const auto is_swept = [&](std::size_t i) {
+        return std::find(varied.angles.begin(), varied.angles.end(), i) != varied.angles.end();
+    };
+    if (varied.angles.empty() && angles == others) return slashed(angles, "°");
+    std::string named;
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        if (is_swept(i) || angles[i] != others[i]) continue;
+        const bool same = !named.empty() && i > 0 && angles[i] == angles[i - 1] && !is_swept(i - 1);
+        const auto name = fmt::format("θ{}", subscript(i + 1)), value = degrees(angles[i]);
+        if (same)
+            named.insert(named.rfind(" = "), " = " + name);
+        else
+            named += fmt::format("{}{} = {}", named.empty() ? "" : ", ", name, value);
+    }
+    return named;
+}
+
+std::string rate_words(const SideSpec& a, const SideSpec& b) {
+    const auto& rates = a.omega_deg_per_s;
+    constexpr std::size_t most = 3;
+    if (!a.particles.empty() || is_zero(rates) || rates != b.omega_deg_per_s || rates.size() > most) return "";
+    return fmt::format("ω = {} °/s", slashed(rates));
+}
+
+/// What both sides have in common of how they are stepped.
+std::string method_words(const Scene& scene, const Varied& varied) {
+    std::vector<std::string> words;
+    const bool has_one_method = !is_varied(varied, ".integrator"), has_one_step = !varied.step && has_one_method;
+    const auto &a = scene.a, &b = scene.b;
+    const auto &accuracy = scene.preset.a.accuracy, &other = scene.preset.b.accuracy;
+    if (accuracy && other && *accuracy == *other) {
+        if (has_one_step) words.push_back(fmt::format("accuracy {} rad", text_of(*accuracy)));
+    } else {
+        if (a.method.name == b.method.name && has_one_method) words.emplace_back(a.method.title);
+        if (step_control_text(a) == step_control_text(b) && has_one_step) words.push_back(step_control_text(a));
+    }
+    if (a.motion.precision == Precision::in_quad && b.motion.precision == Precision::in_quad &&
+        !is_varied(varied, ".precision"))
+        words.emplace_back("in quad");
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
 }  // namespace
+
+std::string slashed(const std::vector<Quad>& numbers, std::string_view unit) {
+    std::vector<std::string> texts;
+    for (const auto& number : numbers) texts.push_back(fmt::format("{}{}", text_of(number), unit));
+    return fmt::format("{}", fmt::join(texts, "/"));
+}
 
 std::string pendulum_words(std::size_t links) {
     return "a " + chain_words(links);
 }
 
-std::string released_words(const SideSpec& side, std::optional<std::size_t> swept) {
-    std::vector<std::string> angles, rates;
-    for (std::size_t i = 0; i < side.links(); ++i) {
-        angles.push_back(i == swept ? "θ" + subscript(i + 1) : text_of(side.angle_deg[i]) + "°");
-        rates.push_back(text_of(side.omega_deg_per_s[i]));
-    }
-    const auto named = [](std::vector<std::string>& texts) {
-        if (std::count(texts.begin(), texts.end(), texts.front()) == static_cast<long>(texts.size()) &&
-            texts.size() > most_named)
-            texts.resize(1);
-        return texts.size() <= most_named;
-    };
-    std::string words = "released";
+std::string released_words(const SideSpec& side) {
+    const auto angles = named(side.angle_deg), rates = named(side.omega_deg_per_s);
     const bool rests = is_zero(side.omega_deg_per_s);
-    if (rests) words += " at rest";
-    if (named(angles)) words += fmt::format(" from {}", fmt::join(angles, "/"));
-    if (!rests && named(rates)) words += fmt::format(" at {} °/s", fmt::join(rates, "/"));
+    std::string words = rests ? "released at rest" : "released";
+    if (!angles.empty()) words += " from " + slashed(angles, "°");
+    if (!rests && !rates.empty()) words += fmt::format(" at {} °/s", slashed(rates));
     return words;
 }
 
@@ -62,11 +138,18 @@ std::string links_words(const SideSpec& side) {
     return links_words(doubles(side.length_m), doubles(side.mass_kg), static_cast<double>(side.gravity_m_per_s2));
 }
 
-std::string swept_words(const SideSpec& side, bool mass_ratio) {
-    const auto pendulum = pendulum_words(side.links());
-    if (!mass_ratio) return fmt::format("{} {}; {}", pendulum, released_words(side, 0), links_words(side));
-    return fmt::format("{} {}; links of {} m, m₂ = {} kg, g = {} m/s²", pendulum, released_words(side),
-                       numbers_words(doubles(side.length_m)), text_of(side.mass_kg[1]), text_of(side.gravity_m_per_s2));
+std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::string& apart) {
+    std::vector<std::string> parts{model_words(scene, varied)};
+    const auto add = [&](std::string words) {
+        if (!words.empty()) parts.push_back(std::move(words));
+    };
+    add(release_words(scene, varied));
+    add(rate_words(scene.preset.a, scene.preset.b));
+    add(apart);
+    if (const auto sides = side_captions(scene); sides[0].heading != "a")
+        add(fmt::format("{} against {}", sides[0].heading, sides[1].heading));
+    const auto method = varied.method.empty() ? method_words(scene, varied) : varied.method;
+    return fmt::format("{}{}{}", fmt::join(parts, ", "), method.empty() ? "" : "; ", method);
 }
 
 }  // namespace doppel

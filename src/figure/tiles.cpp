@@ -1,264 +1,142 @@
 #include "figure/tiles.hpp"
 
-#include "base/clock.hpp"
-#include "base/machine.hpp"
+#include "base/embedded.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
-#include "figure/map_figure.hpp"
-#include "figure/tile_folder.hpp"
-#include "figure/tile_page.hpp"
-#include "output/transaction.hpp"
-#include "scene/captions.hpp"
-#include "scene/resolved.hpp"
+#include "embedded/figure.hpp"
+#include "output/png.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <mutex>
 
 namespace doppel {
 namespace {
 
-constexpr double bytes_a_cell = 1;  // of PNGs; of the flip map 0.6
-
-/// What the pixels of all tiles depend on.
-Json owner_of(const FigurePreset& figure, const MapFigure& map) {
-    const auto header = header_of(figure);
-    const auto& look = map.frame().look;
-    Json range;  // null: by the numbers
-    if (look.low && look.high) range = {*look.low, *look.high};
-    return {{"doppel", program_json()},       {"figure", header.figure},     {"preset_sha256", header.preset},
-            {"version", header.version},      {"revision", header.revision}, {"theme", figure.chart.theme},
-            {"color_range", std::move(range)}};
-}
-
-/// Makes the tiles of one figure.
-class TileMaker {
+/// Draws the tiles of a map, each once, and writes them.
+class TileWriter {
 public:
-    TileMaker(const FigurePreset& figure, const std::filesystem::path& above, int jobs, const std::atomic<bool>& stop,
-              ComputationReport report)
-        : figure_(figure),
-          map_(*figure.experiment->map()),
-          pyramid_(map_.frame().x.count, map_.frame().y.count),
-          theme_(*std::find_if(themes.begin(), themes.end(),
-                               [&](const Theme& theme) { return theme.name == figure.chart.theme; })),
-          folder_(above / (figure.name + ".tiles"), owner_of(figure, *figure.experiment->map())),
+    TileWriter(const HeatMap& map, const Theme& theme, std::filesystem::path folder, const std::atomic<bool>& stop)
+        : map_(map),
+          theme_(theme),
+          pyramid_(static_cast<int>(map.columns), static_cast<int>(map.rows)),
+          folder_(std::move(folder)),
           stop_(stop),
-          report_(std::move(report)),
-          jobs_(jobs) {
-        const auto& frame = map_.frame();
-        constexpr int tile = Pyramid::tile;
-        mirrors_ = frame.is_mirrored && frame.x.count % tile == 0 && frame.y.count % tile == 0;
-    }
+          look_(look_of(map)) {}
 
-    /// Colours by the numbers of 64 rows of 64 cells, or of as many as there are, if the preset does not say; of a row
-    /// some stand side by side, as they are found fastest together.
-    void fit_colors() {
-        look_ = map_.frame().look;
-        if (look_.low && look_.high) return;
-        constexpr int most_rows = 64, most_groups = 8, together = 8;
-        const auto &x = map_.frame().x, &y = map_.frame().y;
-        const int side_by_side = std::min(together, x.count);
-        const int rows = std::min(most_rows, y.count), groups = std::min(most_groups, x.count / side_by_side);
-        std::vector<std::vector<float>> numbers(static_cast<std::size_t>(rows));
-        parallel_for(numbers.size(), jobs_, [&](std::size_t row) {
-            for (int group = 0; group < groups; ++group) {
-                std::vector<TrialNumbers> cells(static_cast<std::size_t>(side_by_side));
-                map_.find(spread(static_cast<int>(row), rows, y.count),
-                          spread(group, groups, x.count - side_by_side + 1), cells, stop_);
-                for (const auto& cell : cells) numbers[row].push_back(static_cast<float>(cell[0]));
-            }
-        });
-        auto sample = look_;
-        for (const auto& row : numbers) sample.values.insert(sample.values.end(), row.begin(), row.end());
-        const auto [low, high] = color_range(sample);
-        look_.low = low;
-        look_.high = high;
-    }
-
-    void demand_space() const {
-        const double cells = static_cast<double>(pyramid_.columns) * pyramid_.rows;
-        std::error_code unknown;
-        const auto space = std::filesystem::space(folder_.path(), unknown);
-        const double needed = bytes_a_cell * cells * 4 / 3 * (1 - share_there());
-        if (unknown || needed < static_cast<double>(space.available)) return;
-        throw bad_input("{}: the tiles of {} × {} cells take some {}, and {} has {} free", figure_.name,
-                        grouped(pyramid_.columns), grouped(pyramid_.rows), bytes_text(needed), folder_.path().string(),
-                        bytes_text(static_cast<double>(space.available)));
-    }
-
-    /// The finest tiles of a part that are missing.
-    void compute(const Shard& shard) {
-        const int across = pyramid_.across(pyramid_.levels), down = pyramid_.down(pyramid_.levels);
-        const long all = static_cast<long>(across) * down, computed = mirrors_ ? (all + 1) / 2 : all;
-        const long first = computed * (shard.number - 1) / shard.of, last = computed * shard.number / shard.of;
-        std::vector<long> missing;
-        for (long i = first; i < last; ++i) {
-            const int row = static_cast<int>(i / across), column = static_cast<int>(i % across);
-            if (!is_there(pyramid_.levels, row, column) ||
-                (mirrors_ && !is_there(pyramid_.levels, down - 1 - row, across - 1 - column)))
-                missing.push_back(i);
-            else
-                done_ += cells_by(i);
-            total_ += cells_by(i);
-        }
-        if (done_ > 0)
-            report_.note(
-                fmt::format("goes on: {:.0f} % of the finest tiles are there",
-                            100 * (1 - static_cast<double>(missing.size()) / static_cast<double>(last - first))));
-        if (!missing.empty()) fit_colors();
-        start_s_ = seconds_of(CLOCK_MONOTONIC);
-        parallel_for(missing.size(), jobs_, [&](std::size_t i) {
-            throw_if_set(stop_);
-            const int row = static_cast<int>(missing[i] / across), column = static_cast<int>(missing[i] % across);
-            auto picture = finest(row, column);
-            write(picture, pyramid_.levels, row, column);
-            const int other_row = down - 1 - row, other_column = across - 1 - column;
-            if (mirrors_ && (other_row != row || other_column != column)) {
-                turn(picture);
-                write(picture, pyramid_.levels, other_row, other_column);
-            }
-            progress(cells_by(missing[i]));
-        });
-    }
-
-    /// The coarser ones, from those below them.
-    void combine() {
-        for (int level = pyramid_.levels - 1; level >= 0; --level) {
-            const int across = pyramid_.across(level), down = pyramid_.down(level);
-            parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), jobs_, [&](std::size_t i) {
-                throw_if_set(stop_);
-                const int row = static_cast<int>(i) / across, column = static_cast<int>(i) % across;
-                if (!is_there(level, row, column)) write(combined(level, row, column), level, row, column);
-            });
-        }
-    }
-
-    /// Throws where a part of the finest tiles is missing.
-    void demand_finest() const {
-        for (int row = 0; row < pyramid_.down(pyramid_.levels); ++row)
-            for (int column = 0; column < pyramid_.across(pyramid_.levels); ++column)
-                if (!is_there(pyramid_.levels, row, column))
-                    throw try_again("{}: the tile {} is missing; compute all parts before the merge", figure_.name,
-                                    (folder_.path() / Pyramid::name(pyramid_.levels, row, column)).string());
-    }
-
-    TilePage page() {
-        if (!look_.low || !look_.high) fit_colors();
-        return {figure_.title, figure_.subtitle, folder_.path().filename().string(), pyramid_, map_.frame(), look_,
-                theme_};
-    }
-    /// Whether no cell has a number; of tiles from an earlier run, by the one that shows all.
-    bool is_empty() {
-        if (drawn_) return false;
-        auto none = page().look;
-        none.columns = none.rows = 1;
-        none.values = {NAN};
-        const auto nothing = cell_picture(none, theme_), all = folder_.read(Pyramid::name(0, 0, 0));
-        for (std::size_t i = 0; i < all.rgba.size(); i += 4)
-            if (all.rgba[i + 3] == 255 && !std::equal(&all.rgba[i], &all.rgba[i] + 3, nothing.rgba.begin()))
-                return false;
-        return true;
-    }
     const Pyramid& pyramid() const { return pyramid_; }
-    double cells_computed() const { return computed_; }
-    double seconds() const { return seconds_of(CLOCK_MONOTONIC) - start_s_; }
+    /// The map without its numbers, and with both ends of its scale.
+    const HeatMap& look() const { return look_; }
+
+    void write_all(int jobs) {
+        // threads take the tiles of a level with some; one thread the coarser ones
+        constexpr int shared = 3;
+        const int level = std::min(pyramid_.levels, shared), across = pyramid_.across(level);
+        std::vector<Picture> drawn(static_cast<std::size_t>(across) * static_cast<std::size_t>(pyramid_.down(level)));
+        parallel_for(drawn.size(), jobs, [&](std::size_t i) {
+            drawn[i] = written(level, static_cast<int>(i) / across, static_cast<int>(i) % across);
+        });
+        drawn_level_ = level;
+        drawn_ = std::move(drawn);
+        if (level > 0) written(0, 0, 0);
+    }
 
 private:
-    static int spread(int i, int of, int cells) { return static_cast<int>((2L * i + 1) * cells / (2L * of)); }
-    /// How many cells are known with finest tile i, counted row by row; of a mirrored map its image's too.
-    double cells_by(long i) const {
-        constexpr int tile = Pyramid::tile;
-        const int across = pyramid_.across(pyramid_.levels);
-        const int row = static_cast<int>(i / across), column = static_cast<int>(i % across);
-        const double cells = std::min(tile, pyramid_.columns - column * tile) *
-                             static_cast<double>(std::min(tile, pyramid_.rows - row * tile));
-        const bool is_own_image = 2 * i + 1 == static_cast<long>(across) * pyramid_.down(pyramid_.levels);
-        return cells * (mirrors_ && !is_own_image ? 2 : 1);
-    }
-    double share_there() const {
-        const double all = static_cast<double>(pyramid_.across(pyramid_.levels)) * pyramid_.down(pyramid_.levels);
-        return std::min(1.0, static_cast<double>(folder_.count()) / (all * 4 / 3));
+    static HeatMap look_of(const HeatMap& map) {
+        auto look = map;
+        look.values.clear();
+        const auto [low, high] = color_range(map);
+        look.low = low;
+        look.high = high;
+        return look;
     }
 
-    bool is_there(int level, int row, int column) const { return folder_.has(Pyramid::name(level, row, column)); }
-
-    Picture finest(int row, int column) const {
+    /// A tile, and all that it is made of.
+    Picture written(int level, int row, int column) const {
         constexpr int tile = Pyramid::tile;
-        const int left = column * tile, width = std::min(tile, pyramid_.columns - left);
-        HeatMap cells = look_;
-        cells.columns = static_cast<std::size_t>(width);
-        const int top = row * tile, height = std::min(tile, pyramid_.rows - top);
-        cells.rows = static_cast<std::size_t>(height);
-        for (int y = height - 1; y >= 0; --y) {  // from the bottom up
-            throw_if_set(stop_);
-            std::vector<TrialNumbers> numbers(cells.columns);
-            map_.find(pyramid_.rows - 1 - top - y, left, numbers, stop_);
-            for (const auto& cell : numbers) {
-                cells.values.push_back(static_cast<float>(cell[0]));
-                if (std::isfinite(cell[0])) drawn_ = true;
-            }
-        }
+        if (level == drawn_level_) return drawn_[static_cast<std::size_t>(row * pyramid_.across(level) + column)];
+        throw_if_set(stop_);
         Picture picture({tile, tile});
-        paste(cell_picture(cells, theme_), 0, 0, picture);
+        if (level == pyramid_.levels) {
+            paste(cells(row, column), 0, 0, picture);
+        } else {
+            Picture four({2 * tile, 2 * tile});
+            for (int r = 2 * row; r < std::min(2 * row + 2, pyramid_.down(level + 1)); ++r)
+                for (int c = 2 * column; c < std::min(2 * column + 2, pyramid_.across(level + 1)); ++c)
+                    paste(written(level + 1, r, c), c % 2 * tile, r % 2 * tile, four);
+            picture = downscaled(four, {tile, tile});
+        }
+        write_png(folder_ / Pyramid::name(level, row, column), picture, {.with_alpha = !picture.is_opaque()}, stop_);
         return picture;
     }
 
-    Picture combined(int level, int row, int column) const {
-        Picture four({2 * Pyramid::tile, 2 * Pyramid::tile});
-        for (int below = 0; below < 2; ++below)
-            for (int right = 0; right < 2; ++right) {
-                const int r = 2 * row + below, c = 2 * column + right;
-                if (r < pyramid_.down(level + 1) && c < pyramid_.across(level + 1))
-                    paste(folder_.read(Pyramid::name(level + 1, r, c)), right * Pyramid::tile, below * Pyramid::tile,
-                          four);
-            }
-        return downscaled(four, {Pyramid::tile, Pyramid::tile});
+    Picture cells(int tile_row, int tile_column) const {
+        constexpr std::size_t tile = Pyramid::tile;
+        const auto left = static_cast<std::size_t>(tile_column) * tile, top = static_cast<std::size_t>(tile_row) * tile;
+        auto part = look_;
+        part.columns = std::min(tile, map_.columns - left);
+        part.rows = std::min(tile, map_.rows - top);
+        for (auto row = map_.rows - top - part.rows; row < map_.rows - top; ++row) {  // from the bottom up
+            const auto first = map_.values.begin() + static_cast<std::ptrdiff_t>(row * map_.columns + left);
+            part.values.insert(part.values.end(), first, first + static_cast<std::ptrdiff_t>(part.columns));
+        }
+        return cell_picture(part, theme_);
     }
 
     static void paste(const Picture& from, int left, int top, Picture& into) {
         for (int y = 0; y < from.size.height; ++y)
             std::copy_n(from.at(0, y), 4 * static_cast<std::size_t>(from.size.width), into.at(left, top + y));
     }
-    /// By half a turn.
-    static void turn(Picture& picture) {
-        const auto count = picture.rgba.size() / 4;
-        for (std::size_t i = 0; i < count / 2; ++i)
-            std::swap_ranges(&picture.rgba[4 * i], &picture.rgba[4 * i] + 4, &picture.rgba[4 * (count - 1 - i)]);
-    }
 
-    void write(const Picture& picture, int level, int row, int column) {
-        folder_.write(Pyramid::name(level, row, column), picture, stop_);
-    }
-
-    void progress(double cells) {
-        const std::lock_guard hold(mutex_);
-        done_ += cells;
-        computed_ += cells;
-        report_.progress({done_, total_});
-        const double seconds = seconds_of(CLOCK_MONOTONIC) - start_s_;
-        if (told_ || seconds < 5) return;
-        told_ = true;
-        const double rate = computed_ / seconds, left = (total_ - done_) / rate;
-        report_.note(fmt::format("{} cells to go, about {} a second: {}", grouped(std::lround(total_ - done_)),
-                                 roughly(rate),
-                                 left < 100 ? fmt::format("{:.0f} s", left) : fmt::format("{:.0f} min", left / 60)));
-    }
-
-    const FigurePreset& figure_;
-    const MapFigure& map_;
-    Pyramid pyramid_;
+    const HeatMap& map_;
     const Theme& theme_;
-    TileFolder folder_;
+    Pyramid pyramid_;
+    std::filesystem::path folder_;
     const std::atomic<bool>& stop_;
-    ComputationReport report_;
-    int jobs_;
     HeatMap look_;
-    bool mirrors_ = false;
-    mutable std::atomic<bool> drawn_ = false;                   // a number, by this run
-    mutable std::mutex mutex_;                                  // of all below
-    double total_ = 0, done_ = 0, computed_ = 0, start_s_ = 0;  // cells, s
-    bool told_ = false;
+    int drawn_level_ = -1;
+    std::vector<Picture> drawn_;  // the tiles of that level
 };
+
+std::string hexadecimal(Color color) {
+    const auto bytes = bytes_of(color);
+    return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
+}
+
+Json axis_json(const PlotAxis& axis) {
+    return {{"label", axis.label}, {"from", *axis.low}, {"to", *axis.high}, {"logarithmic", axis.logarithmic}};
+}
+
+Json scale_json(const HeatMap& look, const Theme& theme) {
+    constexpr int stops = 33;
+    Json colors = Json::array();
+    for (int i = 0; i < stops; ++i) colors.push_back(hexadecimal(map_color(static_cast<double>(i) / (stops - 1))));
+    return {{"label", look.label},
+            {"colors", colors},
+            {"from", *look.low},
+            {"to", *look.high},
+            {"logarithmic", look.logarithmic},
+            {"none", look.none_label},
+            {"none_color", hexadecimal(look.none_is_bad ? theme.bad : theme.none)}};
+}
+
+/// The page, in which {title}, {subtitle} and {map} stand for what it shows.
+std::string page_text(const FigurePreset& figure, const Json& map) {
+    const auto files = figure_files();
+    const auto file = std::ranges::find(files, "figure/tiles.html", &EmbeddedFile::name);
+    if (file == files.end()) throw io_failed("the page of tiles was not built in");
+    const std::array<std::pair<std::string_view, std::string>, 3> values{
+        {{"{title}", markup(figure.title)},
+         {"{subtitle}", markup(figure.subtitle)},
+         {"{map}", in_script(map.dump(-1, ' ', false, Json::error_handler_t::replace))}}};
+    std::string text;
+    for (std::string_view rest = file->contents; !rest.empty();) {
+        const auto value = std::find_if(values.begin(), values.end(),
+                                        [&](const auto& entry) { return rest.starts_with(entry.first); });
+        const auto taken = value == values.end() ? std::min(rest.find('{', 1), rest.size()) : value->first.size();
+        text += value == values.end() ? rest.substr(0, taken) : std::string_view(value->second);
+        rest.remove_prefix(taken);
+    }
+    return text;
+}
 
 }  // namespace
 
@@ -276,55 +154,33 @@ std::string Pyramid::name(int level, int row, int column) {
 }
 
 void demand_map(const FigurePreset& figure) {
-    const auto* map = figure.experiment->map();
-    if (!map || map->frame().panels > 1)
+    const auto map = figure.experiment->map();
+    if (!map || map->panels > 1)
         throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
 }
 
-void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,
-                const ComputationReport& report, const std::function<void(const RunResult&)>& done) {
+Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
+                 const std::atomic<bool>& stop) {
     demand_map(figure);
-    const double start = seconds_of(CLOCK_MONOTONIC);
-    const int jobs = options.jobs > 0 ? options.jobs : cores();
-    const auto run = options.shard ? fmt::format("tiles-{}-of-{}", options.shard->number, options.shard->of) : "tiles";
-    Transaction files(options.out / figure.name, run, "figure", options.replacing);
-    for (const char* ending : {".html", ".tiles.json"}) files.demand(figure.name + ending);
-    TileMaker tiles(figure, files.folder(), jobs, stop, report);
-    RunResult result;
-    if (!options.merge) {
-        tiles.demand_space();
-        tiles.compute(options.shard.value_or(Shard{}));
-    }
-    if (!options.shard) {
-        if (options.merge) tiles.demand_finest();
-        const double computed_s = tiles.seconds();
-        tiles.combine();
-        if (tiles.is_empty())
-            throw method_failed("{}: none of the {} × {} cells has a number: there is nothing to draw", figure.name,
-                                grouped(tiles.pyramid().columns), grouped(tiles.pyramid().rows));
-        const auto html = figure.name + ".html";
-        write_tile_page(files.file(html), tiles.page());
-        files.finished(html);
-        const auto& pyramid = tiles.pyramid();
-        write_manifest(files, figure.name + ".tiles.json",
-                       {{"doppel", program_json()},
-                        {"figure", figure.name},
-                        {"title", figure.title},
-                        {"resolved_preset", json_of_toml(figure.resolved())},
-                        {"tiles",
-                         {
-                             {"folder", figure.name + ".tiles"},
-                             {"size_px", Pyramid::tile},
-                             {"levels", pyramid.levels + 1},
-                             {"cells", {pyramid.columns, pyramid.rows}},
-                         }},
-                        {"threads", jobs},
-                        {"time", {{"compute_wall_s", computed_s}, {"cells_computed", tiles.cells_computed()}}}});
-        result.files = files.publish();
-    }
-    result.samples = std::lround(tiles.cells_computed());
-    result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
-    done(result);
+    const auto& plot = page.panels.front();
+    const auto folder = figure.name + ".tiles", html = figure.name + ".html";
+    TileWriter tiles(*plot.map, theme, files.directory(folder), stop);
+    tiles.write_all(jobs);
+    files.finished(folder);
+    const auto& pyramid = tiles.pyramid();
+    write_file(files.file(html), page_text(figure, {{"folder", in_address(folder)},
+                                                    {"tile", Pyramid::tile},
+                                                    {"levels", pyramid.levels},
+                                                    {"columns", pyramid.columns},
+                                                    {"rows", pyramid.rows},
+                                                    {"x", axis_json(plot.x)},
+                                                    {"y", axis_json(plot.y)},
+                                                    {"scale", scale_json(tiles.look(), theme)}}));
+    files.finished(html);
+    return {{"folder", folder},
+            {"size_px", Pyramid::tile},
+            {"levels", pyramid.levels + 1},
+            {"cells", {pyramid.columns, pyramid.rows}}};
 }
 
 }  // namespace doppel

@@ -1,6 +1,9 @@
 #pragma once
 
-#include "figure/run.hpp"
+#include "figure/preset.hpp"
+#include "image/color.hpp"
+#include "output/transaction.hpp"
+#include "scene/resolved.hpp"
 
 namespace doppel {
 
@@ -13,7 +16,7 @@ struct Pyramid {
 
     explicit Pyramid(int columns, int rows);
 
-    /// Tiles of a level, from the top left; cells to a pixel.
+    /// Tiles of a level, from the top left.
     int across(int level) const { return tiles(columns, level); }
     int down(int level) const { return tiles(rows, level); }
     /// "3-0-7.png": level, row of tiles from the top, column.
@@ -23,19 +26,12 @@ private:
     int tiles(int cells, int level) const;
 };
 
-/// Makes the map `figure` as tiles and a page to look at them: OUT/NAME/NAME.html, NAME.tiles/ with the tiles and
-/// pyramid.json, which says what they belong to, and the manifest NAME.tiles.json.
-///
-/// Each tile appears whole or not at all, and stays; the same command goes on with those that are missing. A shard
-/// computes its share of the finest tiles alone; a merge makes the rest from them. No more than one tile a thread is in
-/// memory. Colours go by [grid] color_range, or by the numbers of 4096 cells spread over the map.
-///
-/// Errors: exit 2 where the figure is no map, 75 where parts are missing at a merge; exit 3 as compute(), or where no cell
-/// has a number; exit 4 where the folder of tiles is of another preset or version, or not Doppel's; exit 130 soon after
-/// `stop` is set, all tiles made so far kept.
-void make_tiles(const FigurePreset& figure, const FigureOptions& options, const std::atomic<bool>& stop,
-                const ComputationReport& report, const std::function<void(const RunResult&)>& done);
-/// Throws Error (exit 2) where the figure is no map.
+/// Writes the map that `page` shows: NAME.tiles/ with a pyramid of tiles, and NAME.html to look at them, with a mouse, by
+/// touch or with keys, without a network. Returns what the manifest says of it. Throws Error: exit 4; 130 soon after `stop`
+/// is set.
+Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
+                 const std::atomic<bool>& stop);
+/// Throws Error (exit 2) where the figure is no map, or several.
 void demand_map(const FigurePreset& figure);
 
 }  // namespace doppel

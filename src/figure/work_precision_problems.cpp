@@ -20,16 +20,11 @@ struct StandardProblem {
 constexpr std::array<std::string_view, 4> names_of_all{"P1", "P2", "P3", "P4"};
 const std::array<StandardProblem, 4> all_standard{{{{90, 90}, 10}, {{30, 0}, 60}, {{150, 90}, 5}, {{120, 0, 0}, 5}}};
 
-std::string release_words(const SideSpec& side) {
-    std::vector<std::string> angles;
-    for (const auto& angle : side.angle_deg) angles.push_back(fmt::format("{}°", text_of(angle)));
-    return fmt::format("{}", fmt::join(angles, "/"));
-}
-
 std::string title_words(const std::string& name, const SideSpec& side, const Rational& duration) {
     const auto seconds = fmt::format("{:.6g} s", duration.value());
     if (!side.particles.empty()) return fmt::format("{} · {}", name, seconds);
-    return fmt::format("{} · {}{}, {}", name, release_words(side), side.is_mechanism() ? " and more" : "", seconds);
+    return fmt::format("{} · {}{}, {}", name, slashed(side.angle_deg, "°"), side.is_mechanism() ? " and more" : "",
+                       seconds);
 }
 
 /// The release of a chain or mechanism as a problem. Throws Error (exit 2) where the system is faulty.

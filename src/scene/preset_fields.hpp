@@ -16,8 +16,7 @@ namespace doppel {
 
 /// `kind` of [scene]: of a film, and of the figures (figure/kinds.cpp).
 inline constexpr std::string_view pair_kind = "pair";
-inline constexpr std::array<std::string_view, 9> scene_kinds{
-    pair_kind, "grid", "curves", "convergence", "spectrum", "section", "work-precision", "stability", "drift"};
+inline constexpr std::array<std::string_view, 5> scene_kinds{pair_kind, "grid", "series", "section", "work-precision"};
 
 // The keys of a film's tables, each with its member, in lists that TomlReader, TomlWriter and FieldTable visit. The
 // reader checks what keys say together.

@@ -95,10 +95,11 @@ TEST(Init, EachKeyOfAFigureCanBeTakenIntoUse) {
     // those that are for other values of other keys, and what the figure gives itself
     std::map<std::string_view, std::set<std::string>> beside{
         {"grid",
-         {"checked", "color_range", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right",
-          "step_s", "tolerance", "transient_periods"}},
-        {"curves", {"integrator", "step_s", "tolerance", "check_tolerance"}},
-        {"convergence", {"center_m", "tolerance"}},  // links with mass have no rods to compare with
+         {"color_range", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right", "step_s",
+          "tolerance", "transient_periods", "mark_step_s", "x.tolerance_from", "x.tolerance_to", "x.tolerance_points"}},
+        {"series",
+         {"integrator", "step_s", "tolerance", "check_tolerance", "duration_s", "samples", "points_per_decade",
+          "evaluations_per_s", "methods", "projected"}},
         {"section", {"angle_deg", "omega_deg_per_s"}},
         {"work-precision", {"duration_s"}}};
     for (const auto& kind : figure_kinds()) {

@@ -41,8 +41,7 @@ TEST(AllFaultsOfAFigure, StandInTheOrderOfTheFileAndThenOfTheCommandLine) {
 }
 
 TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
-    const auto figures = {"grid",    "curves", "convergence", "spectrum",
-                          "section", "drift",  "stability",   "work-precision"};
+    const auto figures = {"grid", "series", "section", "work-precision"};
     for (const auto* kind : figures) {
         std::string table = kind;
         for (auto& letter : table)
@@ -50,7 +49,7 @@ TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
         const auto faults = faults_of(kind, "[" + table + "]\nfoo = 1\n[chart]\nscale = 9\nbar = 2\n");
         EXPECT_EQ(faults.size(), 3u) << kind << testing::PrintToString(faults);
     }
-    EXPECT_EQ(faults_of("curves", "[[curve]]\ncolumn = 3\n[curve.a]\nlinks = 0\n[[curve]]\nfoo = 1\n", {}, 18),
+    EXPECT_EQ(faults_of("series", "[[curve]]\ncolumn = 3\n[curve.a]\nlinks = 0\n[[curve]]\nfoo = 1\n", {}, 18),
               (Lines{"4:1: [[curve]] 1 c", "6:1: [a] links mus", "8:1: [[curve]] 2 h"}));
 }
 
@@ -58,7 +57,8 @@ TEST(AllFaultsOfAFigure, LeaveOutWhatMayFollowFromAnother) {
     EXPECT_EQ(faults_of("grid", "[grid]\nquantity = 1\nexponent_duration_s = 3\n"),
               (Lines{"4:1: [grid] quantity mus"}));
     EXPECT_EQ(faults_of("grid", "[grid.x]\nfrom = 10\nto = 5\nstep = \"x\"\n"), (Lines{"6:1: [grid.x] step must "}));
-    EXPECT_EQ(faults_of("spectrum", "[system]\nlinks = 5\n[chart]\nscale = 0\n"), (Lines{"6:1: [chart] scale must "}));
+    EXPECT_EQ(faults_of("series", "[series]\nquantity = \"exponents\"\n[system]\nlinks = 5\n[chart]\nscale = 0\n"),
+              (Lines{"8:1: [chart] scale must "}));
     EXPECT_EQ(faults_of("grit", "[grid]\nfoo = 1\n"), (Lines{"2:1: [scene] kind must b"}));
 }
 

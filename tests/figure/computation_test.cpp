@@ -19,32 +19,33 @@ using test::write_bytes;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A computation that goes on from `record`, and what came of it.
+/// A computation that goes on from the record in the folder, and what came of it.
 struct Resumed {
     Said said;
     KnownTrials trials;
     double computed_units = 0;
 
-    Resumed(const FigurePreset& figure, const PartHeader& header, const fs::path& record) {
-        Computation computation(figure, header, record, 1, said.report());
+    Resumed(const FigurePreset& figure, const PartHeader& header, const std::optional<fs::path>& folder) {
+        Computation computation(figure, header, folder, 1, said.report());
         const std::atomic<bool> never = false;
         for (std::size_t group = 0; group < computation.groups(); ++group)
             EXPECT_EQ(computation.compute(group, never), group + 1 == computation.groups());
-        trials = computation.take();
+        trials = computation.take_all();
         computed_units = computation.computed_units();
     }
 };
 
 TEST(Computation, ComputesOnlyWhatARecordDoesNotHave) {
-    const auto record = fresh_folder() / "x.resume";
+    const auto folder = fresh_folder();
     const auto figure = small_sweep();
+    const auto record = folder / resume_name(header_of(figure));
     const auto expected = computed(figure);
     KnownTrials known(10);
     for (const std::size_t trial : {0u, 1u, 4u, 9u})
         known[trial] = {100.0 + static_cast<double>(trial)};  // to be told apart
     PartWriter(record, header_of(figure), known).close();
 
-    const Resumed resumed(figure, header_of(figure), record);
+    const Resumed resumed(figure, header_of(figure), folder);
     EXPECT_EQ(resumed.computed_units, 6);
     EXPECT_TRUE(resumed.said.has("goes on from " + record.string() + ": 40 % is done"));
     ASSERT_FALSE(resumed.said.progress.empty());
@@ -55,18 +56,20 @@ TEST(Computation, ComputesOnlyWhatARecordDoesNotHave) {
 }
 
 TEST(Computation, NeedsNothingWhereARecordHasAll) {
-    const auto record = fresh_folder() / "x.resume";
+    const auto folder = fresh_folder();
     const auto figure = small_sweep();
+    const auto record = folder / resume_name(header_of(figure));
     const auto expected = computed(figure);
     PartWriter(record, header_of(figure), expected).close();
-    const Resumed resumed(figure, header_of(figure), record);
+    const Resumed resumed(figure, header_of(figure), folder);
     EXPECT_EQ(resumed.trials, expected);
     EXPECT_EQ(resumed.computed_units, 0);
 }
 
 TEST(Computation, LeavesARecordOfSomethingElseAlone) {
-    const auto record = fresh_folder() / "x.resume";
+    const auto folder = fresh_folder();
     const auto figure = small_sweep();
+    const auto record = folder / resume_name(header_of(figure));
     const KnownTrials wrong(10, {100});
     auto headers = std::vector<PartHeader>(6, header_of(figure));
     headers[0].preset = "cafe";
@@ -80,20 +83,21 @@ TEST(Computation, LeavesARecordOfSomethingElseAlone) {
         PartWriter(record, header, wrong).close();
         const auto bytes = bytes_of(record);
         expect_error(ExitCode::io_failed, {record.string() + " belongs to another preset or version"},
-                     [&] { Resumed(figure, header_of(figure), record); });
+                     [&] { Resumed(figure, header_of(figure), folder); });
         EXPECT_EQ(bytes_of(record), bytes);
         // which is why each has a name of its own
         EXPECT_TRUE(names.insert(resume_name(header)).second) << resume_name(header);
     }
     write_bytes(record, "my diary");
-    expect_error(ExitCode::io_failed, {record.string()}, [&] { Resumed(figure, header_of(figure), record); });
+    expect_error(ExitCode::io_failed, {record.string()}, [&] { Resumed(figure, header_of(figure), folder); });
     EXPECT_EQ(bytes_of(record), "my diary");
 }
 
 /// A kill at any moment, and a line that rotted: what is whole before is kept, all else is computed anew.
 TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
-    const auto record = fresh_folder() / "x.resume";
+    const auto folder = fresh_folder();
     const auto figure = figure_of("fig2-right", {"grid.x.to=3", "scene.duration_s=0.05"});
+    const auto record = folder / resume_name(header_of(figure));
     const auto expected = computed(figure);
     PartWriter(record, header_of(figure), expected).close();
     const auto bytes = bytes_of(record);
@@ -103,7 +107,7 @@ TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
         damaged[at] = damaged[at] == '7' ? '3' : '7';
         for (const auto& text : {bytes.substr(0, at), damaged}) {
             write_bytes(record, text);
-            const Resumed resumed(figure, header_of(figure), record);
+            const Resumed resumed(figure, header_of(figure), folder);
             EXPECT_EQ(resumed.trials, expected) << at;
             EXPECT_EQ(resumed.computed_units,
                       static_cast<double>(expected.size() + 1) - static_cast<double>(lines_before))
@@ -116,48 +120,50 @@ TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
 
 /// Checksums tell what rots; numbers that cannot be are told by their kind.
 TEST(Computation, BelievesNoNumbersThatCannotBe) {
-    const auto record = fresh_folder() / "x.resume";
+    const auto folder = fresh_folder();
     const auto figure = small_sweep();
+    const auto record = folder / resume_name(header_of(figure));
     const auto expected = computed(figure);
     for (const auto& numbers : std::vector<TrialNumbers>{{1, 2}, {infinity}, {-infinity}}) {
         auto known = expected;
         known[4] = numbers;
         PartWriter(record, header_of(figure), known).close();
-        const Resumed resumed(figure, header_of(figure), record);
+        const Resumed resumed(figure, header_of(figure), folder);
         EXPECT_EQ(resumed.trials, expected);
         EXPECT_EQ(resumed.computed_units, 6);
         EXPECT_TRUE(resumed.said.has("40 % is done; line 6 is damaged"));
     }
     // those of another part
     auto header = header_of(figure, 2, 2);
-    PartWriter(record, header, expected).close();
-    EXPECT_EQ(Resumed(figure, header, record).computed_units, 5);
+    PartWriter(folder / resume_name(header), header, expected).close();
+    EXPECT_EQ(Resumed(figure, header, folder).computed_units, 5);
 }
 
 TEST(Computation, KeepsToItsPart) {
     const auto figure = small_sweep();
     const auto expected = computed(figure);
     const auto header = header_of(figure, 2, 3);
-    const Resumed part(figure, header, "");
+    const Resumed part(figure, header, {});
     for (std::size_t i = 0; i < expected.size(); ++i)
         EXPECT_EQ(part.trials[i], i >= header.first() && i < header.last() ? expected[i] : TrialNumbers{}) << i;
 }
 
 TEST(Computation, StopsSoonAndKeepsARecordFromBefore) {
-    const auto record = fresh_folder() / "x.resume";
+    const auto folder = fresh_folder();
     const auto figure = small_sweep();
+    const auto record = folder / resume_name(header_of(figure));
     KnownTrials known(10);
     known[3] = {1};
     PartWriter(record, header_of(figure), known).close();
     Said said;
-    Computation computation(figure, header_of(figure), record, 1, said.report());
+    Computation computation(figure, header_of(figure), folder, 1, said.report());
     const std::atomic<bool> stop = true;
     expect_error(ExitCode::interrupted, {"interrupted"}, [&] { computation.compute(0, stop); });
     const auto kept = read_part_file(record).trials;
     ASSERT_EQ(kept.size(), 1u);
     EXPECT_EQ(kept[0].number, 3u);
     EXPECT_EQ(kept[0].numbers, TrialNumbers{1});
-    EXPECT_EQ(Resumed(figure, header_of(figure), record).computed_units, 9);
+    EXPECT_EQ(Resumed(figure, header_of(figure), folder).computed_units, 9);
 }
 
 }  // namespace computation_test

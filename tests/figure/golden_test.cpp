@@ -38,11 +38,10 @@ INSTANTIATE_TEST_SUITE_P(
         // tolerances so coarse that the errors in the captions are truncation, not rounding
         Golden{"figure-flip-map",
                "flip-map",
-               {"grid.x.points=48", "grid.y.points=48", "scene.duration_s=2", "grid.checked=20",
-                "grid.flip_tolerance=1e-4"}},
+               {"grid.x.points=48", "grid.y.points=48", "scene.duration_s=2", "grid.flip_tolerance=1e-4"}},
         Golden{"figure-spectrum",
                "lyapunov-spectrum",
-               {"spectrum.duration_s=3", "spectrum.samples=60", "spectrum.tolerance=1e-6"}},
+               {"series.duration_s=3", "series.samples=60", "series.tolerance=1e-6"}},
         Golden{"figure-bifurcation",
                "bifurcation",
                {"grid.x.points=60", "grid.x.from=6", "grid.x.to=6.35", "grid.periods=20", "grid.transient_periods=60"}},
@@ -55,8 +54,20 @@ INSTANTIATE_TEST_SUITE_P(
                 "section.exponent_duration_s=300"}},
         Golden{"figure-convergence",
                "why-they-part",
-               {"scene.duration_s=1", "convergence.methods=[\"euler\", \"rk4\"]", "convergence.halvings=4",
-                "convergence.quad_halvings=4"}}),
+               {"scene.duration_s=1", "grid.color.values=[\"euler\", \"rk4\"]", "grid.x.points=5",
+                "grid.x.to=0.000520833333333333333"}},
+        // errors far above rounding
+        Golden{"figure-work-precision",
+               "speed-accuracy",
+               {"chart.cost=\"evaluations\"", "work_precision.problems=[\"P1\", \"P3\"]",
+                "work_precision.most_evaluations=20000", "work_precision.least_error=1e-6",
+                "work_precision.models=[\"angles\", \"constraints\"]"}},
+        // steps, times and angles at which nothing is chaotic yet
+        Golden{"figure-stability",
+               "stability",
+               {"grid.y.to=30", "grid.y.points=18", "grid.x.points=24", "scene.duration_s=2", "scene.sample_hz=50",
+                "grid.x.from=0.01", "grid.x.to=0.7",
+                "grid.panel.values=[\"euler\", \"semi-implicit-euler\", \"rk4\", \"rattle6\"]"}}),
     [](const auto& parameter) {
         std::string name = parameter.param.name;
         std::replace(name.begin(), name.end(), '-', '_');

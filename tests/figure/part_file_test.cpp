@@ -86,31 +86,6 @@ TEST(PartFile, BeginsWithWhatIsKnownAndReplacesAnOlderOne) {
     expect_same_bits(trials_in(path)[1], {7});
 }
 
-TEST(PartFile, LeavesOutALastLineCutAtAnyByte) {
-    const auto folder = fresh_folder();
-    const KnownTrials trials{{1.25, -2e-300}, {none, 12345}, {infinite, 3}};
-    PartWriter(folder / "whole", some_header(3), trials).close();
-    const auto bytes = bytes_of(folder / "whole");
-    const auto header = bytes.find('\n') + 1;
-    for (std::size_t cut = 0; cut <= bytes.size(); ++cut) {
-        write_bytes(folder / "cut", bytes.substr(0, cut));
-        if (cut + 1 < header) {
-            expect_error(ExitCode::io_failed, {(folder / "cut").string()}, [&] { read_part_file(folder / "cut"); });
-            continue;
-        }
-        EXPECT_EQ(read_part_file(folder / "cut").damaged_line, 0u) << "cut at " << cut;
-        const auto read = trials_in(folder / "cut");
-        const auto whole = static_cast<std::size_t>(std::count(bytes.begin() + static_cast<long>(std::min(cut, header)),
-                                                               bytes.begin() + static_cast<long>(cut), '\n'));
-        for (std::size_t i = 0; i < trials.size(); ++i) {
-            if (i < whole)
-                expect_same_bits(read[i], trials[i]);
-            else
-                EXPECT_TRUE(read[i].empty()) << "cut at " << cut;
-        }
-    }
-}
-
 TEST(PartFile, StopsAtALineThatIsNone) {
     const auto path = fresh_folder() / "some.resume";
     PartWriter(path, some_header(9), {{1}, {2}}).close();

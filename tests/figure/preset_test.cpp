@@ -34,10 +34,12 @@ TEST(FigurePreset, EveryBuiltInOneReadsAndHasATitle) {
 
 TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
     const std::string system = "[system]\nlinks = 1\njoint_coulomb_N_m = 0.1\nintegrator = \"rk4\"\n";
-    const auto spectrum =
-        error_of([&] { figure_from("[scene]\nkind = \"spectrum\"\n[system]\njoint_coulomb_N_m = 0.1\n"); });
+    const auto spectrum = error_of([&] {
+        figure_from(
+            "[scene]\nkind = \"series\"\n[series]\nquantity = \"exponents\"\n[system]\njoint_coulomb_N_m = 0.1\n");
+    });
     EXPECT_EQ(spectrum.first, ExitCode::bad_input);
-    EXPECT_EQ(spectrum.second.rfind("presets/x.toml:4:1: [system] joint_coulomb_N_m is not for Lyapunov exponents", 0),
+    EXPECT_EQ(spectrum.second.rfind("presets/x.toml:6:1: [system] joint_coulomb_N_m is not for Lyapunov exponents", 0),
               0u)
         << spectrum.second;
     for (const std::string y : {"", "[grid.y]\nkey = \"system.length_m\"\nfrom = 1\nto = 2\npoints = 2\n"}) {
@@ -47,14 +49,17 @@ TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
         EXPECT_NE(fault.second.find("quantity is that of a smooth motion"), std::string::npos) << fault.second;
     }
     // no mass at all
-    const auto massless =
-        error_of([&] { figure_from("[scene]\nkind = \"spectrum\"\n[system]\nmass_kg = 0\nrod_mass_kg = [1, 0]\n"); });
+    const auto massless = error_of([&] {
+        figure_from(
+            "[scene]\nkind = \"series\"\n[series]\nquantity = \"exponents\"\n[system]\nmass_kg = 0\nrod_mass_kg = [1, "
+            "0]\n");
+    });
     EXPECT_NE(massless.second.find("mass_kg of link 2 and its rod_mass_kg are both 0"), std::string::npos)
         << massless.second;
 }
 
 TEST(FigurePreset, DrawsOnlyLettersThatTheFontHas) {
-    const std::string scene = "\n[scene]\nkind = \"curves\"\n[b]\nangle_deg = 91\n[[curve]]\ncolumn = \"one\"\n";
+    const std::string scene = "\n[scene]\nkind = \"series\"\n[b]\nangle_deg = 91\n[[curve]]\ncolumn = \"one\"\n";
     const auto refusal = [](const std::string& text) { return error_of([&] { figure_from(text); }).second; };
     const std::string lacks = " holds \"双\" (U+53CC), which the built-in font lacks; ";
     for (const std::string key : {"title", "subtitle", "erratum"}) {
@@ -167,7 +172,7 @@ TEST(FigurePreset, OfASweepSaysWhatWasSet) {
 TEST(FigurePreset, OfALogarithmOfRatiosTakesADistance) {
     const auto [code, message] = error_of([] { figure_of("fig2-left", {"b.angle_deg=[90, 90]"}); });
     EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_NE(message.find("[curves] quantity \"log_ratio\" takes sides that are released differently"),
+    EXPECT_NE(message.find("[series] quantity \"log_ratio\" takes sides that are released differently"),
               std::string::npos)
         << message;
 }
@@ -189,12 +194,12 @@ INSTANTIATE_TEST_SUITE_P(Values, FigureErrors, testing::ValuesIn(refused_figures
 
 INSTANTIATE_TEST_SUITE_P(Chart, FigureErrors, testing::ValuesIn(refused_figures_chart));
 
-INSTANTIATE_TEST_SUITE_P(Curves, FigureErrors, testing::ValuesIn(refused_figures_curves));
+INSTANTIATE_TEST_SUITE_P(Series, FigureErrors, testing::ValuesIn(refused_figures_series));
 
 INSTANTIATE_TEST_SUITE_P(Others, FigureErrors, testing::ValuesIn(refused_figures_others));
 
 TEST(FigureErrors, OfTheTopAreNamed) {
-    const std::string scene = "\n[scene]\nkind = \"spectrum\"";
+    const std::string scene = "\n[scene]\nkind = \"series\"\n[series]\nquantity = \"exponents\"";
     for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
              {"captions = \"x\"", "presets/x.toml:1:1: captions must be an array of strings; it is a string (\"x\")"},
              {"captions = [3]", "presets/x.toml:1:1: captions must be an array of strings"},
@@ -204,7 +209,7 @@ TEST(FigureErrors, OfTheTopAreNamed) {
         EXPECT_EQ(code, ExitCode::bad_input);
         EXPECT_EQ(message.rfind(words, 0), 0u) << message;
     }
-    const auto [code, message] = error_of([] { figure_from("curve = 3\n[scene]\nkind = \"curves\""); });
+    const auto [code, message] = error_of([] { figure_from("curve = 3\n[scene]\nkind = \"series\""); });
     EXPECT_EQ(code, ExitCode::bad_input) << message;
     EXPECT_EQ(message.rfind("presets/x.toml:1:1: curve", 0), 0u) << message;
 }
@@ -212,8 +217,8 @@ TEST(FigureErrors, OfTheTopAreNamed) {
 TEST(FigureErrors, MethodsThatDoNotServeAreToldAtOnce) {
     const auto [code, message] = error_of([] {
         figure_from(
-            "[scene]\nkind = \"convergence\"\n[system]\nmodel = \"angles\"\n[convergence]\nmethods = [\"euler\", "
-            "\"rattle\"]");
+            "[scene]\nkind = \"grid\"\n[system]\nmodel = \"angles\"\n[grid]\ndifference = 1\n[grid.panel]\nkey = "
+            "\"system.integrator\"\nvalues = [\"euler\", \"rattle\"]");
     });
     EXPECT_EQ(code, ExitCode::bad_input);
     EXPECT_NE(message.find("\"rattle\""), std::string::npos) << message;

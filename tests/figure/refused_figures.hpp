@@ -40,7 +40,7 @@ inline const std::vector<RefusedFigure> refused_figures_sweep{
     RefusedFigure{"grid", "[system]\nlinks = 1\n[grid.x]\nkey = \"mass_ratio\"", ":6:1: [grid.x] key", {"2 links"}},
     RefusedFigure{
         "grid", "[system]\nlenght_m = 3", ":4:1: [system] has no \"lenght_m\"", {"did you mean \"length_m\"?"}},
-    RefusedFigure{"grid", "[curves]\nquantity = \"distance\"", ":3:2: a preset has no \"curves\"", {}},
+    RefusedFigure{"grid", "[series]\nquantity = \"distance\"", ":3:2: a preset has no \"series\"", {}},
     RefusedFigure{"grid", "[video]\nfps = 60", ":3:2: a preset has no \"video\"", {}},
     RefusedFigure{"grid", "sample_hz = 7", ":3:1: [scene] sample_hz", {"must divide the step rate"}}};
 
@@ -48,10 +48,9 @@ inline const std::vector<RefusedFigure> refused_figures_values{
     RefusedFigure{"grid", "[grid.x]\nkey = \"mass_ratio\"\nfrom = 0\nto = 1", ":5:1: [grid.x] from", {"> 0"}},
     RefusedFigure{"grid", "[grid.x]\nkey = \"length_ratio\"\nfrom = -1\nto = 1", ":5:1: [grid.x] from", {"> 0"}},
     RefusedFigure{"grid", "[grid.x]\nto = 1\nstep = 0.4", "", {"[grid.x]", "step"}},
-    RefusedFigure{"convergence", "[convergence]\nmethods = []", ":4:1: [convergence] methods", {}},
     RefusedFigure{
-        "curves", "[[curve]]\ncolumn = \"x\"\n[[curve]]\ncolumn = \"x\"", ":6:1: [[curve]] 2 column", {"\"x\""}},
-    RefusedFigure{"curves", "[[curve]]\ncolumn = \"time_s\"", ":4:1: [[curve]] 1 column", {"\"time_s\""}},
+        "series", "[[curve]]\ncolumn = \"x\"\n[[curve]]\ncolumn = \"x\"", ":6:1: [[curve]] 2 column", {"\"x\""}},
+    RefusedFigure{"series", "[[curve]]\ncolumn = \"time_s\"", ":4:1: [[curve]] 1 column", {"\"time_s\""}},
     RefusedFigure{"grid",
                   "[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]\n[grid]\ndifference = 1\nright = "
                   "\"exponent\"",
@@ -69,14 +68,14 @@ inline const std::vector<RefusedFigure> refused_figures_chart{
                   {"\"dark\", \"light\" or \"high-contrast\"; it is \"blue\""}},
     RefusedFigure{"grid", "[chart]\nfps = 3", ":4:1: [chart] has no \"fps\"", {}}};
 
-inline const std::vector<RefusedFigure> refused_figures_curves{
+inline const std::vector<RefusedFigure> refused_figures_series{
     RefusedFigure{
-        "curves", "[curves]\nquantity = \"dist\"", ":4:1: [curves] quantity", {"\"distance\" or \"log_ratio\""}},
-    RefusedFigure{"curves", "[[curve]]\nlabel = \"x\"", "", {"[[curve]] 1 column is missing"}},
-    RefusedFigure{"curves", "[[curve]]\ncolumn = \"x\"\ncolour = 3", ":5:1: [[curve]] 1 has no \"colour\"", {}},
-    RefusedFigure{"curves", "[[curve]]\ncolumn = \"x\"\nsystem.angle = [3, 3]", ":5:8: ", {"has no \"angle\""}},
-    RefusedFigure{"curves", "[curves]\ncheck_tolerance = 1e-9", ":4:1: [curves] check_tolerance", {"a tolerance"}},
-    RefusedFigure{"curves", "[curve]\ncolumn = \"x\"", ":3:2: curve", {"[[curve]]"}}};
+        "series", "[series]\nquantity = \"dist\"", ":4:1: [series] quantity", {"\"distance\" or \"log_ratio\""}},
+    RefusedFigure{"series", "[[curve]]\nlabel = \"x\"", "", {"[[curve]] 1 column is missing"}},
+    RefusedFigure{"series", "[[curve]]\ncolumn = \"x\"\ncolour = 3", ":5:1: [[curve]] 1 has no \"colour\"", {}},
+    RefusedFigure{"series", "[[curve]]\ncolumn = \"x\"\nsystem.angle = [3, 3]", ":5:8: ", {"has no \"angle\""}},
+    RefusedFigure{"series", "[series]\ncheck_tolerance = 1e-9", ":4:1: [series] check_tolerance", {"a tolerance"}},
+    RefusedFigure{"series", "[curve]\ncolumn = \"x\"", ":3:2: curve", {"[[curve]]"}}};
 
 inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{
@@ -85,36 +84,40 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{
         "grid", "[grid.x]\nfrom = 2e6\nto = 2e6", ":4:1: [grid.x] from", {"from -1000000 to 1000000", "theta1_deg"}},
     RefusedFigure{"grid", "[grid]\ndifference = -1e300", ":4:1: [grid] difference", {"from -1000000 to 1000000"}},
-    RefusedFigure{
-        "convergence", "[convergence]\nmethods = [\"rk4\", \"rk4\"]", ":4:1: [convergence] methods", {"must differ"}},
-    RefusedFigure{"drift", "[drift]\nmethods = [\"rk4\", \"rk4\"]", ":4:1: [drift] methods", {"must differ; \"rk4\""}},
-    RefusedFigure{"drift", "[drift]\nprojected = [\"rk4\", \"rk4\"]", ":4:1: [drift] projected", {"must differ"}},
+    RefusedFigure{"series",
+                  "[series]\nquantity = \"errors\"\nmethods = [\"rk4\", \"rk4\"]",
+                  ":5:1: [series] methods",
+                  {"must differ; \"rk4\""}},
+    RefusedFigure{"series",
+                  "[series]\nquantity = \"errors\"\nprojected = [\"rk4\", \"rk4\"]",
+                  ":5:1: [series] projected",
+                  {"must differ"}},
     RefusedFigure{"work-precision",
                   "[work_precision]\nmethods = [\"rk4\", \"rk4\"]",
                   ":4:1: [work_precision] methods",
                   {"must differ"}},
-    RefusedFigure{"convergence", "[convergence]\nmethods = [\"magic\"]", ":4:1: [convergence] methods", {"\"magic\""}},
-    RefusedFigure{"convergence",
-                  "[convergence]\nmethods = [\"euler/dop853\"]",
-                  ":4:1: [convergence] methods",
-                  {"\"euler/dop853\""}},
-    RefusedFigure{"convergence", "[convergence]\nhalvings = 0", ":4:1: [convergence] halvings", {"it is 0"}},
-    RefusedFigure{"convergence", "[convergence]\nhalvings = 2.5", ":4:1: [convergence] halvings", {"a whole number"}},
-    RefusedFigure{"spectrum", "[system]\nintegrator = \"rk4\"", ":4:1: [system] has no \"integrator\"", {}},
-    RefusedFigure{"spectrum", "[system]\nmodel = \"angles\"", ":4:1: [system] has no \"model\"", {}},
-    RefusedFigure{"spectrum", "[system]\nlinks = 5", "", {"1 to 4 links; there are 5"}},
-    RefusedFigure{"spectrum", "[spectrum]\nsamples = 1", ":4:1: [spectrum] samples", {"it is 1"}},
-    RefusedFigure{"spectrum", "[spectrum]\nduration_s = 0", ":4:1: [spectrum] duration_s", {"must be > 0"}},
-    RefusedFigure{"spectrum", "duration_s = 3", ":3:1: [scene] has no \"duration_s\"", {}},
-    RefusedFigure{"spectrum", "[a]\nlinks = 2", ":3:2: a preset has no \"a\"", {}},
+    RefusedFigure{"series",
+                  "[series]\nquantity = \"exponents\"\n[system]\nintegrator = \"rk4\"",
+                  ":6:1: [system] has no \"integrator\"",
+                  {}},
+    RefusedFigure{"series",
+                  "[series]\nquantity = \"exponents\"\n[system]\nmodel = \"angles\"",
+                  ":6:1: [system] has no \"model\"",
+                  {}},
+    RefusedFigure{
+        "series", "[series]\nquantity = \"exponents\"\n[system]\nlinks = 5", "", {"1 to 4 links; there are 5"}},
+    RefusedFigure{"series", "[series]\nquantity = \"exponents\"\nsamples = 1", ":5:1: [series] samples", {"it is 1"}},
+    RefusedFigure{
+        "series", "[series]\nquantity = \"exponents\"\nduration_s = 0", ":5:1: [series] duration_s", {"must be > 0"}},
+    RefusedFigure{
+        "series", "duration_s = 3\n[series]\nquantity = \"exponents\"", ":3:1: [scene] has no \"duration_s\"", {}},
+    RefusedFigure{"series", "[series]\nquantity = \"exponents\"\n[a]\nlinks = 2", ":5:2: a preset has no \"a\"", {}},
     RefusedFigure{"section", "[section]\nenergy_J = []", ":4:1: [section] energy_J", {"1 to 6 numbers"}},
     RefusedFigure{"section", "[section]\nenergy_J = [1, -1]", ":4:1: [section] energy_J[1]", {"must be > 0; it is -1"}},
     RefusedFigure{
         "section", "[section]\nenergy_J = [1, 2, 3, 4, 5, 6, 7]", ":4:1: [section] energy_J", {"1 to 6 numbers"}},
     RefusedFigure{"section", "[system]\nlinks = 3", "", {"two links; there are 3"}},
     RefusedFigure{"section", "[system]\nprecision = \"quad\"", ":4:1: [system] has no \"precision\"", {}},
-    RefusedFigure{
-        "grid", "[grid]\nquantity = \"flip_time\"\nchecked = 9", ":5:1: [grid] checked", {"one map of flips"}},
     RefusedFigure{
         "grid", "[grid]\noverlay = \"energy-bound\"", ":4:1: [grid] overlay", {"two ideal links released at rest"}},
     RefusedFigure{"grid", "[grid.x]\npoints = 1", ":4:1: [grid.x] points", {"from 2 to 1048576; it is 1"}},
@@ -155,7 +158,6 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   ":5:1: [grid] color_range",
                   {"logarithmic scale"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"speed\"", ":4:1: [grid] quantity", {"divergence", "it is \"speed\""}},
-    RefusedFigure{"grid", "[grid]\nquantity = \"flip_time\"\nchecked = -1", ":5:1: [grid] checked", {"it is -1"}},
     RefusedFigure{"grid", "[grid.x]\nto = 90", ": [grid] difference", {"\"divergence\"", "give grid.difference"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"distance_at_end\"", ": [grid] difference", {"the same"}},
     RefusedFigure{"grid",
@@ -176,11 +178,26 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   "[grid]\nquantity = \"parting_time\"\ndifference = -1e-300\n[grid.y]\nkey = \"theta2_deg\"",
                   ":5:1: [grid] difference",
                   {"-1e-300"}},
-    RefusedFigure{"curves", "[curves]\nquantity = \"distance\"", ":4:1: [curves] quantity", {"let [b] differ"}},
-    RefusedFigure{"convergence",
-                  "[convergence]\nmethods = [\"rk4\"]",
-                  ":4:1: [convergence] methods",
-                  {"the same", "let [b] differ", "\"one/other\""}},
+    RefusedFigure{"series", "[series]\nquantity = \"distance\"", ":4:1: [series] quantity", {"let [b] differ"}},
+    RefusedFigure{"grid",
+                  "[grid]\nquantity = \"convergence\"\n[grid.x]\nkey = \"setting\"\nfrom = 0.01\nto = 0.1\npoints = 2",
+                  ":4:1: [grid] quantity",
+                  {"let [b] differ from [a]"}},
+    RefusedFigure{"grid", "[grid]\nquantity = \"convergence\"", ":4:1: [grid] quantity", {"key = \"setting\""}},
+    RefusedFigure{"grid", "[grid.x]\nkey = \"setting\"\nfrom = 1", ": [grid.x] points", {"must say how many"}},
+    RefusedFigure{"grid",
+                  "[grid.x]\nkey = \"setting\"\nfrom = 1\nto = 31\npoints = 2",
+                  ":5:1: [grid.x] from",
+                  {"leave 1 to 1", "30 s"}},
+    RefusedFigure{"grid", "[grid.x]\ntolerance_to = 1", ":4:1: [grid.x] tolerance_to", {"is of key = \"setting\""}},
+    RefusedFigure{"grid", "[grid.panel]\nkey = \"setting\"\nfrom = 1\nto = 2\npoints = 2", "", {"for x"}},
+    RefusedFigure{"grid", "[grid]\noverlay = \"linear-limit\"", ":4:1: [grid] overlay", {"map of stability"}},
+    RefusedFigure{
+        "grid",
+        "[system]\nangle_deg = [0, 0]\n[grid]\nquantity = \"stability\"\n[grid.x]\nkey = \"setting\"\nfrom = 0.1\nto = "
+        "1\npoints = 2",
+        ":6:1: [grid] quantity",
+        {"energy to keep"}},
     RefusedFigure{"sweep", "", ":2:1: [scene] kind", {"it is \"sweep\""}},
     RefusedFigure{"grid", "[grid.y]\nfrom = 1", ":4:1: [grid.y] from", {"needs a key"}},
     RefusedFigure{"grid", "[grid.x]\nvalues = [1, 2]\nfrom = 1", ":5:1: [grid.x] from", {"give it, or values"}},

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/stat.h>
 
 namespace doppel {
 namespace run_test {
@@ -179,9 +178,11 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
     const std::string over_lengths = "[grid.x]\nkey = \"system.length_m\"\nfrom = 1\nto = 3\npoints = 3\n",
                       over_masses = "[grid.y]\nkey = \"system.mass_kg\"\nfrom = 1\nto = 2\npoints = 3\n";
     const std::vector<std::pair<FigurePreset, std::string>> all{
-        {at_rest("curves", "[curves]\nlogarithmic = true\n"), "nothing is greater than 0"},
-        {at_rest("convergence", "[convergence]\nmethods = [\"rk4\"]\nhalvings = 1\nquad_halvings = 1\n"),
-         "the two sides never part"},
+        {at_rest("series", "[series]\nlogarithmic = true\n"), "nothing is greater than 0"},
+        {at_rest("grid",
+                 "[grid]\nquantity = \"convergence\"\n[grid.x]\nkey = \"setting\"\nfrom = 0.01\nto = 0.1\n"
+                 "points = 2\n"),
+         "none of the 2 pairs has a convergence above 0"},
         {at_rest("grid", "[grid]\nquantity = \"distance_at_end\"\n" + over_lengths),
          "none of the 3 pairs has a distance_at_end above 0"},
         {at_rest("grid", "[grid]\nquantity = \"energy_error\"\n" + over_lengths),
@@ -193,11 +194,11 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
                  "\"theta2_deg\"\nfrom = -10\nto = 10\npoints = 3\n"),
          "none of the 3 × 3 pairs has a flip_time: no flip within 0.5 s"},
         {figure_of("flip-map", {"grid.x.points=4", "grid.y.points=4", "grid.x.from=-30", "grid.x.to=30",
-                                "grid.y.from=-30", "grid.y.to=30", "grid.checked=0"}),
+                                "grid.y.from=-30", "grid.y.to=30"}),
          "none of the 4 × 4 pairs has a flip_time: no flip within 20 s"},
-        {figure_of("stability", {"stability.methods=[\"euler\"]", "stability.rows=2", "stability.columns=2",
-                                 "stability.step_from_s=0.5", "stability.step_to_s=1"}),
-         "every release blows up"},
+        {figure_of("stability", {"grid.panel.values=[\"euler\"]", "grid.y.points=2", "grid.x.points=2",
+                                 "grid.x.from=0.5", "grid.x.to=1"}),
+         "every one of the 2 × 2 pairs broke down"},
         {figure_of("poincare", {"system.gravity_m_per_s2=1e-12", "section.energy_J=[1e-12]", "section.orbits=2",
                                 "section.exponent_duration_s=10"}),
          "no orbit comes back"},
@@ -205,8 +206,8 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
                                       "work_precision.methods=[\"semi-implicit-euler\"]",
                                       "work_precision.models=[\"angles\"]", "work_precision.most_evaluations=150"}),
          "no run of any method"},
-        {figure_of("drift",
-                   {"drift.duration_s=10", "drift.methods=[\"rk4\"]", "drift.projected=[]", "system.angle_deg=[0, 0]"}),
+        {figure_of("drift", {"series.duration_s=10", "series.methods=[\"rk4\"]", "series.projected=[]",
+                             "system.angle_deg=[0, 0]"}),
          "no method makes an error"}};
     for (const auto& [figure, words] : all) {
         SCOPED_TRACE(words);
@@ -257,27 +258,6 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     EXPECT_TRUE(said.has("goes on from " + record.string() + ": 100 % is done"));
     EXPECT_FALSE(fs::exists(record));
     EXPECT_TRUE(fs::exists(other));
-}
-
-TEST(Resume, ThatIsSomethingElseStaysAsItIs) {
-    const auto out = fresh_folder();
-    const auto folder = out / "fig2-right", record = folder / resume_name(header_of(small_sweep()));
-    fs::create_directory(folder);
-    write_bytes(out / "diary", "my diary");
-    const auto refused = [&] {
-        expect_error(ExitCode::io_failed, {record.string()}, [&] { run_figure(small_sweep(), {.out = out}); });
-        EXPECT_TRUE(fs::exists(fs::symlink_status(record)));
-        fs::remove(record);
-    };
-    fs::create_symlink(out / "diary", record);
-    refused();
-    EXPECT_EQ(bytes_of(out / "diary"), "my diary");
-    fs::create_symlink("/dev/null", record);
-    refused();
-    ASSERT_EQ(mkfifo(record.c_str(), 0600), 0);
-    refused();
-    fs::create_directory(record);
-    refused();
 }
 
 }  // namespace run_test

@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"fig2-right", {"grid.x.step=15", "scene.duration_s=2"}},
         Case{"true-fig2-right", {"grid.x.step=5", "scene.duration_s=2"}},
         Case{"fig3-right", {"grid.x.to=0.19", "scene.duration_s=2"}}, Case{"fig6", {"scene.duration_s=2"}},
-        Case{"flip-map", {"grid.x.points=40", "grid.y.points=41", "scene.duration_s=3", "grid.checked=15"}},
+        Case{"flip-map", {"grid.x.points=40", "grid.y.points=41", "scene.duration_s=3"}},
         Case{"bifurcation", {"grid.x.points=6", "grid.transient_periods=3", "grid.periods=4"}},
         Case{"kapitza-map", {"grid.x.points=5", "grid.y.points=4", "scene.duration_s=1"}},
         Case{"parting-map", {"grid.x.points=17", "grid.y.points=5", "scene.duration_s=1"}},
@@ -109,11 +109,19 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"poincare",
              {"section.energy_J=[9.8, 20]", "section.orbits=3", "section.crossings=10",
               "section.exponent_duration_s=50"}},
-        Case{"lyapunov-spectrum", {"spectrum.duration_s=5", "spectrum.samples=10"}},
-        Case{"driven-spectrum", {"spectrum.duration_s=5", "spectrum.samples=10"}},
+        Case{"drift", {"series.duration_s=20", "series.methods=[\"euler\", \"dop853\", \"gauss4\"]"}},
+        Case{"speed-accuracy",
+             {"chart.cost=\"evaluations\"", "work_precision.problems=[\"P3\"]", "work_precision.most_evaluations=5000",
+              "work_precision.methods=[\"rk4\", \"adams\", \"taylor\", \"rattle\"]"}},
+        Case{"lyapunov-spectrum", {"series.duration_s=5", "series.samples=10"}},
+        Case{"driven-spectrum", {"series.duration_s=5", "series.samples=10"}},
         Case{"why-they-part",
-             {"scene.duration_s=0.5", "convergence.methods=[\"euler\", \"dop853\"]", "convergence.halvings=4",
-              "convergence.quad_halvings=2", "convergence.decades=4", "convergence.quad_decades=3"}}),
+             {"scene.duration_s=0.5", "grid.color.values=[\"euler\", \"gauss6/rattle6\", \"dop853\"]",
+              "grid.x.points=4", "grid.x.to=0.001", "grid.x.tolerance_points=4"}},
+        Case{"stability", {"grid.x.points=5", "grid.y.points=4", "scene.duration_s=2"}},
+        Case{"stability-mass",
+             {"grid.x.points=300", "grid.y.points=2", "scene.duration_s=1", "scene.sample_hz=50",
+              "grid.panel.values=[\"euler\", \"dopri5\"]"}}),
     [](const auto& parameter) {
         std::string name = fmt::format("{}_{}", parameter.param.name, parameter.index);
         std::replace(name.begin(), name.end(), '-', '_');
@@ -122,8 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// The mirror image of a row is not computed: with a push that is none, every row is, and says the same.
 TEST(FlipMap, MirroredRowsAreThoseComputed) {
-    const std::vector<std::string> small{"grid.x.points=16", "grid.y.points=15", "scene.duration_s=4",
-                                         "grid.checked=0"};
+    const std::vector<std::string> small{"grid.x.points=16", "grid.y.points=15", "scene.duration_s=4"};
     const auto figure = figure_of("flip-map", small);
     auto pushed = small;
     pushed.insert(pushed.end(), {"system.omega_deg_per_s=[1e-300, 0]", "grid.overlay=\"none\""});

@@ -45,6 +45,7 @@ inline std::string table_text(const FigurePreset& figure, const KnownTrials& tri
 struct Table {
     std::vector<std::string> columns;
     std::vector<std::vector<double>> rows;
+    std::vector<std::vector<std::string>> words;  // of the same cells
 
     explicit Table(const std::string& text) {
         std::istringstream lines(text);
@@ -53,7 +54,7 @@ struct Table {
         columns = cells(line);
         while (std::getline(lines, line)) {
             auto& row = rows.emplace_back();
-            for (const auto& cell : cells(line)) {
+            for (const auto& cell : words.emplace_back(cells(line))) {
                 row.push_back(std::numeric_limits<double>::quiet_NaN());
                 std::from_chars(cell.data(), cell.data() + cell.size(), row.back());
             }

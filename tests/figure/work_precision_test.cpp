@@ -1,6 +1,4 @@
 #include "figure/support.hpp"
-#include "output/golden.hpp"
-#include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,25 +38,10 @@ struct Row {
 };
 
 std::vector<Row> rows_of(const std::string& text) {
-    std::istringstream lines(text);
-    std::string line;
-    std::vector<std::string> names;
-    std::vector<Row> rows;
-    while (std::getline(lines, line)) {
-        if (line.ends_with('\r')) line.pop_back();
-        std::vector<std::string> cells(1);
-        for (const char c : line)
-            if (c == ',')
-                cells.emplace_back();
-            else
-                cells.back() += c;
-        if (names.empty()) {
-            names = cells;
-            continue;
-        }
-        auto& row = rows.emplace_back();
-        for (std::size_t i = 0; i < names.size(); ++i) row.cells[names[i]] = cells.at(i);
-    }
+    const Table table(text);
+    std::vector<Row> rows(table.words.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (std::size_t k = 0; k < table.columns.size(); ++k) rows[i].cells[table.columns[k]] = table.words[i].at(k);
     return rows;
 }
 
@@ -187,23 +170,6 @@ TEST(WorkPrecision, EndsAtTheFloor) {
     EXPECT_LT(least, 7e-16);                               // measured 2e-16
     EXPECT_GT(rows.back().number("setting"), 0.99e-15);    // the finest that double can give
     EXPECT_LT(rows.back().number("energy_error"), 3e-15);  // measured 5.1e-16
-}
-
-TEST(GoldenFigureWorkPrecision, IsAsItWas) {
-    // errors far above rounding, so that the last bit of a number moves no pixel
-    const auto figure =
-        figure_of("speed-accuracy",
-                  {by_evaluations, "work_precision.problems=[\"P1\", \"P3\"]", "work_precision.most_evaluations=20000",
-                   "work_precision.least_error=1e-6", "work_precision.models=[\"angles\", \"constraints\"]",
-                   "chart.size=[960, 540]", "chart.scale=0.5"});
-    test::expect_golden("figure-work-precision", picture_of(compose_figure(figure, computed(figure))));
-}
-
-TEST(WorkPrecision, IsTheSameForAnyNumberOfThreads) {
-    const auto figure = second({"work_precision.methods=[\"rk4\", \"adams\", \"taylor\", \"rattle\"]",
-                                "work_precision.most_evaluations=20000"});
-    EXPECT_FALSE(figure.experiment->measures_time());
-    EXPECT_EQ(table_text(figure, computed(figure, 1)), table_text(figure, computed(figure, 3)));
 }
 
 TEST(WorkPrecision, TimesItsRuns) {

@@ -73,7 +73,7 @@ TEST(AllFaults, LeaveOutWhatMayFollowFromAnother) {
     EXPECT_EQ(alone("[video]\nformat = \"webn\"\ncodec = \"av1\"\ncrf = 60").substr(0, 19), "2:1: [video] format");
     EXPECT_EQ(alone("[video]\nsize = [641, 360]\nfps = \"x\"\n").substr(0, 16), "3:1: [video] fps");
     EXPECT_EQ(alone("[video]\nfps = \"x\"\n[scene]\nsample_hz = 7").substr(0, 16), "2:1: [video] fps");
-    EXPECT_EQ(alone("[scene]\nkind = \"film\"\n[curves]\nx = 1").substr(0, 17), "2:1: [scene] kind");
+    EXPECT_EQ(alone("[scene]\nkind = \"film\"\n[series]\nx = 1").substr(0, 17), "2:1: [scene] kind");
     EXPECT_EQ(alone("[[system.force]]\nkind = \"sprng\"\nstiffness_N_per_m = 3\nfrom = [0, 0]").substr(0, 26),
               "2:1: [[system.force]] 1 ki");
     EXPECT_EQ(alone("[[system.forces]]\nkind = \"spring\"\n[a]\ngravity_m_per_s2 = 0").substr(0, 17),

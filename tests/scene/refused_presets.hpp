@@ -133,7 +133,7 @@ inline const std::vector<RefusedPreset> refused_rates{
                   "presets/x.toml:2:1: [scene] duration_s must be at most 100000000 samples; it is 120000000000000"},
     RefusedPreset{
         "[scene]\nkind = \"trio\"",
-        R"(presets/x.toml:2:1: [scene] kind must be "pair", "grid", "curves", "convergence", "spectrum", "section", "work-precision", "stability" or "drift"; it is "trio"; did you mean "grid"?)"},
+        R"(presets/x.toml:2:1: [scene] kind must be "pair", "grid", "series", "section" or "work-precision"; it is "trio"; did you mean "grid"?)"},
     RefusedPreset{
         "[video]\nspeed = 30",
         "presets/x.toml: [video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is "

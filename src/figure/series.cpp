@@ -1,5 +1,6 @@
+#include "figure/series.hpp"
+
 #include "analysis/difference.hpp"
-#include "figure/kinds.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>
@@ -9,27 +10,30 @@
 namespace doppel {
 namespace {
 
-using namespace std::string_view_literals;
-
-constexpr std::array quantities{"distance"sv, "log_ratio"sv};
-
 /// One pair, and how its distance is shown.
 struct PairCurve {
     std::string column, label;
     Preset pair;
 };
 
+template <class Visit>
+void curve_fields(Visit& visit, PairCurve& curve) {
+    visit({"column", "its name in the CSV", "", {}, must_be_given}, curve.column);
+    curve.label = curve.column;
+    visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true}, curve.label);
+}
+
 /// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see how long
 /// both agree.
-class Curves final : public Experiment {
+class PairSeries final : public Experiment {
 public:
-    static constexpr std::string_view table_key = "curves";
-    Curves() = default;
-    explicit Curves(FigureReader& reader) {
-        auto table = reader.settings(*this);
-        const auto own = table.finish();
+    PairSeries(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
+        : is_distance_(keys.quantity == SeriesQuantity::distance),
+          logarithmic_(keys.logarithmic),
+          check_tolerance_(keys.check_tolerance) {
+        const auto quantity = name_of(keys.quantity);
         auto entries = reader.entries("curve");
-        if (entries.empty()) curves_.push_back({quantity_, "", reader.pair()});
+        if (entries.empty()) curves_.push_back({std::string(quantity), "", reader.pair()});
         for (auto& entry : entries) {
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
@@ -45,7 +49,7 @@ public:
             const auto scene = make_scene(curve.pair);  // reports faults now
             samples_ = scene.samples;
             differ |= !are_one(scene);
-            if (quantity_ == "log_ratio" && released_alike(curve.pair.a, curve.pair.b))
+            if (!is_distance_ && released_alike(curve.pair.a, curve.pair.b))
                 throw table.fault("quantity",
                                   "\"log_ratio\" takes sides that are released differently: there is no "
                                   "ratio to a distance of 0");
@@ -54,34 +58,8 @@ public:
         }
         if (!differ)
             throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
-                              quantity_);
-        settings_ = resolved_settings(own);
-    }
-
-    template <class Visit>
-    void fields(Visit& visit) {
-        visit({.key = "quantity", .help = "the distance in state space, or ln(d/d₀)", .names = quantities}, quantity_);
-        visit({"logarithmic", "the axis"}, logarithmic_);
-        visit({"check_tolerance", "runs every pair once more at this tolerance, to see how long both agree", "",
-               positive},
-              check_tolerance_);
-    }
-    static FieldTable other_table() {
-        FieldTable curve{"[[curve]]",
-                         "A curve each; without any, the one of `[system]`, `[a]` and `[b]`. A curve may "
-                         "have `[curve.system]`, `[curve.a]` and\n`[curve.b]` on top of those.\n"};
-        PairCurve none;
-        curve_fields(curve, none);
-        return curve;
-    }
-
-    static void read_others(FigureReader& reader) {
-        for (auto& entry : reader.entries("curve")) {
-            PairCurve curve;
-            curve_fields(entry, curve);
-            reader.read_pair({&entry});
-            entry.finish();
-        }
+                              quantity);
+        settings_ = resolved_settings(resolved);
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
@@ -89,7 +67,7 @@ public:
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
         return numbers.size() == static_cast<std::size_t>(samples_) + 1 &&
-               (quantity_ == "distance" ? all_finite(numbers) : finite_or_none(numbers));
+               (is_distance_ ? all_finite(numbers) : finite_or_none(numbers));
     }
 
     std::vector<std::string> columns() const override {
@@ -111,8 +89,7 @@ public:
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
         Plot plot;
         plot.x = {.label = "time, s", .low = 0, .high = time(samples_)};
-        plot.y = {.label = quantity_ == "distance" ? "distance in state space, d" : "ln(d/d₀)",
-                  .logarithmic = logarithmic_};
+        plot.y = {.label = is_distance_ ? "distance in state space, d" : "ln(d/d₀)", .logarithmic = logarithmic_};
         for (std::size_t i = 0; i < curves_.size(); ++i) {
             Curve curve{.label = curves_[i].label, .y = numbers[i], .hue = static_cast<int>(i)};
             for (long n = 0; n <= samples_; ++n) curve.x.push_back(time(n));
@@ -131,7 +108,7 @@ public:
         if (!logarithmic_) return std::nullopt;
         for (const auto& trial : numbers.first(curves_.size()))
             if (std::any_of(trial.begin(), trial.end(), [](double x) { return x > 0; })) return std::nullopt;
-        return "nothing is greater than 0, which a logarithmic axis cannot show; set curves.logarithmic = false";
+        return "nothing is greater than 0, which a logarithmic axis cannot show; set series.logarithmic = false";
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -147,15 +124,7 @@ public:
     }
 
 private:
-    template <class Visit>
-    static void curve_fields(Visit& visit, PairCurve& curve) {
-        visit({"column", "its name in the CSV", "", {}, must_be_given}, curve.column);
-        curve.label = curve.column;
-        visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true},
-              curve.label);
-    }
-
-    /// `own` = [curves]
+    /// `own` = [series]
     std::string resolved_settings(const std::string& own) const {
         const auto& base = curves_.front().pair;
         auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
@@ -174,7 +143,7 @@ private:
         for (long n = 0; n <= samples_; ++n) {
             const double distance = run.next(stop).distance;
             if (n == 0) start = distance;
-            values.push_back(quantity_ == "distance" ? distance : log_ratio(distance, start).value_or(NAN));
+            values.push_back(is_distance_ ? distance : log_ratio(distance, start).value_or(NAN));
         }
         return values;
     }
@@ -202,8 +171,7 @@ private:
         return time(samples_);
     }
 
-    std::string quantity_ = "distance";
-    bool logarithmic_ = false;
+    bool is_distance_, logarithmic_;
     std::optional<Quad> check_tolerance_;
     std::vector<PairCurve> curves_;
     long samples_ = 0;
@@ -211,6 +179,55 @@ private:
 
 }  // namespace
 
-const FigureKind curves_kind = kind_of<Curves>("curves", FigureKind::System::pair);
+SeriesKeys::SeriesKeys() {
+    for (const auto& method : doppel::methods())
+        if (method.angles || method.constraints) methods.emplace_back(method.name);
+}
+
+namespace {
+
+std::shared_ptr<const Experiment> read_series(FigureReader& reader) {
+    SeriesKeys keys;
+    auto table = reader.settings(keys);
+    const auto resolved = table.finish();
+    if (keys.is_of_pairs()) return std::make_shared<PairSeries>(reader, table, keys, resolved);
+    return keys.quantity == SeriesQuantity::errors ? make_drift(reader, table, keys, resolved)
+                                                   : make_spectrum(reader, table, keys, resolved);
+}
+
+void read_series_keys(FigureReader& reader, FigureKind::System) {
+    SeriesKeys keys;
+    reader.settings(keys).finish();
+    if (!keys.is_of_pairs()) {
+        reader.release(keys.quantity == SeriesQuantity::exponents);
+        return;
+    }
+    reader.read_pair();
+    for (auto& entry : reader.entries("curve")) {
+        PairCurve curve;
+        curve_fields(entry, curve);
+        reader.read_pair({&entry});
+        entry.finish();
+    }
+}
+
+std::vector<FieldTable> series_tables() {
+    FieldTable own{
+        fmt::format("[{}]", SeriesKeys::table_key),
+        "Of `kind = \"series\"`. What moves: of pairs `[system]`, `[a]` and `[b]`, with `duration_s` and "
+        "`sample_hz` of `[scene]`, as in a\nfilm; of one motion the chain of `[system]`, for `exponents` also "
+        "with mass, friction and drives.\n"},
+        curve{"[[curve]]",
+              "A curve each, of pairs; without any, the one of `[system]`, `[a]` and `[b]`. A curve may "
+              "have `[curve.system]`, `[curve.a]` and\n`[curve.b]` on top of those.\n"};
+    SeriesKeys().fields(own);
+    PairCurve none;
+    curve_fields(curve, none);
+    return {own, curve};
+}
+
+}  // namespace
+
+const FigureKind series_kind{"series", FigureKind::System::pair, read_series, read_series_keys, series_tables};
 
 }  // namespace doppel
