@@ -1,7 +1,6 @@
 #include "output/golden.hpp"
 
 #include "figure/support.hpp"
-#include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
 
