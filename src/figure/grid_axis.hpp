@@ -17,7 +17,7 @@ struct GridAxis {
     std::string key;                   // what the pairs differ in
     std::optional<TomlValues> values;  // in place of what follows
     Quad from = 0, to = 180, step = 1;
-    Quad tolerance_from = 1e-13, tolerance_to = 1;  // of a setting, where the method takes one
+    Quad tolerance_from = parse_quad("1e-13"), tolerance_to = 1;  // of a setting, where the method takes one
     std::optional<int> tolerance_points;
     Spacing spacing = Spacing::linear;
     std::optional<int> points;
