@@ -60,7 +60,7 @@ void draw_headings(const Plot& plot, const Area& area, const Area& held, float t
                    const AxisWords& words, const PlotStyle& style, PageList& list);
 
 /// The map's cells as seen through the axes.
-MapCells map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
+CellImage map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
 
 /// px that the colour bar of a map and its labels take on the right of a panel `height` px high.
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);

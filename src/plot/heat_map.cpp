@@ -84,7 +84,7 @@ Picture cell_picture(const HeatMap& map, const Theme& theme) {
     return picture;
 }
 
-MapCells map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
+CellImage map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
     const auto place = [](const Axis& axis, double value) {
         return static_cast<float>(axis.from + (axis.to - axis.from) * axis.share(value));
     };

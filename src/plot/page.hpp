@@ -33,13 +33,13 @@ struct Polylines {
 
 /// A picture stretched over `at`, whose ends may be in reverse, cut off at `within`; its pixels are squares where they are
 /// as large as the page's, else averaged.
-struct MapCells {
+struct CellImage {
     Area at, within;  // px
     std::shared_ptr<const Picture> pixels;
 };
 
 /// What to draw, back to front: what a display list may hold, and what only charts have.
-using PageItem = std::variant<Box, Capsule, Ring, Stroke, Label, Image, Polylines, MapCells>;
+using PageItem = std::variant<Box, Capsule, Ring, Stroke, Label, Image, Polylines, CellImage>;
 using PageList = std::vector<PageItem>;
 
 PageList page_list(const DisplayList& list);

@@ -258,7 +258,7 @@ void PagePainter::operator()(const Image& image) {
           CAIRO_FILTER_NEAREST);
 }
 
-void PagePainter::operator()(const MapCells& cells) {
+void PagePainter::operator()(const CellImage& cells) {
     const auto [columns, rows] = cells.pixels->size;
     const bool is_fine = std::abs(cells.at.width()) * scale_ < static_cast<float>(columns) ||
                          std::abs(cells.at.height()) * scale_ < static_cast<float>(rows);

@@ -41,7 +41,7 @@ public:
     void operator()(const Label& label);
     void operator()(const Image& image);
     void operator()(const Polylines& polylines);
-    void operator()(const MapCells& cells);
+    void operator()(const CellImage& cells);
 
 private:
     void fill(const Color& color);

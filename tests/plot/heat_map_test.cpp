@@ -71,7 +71,7 @@ TEST(HeatMap, ShowsWhatIsBadInItsColor) {
     int swatches = 0, cells = 0;
     for (const auto& item : composed(figure, {800, 450}, themes[1])) {
         if (const auto* box = std::get_if<Box>(&item)) swatches += box->color == themes[1].bad;
-        if (const auto* map_cells = std::get_if<MapCells>(&item)) {
+        if (const auto* map_cells = std::get_if<CellImage>(&item)) {
             EXPECT_TRUE(is_color(map_cells->pixels->at(1, 0), themes[1].bad, 1));
             ++cells;
         }
@@ -94,7 +94,7 @@ TEST(HeatMap, SharesItsBar) {
             if (const auto* bar = std::get_if<Image>(&item)) {
                 ++bars;
                 bar_left = std::min(bar_left, bar->left), right = std::max(right, bar->right);
-            } else if (const auto* panel = std::get_if<MapCells>(&item)) {
+            } else if (const auto* panel = std::get_if<CellImage>(&item)) {
                 panels_right = std::max(panels_right, panel->within.right);
             }
         }

@@ -42,7 +42,7 @@ Figure four_maps(bool shares_axes, bool split) {
 std::vector<float> areas(const PageList& list) {
     std::vector<float> all;
     for (const PageItem& item : list)
-        if (const auto* cells = std::get_if<MapCells>(&item))
+        if (const auto* cells = std::get_if<CellImage>(&item))
             all.push_back(cells->within.width() * cells->within.height());
     return all;
 }

@@ -32,7 +32,7 @@ Figure with_curves(std::vector<Curve> curves) {
 /// Where the panel of a map lies.
 Area area_of(const PageList& list) {
     for (const PageItem& item : list)
-        if (const auto* cells = std::get_if<MapCells>(&item)) return cells->within;
+        if (const auto* cells = std::get_if<CellImage>(&item)) return cells->within;
     return {};
 }
 
