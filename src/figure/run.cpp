@@ -136,7 +136,7 @@ public:
             if (!options_.tiles) {
                 const auto page = compose_figure(figure, trials);
                 write_picture(figure, page, files);
-                for (const auto& note : page.notes) warnings.push_back(fmt::format("{}: {}", figure.name, note));
+                for (const auto& note : page.notes) warnings.push_back(note);
                 check_stop();
                 const auto csv = figure.name + ".csv";
                 Csv table(files.file(csv), figure.experiment->columns());
