@@ -94,6 +94,8 @@ void GridAxis::settle(const Preset& pair) {
 
 void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
     if (key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
+    if (!key.starts_with("system.") && !key.starts_with("a.") && !key.starts_with("b."))
+        throw table.fault("key", "must begin with \"system.\", \"a.\" or \"b.\"; it is \"{}\"", key);
     demand_last_word(reader, table, key);
     label = caption_of({.key = std::string_view(key).substr(key.find('.') + 1)});
     keeps_method = false;
