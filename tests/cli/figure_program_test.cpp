@@ -46,7 +46,7 @@ TEST(FigureProgram, DrawsByNameAndByPath) {
     const auto result =
         doppel(folder, with({"figure", "fig2-right", "./mine.toml", "-o", "figures", "--scale", "2"}, small));
     EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(result.err, "fig2-right: there is no room for the captions\nmine: there is no room for the captions\n");
     for (const char* file :
          {"fig2-right/fig2-right.png", "fig2-right/fig2-right.csv", "fig2-right/fig2-right.json", "mine/mine.png"}) {
         EXPECT_TRUE(fs::exists(folder / "figures" / file)) << file;

@@ -81,16 +81,16 @@ TEST(NumbersOfWork, AreThoseOfWholeRungs) {
         "speed-accuracy",
         {"work_precision.problems=[\"P1\"]", "work_precision.models=[\"angles\"]", "work_precision.methods=[\"rk4\"]"});
     const auto& work = *figure.experiment;
-    const TrialNumbers rung{1e-3, 1e-6, none, 0, 1e-4, 400, 100};
+    const TrialNumbers rung{1e-3, 1e-6, none, 0, 1e-4, 400, 100, 0};
     auto two = rung;
     two.insert(two.end(), rung.begin(), rung.end());
     EXPECT_TRUE(work.fits(1, rung));
     EXPECT_TRUE(work.fits(1, two));
-    EXPECT_TRUE(work.fits(1, TrialNumbers(7, none)));
+    EXPECT_TRUE(work.fits(1, TrialNumbers(8, none)));
     EXPECT_FALSE(work.fits(1, {}));
-    EXPECT_FALSE(work.fits(1, std::span(two).first(13)));
+    EXPECT_FALSE(work.fits(1, std::span(two).first(15)));
     for (const double count : {-1.0, 0.5, 1e300, infinite}) {  // of steps
-        two.back() = count;
+        two[two.size() - 2] = count;
         EXPECT_FALSE(work.fits(1, two)) << count;
     }
     EXPECT_TRUE(work.fits(0, TrialNumbers{3, 1e-20}));
