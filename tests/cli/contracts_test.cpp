@@ -104,7 +104,7 @@ TEST(Contracts, TheOutputsThatAreListedAreThoseThatAreWritten) {
                 "8\n[grid.y]\nkey = \"theta2_deg\"\npoints = 8\n");
     const Words brief{"--set", "scene.duration_s=0.1"}, small{"--size", "160x90"};
     const Words chart{"--size", "800x450"};  // with room for all its words
-    doppel(folder, {"--version"});  // makes the files that it writes to
+    doppel(folder, {"--version"});           // makes the files that it writes to
     const std::vector<Words> commands{with({"simulate", "calm", "triple"}, brief),
                                       with(with({"render", "calm"}, brief), small),
                                       with({"render", "sheet.toml", "-o", "films/of mine"}, small),
