@@ -257,15 +257,18 @@ std::string exponent_words(Curve& exponents, const std::vector<double>& unsettle
                                   exponent > 0 ? "an unstable" : "a stable", exponent);
         exponents.y[i] = NAN;
     }
-    return fmt::format("{} of {} releases are {}. Its band holds two of three runs four times as long{}.{}", regular,
-                       count,
-                       contracts ? "regular or settle: their exponent is not above 0"
-                                 : "regular: their exponent cannot be told from 0",
-                       changing == 0 ? ""
-                                     : fmt::format(", but not for {} whose stretches differ by more than chance (a "
-                                                   "transient, or orbits that stick): there it is too narrow",
-                                                   changing),
-                       equilibria);
+    const auto which = contracts ? "regular or settle: their exponent is not above 0"
+                                 : "regular: their exponent cannot be told from 0";
+    auto words = regular == 0 ? fmt::format("None of {} releases is regular", count)
+                              : fmt::format("{} of {} releases are {}", regular, count, which);
+    words += ". The band of the exponent holds two of three runs four times as long";
+    if (changing > 0)
+        words += fmt::format(
+            ", but not for {} whose stretches differ by more than chance (a transient, or orbits that stick): there it "
+            "is "
+            "too narrow",
+            changing);
+    return fmt::format("{}.{}", words, equilibria);
 }
 
 std::string seconds_text(const Preset& pair) {

@@ -18,7 +18,7 @@ struct StripRow {
     const char *what, *how;
 };
 constexpr std::array<StripRow, strip_kinds> rows{{{0.24f, "state-space distance", ""},
-                                                  {0.18f, "Lyapunov exponent", "so far, 1/s"},
+                                                  {0.18f, "finite-time growth rate", "1/s"},
                                                   {0.15f, "energy error", "of the potential range"},
                                                   {0.15f, "worst rod error, m", ""},
                                                   {0.18f, "force in the rods, N", ""},

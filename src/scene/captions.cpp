@@ -260,6 +260,7 @@ std::string step_control_text(const Side& side) {
 
 std::string grouped(long number) {
     auto digits = fmt::format("{}", number);
+    if (digits.size() < 5) return digits;
     for (auto at = static_cast<long>(digits.size()) - 3; at > 0; at -= 3)
         digits.insert(static_cast<std::size_t>(at), " ");
     return digits;
@@ -320,7 +321,7 @@ std::string scene_caption(const Scene& scene, Wording wording) {
 
 std::string scientific(double value) {
     if (!(value > 0)) return "0";
-    if (value >= 0.1 && value < 1000) return fmt::format("{:.2g}", value);
+    if (value >= 0.1 && value < 1000) return roughly(value);
     const auto digits = fmt::format("{:.1e}", value);
     const auto e = digits.find('e');
     return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));

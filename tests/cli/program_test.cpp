@@ -62,7 +62,7 @@ TEST(Program, ListsShowsAndChecks) {
     EXPECT_EQ(check.code, 0);
     for (const char* words :
          {"angles, explicit Euler, 1/30 000 s, 250 steps a sample", "the smallest model that serves",
-          "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3 601 frames of 1920×1080", "to render",
+          "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3601 frames of 1920×1080", "to render",
           "off by half a rad from 1", "chaotic: errors grow tenfold every 2.", "double can follow it for about 3"})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
     EXPECT_FALSE(fs::exists(folder / "out"));

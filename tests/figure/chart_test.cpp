@@ -118,5 +118,12 @@ TEST(Chart, WhatWasUnderstoodIsReadBackTheSame) {
     EXPECT_EQ(read_figure(source).resolved(), figure.resolved());
 }
 
+TEST(Chart, OfChaosAloneSaysThatNothingIsRegular) {
+    std::string words;
+    for (const auto& label : labels_of(figure_of("links", {"grid.x.to=3", "grid.exponent_duration_s=100"})))
+        words += label + " ";
+    EXPECT_NE(words.find("None of 2 releases is regular. The band of the exponent holds"), std::string::npos) << words;
+}
+
 }  // namespace chart_test
 }  // namespace doppel

@@ -154,7 +154,7 @@ TEST(FigurePreset, OfASweepSaysWhatWasSet) {
              {"system.angle_deg=[0, 30.5]", "two links in angles, θ₂ = 30.5°, twins"},
              {"system.omega_deg_per_s=[0, 5]", ", θ₂ = 0, ω = 0/5 °/s, twins"},
              {"system.integrator=\"rk4\"", "; "},
-             {"system.step_s=\"1/1200\"", "; explicit Euler, 1/1 200 s"},
+             {"system.step_s=\"1/1200\"", "; explicit Euler, 1/1200 s"},
              {"system.precision=\"quad\"", "; explicit Euler, 1/30 000 s, in quad"},
              {"b.model=\"constraints\"", "two links, θ₂ = 0, twins 0.003° apart, angles against constraints; explicit"},
              {"b.length_m=[1, 2]", ", l₂ = 1 m against l₂ = 2 m; explicit"},

@@ -18,6 +18,12 @@ TEST(Captions, RoundWhatWasMeasuredOnce) {
     EXPECT_EQ(roughly(9.96), "10");
     EXPECT_EQ(roughly(96.4), "96");
     EXPECT_EQ(roughly(223456), "220 000");
+    EXPECT_EQ(roughly(2345), "2300");
+    EXPECT_EQ(scientific(523), "520");
+    EXPECT_EQ(scientific(0.1), "0.1");
+    EXPECT_EQ(scientific(1234), "1.2 × 10³");
+    EXPECT_EQ(grouped(2400), "2400");
+    EXPECT_EQ(grouped(30000), "30 000");
 }
 
 TEST(Captions, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
