@@ -47,7 +47,7 @@ Layout laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style,
 bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
     if (figure.panels.empty()) return body.height() >= 0;
     const auto rows = static_cast<float>(grid_of(figure, body).rows);
-    const auto [share, lines] = style.on_paper ? std::pair{0.4f, 7.0f} : std::pair{0.5f, 12.5f};
+    const auto [share, lines] = style.on_paper ? std::pair{0.5f, 9.5f} : std::pair{0.5f, 12.5f};
     return body.height() >= std::max(share * sheet.height(), lines * style.tick * rows);
 }
 
@@ -89,7 +89,9 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
         const float by_size = std::max(std::min(width / 1600, height / 900), 0.5f);
         const PlotStyle style{
             .theme = theme, .unit = unit.value_or(by_size), .scale = made.scale, .on_paper = unit.has_value()};
-        const float across = std::round(34 * style.unit), down = std::round(28 * style.unit);
+        // a page has margins of its own
+        const float across = std::round((style.on_paper ? 8 : 34) * style.unit);
+        const float down = std::round((style.on_paper ? 8 : 28) * style.unit);
         const Area sheet{across, down, width - across, height - down};
         const Layout page = laid_out(figure, sheet, style);
         // many panels in a small picture: smaller text rather than no room for panels
