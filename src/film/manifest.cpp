@@ -83,7 +83,7 @@ Json fonts_json(const Preset& preset) {
 }  // namespace
 
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop) {
-    constexpr double most = 0.01, least_patience_s = 0.2, most_patience_s = 2;
+    constexpr double most = 0.01, least_patience_s = 1, most_patience_s = 2;
     for (const auto& [name, side, seen] :
          {std::tuple('a', &scene.a, &record.motion.a), {'b', &scene.b, &record.motion.b}}) {
         const double error = seen->energy_change / scene.energy_range();
