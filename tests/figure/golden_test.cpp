@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(
                {"grid.x.points=48", "grid.y.points=48", "scene.duration_s=2", "grid.flip_tolerance=1e-4"}},
         Golden{"figure-spectrum",
                "lyapunov-spectrum",
-               {"series.duration_s=3", "series.samples=60", "series.tolerance=1e-6"}},
+               {"series.duration_s=3", "series.samples=24", "series.tolerance=1e-6"}},
         Golden{"figure-bifurcation",
                "bifurcation",
                {"grid.x.points=60", "grid.x.from=6", "grid.x.to=6.35", "grid.periods=20", "grid.transient_periods=60"}},

