@@ -77,15 +77,38 @@ TEST(Gif, WhatRestsKeepsItsColours) {
 }
 
 /// A square of one colour moves over others, and a line comes with it; only what changed is taken, the last frame rests.
-TEST(Gif, FewColoursAreExactWhereverTheyChange) {
+TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
+    const auto path = fresh_folder() / "x.gif";
+    Picture picture(small);
+    for (int y = 0; y < small.height; ++y)
+        for (int x = 0; x < small.width; ++x)
+            std::copy_n(
+                std::array<std::uint8_t, 4>{std::uint8_t(17 * (x % 16)), std::uint8_t(17 * (y % 14)), 9, 0}.data(), 4,
+                picture.at(x, y));
+    const auto sink = make_video_sink(path, {.format = FilmFormat::gif, .size = small, .fps_numerator = 25});
+    for (int k = 0; k < 5; ++k) sink->take(picture, k == 0 ? whole(small) : std::vector<Rect>{});
+    sink->finish();
+    double worst = 1e9;
+    const Video video =
+        read_video(path, [&](const Luma& frame) { worst = std::min(worst, rgb_psnr(picture, frame.picture)); });
+    EXPECT_EQ(video.times.size(), 5u);
+    EXPECT_GT(worst, 50.0);
+    const std::string bytes = bytes_of(path);
+    EXPECT_NE(bytes.find("NETSCAPE2.0"), std::string::npos);
+    EXPECT_EQ(bytes.substr(bytes.find("NETSCAPE2.0") + 11, 4), std::string("\x03\x01\x00\x00", 4));  // for ever
+    EXPECT_EQ(bytes.back(), '\x3b');
+}
+
+TEST(Gif, WhatChangedStandsWhereItBelongs) {
+    // a square of one colour moves over another, and a line comes with it; only what changed is taken
     const auto path = fresh_folder() / "x.gif";
     const auto scene = [](int k) {
         Picture picture(small);
         for (int y = 0; y < small.height; ++y)
             for (int x = 0; x < small.width; ++x) {
                 const bool square = x >= 31 + 5 * k && x < 60 + 5 * k && y >= 17 && y < 40, line = y == 60 + k;
-                const std::array<std::uint8_t, 4> colour{std::uint8_t(square ? 200 : 17 * (x % 14)),
-                                                         std::uint8_t(20 * (y % 7)), std::uint8_t(line ? 240 : 30), 0};
+                const std::array<std::uint8_t, 4> colour{std::uint8_t(square ? 200 : 10), 90,
+                                                         std::uint8_t(line ? 240 : 30), 255};
                 std::ranges::copy(colour, picture.at(x, y));
             }
         return picture;
@@ -94,18 +117,13 @@ TEST(Gif, FewColoursAreExactWhereverTheyChange) {
     for (int k = 0; k < 6; ++k)
         sink->take(scene(k), k == 0 ? whole(small)
                                     : std::vector<Rect>{{26 + 5 * k, 17, 60 + 5 * k, 40}, {0, 59 + k, 160, 61 + k}});
-    sink->take(scene(5), {});
     sink->finish();
     double worst = 1e9;
     const Video video = read_video(path, [&](const Luma& frame) {
-        worst = std::min(worst, rgb_psnr(scene(std::min(static_cast<int>(frame.frame), 5)), frame.picture));
+        worst = std::min(worst, rgb_psnr(scene(static_cast<int>(frame.frame)), frame.picture));
     });
-    EXPECT_EQ(video.times.size(), 7u);
-    EXPECT_GE(worst,
-              80);  // dB; FFmpeg 5.1: no pixel differs, 1e9; FFmpeg 7.1: 83.7, a colour off by one in a few pixels
-    const std::string bytes = bytes_of(path);
-    EXPECT_EQ(bytes.substr(bytes.find("NETSCAPE2.0") + 11, 4), std::string("\x03\x01\x00\x00", 4));  // for ever
-    EXPECT_EQ(bytes.back(), '\x3b');
+    EXPECT_EQ(video.times.size(), 6u);
+    EXPECT_EQ(worst, 1e9);  // no pixel differs
 }
 
 TEST(Gif, TheSameFramesGiveTheSameBytes) {

@@ -81,26 +81,6 @@ Contents after_new_run(const fs::path& where) {
     return contents(folder);
 }
 
-/// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer.
-bool killed_before(int n, const std::function<void()>& action, const CallWatch& other = {}) {
-    const pid_t child = test::forked(fork());
-    if (child == 0) {
-        watch_calls([&, calls = 0](const std::string& call) mutable {
-            if (++calls == n) raise(SIGKILL);
-            return other ? other(call) : 0;
-        });
-        try {
-            action();
-        } catch (const Error&) {
-            _exit(1);
-        }
-        _exit(0);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFSIGNALED(status);
-}
-
 int no_exchange(const std::string& call) {
     return call == "renameat2" ? EINVAL : 0;
 }

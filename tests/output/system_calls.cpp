@@ -33,12 +33,12 @@ void doppel::test::watch_calls(CallWatch wanted) {
     watch = std::move(wanted);
 }
 
-bool doppel::test::killed_before(int n, const std::function<void()>& action) {
+bool doppel::test::killed_before(int n, const std::function<void()>& action, const CallWatch& other) {
     const pid_t child = forked(fork());
     if (child == 0) {
-        watch_calls([n, calls = 0](const std::string& /*call*/) mutable {
+        watch_calls([&, calls = 0](const std::string& call) mutable {
             if (++calls == n) raise(SIGKILL);
-            return 0;
+            return other ? other(call) : 0;
         });
         try {
             action();

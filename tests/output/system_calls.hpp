@@ -13,6 +13,7 @@ void watch_calls(CallWatch watch);
 
 /// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer and did
 /// not kill itself.
-bool killed_before(int n, const std::function<void()>& action);
+/// `other` decides on the calls before.
+bool killed_before(int n, const std::function<void()>& action, const CallWatch& other = {});
 
 }  // namespace doppel::test
