@@ -1,4 +1,4 @@
-# cmake -D ROOM=… -D OUTPUT=….cpp -D SOURCE=… -D FILES=a;b -P embed_files.cmake: writes the source and header that hold the files.
+# cmake -D MODULE=… -D OUTPUT=….cpp -D SOURCE=… -D FILES=a;b -P embed_files.cmake: writes the source and header that hold the files.
 set(arrays "")
 set(table "")
 set(number 0)
@@ -15,22 +15,22 @@ foreach(file IN LISTS FILES)
     math(EXPR number "${number} + 1")
 endforeach()
 if(number EQUAL 0)
-    message(FATAL_ERROR "there is nothing to embed into ${ROOM}")
+    message(FATAL_ERROR "there is nothing to embed into ${MODULE}")
 endif()
 string(REPLACE ".cpp" ".hpp" header "${OUTPUT}")
 file(WRITE ${header} "#pragma once
 #include \"base/embedded.hpp\"
 #include <span>
 namespace doppel {
-std::span<const EmbeddedFile> ${ROOM}_files();
+std::span<const EmbeddedFile> ${MODULE}_files();
 }
 ")
-file(WRITE ${OUTPUT} "#include \"embedded/${ROOM}.hpp\"
+file(WRITE ${OUTPUT} "#include \"embedded/${MODULE}.hpp\"
 namespace doppel {
 namespace {
 ${arrays}const EmbeddedFile files[] = {
 ${table}};
 }
-std::span<const EmbeddedFile> ${ROOM}_files() { return files; }
+std::span<const EmbeddedFile> ${MODULE}_files() { return files; }
 }
 ")

@@ -1,4 +1,4 @@
-// What most files include of other people's headers, parsed once for all of them (rooms.cmake).
+// What most files include of other people's headers, parsed once for all of them (modules.cmake).
 #include <Eigen/Core>
 #include <fmt/ranges.h>
 

@@ -1,12 +1,12 @@
-# compile_for_widths(ROOM FILE WIDTH…)
-# FILE, which the room compiles for every processor, once more for each kind with wider registers, of 4 or 8 doubles
-# (DOPPEL_COMPILED_WIDTH); which of them runs is chosen at run time (integrate/widths.hpp). The room sees
+# compile_for_widths(MODULE FILE WIDTH…)
+# FILE, which the module compiles for every processor, once more for each kind with wider registers, of 4 or 8 doubles
+# (DOPPEL_COMPILED_WIDTH); which of them runs is chosen at run time (integrate/widths.hpp). The module sees
 # DOPPEL_WIDE_REGISTERS where there are wider kinds.
 # Never with FMA: fused operations round differently. (Eigen would demand it for AVX-512, so it keeps to plain code here.)
 # Always optimized: what is inlined has no name that the linker could take for the same in code for every processor; a test
 # sees to it that no such name is left.
 include(CheckCXXCompilerFlag)
-function(compile_for_widths room file)
+function(compile_for_widths module file)
     if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
         return()
     endif()
@@ -20,19 +20,19 @@ function(compile_for_widths room file)
     endif()
     get_filename_component(name ${file} NAME_WE)
     foreach(width ${ARGN})
-        set(objects ${room}_${name}_${width})
-        add_library(${objects} OBJECT ${PROJECT_SOURCE_DIR}/src/${room}/${file})
+        set(objects ${module}_${name}_${width})
+        add_library(${objects} OBJECT ${PROJECT_SOURCE_DIR}/src/${module}/${file})
         target_compile_options(${objects} PRIVATE ${flags_${width}} -mno-fma -O3 -fno-sanitize=all)
         target_compile_definitions(${objects} PRIVATE DOPPEL_COMPILED_WIDTH=${width} EIGEN_DONT_VECTORIZE NDEBUG)
-        target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${room},INCLUDE_DIRECTORIES>)
+        target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${module},INCLUDE_DIRECTORIES>)
         target_include_directories(${objects} SYSTEM PRIVATE ${EIGEN3_INCLUDE_DIRS}
-                                                             $<TARGET_PROPERTY:${room},INTERFACE_SYSTEM_INCLUDE_DIRECTORIES>)
-        target_sources(${room} PRIVATE $<TARGET_OBJECTS:${objects}>)
-        add_test(NAME ${room}:${name}_${width}.SharesNoFunction
+                                                             $<TARGET_PROPERTY:${module},INTERFACE_SYSTEM_INCLUDE_DIRECTORIES>)
+        target_sources(${module} PRIVATE $<TARGET_OBJECTS:${objects}>)
+        add_test(NAME ${module}:${name}_${width}.SharesNoFunction
                  COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D OBJECT=$<TARGET_OBJECTS:${objects}>
                          -P ${CMAKE_CURRENT_FUNCTION_LIST_FILE})
     endforeach()
-    target_compile_definitions(${room} PRIVATE DOPPEL_WIDE_REGISTERS)
+    target_compile_definitions(${module} PRIVATE DOPPEL_WIDE_REGISTERS)
 endfunction()
 
 # The test: the one global function of OBJECT is the one that is called, a template over the width, and none is weak (V = a

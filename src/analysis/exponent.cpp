@@ -190,8 +190,7 @@ Exponent exponent_of(const TangentFlow& flow, const PhysicalPendulum<double>& p,
 void demand_smooth(const PhysicalPendulum<double>& p) {
     if (!p.friction.coulomb.empty())
         throw bad_input(
-            "Lyapunov exponents are those of smooth motions; joints with Coulomb's friction (joint_coulomb_N_m) "
-            "come to rest and let go again");
+            "Lyapunov exponents need a smooth motion; with Coulomb friction (joint_coulomb_N_m) joints stick and slip");
 }
 
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {

@@ -136,8 +136,8 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
     const double allowed = is_plain ? 1e-26 * std::max(reference.sensitivity, 1.0) : 1e-15;
     if (!(reference.disagreement <= allowed))
         throw method_failed(
-            "no reference: two computations in quad differ by {:.2g} {} after {} s, where {:.2g} is allowed; the "
-            "motion is too chaotic for so long a time",
+            "no reference: two runs in quad differ by {:.2g} {} after {} s; the limit is {:.2g}; the motion is too "
+            "chaotic for this duration",
             reference.disagreement, measure.in_angles ? "rad" : "m", seconds.value(), allowed);
     return reference;
 }

@@ -63,7 +63,7 @@ struct ReferenceTrajectory : ErrorMeasure {
         return distance(coordinates(observed), seen[sample]);
     }
     std::string description() const {
-        return is_wider ? "Taylor series in quad" : "Taylor series as fine as the precision allows";
+        return is_wider ? "Taylor series in quad" : "Taylor series at the smallest tolerance";
     }
 };
 

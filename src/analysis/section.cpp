@@ -83,7 +83,7 @@ std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const Sect
 /// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences.
 std::vector<Pendulum<double>> releases_of_energy(const Pendulum<double>& p, double energy_J, int count) {
     if (!(energy_J > 0) || !(p.gravity >= 0))
-        throw bad_input("a section takes an energy > 0 J and a gravity ≥ 0; they are {} J and {} m/s²", energy_J,
+        throw bad_input("a section needs an energy > 0 J and a gravity ≥ 0; they are {} J and {} m/s²", energy_J,
                         p.gravity);
     const double m1 = p.mass[0], m2 = p.mass[1], l1 = p.length[0], l2 = p.length[1];
     const double weight = m2 * p.gravity * l2, inertia = m2 * l2 * l2;

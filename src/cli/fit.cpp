@@ -20,9 +20,9 @@ struct FitCommandOptions : OutOptions {
 
 void fit(const FitCommandOptions& options) {
     auto fit_options = options.fit;
-    fit_options.bodies = options.model == "point"      ? Bodies::point
-                         : options.model == "compound" ? Bodies::compound
-                                                       : Bodies::automatic;
+    fit_options.bodies = options.model == "point"   ? Bodies::point
+                         : options.model == "rigid" ? Bodies::rigid
+                                                    : Bodies::automatic;
     fit_options.out = options.out;
     fit_options.force = options.force;
     if (options.every_s > 0) fit_options.every_s = options.every_s;
@@ -64,9 +64,9 @@ void add_fit(CLI::App& app) {
         "  doppel fit piece-*.csv --every 5.334      each with a clock of its own, so many seconds apart\n"
         "  doppel fit swing.csv --gravity 9.81 --mass 0.138");
     command.add_option("TRACK", options->tracks, "CSV files, in the order of time")->required();
-    command.add_option("--model", options->model, "Bodies: auto, point (masses on massless rods) or compound")
+    command.add_option("--model", options->model, "Bodies: auto, point (masses on massless rods) or rigid (bodies)")
         ->type_name("KIND")
-        ->check(CLI::IsMember({"auto", "point", "compound"}))
+        ->check(CLI::IsMember({"auto", "point", "rigid"}))
         ->capture_default_str();
     command.add_option("--name", options->fit.name, "Name of the results; that of the first file where not given")
         ->type_name("NAME");

@@ -11,14 +11,23 @@
 namespace doppel {
 namespace {
 
-constexpr std::string_view film_introduction = R"(# Presets: all tables and keys
+constexpr std::string_view film_introduction = R"(# Presets: keys of films
 
-A preset is a TOML file that describes two pendulums and the film of them, or a figure. Every key has a default; units
-are part of the key. `doppel init FILE.toml` writes one to start from (`doppel init --figure KIND` that of a figure),
-`doppel show NAME` prints one, `doppel check FILE` tells what it would run, and `--set KEY=VALUE` sets a key from the command line:
-`video.theme=light` (text needs no quotes), `system.angle_deg=[90, 60]`, `system.mass_kg[1]=2` (the second of a list),
-`system.force.NAME.length_m=1.2` (an entry by its `name`, or the only one of its `kind`).
-A key that is not in these tables is an error; all faults of a preset are told in one go, in the order of its lines.
+After reading this page you can write a preset and look up every key that describes the motion. [presets-video.md](presets-video.md) lists the keys
+of pictures, [presets-figures.md](presets-figures.md) those of figures.
+
+A preset is a TOML file. It describes two pendulums and the film of them, or a figure. Every key has a default, and its unit is part of its
+name. An unknown key is an error. All errors of a preset are listed at once.
+
+| command | does |
+|---|---|
+| `doppel init FILE.toml` | writes a preset with every key (`--figure KIND`: of a figure) |
+| `doppel show NAME` | prints a preset |
+| `doppel check FILE.toml` | says what would run |
+| `--set KEY=VALUE` | sets a key on the command line |
+
+Examples of `--set`: `video.theme=light` (text needs no quotes), `system.angle_deg=[90, 60]`, `system.mass_kg[1]=2` (the second of a list),
+`system.force.NAME.length_m=1.2` (an entry by its `name`, or by its `kind` if it is the only one).
 
 ```toml
 title = "Three thousandths of a degree"
@@ -33,21 +42,22 @@ angle_deg = [90, 90]
 angle_deg = [90.003, 90]
 ```
 
-Side a has the keys of `[system]` with those of `[a]` in their place, side b those of `[b]`. Arrays with one number a
-link may also be one number for all links. `[[a.particle]]`, `[[a.constraint]]` and `[[a.force]]` with the `name` of one
-in `[system]` change it; others are added.
+Keys of `[a]` and `[b]` replace those of `[system]` for one side. An array with one number for each link can also be a single number for
+all links. `[[a.particle]]`, `[[a.constraint]]` and `[[a.force]]` change the entry of that `name` in `[system]`; others are added.
 
-Editors that read JSON schemas (taplo, Even Better TOML) complete keys and mark mistakes as you type, where the first line
-names the schema: `#:schema ./preset.schema.json` for a file that `doppel schema > preset.schema.json` wrote beside the
-preset. `doppel show` names the schema that it finds, in `presets/` here or installed with the program, and leaves the line
-out where there is none. `doppel check` tells if the line names another file.
+Editors with JSON schemas (taplo, Even Better TOML) complete keys and mark errors if the first line names the schema:
+`#:schema ./preset.schema.json`, for a file that `doppel schema > preset.schema.json` wrote beside the preset.
 )";
 
-constexpr std::string_view figure_introduction = R"(
-# Presets of figures
+constexpr std::string_view video_introduction = R"(# Presets: keys of pictures
 
-`kind` of `[scene]` says which figure it is; [figures](figures.md) shows them. In place of `[video]` there are `[chart]`
-and a table that is the kind's own.
+After reading this page you can look up every key of `[video]`: format, speed, layout, strips, colours and sizes. [films.md](films.md) shows examples.
+)";
+
+constexpr std::string_view figure_introduction = R"(# Presets: keys of figures
+
+After reading this page you can look up every key of figures. [figures.md](figures.md) shows examples. `kind` of `[scene]` selects the kind of figure. In
+place of `[video]` a figure has `[chart]` and a table of its own kind. `[system]`, `[a]` and `[b]` are as in [films](presets.md).
 )";
 
 /// The keys outside all tables.
@@ -195,12 +205,17 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
     return all;
 }
 
-std::string preset_reference() {
-    std::string text(film_introduction);
-    for (const auto& table : film_tables()) text += table.markdown();
-    text += figure_introduction;
-    for (const auto& table : figure_tables()) text += table.markdown();
-    return text;
+std::vector<ReferencePage> reference_pages() {
+    const auto film = film_tables();
+    const auto markdown = [](std::span<const FieldTable> tables) {
+        std::string text;
+        for (const auto& table : tables) text += table.markdown();
+        return text;
+    };
+    const auto all = std::span(film);
+    return {{"presets.md", std::string(film_introduction) + markdown(all.first(all.size() - 1))},
+            {"presets-video.md", std::string(video_introduction) + markdown(all.last(1))},
+            {"presets-figures.md", std::string(figure_introduction) + markdown(figure_tables())}};
 }
 
 }  // namespace doppel

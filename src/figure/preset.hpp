@@ -42,7 +42,11 @@ std::vector<FieldTable> tables_of(std::string_view kind);
 /// What a preset may say, as a JSON schema (Draft 4).
 std::string preset_schema();
 
-/// docs/presets.md: all tables and keys of films and figures.
-std::string preset_reference();
+/// A page of docs/ that lists keys.
+struct ReferencePage {
+    std::string file, text;
+};
+/// All tables and keys of films, of [video], and of figures.
+std::vector<ReferencePage> reference_pages();
 
 }  // namespace doppel

@@ -100,7 +100,7 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
     }
     if (!best.is_physical)
         throw method_failed(
-            "{}: no double pendulum moves like this: its equations leave {:.0f} % of the forces unexplained",
+            "{}: this is not the motion of a double pendulum: its equations leave {:.0f} % of the forces unexplained",
             track.pieces.front().name, 100 * best.unexplained);
     Parameters p = Parameters::Zero();
     std::ranges::copy(best.ratios, p.begin());

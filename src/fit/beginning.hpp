@@ -7,7 +7,7 @@ namespace doppel {
 /// Stretches of at most three seconds, less where there is little track, each with its unit. They are whole.
 std::vector<Shot> divide(const Track& track);
 
-/// Where to begin fitting: a compound model with all friction that follows the track.
+/// Where to begin fitting: a model of rigid bodies with all friction that follows the track.
 ///
 /// The equations of motion are regressed, which needs no start; then stretches of a quarter of the division's, or less
 /// where the motion does not stay finite, are fitted, which follow the samples from almost any start. Those that do not are

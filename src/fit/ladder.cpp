@@ -15,17 +15,17 @@ namespace {
 std::vector<FittedModel> models_of(Bodies bodies) {
     constexpr const char* words[]{"no friction",
                                   "viscous friction",
-                                  "viscous and dry friction",
-                                  "viscous, dry, drag by own rates",
-                                  "viscous, dry, drag by the air met",
-                                  "drag by the air met, a lag",
-                                  "drag by the air met, a lag, scales"};
+                                  "viscous and Coulomb friction",
+                                  "viscous, Coulomb, drag by own rates",
+                                  "viscous, Coulomb, drag by relative velocity",
+                                  "drag by relative velocity, a lag",
+                                  "drag by relative velocity, a lag, scales"};
     std::vector<FittedModel> models;
     for (const bool point : {true, false})
         for (int k = 0; k < 7; ++k) {
-            if (bodies == (point ? Bodies::compound : Bodies::point)) continue;
+            if (bodies == (point ? Bodies::rigid : Bodies::point)) continue;
             if (point && k > 1 && bodies != Bodies::point) continue;
-            models.push_back({.name = std::string(point ? "point masses, " : "compound, ") + words[k], .fit = {}});
+            models.push_back({.name = std::string(point ? "point masses, " : "rigid bodies, ") + words[k], .fit = {}});
             models.back().fit.model =
                 model_of(point, std::min(k, 3), k < 4 ? Drag::own : Drag::carried, std::max(k - 4, 0));
         }

@@ -6,11 +6,11 @@
 namespace doppel {
 
 /// Which bodies the arms may be.
-enum class Bodies { automatic, point, compound };
+enum class Bodies { automatic, point, rigid };
 
 /// A model and how it did.
 struct FittedModel {
-    std::string name;              // "compound, viscous and dry friction"
+    std::string name;              // "rigid bodies, viscous and Coulomb friction"
     Fit fit;                       // to the whole track
     double left_out_rms = 0;       // rad, of pieces that the parameters were fitted without
     std::vector<double> left_out;  // mean squares, by unit, rad²

@@ -67,8 +67,8 @@ FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, cons
             .second_inertia = b,
             .rule = model.point_masses ? "points at the ends of massless rods"
                     : share == of_rod
-                        ? "each arm a uniform rod about its own centre of mass"
-                        : "the second arm more compact than a rod, as the first leaves it no more inertia"};
+                        ? "each link a uniform rod about its own centre of mass"
+                        : "the second link more compact than a uniform rod, because the first leaves it less inertia"};
 }
 
 }  // namespace doppel

@@ -87,21 +87,21 @@ std::string residual_sentence(const FitResult& result) {
             "Residuals look like noise of {:.2g} rad: neighbours are not correlated ({:.2f} and {:.2f}).", rms,
             u.neighbour[0], u.neighbour[1]);
     const double noise = std::max(result.track.noise[0], result.track.noise[1]);
-    std::string why = "the measurement's own noise may be so";
+    std::string why = "the measurement noise may be like this";
     if (rms > 2 * noise)
-        why = fmt::format("from sample to sample the angles scatter by {:.1g} rad only, so it is the model that errs",
+        why = fmt::format("from sample to sample the angles scatter by only {:.1g} rad, so the error is the model's",
                           noise);
     return fmt::format(
-        "Residuals of {:.2g} rad are not noise: they keep their sign for some {:.2g} s; {}. Standard errors allow "
-        "for it ({:.2g} times those of white noise).",
+        "Residuals of {:.2g} rad are not noise: they keep their sign for about {:.2g} s; {}. Standard errors include "
+        "this ({:.2g} times those of white noise).",
         rms, std::max(u.memory_s[0], u.memory_s[1]), why, u.inflation);
 }
 
 std::string horizon_sentence(const FitResult& result) {
     if (!result.horizon)
         return result.track.start_s.empty()
-                   ? "No horizon: it is not known when each piece began; --every SECONDS tells."
-                   : "No horizon: stretches are too short to predict from.";
+                   ? "No prediction horizon: the start times of the pieces are unknown; give --every SECONDS."
+                   : "No prediction horizon: the pieces are too short to predict from.";
     const auto& h = *result.horizon;
     const int left = h.left();
     const auto span = [&](auto member) {
@@ -118,18 +118,19 @@ std::string horizon_sentence(const FitResult& result) {
         std::sort(seen.begin(), seen.end());
         const auto count = seen.size() - seen.size() / 2;
         return sentence + fmt::format(
-                              "as long as the track shows them, {} s; of the {} seen for {:.1f} s or more none "
-                              "left by then: at 95 % confidence at most {:.0f} % would.",
+                              "to the end of the track, {} s. Of the {} that ran for {:.1f} s or more, none exceeded "
+                              "it: at 95 % confidence at most {:.0f} % would.",
                               span(&Prediction::within_s), count, seen[seen.size() / 2],
                               100 * (1 - portable_pow(0.05, 1 / static_cast<double>(count))));
     }
     sentence += h.median_s ? fmt::format("for {:.1f} s (median)", *h.median_s)
-                           : fmt::format("for longer than the track shows, {:.1f} s", h.longest_s);
+                           : fmt::format("beyond the end of the track, {:.1f} s", h.longest_s);
     constexpr std::array<const char*, 3> names{"the model", "the start", "the parameters"};
     std::string because;
     for (std::size_t k = 0; k < names.size(); ++k)
         if (h.left_by[k] > 0) because += fmt::format("{}{} {}", because.empty() ? "" : ", ", names[k], h.left_by[k]);
-    return sentence + fmt::format("; of {} predictions {} left, limited by: {}.", h.predictions.size(), left, because);
+    return sentence +
+           fmt::format("; of {} predictions {} exceeded it, limited by: {}.", h.predictions.size(), left, because);
 }
 
 std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter) {
@@ -150,8 +151,8 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const ArmState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
     auto text = fmt::format(
         "# Fitted by doppel fit to {}{}: {}.\n"
-        "# It errs by {:.2g} rad on pieces left out. Errors, ladder and horizon are in {}.fit.json.\n"
-        "# Angles tell ratios alone: gravity and the second mass are given, {}.\n"
+        "# Its error is {:.2g} rad on pieces left out. Errors, models and prediction horizon are in {}.fit.json.\n"
+        "# Angles determine only ratios: gravity and the second mass are given, {}.\n"
         "title = {}\n\n[scene]\nduration_s = 30\n\n[system]\n",
         on_one_line(std::filesystem::path(files[0]).filename().string()),
         files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1), rung.name, rung.left_out_rms, name,
@@ -244,7 +245,7 @@ Plot track_plot(const FitResult& result) {
     const auto& shot = result.chosen().fit.shots.front();
     const auto& piece = result.track.pieces[shot.piece];
     const double begin = piece.time_s[shot.first];
-    Plot plot{.title = "A stretch of the track", .note = "points: measured, lines: model"};
+    Plot plot{.title = "A part of the track", .note = "points: measured, lines: model"};
     plot.x = {.label = "time, s", .low = 0, .high = piece.time_s[shot.last - 1] - begin};
     plot.y = {.label = "angle, rad"};
     constexpr std::size_t points = 60;
@@ -297,7 +298,7 @@ Plot residual_plot(const FitResult& result) {
 
 /// The error on pieces left out over the number of parameters.
 Plot ladder_plot(const FitResult& result) {
-    Plot plot{.title = "The ladder of models", .needs_no_legend = true};
+    Plot plot{.title = "Error against number of parameters", .needs_no_legend = true};
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};
     double least = parameter_count, most = 0;
     for (std::size_t k = 0; k < result.ladder.rungs.size(); ++k) {
@@ -319,7 +320,7 @@ Plot ladder_plot(const FitResult& result) {
 Plot horizon_plot(const std::optional<Horizon>& horizon) {
     Plot plot{.title = "Predictions from at most two seconds of data", .note = "not measured"};
     plot.x = {.label = "time predicted, s", .low = 0, .high = 1};
-    plot.y = {.label = "largest error so far, rad", .logarithmic = true};
+    plot.y = {.label = "maximum error to date, rad", .logarithmic = true};
     if (!horizon) return plot;
     for (const bool left : {true, false})
         for (const auto& p : horizon->predictions) {
@@ -329,7 +330,7 @@ Plot horizon_plot(const std::optional<Horizon>& horizon) {
             for (const double error : p.error) curve.y.push_back(largest = std::max(largest, error));
             plot.x.high = std::max(*plot.x.high, p.time_s.back());
         }
-    plot.note = fmt::format("{} of {} left, in colour", horizon->left(), horizon->predictions.size());
+    plot.note = fmt::format("{} of {} exceeded it, in colour", horizon->left(), horizon->predictions.size());
     plot.rules.push_back({Rule::Orientation::horizontal, horizon->limit, fmt::format("{:.2g} rad", horizon->limit)});
     if (const auto& median = horizon->median_s)
         plot.rules.push_back({Rule::Orientation::vertical, *median, fmt::format("median {:.1f} s", *median)});

@@ -41,8 +41,8 @@ void demand_loss(const FitJob& job, const ModelLadder& ladder) {
     const bool is_sure = loss && loss->share < -sure * loss->standard_error;  // not where the error is not a number
     if (!is_sure || loss->rms > most_left(job.track)) return;
     throw method_failed(
-        "{}: the swing gains energy, {:.2g} ± {:.1g} % of its energy of motion a second, and a pendulum that swings "
-        "freely loses it: time_s must grow as time did, and nothing may drive the pendulum",
+        "{}: the motion gains energy, {:.2g} ± {:.1g} % of its kinetic energy a second; a free pendulum loses energy: "
+        "check that time_s runs forwards and that nothing drives the pendulum",
         job.track.pieces.front().name, -100 * loss->share, 100 * loss->standard_error);
 }
 
@@ -51,8 +51,8 @@ void demand_description(const Track& track, const ModelLadder& ladder) {
     const auto& best = ladder.rungs[ladder.best];
     if (best.left_out_rms <= most_left(track)) return;
     throw method_failed(
-        "{}: no model describes this track: the best ({}) errs by {:.2g} rad on stretches left out, of angles "
-        "spread by {:.2g} rad; is it a double pendulum that swings freely, and are the columns right?",
+        "{}: no model describes this track: the best ({}) has an error of {:.2g} rad on parts left out, where angles "
+        "spread by {:.2g} rad; check that it is a free double pendulum and that the columns are right",
         track.pieces.front().name, best.name, best.left_out_rms, spread_of(track));
 }
 
@@ -64,8 +64,8 @@ void demand_order(const Track& track, const ModelLadder& ladder) {
     const double moment = fit.parameters[gravity_1] / (fit.parameters[coupling] * fit.parameters[gravity_2]);
     if (moment >= least) return;
     throw bad_input(
-        "{}: theta1_rad and theta2_rad seem to be swapped: as they are, the first arm has no weight of its own "
-        "(D1 B/(C D2) is {:.3f}, and more than 1 of any two bodies in order); theta1 is the arm at the pivot",
+        "{}: theta1_rad and theta2_rad seem to be swapped: D1 B/(C D2) is {:.3f}, and must be more than 1; theta1 is "
+        "the link at the pivot",
         track.pieces.front().name, moment);
 }
 

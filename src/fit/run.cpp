@@ -27,7 +27,7 @@ std::vector<std::string> sentences_of(const FitResult& result) {
 std::string fit_name(const std::vector<std::filesystem::path>& files, const FitOptions& options) {
     auto name = options.name.empty() ? files.front().stem().string() : options.name;
     if (name.empty() || name.find('/') != std::string::npos)
-        throw bad_input("--name wants the name of a folder; it is \"{}\"", name);
+        throw bad_input("--name must be the name of a folder; it is \"{}\"", name);
     check_preset_name(options.name.empty() ? files.front().string() : "--name", name);
     return name;
 }

@@ -243,7 +243,8 @@ std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const
 
 Error no_motion(const Track& track) {
     return method_failed(
-        "{}: no double pendulum moves like this: from its own angles and rates the motion does not stay finite",
+        "{}: this is not the motion of a double pendulum: from its angles and rates the simulation does not stay "
+        "finite",
         track.pieces.front().name);
 }
 

@@ -30,8 +30,8 @@ public:
         : model_(model), tolerance_(tolerance), y0_(start), y1_(start), out_(start), scratch_(start), k_(start) {
         const Scalar least = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
         if (!(tolerance >= least))
-            throw bad_input("{}: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", method.name,
-                            static_cast<double>(tolerance), std::numeric_limits<Scalar>::digits10 + 1,
+            throw bad_input("{}: tolerance = {:.3g} is too small for {} digits; it must be at least {:.1g}",
+                            method.name, static_cast<double>(tolerance), std::numeric_limits<Scalar>::digits10 + 1,
                             static_cast<double>(least));
         take_modes(model_, y1_);
         model_.rate(y1_, k_[end]);
@@ -86,8 +86,8 @@ private:
         for (double limit = pair.control.grow;; limit = 1) {
             if (!(h_ > std::numeric_limits<Scalar>::epsilon() * seconds))
                 throw method_failed(
-                    "{}: no step down to {:.3g} s meets tolerance = {:.3g}; the motion has a singularity "
-                    "there, which no explicit method passes",
+                    "{}: no step down to {:.3g} s meets tolerance = {:.3g}; the motion has a singularity there, and no "
+                    "explicit method can pass it",
                     method.name, static_cast<double>(h_), static_cast<double>(tolerance_));
             take(h_);
             const double error = error_of_step();

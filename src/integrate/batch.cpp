@@ -18,9 +18,10 @@ Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string
     const auto links = members[0].links();
     for (const auto& member : members)
         if (member.links() != links)
-            throw bad_input("the pendulums of a batch have as many links each: not {} and {}", links, member.links());
+            throw bad_input("all pendulums of a batch must have the same number of links; they have {} and {}", links,
+                            member.links());
     if (!serves(method, links))
-        throw bad_input("two or three links are stepped side by side, by euler or rk4: not {} by {}", links, method);
+        throw bad_input("a batch needs two or three links and euler or rk4; it has {} and {}", links, method);
     const auto make = at_width(width_, []<int chosen>() { return make_batch_block<chosen>; });
     const BatchRequest request{.members = members.data(),
                                .count = members.size(),

@@ -84,8 +84,7 @@ public:
         constexpr int most = 100;
         count_ = advances ? 0 : count_ + 1;
         if (count_ > most)
-            throw method_failed("joints change between rest and motion {} times at one time; the motion cannot go on",
-                                most);
+            throw method_failed("joints stick and slip {} times at one time; the motion cannot continue", most);
     }
 
 private:

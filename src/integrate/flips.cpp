@@ -48,13 +48,13 @@ double first_flip(const Bernstein& theta, const At& at) {
 
 void check(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times) {
     for (const auto& p : pendulums)
-        if (p.links() != 2) throw bad_input("flips are found for double pendulums, not for {} links", p.links());
+        if (p.links() != 2) throw bad_input("flips are computed for two links; there are {}", p.links());
     if (pendulums.size() != times.size())
         throw bad_input("{} pendulums have {} times to be written", pendulums.size(), times.size());
     if (!(spec.duration > 0 && std::isfinite(spec.duration)))
-        throw bad_input("flips are looked for during a positive time; it is {} s", spec.duration);
+        throw bad_input("the duration of a search for flips must be > 0 s; it is {} s", spec.duration);
     if (!(spec.tolerance >= 1e-15 && spec.tolerance <= 1))
-        throw bad_input("the tolerance of flips lies between 1e-15 and 1 rad/s; it is {:.3g}", spec.tolerance);
+        throw bad_input("the tolerance of flips must be from 1e-15 to 1 rad/s; it is {:.3g}", spec.tolerance);
 }
 
 }  // namespace

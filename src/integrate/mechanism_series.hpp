@@ -30,8 +30,10 @@ public:
         start_ = y;
         for (std::size_t i = 0; i < model_.parts.forces.size(); ++i)
             if (ends_have_met(model_.parts.forces[i]))
-                throw method_failed("{}: its ends have met, where it has no direction; start so that they do not",
-                                    name_of(model_.parts.forces, i));
+                throw method_failed(
+                    "{}: its ends are at the same place, where its direction is undefined; choose a start that does "
+                    "not lead there",
+                    name_of(model_.parts.forces, i));
         Base::expand(start_);
         start_checking();
     }

@@ -230,15 +230,14 @@ std::unique_ptr<Motion> make_motion(const MotionSpec& spec) {
     const auto* method = find_method(spec.method);
     if (!method) throw bad_input("there is no method \"{}\"", spec.method);
     if (spec.stabilise != Stabilise::none && spec.model == Model::angles)
-        throw bad_input("in angles the rods keep their length by themselves; there is nothing to stabilise");
+        throw bad_input("in angles the rods have constant length; there is nothing to stabilise");
     if (spec.stabilise != Stabilise::none && !method->stabilised)
         throw bad_input("the method \"{}\" keeps the constraints itself; there is nothing to stabilise", spec.method);
     if (spec.physical && spec.model != Model::angles)
-        throw bad_input("links with mass, friction or a drive move in angles, not as particles on rods");
+        throw bad_input("links with mass, friction or a drive need model = \"angles\"; it is \"constraints\"");
     if (spec.physical && spec.wants_tension)
         throw bad_input(
-            "the force in a rod is that of point masses on massless rods; with links that have mass, friction or a "
-            "drive there is none to tell");
+            "rod tensions are defined for point masses on massless rods; these links have mass, friction or a drive");
     if (spec.precision == Precision::in_quad) return std::make_unique<Simulation<Quad>>(spec);
     return std::make_unique<Simulation<double>>(spec);
 }

@@ -157,7 +157,8 @@ private:
 
     [[noreturn]] void fail_to_meet() const {
         throw method_failed(
-            "{}: step {}: the constraints are still off by {:.2g} after {} corrections; choose a smaller step_s than "
+            "{}: step {}: the constraints still have an error of {:.2g} after {} corrections; choose a smaller step_s "
+            "than "
             "{:g}",
             Which::method.name, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
     }

@@ -125,7 +125,7 @@ std::unique_ptr<Stepper<typename Model::Scalar>> make_stepper(std::string_view m
         std::unique_ptr<AnySystem<typename Model::State>> any = std::make_unique<HeldSystem<Model>>(model);
         stepper = compiled_stepper(method, std::move(any), start, step_or_tolerance);
     }
-    if (!stepper) throw bad_input("the method \"{}\" does not serve this model", method);
+    if (!stepper) throw bad_input("the method \"{}\" does not support this model", method);
     return stepper;
 }
 

@@ -120,7 +120,8 @@ public:
         v_ = y.tail(n);
         if (!newton_.project_positions(*this, q_, q_))
             throw method_failed(
-                "projection: the constraints are still off by {:.2g} after {} corrections; choose a smaller step_s",
+                "projection: the constraints still have an error of {:.2g} after {} corrections; choose a smaller "
+                "step_s",
                 newton_.remained(), newton_.limit);
         newton_.project_velocities(*this, q_, v_);
         y.head(n) = q_;

@@ -98,8 +98,8 @@ private:
     static int order_for(double tolerance, int asked) {
         const auto least = 4 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
         if (!(tolerance >= least))
-            throw bad_input("taylor: tolerance = {:.3g} cannot be met with {} digits; the finest is {:.1g}", tolerance,
-                            std::numeric_limits<Scalar>::digits10 + 1, least);
+            throw bad_input("taylor: tolerance = {:.3g} is too small for {} digits; it must be at least {:.1g}",
+                            tolerance, std::numeric_limits<Scalar>::digits10 + 1, least);
         const long order = asked == 0 ? std::lround(10 - 0.5 * std::log(tolerance)) : asked;
         return static_cast<int>(std::clamp(order, watched_coefficients + 1L, 64L));
     }
@@ -133,8 +133,8 @@ private:
         }
         if (!(h > static_cast<double>(std::numeric_limits<Scalar>::epsilon()) * seconds))
             throw method_failed(
-                "taylor: a step of {:.3g} s is all that tolerance = {:.3g} allows, too little to get on; "
-                "the motion has a singularity there, which no explicit method passes",
+                "taylor: the largest step is {:.3g} s at tolerance = {:.3g}, which is too small to continue; "
+                "the motion has a singularity there, and no explicit method can pass it",
                 h, tolerance_);
         if (steps_ == 0 || step_ < smallest_) smallest_ = step_;
         ++steps_;
@@ -159,7 +159,7 @@ private:
         for (int k = order_ - watched_coefficients + 1; k <= order_; ++k) {
             const double room = series_->log2_room(tolerance_, k);
             if (std::isnan(room))
-                throw method_failed("taylor: coefficient {} of the series is not finite; the motion has blown up", k);
+                throw method_failed("taylor: coefficient {} of the series is not finite; the motion diverged", k);
             exponent = std::min(exponent, room / k);
         }
         const double longest = series_->longest_step();

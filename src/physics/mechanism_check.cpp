@@ -48,7 +48,7 @@ public:
         exists(slot.particle);
         finite("point", slot.point);
         finite("direction", slot.direction);
-        if (slot.direction.isZero(0)) throw bad_input("{}: its direction is (0, 0); it must point somewhere", name_);
+        if (slot.direction.isZero(0)) throw bad_input("{}: its direction is (0, 0); it must not be zero", name_);
     }
     void operator()(const SlotCircle<double>& slot) const {
         exists(slot.particle);
@@ -86,11 +86,11 @@ private:
         if (!particle) return finite("fixed end", std::get<Place<double>>(b));
         exists(*particle);
         if (*particle == a)
-            throw bad_input("{}: it joins particle {} with itself; it needs two different ones", name_, a + 1);
+            throw bad_input("{}: it joins particle {} to itself; it needs two different particles", name_, a + 1);
     }
     void apart(std::size_t particle, const Place<double>& place) const {
         if (particles_[particle].place == place)
-            throw bad_input("{}: particle {} starts at {} m, where what attracts it is; they must start apart", name_,
+            throw bad_input("{}: particle {} starts at {} m, the place of what attracts it; start it elsewhere", name_,
                             particle + 1, text(place));
     }
     void finite(std::string_view what, const Place<double>& value, std::string_view unit = "") const {
@@ -226,16 +226,16 @@ Error singular_configuration(const std::string& name, const Dependence& dependen
         where += fmt::format("{}({:.6g}, {:.6g})", i == 0 ? "" : ", ", places[i], places[i + 1]);
     constexpr double farthest = 1e100;  // m; the squares of more soon leave the range of a double
     if (!std::all_of(places.begin(), places.end(), [](double x) { return std::abs(x) < farthest; }))
-        return method_failed("the particles have come to {} m: the motion blew up; take shorter steps", where);
+        return method_failed("the particles are at {} m: the motion diverged; use a smaller step", where);
     constexpr double torn = 0.1;  // of the longest rod; what drifts is far from it where forces are still determined
     if (!(off < torn))
         return method_failed(
-            "the particles have come to {} m, where a constraint is off by {:.2g} times the longest rod: the motion "
-            "blew up; take shorter steps",
+            "the particles are at {} m, where a constraint has an error of {:.2g} times the longest rod: the motion "
+            "diverged; use a smaller step",
             where, off);
     return method_failed(
-        "singular configuration: {} has come to follow from {}, and the forces are not determined; the particles are "
-        "at {} m; start so that they do not come there, or leave the constraint out",
+        "singular configuration: {} now follows from {}, so the forces are not determined; the particles are at {} m; "
+        "choose a start that does not lead there, or leave the constraint out",
         name, listed(dependence.others), where);
 }
 

@@ -38,9 +38,7 @@ struct Canonical<PhysicalChain<S>> {
           joint(chain.bodies().size(), Vector{Scalar(0), Scalar(0)}),
           push(joint) {
         if (!chain.pendulum.friction.coulomb.empty())
-            throw bad_input(
-                "Gauss collocation: joints with Coulomb's friction come to rest, at the end of a step of the other "
-                "methods; choose one of them");
+            throw bad_input("Gauss collocation does not support Coulomb friction; choose another method");
         Scalar below(0);
         for (std::size_t i = joint.size(); i-- > 0;) {
             const auto& link = chain.bodies()[i];

@@ -57,7 +57,7 @@ struct JointTorque {
     auto members() const { return std::tie(joint, amplitude, frequency, phase); }
 };
 
-/// A chain of rigid bodies (a physical or compound pendulum), with friction and a drive. `chain.mass` is that of the bodies.
+/// A chain of rigid bodies (a physical pendulum), with friction and a drive. `chain.mass` is that of the bodies.
 /// Its ideal form, all centres at the ends and no inertia, is the chain itself.
 template <class Scalar>
 struct PhysicalPendulum {

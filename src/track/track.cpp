@@ -59,17 +59,18 @@ Heading heading_of(const std::string& file, std::string_view line) {
     };
     for (const auto at : places({"theta1_deg", "theta2_deg"}))
         throw bad_input(
-            "{}:1: \"{}\" is in degrees; angles are wanted in radians, theta1_rad and theta2_rad (degrees × π/180)",
-            file, heading.names[at]);
+            "{}:1: \"{}\" is in degrees; angles must be in radians, theta1_rad and theta2_rad (degrees × π/180)", file,
+            heading.names[at]);
     const auto time = places({"time_s"}), piece = places({"piece"}), angles = places({"theta1_rad", "theta2_rad"});
     const auto pixels = places({"x0_px", "y0_px", "x1_px", "y1_px", "x2_px", "y2_px"});
     if (time.empty()) throw bad_input("{}:1: there is no column time_s", file);
     if (angles.size() == 1)
-        throw bad_input("{}:1: there is one arm only, {}; fit takes double pendulums, with theta1_rad and theta2_rad",
+        throw bad_input("{}:1: there is only one link, {}; fit needs a double pendulum, with theta1_rad and theta2_rad",
                         file, heading.names[angles[0]]);
     if (angles.empty() && pixels.empty())
         throw bad_input(
-            "{}:1: there are no angles; theta1_rad and theta2_rad are wanted, or x0_px, y0_px, x1_px, y1_px, x2_px, "
+            "{}:1: there are no angles; the columns must be theta1_rad and theta2_rad, or x0_px, y0_px, x1_px, y1_px, "
+            "x2_px, "
             "y2_px",
             file);
     if (angles.empty() && pixels.size() < 6)
@@ -86,7 +87,8 @@ Heading heading_of(const std::string& file, std::string_view line) {
 double number_of(const std::string& place, std::string_view column, std::string_view cell) {
     double value = 0;
     const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (fault != std::errc() || end != cell.data() + cell.size()) throw bad_input("{}: {} is no number", place, column);
+    if (fault != std::errc() || end != cell.data() + cell.size())
+        throw bad_input("{}: {} is not a number", place, column);
     if (!std::isfinite(value))
         throw bad_input("{}: {} is {}; leave out rows without a measurement", place, column,
                         std::isnan(value) ? "nan" : "infinite");
@@ -100,12 +102,12 @@ std::array<double, 2> angles_of(const std::string& place, std::span<const double
     for (std::size_t arm = 0; arm < 2 && values.size() > 2; ++arm) {
         const double dx = values[2 * arm + 2] - values[2 * arm], dy = values[2 * arm + 3] - values[2 * arm + 1];
         if (dx == 0 && dy == 0)
-            throw bad_input("{}: two of pivot, joint and end are at the same place; an arm needs a length", place);
+            throw bad_input("{}: two of pivot, joint and end are at the same place; a link needs a length", place);
         angles[arm] = portable_atan2(dx, dy);
     }
     for (std::size_t arm = 0; arm < 2; ++arm)
         if (std::abs(angles[arm]) > most)
-            throw bad_input("{}: theta{}_rad is beyond {} rad, which is no swing", place, arm + 1, most);
+            throw bad_input("{}: theta{}_rad is beyond {} rad; check its unit", place, arm + 1, most);
     return angles;
 }
 
@@ -139,7 +141,8 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
         const auto place = fmt::format("{}:{}", name, line_number);
         const auto cells = cells_of(line);
         if (cells.size() != heading->names.size())
-            throw bad_input("{}: there are {} cells, and {} columns", place, cells.size(), heading->names.size());
+            throw bad_input("{}: the row has {} cells; the header has {} columns", place, cells.size(),
+                            heading->names.size());
         std::vector<double> values;  // the time first
         for (const auto column : heading->values)
             values.push_back(number_of(place, heading->names[column], cells[column]));
@@ -149,8 +152,8 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
             const auto& before = track.pieces.back().time_s;
             if (time <= before.back())
                 throw bad_input(
-                    "{}: time_s goes from {} to {}; rows are wanted in the order of time, pieces that begin anew in "
-                    "files of their own or numbered in a column \"piece\"",
+                    "{}: time_s goes from {} to {}; rows must be in the order of time; put pieces that restart the "
+                    "clock in separate files, or number them in a column \"piece\"",
                     place, before.back(), time);
             starts = time - before.back() > long_gap_s && before.size() > 1;
         }
@@ -160,11 +163,10 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
         piece.time_s.push_back(time);
         for (std::size_t arm = 0; arm < 2; ++arm) piece.angle[arm].push_back(angles[arm]);
         if (++rows > most_rows)
-            throw bad_input("{}: there are more than {} rows; a minute of a track at 1000 Hz is plenty", name,
-                            most_rows);
+            throw bad_input("{}: there are more than {} rows; a minute at 1000 Hz is enough", name, most_rows);
     }
-    if (!heading) throw bad_input("{}: the file is empty; a heading time_s,theta1_rad,theta2_rad is wanted", name);
-    if (track.pieces.size() == first_piece) throw bad_input("{}: there are no rows below the heading", name);
+    if (!heading) throw bad_input("{}: the file is empty; it must begin with time_s,theta1_rad,theta2_rad", name);
+    if (track.pieces.size() == first_piece) throw bad_input("{}: there are no rows below the header", name);
 }
 
 // Checking.
@@ -224,7 +226,7 @@ void drop_fragments(Track& track) {
         return is_short(piece) && left > 1 && left-- > 0;
     });
     if (dropped > 0)
-        track.notes.push_back(fmt::format("{} stretches between gaps, of less than {} samples or {} s, were left out",
+        track.notes.push_back(fmt::format("{} fragments between gaps, shorter than {} samples or {} s, were left out",
                                           dropped, least_of_piece, least_of_piece_s));
 }
 
@@ -241,12 +243,12 @@ void demand_length(const Track& track) {
     for (const auto& piece : track.pieces)
         if (is_short(piece))
             throw bad_input(
-                "{}: the piece from {} s on is too short: {} samples in {:.3g} s; at least {} in {} s are wanted",
+                "{}: the piece from {} s on is too short: {} samples in {:.3g} s; it needs at least {} in {} s",
                 piece.name, piece.time_s.front(), piece.size(), piece.duration(), least_of_piece, least_of_piece_s);
     if (track.samples() < least_samples || track.duration() < least_s)
         throw bad_input(
-            "{}: the track is too short: {} samples in {:.3g} s; at least {} in {} s are wanted, some swings "
-            "of both arms",
+            "{}: the track is too short: {} samples in {:.3g} s; it needs at least {} in {} s, some swings of both "
+            "links",
             track.pieces.front().name, track.samples(), track.duration(), least_samples, least_s);
 }
 
@@ -261,12 +263,12 @@ void demand_motion(const Track& track) {
         }
         if (most < std::max(least, 20 * track.noise[arm]))
             throw bad_input(
-                "{}: theta{} {}: it moves by {:.2g} rad with a noise of {:.2g} rad, which tells no model; "
-                "at least {} rad and 20 times the noise are wanted",
+                "{}: theta{} {}: it moves by {:.2g} rad with a noise of {:.2g} rad, which is too little; it must be at "
+                "least {} rad and 20 times the noise",
                 name, arm + 1, most < least ? "is flat" : "is mostly noise", most, track.noise[arm], least);
     }
     if (std::ranges::all_of(track.pieces, [](const auto& piece) { return piece.angle[0] == piece.angle[1]; }))
-        throw bad_input("{}: theta1_rad and theta2_rad are the same numbers: one arm only", name);
+        throw bad_input("{}: theta1_rad and theta2_rad have the same numbers; both links are needed", name);
 }
 
 /// Another way to take the columns.
@@ -299,13 +301,12 @@ double unexplained(const std::vector<Glimpse>& glimpses, const Reading& reading)
 void convert(Track& track, const Reading& reading) {
     std::vector<std::string> words;
     if (reading.mirrored) words.push_back("theta2 counted the other way round");
-    if (reading.relative) words.push_back("theta2 counted from the first arm");
+    if (reading.relative) words.push_back("theta2 counted from the first link");
     for (std::size_t arm = 0; arm < 2; ++arm)
         if (const int degrees = 90 * reading.quarters[arm]; degrees != 0)
             words.push_back(fmt::format("theta{} counted from {}° off the downward vertical", arm + 1, degrees));
-    track.notes.push_back(
-        fmt::format("only so do the angles obey a double pendulum's equations, and so they were taken: {}",
-                    fmt::join(words, "; ")));
+    track.notes.push_back(fmt::format("the angles fit a double pendulum only if read as follows, and are read so: {}",
+                                      fmt::join(words, "; ")));
     for (auto& piece : track.pieces)
         for (std::size_t i = 0; i < piece.size(); ++i) reading.take(piece.angle[0][i], piece.angle[1][i], true);
 }
@@ -338,14 +339,14 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
     if (is_better && best.unit == 1) return convert(track, best);
     if (is_better)
         throw bad_input(
-            "{}: the angles are in degrees; radians are wanted (degrees × π/180): taken so, {:.0f} % of the forces are "
-            "unexplained, else {:.0f} %",
+            "{}: the angles are in degrees; they must be in radians (degrees × π/180): converted, {:.0f} % of the "
+            "forces are unexplained, otherwise {:.0f} %",
             name, 100 * least, 100 * as_it_is);
     constexpr double most_turns = 60;             // rad: ten turns and a half
     if (as_it_is > obeys && widest > most_turns)  // else the fit will tell
         throw bad_input(
-            "{}: the angles go from {:.3g} to {:.3g}, and obey no double pendulum's equations: are they in degrees? "
-            "Radians are wanted (degrees × π/180)",
+            "{}: the angles go from {:.3g} to {:.3g}, and do not fit a double pendulum; are they in degrees? They must "
+            "be in radians (degrees × π/180)",
             name, low[0], high[0]);
 }
 
@@ -407,7 +408,7 @@ void check_track(Track& track, const std::atomic<bool>& stop) {
     find_noise(track, stop);
     demand_motion(track);
     if (const auto outliers = track.outliers(), all = 2 * track.samples(); outliers > 0) {
-        const auto words = fmt::format("{} of {} angles are far off their neighbours", outliers, all);
+        const auto words = fmt::format("{} of {} angles are outliers", outliers, all);
         if (10 * outliers > all) throw bad_input("{}: {}; a track is wanted", track.pieces.front().name, words);
         track.notes.push_back(words + ", and were left out");
     }

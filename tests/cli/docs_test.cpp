@@ -50,5 +50,62 @@ TEST(Docs, ExamplesPrintWhatTheySay) {
     });
 }
 
+/// The commands of a page, as a reader types them one after another into one folder. So that they take seconds, films that are
+/// not cut are two frames long and pictures without a size small; figures that take minutes only list their files. What takes
+/// other programs (GNU parallel, Slurm) has its own tests (Recipe).
+class PageOfCommands : public testing::TestWithParam<fs::path> {
+protected:
+    static std::string commands_of(const fs::path& page) {
+        const auto text = bytes_of(page);
+        const std::regex block("\\n```sh\\n([^`]*)```"), foreign("parallel|#!/bin/sh|apt install");
+        std::string all;
+        for (std::sregex_iterator found(text.begin(), text.end(), block), end; found != end; ++found)
+            if (const auto commands = found->str(1); !std::regex_search(commands, foreign)) all += commands;
+        return all;
+    }
+
+    /// ./doppel: the program, its commands made short.
+    static constexpr const char* shortened = R"(#!/bin/bash
+case "$1 $*" in
+    test*|package*) exit 0 ;;
+    init*) rm -f "${@: -1}" ;;
+    figure*" all "*|figure*--tiles*|figure*mine.toml*) set -- "$@" --list-outputs ;;
+    render*--size*|render*--quality*|still*) ;;
+    render*) set -- "$@" --size 320x180 ;;
+esac
+case "$1 $*" in
+    render*--frames*|render*--to*|render*--list-outputs*) ;;
+    render*) set -- "$@" --frames 0:2 ;;
+esac
+exec "$DOPPEL" "$@"
+)";
+    static constexpr const char* prepare = R"(
+mkdir -p presets golden/mine
+ln -s ")" DOPPEL_SOURCE_DIR R"(/presets/data" presets/data
+./doppel init mine.toml
+cp mine.toml presets/
+./doppel render mine.toml --format png --size 480x270 --frames 0:3 --set video.fps=1 --out kept
+./doppel figure fig6 --size 480x270 --set scene.duration_s=3 --out kept
+cp kept/mine/frames/* golden/mine/
+cp kept/fig6/fig6.png golden/
+)";
+};
+
+TEST_P(PageOfCommands, Runs) {
+    const auto commands = commands_of(GetParam());
+    if (commands.empty()) return;
+    const auto folder = fresh_folder();
+    test::write_bytes(folder / "doppel", shortened);
+    fs::permissions(folder / "doppel", fs::perms::owner_all);
+    const auto result = shell(folder, "set -e; PATH=\"$PWD:$PATH\"\n" + std::string(prepare) + "set -x\n" + commands);
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(Docs, PageOfCommands, testing::ValuesIn(pages()), [](const auto& page) {
+    auto name = page.param.stem().string();
+    std::erase(name, '-');
+    return name;
+});
+
 }  // namespace docs_test
 }  // namespace doppel

@@ -1,4 +1,4 @@
-// docs/presets.md says what the lists of keys say.
+// docs/presets*.md say what the lists of keys say.
 #include "figure/preset.hpp"
 
 #include <gtest/gtest.h>
@@ -12,13 +12,14 @@
 namespace doppel {
 namespace reference_test {
 
-constexpr const char* path = DOPPEL_SOURCE_DIR "/docs/presets.md";
-
 TEST(Reference, OfPresetsIsThatOfTheLists) {
-    if (std::getenv("DOPPEL_UPDATE_REFERENCE")) std::ofstream(path) << preset_reference();
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    EXPECT_EQ(text.str(), preset_reference()) << "tests/update-reference makes docs/presets.md anew";
+    for (const auto& page : reference_pages()) {
+        const auto path = DOPPEL_SOURCE_DIR "/docs/" + page.file;
+        if (std::getenv("DOPPEL_UPDATE_REFERENCE")) std::ofstream(path) << page.text;
+        std::ostringstream text;
+        text << std::ifstream(path).rdbuf();
+        EXPECT_EQ(text.str(), page.text) << "tests/update-reference writes " << page.file;
+    }
 }
 
 /// The keys of the tables of that name in the lists.

@@ -33,7 +33,7 @@ TEST(FitEnergy, TracksPlayedBackwardsAreRefused) {
     for (const auto& truth : {lab_arms(), viscous}) {
         const auto track = simulated(truth, Drag::carried, {.noise = 1e-3});
         EXPECT_EQ(ending_of(track, false).first, 0);
-        for (const auto bodies : {Bodies::automatic, Bodies::compound}) {
+        for (const auto bodies : {Bodies::automatic, Bodies::rigid}) {
             const auto [code, words] = ending_of(track, true, bodies);
             EXPECT_EQ(code, 3);
             EXPECT_NE(words.find("gains energy"), std::string::npos) << words;

@@ -84,7 +84,7 @@ TEST(FitProgram, FitsARealPendulum) {
         EXPECT_NE(result.out.find("out/lab/lab" + std::string(ending)), std::string::npos) << result.out;
     const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json"));
     const auto& model = json["model"];
-    EXPECT_EQ(model["name"], "compound, viscous, dry, drag by the air met");
+    EXPECT_EQ(model["name"], "rigid bodies, viscous, Coulomb, drag by relative velocity");
     EXPECT_LT(model["left_out_rms_rad"].get<double>(), 0.0007);  // measured 0.00046
     const auto ratio = [&](const char* key) { return model["ratios_to_B"][key]["value"].get<double>(); };
     EXPECT_NEAR(ratio("inertia_ratio"), 1.795, 0.02);  // published
@@ -106,7 +106,7 @@ TEST(FitProgram, WhatWasLeftOutIsNoProgress) {
     track.pieces[0].angle[0][500] += 5;
     const auto result = fit(folder, files_of(folder, track), {"--model", "point"});
     EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_EQ(result.err, "p0: 1 of 2668 angles are far off their neighbours, and were left out\n");
+    EXPECT_EQ(result.err, "p0: 1 of 2668 angles are outliers, and were left out\n");
 }
 
 /// Of pieces that were not fitted: two seconds tell the start, the rest is predicted.

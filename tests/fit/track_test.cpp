@@ -39,16 +39,16 @@ TEST(FitTrack, RefusesWhatIsNoTable) {
         {"", "a.csv: the file is empty"},
         {head, "a.csv: there are no rows"},
         {"t,theta1_rad,theta2_rad\n", "a.csv:1: there is no column time_s"},
-        {"time_s,a,b\n", "there are no angles; theta1_rad and theta2_rad are wanted, or x0_px"},
-        {"time_s,theta1_rad\n", "a.csv:1: there is one arm only, theta1_rad"},
+        {"time_s,a,b\n", "there are no angles; the columns must be theta1_rad and theta2_rad, or x0_px"},
+        {"time_s,theta1_rad\n", "a.csv:1: there is only one link, theta1_rad"},
         {"time_s,x0_px,y0_px,x1_px,y1_px\n", "x2_px, y2_px (end) there are 4 columns"},
         {"time_s,theta1_deg,theta2_deg\n", "\"theta1_deg\" is in degrees"},
-        {head + "0,1\n", "a.csv:2: there are 2 cells, and 3 columns"},
-        {head + "0,1,2\n1,x,2\n", "a.csv:3: theta1_rad is no number"},
+        {head + "0,1\n", "a.csv:2: the row has 2 cells; the header has 3 columns"},
+        {head + "0,1,2\n1,x,2\n", "a.csv:3: theta1_rad is not a number"},
         {head + "0,1,nan\n", "a.csv:2: theta2_rad is nan; leave out rows without a measurement"},
-        {head + "0,1,2\n0.1,1e300,2\n", "a.csv:3: theta1_rad is beyond 1000000 rad, which is no swing"},
+        {head + "0,1,2\n0.1,1e300,2\n", "a.csv:3: theta1_rad is beyond 1000000 rad; check its unit"},
         {head + "0,1,2\n0.1,1,2\n0.05,1,2\n",
-         "a.csv:4: time_s goes from 0.1 to 0.05; rows are wanted in the order of time"},
+         "a.csv:4: time_s goes from 0.1 to 0.05; rows must be in the order of time"},
         {"time_s,x0_px,y0_px,x1_px,y1_px,x2_px,y2_px\n0,5,5,5,5,9,9\n", "a.csv:2: two of pivot, joint"}};
     for (const auto& [text, words] : cases) expect_refused({text}, 2, words);
 }
@@ -60,7 +60,7 @@ TEST(FitTrack, RefusesWhatTellsNoModel) {
     expect_refused({swing(), csv_of(track.pieces[0])}, 2,
                    "b.csv: the piece from 0 s on is too short: 11 samples in 0.1 s");
     expect_refused({changed([](double, double a, double) { return std::pair(a, 0.3); })}, 2, "theta2 is flat");
-    expect_refused({changed([](double, double a, double) { return std::pair(a, a); })}, 2, "one arm only");
+    expect_refused({changed([](double, double a, double) { return std::pair(a, a); })}, 2, "both links are needed");
     track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 0.05, .amplitude = 0.01});
     for (auto& angle : track.pieces[0].angle)
         for (auto& value : angle) value *= 0.1;
@@ -73,9 +73,9 @@ TEST(FitTrack, RefusesWhatTellsNoModel) {
 TEST(FitTrack, RefusesMistakesOfUnitAndOrder) {
     constexpr double degree = 180 / std::numbers::pi;
     expect_refused({changed([](double, double a, double b) { return std::pair(degree * a, degree * b); })}, 2,
-                   "the angles are in degrees; radians are wanted");
+                   "the angles are in degrees; they must be in radians");
     expect_refused({changed([](double, double a, double b) { return std::pair(b, a); })}, 2,
-                   "theta1_rad and theta2_rad seem to be swapped: as they are, the first arm has no weight of its own");
+                   "theta1_rad and theta2_rad seem to be swapped: D1 B/(C D2) is");
     expect_refused({changed([](double, double a, double b) { return std::pair(degree * b, degree * a); })}, 2,
                    "degrees");
 }
@@ -151,7 +151,7 @@ TEST(FitTrack, CutsAtGapsAndNumbersAndJoinsTurns) {
         EXPECT_LT(std::abs(joined.pieces[0].angle[0][i] - joined.pieces[0].angle[0][i - 1]), 1);
     const auto without = read({fragment});
     EXPECT_EQ(without.start_s, (std::vector{0, 4.81}));
-    EXPECT_EQ(without.notes.at(0), "1 stretches between gaps, of less than 12 samples or 0.25 s, were left out");
+    EXPECT_EQ(without.notes.at(0), "1 fragments between gaps, shorter than 12 samples or 0.25 s, were left out");
 }
 
 /// 100 000 pieces of one row each.
@@ -169,7 +169,7 @@ TEST(FitTrack, LeavesWildSamplesOut) {
     const auto read_again = read({csv_of(track.pieces[0])});
     EXPECT_EQ(read_again.outliers(), 3u);
     for (const std::size_t i : {50, 120, 333}) EXPECT_EQ(read_again.pieces[0].is_outlier[1][i], 1);
-    EXPECT_EQ(read_again.notes.at(0), "3 of 1202 angles are far off their neighbours, and were left out");
+    EXPECT_EQ(read_again.notes.at(0), "3 of 1202 angles are outliers, and were left out");
     EXPECT_NEAR(read_again.noise[0], 1e-3, 1e-4);  // measured 1.01e-3
 }
 

@@ -203,7 +203,7 @@ TYPED_TEST(Adaptively, RefusesATolerance) {
         EXPECT_EQ(code, ExitCode::bad_input) << tolerance;
         if (tolerance == 1e-17) {
             EXPECT_EQ(said, std::string(TypeParam::method.name) +
-                                ": tolerance = 1e-17 cannot be met with 16 digits; the finest is 9e-16");
+                                ": tolerance = 1e-17 is too small for 16 digits; it must be at least 9e-16");
         }
     }
     using Fine = DoublePendulum<Quad>;

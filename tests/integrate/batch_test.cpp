@@ -82,13 +82,13 @@ std::string refusal(Make make) {
 TEST(Batch, SaysWhatItCannotStep) {
     const auto trials = some_trials(2);
     EXPECT_EQ(refusal([&] { Batch(trials, Model::angles, "dop853", step); }),
-              "two or three links are stepped side by side, by euler or rk4: not 2 by dop853");
+              "a batch needs two or three links and euler or rk4; it has 2 and dop853");
     EXPECT_EQ(refusal([&] { Batch(some_trials(4), Model::angles, "rk4", step); }),
-              "two or three links are stepped side by side, by euler or rk4: not 4 by rk4");
+              "a batch needs two or three links and euler or rk4; it has 4 and rk4");
     auto mixed = trials;
     mixed.back() = some_trials(3).back();
     EXPECT_EQ(refusal([&] { Batch(mixed, Model::angles, "euler", step); }),
-              "the pendulums of a batch have as many links each: not 2 and 3");
+              "all pendulums of a batch must have the same number of links; they have 2 and 3");
     refusal([&] { Batch({}, Model::angles, "euler", step); });
     refusal([&] { Batch(trials, Model::angles, "euler", step, 3); });
 }

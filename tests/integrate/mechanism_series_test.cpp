@@ -126,7 +126,7 @@ TEST(MechanismSeries, NamesASingularConfigurationOnTheWay) {
     for (const double h : {0.15, 0.2, 0.25}) {
         const auto said = said_of(parts, h);
         EXPECT_EQ(said.substr(0, said.find("; the particles are at (1, ")),
-                  "singular configuration: constraint 3 (rod 1–2) has come to follow from constraints 1 and 2, and the "
+                  "singular configuration: constraint 3 (rod 1–2) now follows from constraints 1 and 2, so the "
                   "forces are not determined");
     }
 }
@@ -148,7 +148,8 @@ TEST(MechanismSeries, NamesASpringWhoseEndsMeet) {
     EXPECT_EQ(said_of(parts, 0.1), "no error");  // it is 5 N/m in any direction
     parts.forces.push_back(Spring<double>{one, P(1, 1), 5, 1});
     EXPECT_EQ(said_of(parts, 0.1),
-              "force 2 (spring 1–fixed): its ends have met, where it has no direction; start so that they do not");
+              "force 2 (spring 1–fixed): its ends are at the same place, where its direction is undefined; choose a "
+              "start that does not lead there");
 }
 
 }  // namespace mechanism_series_test

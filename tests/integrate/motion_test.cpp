@@ -172,7 +172,7 @@ TEST(Motion, IsNotMadeOfWhatHasNothingToStabilise) {
             EXPECT_EQ(fault(model, "rk4", stabilise).first, ExitCode::done);
         }
         EXPECT_EQ(fault(Model::angles, "rk4", stabilise),
-                  bad("in angles the rods keep their length by themselves; there is nothing to stabilise"));
+                  bad("in angles the rods have constant length; there is nothing to stabilise"));
     }
 }
 

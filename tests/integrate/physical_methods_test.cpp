@@ -150,7 +150,7 @@ TEST(PhysicalModels, MoveInAnglesAlone) {
     spec.model = Model::constraints;
     EXPECT_EQ(refusal(spec),
               test::Thrown(ExitCode::bad_input,
-                           "links with mass, friction or a drive move in angles, not as particles on rods"));
+                           "links with mass, friction or a drive need model = \"angles\"; it is \"constraints\""));
     spec.model = Model::angles;
     EXPECT_EQ(refusal(spec).first, ExitCode::done);
     spec.physical->friction.coulomb = {Quad(0.5), Quad(0.5)};

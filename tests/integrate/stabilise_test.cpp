@@ -124,7 +124,7 @@ TEST(Projected, SaysWhenThereIsNoWayBack) {
     Chain::State y = Chain::State::Zero(8);
     const auto [code, said] = test::thrown_by([&] { model.project(y); });
     EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_EQ(said.rfind("projection: the constraints are still off by ", 0), 0u) << said;
+    EXPECT_EQ(said.rfind("projection: the constraints still have an error of ", 0), 0u) << said;
 }
 
 /// How C of a hanging rod, stretched by 1e-9 m, goes on: after `steps` steps of Euler or Runge–Kutta with α dt = z.

@@ -179,9 +179,9 @@ std::string error_of(ExitCode code, Action&& action) {
 TEST(Taylor, RefusesWhatTheScalarCannotGive) {
     const auto p = p1.pendulum;
     EXPECT_EQ(error_of(ExitCode::bad_input, [&] { end_of<AngleChain<double, 2>>(p, 1.0, 1e-16); }),
-              "taylor: tolerance = 1e-16 cannot be met with 16 digits; the finest is 9e-16");
+              "taylor: tolerance = 1e-16 is too small for 16 digits; it must be at least 9e-16");
     EXPECT_EQ(error_of(ExitCode::bad_input, [&] { end_of<AngleChain<Quad, 2>>(p.cast<Quad>(), Quad(1), Quad(1e-34)); }),
-              "taylor: tolerance = 1e-34 cannot be met with 34 digits; the finest is 8e-34");
+              "taylor: tolerance = 1e-34 is too small for 34 digits; it must be at least 8e-34");
     EXPECT_NE(error_of(ExitCode::bad_input, [&] { end_of<AngleChain<double, 2>>(p, 1.0, std::nan("")); }), "no error");
 }
 

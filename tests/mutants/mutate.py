@@ -13,7 +13,7 @@ After tests were added there: build, cover, and run --again, which shows survivo
 All mutants stand in one program and are chosen at run time (mutants.hpp), so that one build serves all. A mutant is an
 operator exchanged (+ -, * /, a comparison), a condition turned round, a number changed, or a statement left out. It is
 caught when a test that reaches it fails, ends by a signal, or takes more than ten times as long and a minute when it runs
-alone; tests of its own room are tried first, then of those that stand on it. It runs as root (a mount of its own for what
+alone; tests of its own module are tried first, then of those that stand on it. It runs as root (a mount of its own for what
 each test writes).
 """
 import argparse, collections, concurrent.futures, json, os, pathlib, random, re, signal, subprocess, sys, time
@@ -96,12 +96,12 @@ def candidates(path):
     return found
 
 
-def plant(tree, rooms, count, seed):
+def plant(tree, modules, count, seed):
     lot = random.Random(seed)
     mutants = []
-    for room in rooms:
+    for module in modules:
         places = []
-        for path in sorted((tree / "src" / room).glob("*.[ch]pp")):
+        for path in sorted((tree / "src" / module).glob("*.[ch]pp")):
             places += [(path, *place) for place in candidates(path)]
         lot.shuffle(places)
         taken, chosen = set(), []
@@ -109,10 +109,10 @@ def plant(tree, rooms, count, seed):
             if (path, line) not in taken and len(chosen) < count:
                 taken.add((path, line))
                 chosen.append((path, line, start, end, new, what, constant))
-        print(f"{room}: {len(chosen)} of {len(places)} places")
+        print(f"{module}: {len(chosen)} of {len(places)} places")
         for path, line, start, end, new, what, constant in chosen:
             original = path.read_text().split("\n")[line]
-            mutants.append(dict(id=len(mutants) + 1, room=room, file=str(path.relative_to(tree)), line=line + 1, start=start,
+            mutants.append(dict(id=len(mutants) + 1, module=module, file=str(path.relative_to(tree)), line=line + 1, start=start,
                                 end=end, new=new, what=what, constant=constant, original=original, state="planted"))
     save(tree, mutants)
     for mutant in mutants:
@@ -173,11 +173,11 @@ def build(tree, jobs):
 
 # ---- running ------------------------------------------------------------------------------------------------------
 
-def program(tree, room):
-    return tree / "build" / "mutants" / "tests" / f"test_{room}"
+def program(tree, module):
+    return tree / "build" / "mutants" / "tests" / f"test_{module}"
 
 
-def run_tests(tree, worker, room, names, mutant, seconds, reached=None):
+def run_tests(tree, worker, module, names, mutant, seconds, reached=None):
     """(exit code or None where time ran out, output) of these tests with this mutant, in a folder of the worker's."""
     own = tree / "workers" / str(worker)
     (own / "output").mkdir(parents=True, exist_ok=True)
@@ -189,7 +189,7 @@ def run_tests(tree, worker, room, names, mutant, seconds, reached=None):
     environment = dict(os.environ, DOPPEL_MUTANT=str(mutant), TMPDIR=str(own / "tmp"), GTEST_FLAGFILE=str(flags))
     if reached:
         environment["DOPPEL_MUTANTS_REACHED"] = str(reached)
-    command = ["unshare", "-m", "sh", "-c", f"mount --bind {own}/output {output} && exec {program(tree, room)} --gtest_flagfile={flags}"]
+    command = ["unshare", "-m", "sh", "-c", f"mount --bind {own}/output {output} && exec {program(tree, module)} --gtest_flagfile={flags}"]
     environment.pop("GTEST_FLAGFILE")
     process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                stdin=subprocess.DEVNULL, start_new_session=True)
@@ -207,10 +207,10 @@ def run_tests(tree, worker, room, names, mutant, seconds, reached=None):
     return code, out.decode(errors="replace")
 
 
-def fault(tree, worker, room, tests, mutant):
+def fault(tree, worker, module, tests, mutant):
     """The test that catches the mutant, or None. What runs out of time is tried once more alone."""
     seconds = sum(test["seconds"] for test in tests)
-    code, out = run_tests(tree, worker, room, [test["name"] for test in tests], mutant, 5 * seconds + 20)
+    code, out = run_tests(tree, worker, module, [test["name"] for test in tests], mutant, 5 * seconds + 20)
     if code == 0:
         return None
     failed = re.search(r"\[  FAILED  \] (\S+?),? ", out)
@@ -220,17 +220,17 @@ def fault(tree, worker, room, tests, mutant):
     if code is not None or not begun:
         return (begun[-1] if begun else "?") + f" (exit {code})"
     slow = next(test for test in tests if test["name"] == begun[-1])
-    code, out = run_tests(tree, worker, room, [slow["name"]], mutant, 10 * slow["seconds"] + 60)
+    code, out = run_tests(tree, worker, module, [slow["name"]], mutant, 10 * slow["seconds"] + 60)
     if code is None:
         return slow["name"] + " (time)"
     if code != 0:
         return slow["name"]
     left = [test for test in tests if test["name"] not in begun]
-    return fault(tree, worker, room, left, mutant) if left else None
+    return fault(tree, worker, module, left, mutant) if left else None
 
 
-def tests_of(tree, room):
-    listing = subprocess.run([program(tree, room), "--gtest_list_tests"], capture_output=True, text=True).stdout
+def tests_of(tree, module):
+    listing = subprocess.run([program(tree, module), "--gtest_list_tests"], capture_output=True, text=True).stdout
     suite, names = "", []
     for line in listing.splitlines():
         if line.startswith("  "):
@@ -240,29 +240,29 @@ def tests_of(tree, room):
     return names
 
 
-def cover(tree, rooms, jobs):
-    """Every test (of these rooms) once alone: how long it takes and which mutants it reaches. A test that fails here is
+def cover(tree, modules, jobs):
+    """Every test (of these modules) once alone: how long it takes and which mutants it reaches. A test that fails here is
     left out, and one that was measured before is not measured again."""
     path = tree / "tests.json"
     known = json.loads(path.read_text()) if path.exists() else []
-    there = {(test["room"], test["name"]) for test in known}
-    work = [(room, name) for room in rooms or ROOMS if program(tree, room).exists() for name in tests_of(tree, room)
-            if (room, name) not in there]
+    there = {(test["module"], test["name"]) for test in known}
+    work = [(module, name) for module in modules or ROOMS if program(tree, module).exists() for name in tests_of(tree, module)
+            if (module, name) not in there]
     (tree / "reached").mkdir(exist_ok=True)
 
     def one(numbered):
-        index, (room, name) = numbered
+        index, (module, name) = numbered
         file = tree / "reached" / str(index)
         file.write_bytes(bytes(4096))
         start = time.monotonic()
-        code, out = run_tests(tree, f"cover-{index % jobs}" if jobs == 1 else f"cover-{index}", room, [name], -1, 600, file)
+        code, out = run_tests(tree, f"cover-{index % jobs}" if jobs == 1 else f"cover-{index}", module, [name], -1, 600, file)
         seconds = time.monotonic() - start
         bytes_ = file.read_bytes()
         file.unlink()
         subprocess.run(["rm", "-rf", tree / "workers" / f"cover-{index}"])
         if code != 0:
-            print(f"left out: {room}:{name} ({code})", flush=True)
-        return dict(room=room, name=name, seconds=seconds, passes=code == 0,
+            print(f"left out: {module}:{name} ({code})", flush=True)
+        return dict(module=module, name=name, seconds=seconds, passes=code == 0,
                     reaches=[i for i, b in enumerate(bytes_) if b & 1], void=[i for i, b in enumerate(bytes_) if b == 2])
 
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
@@ -279,12 +279,12 @@ def cover(tree, rooms, jobs):
     save(tree, mutants)
 
 
-def order_of(room):
-    at = ROOMS.index(room)
-    return [room] + ROOMS[at + 1:] + ROOMS[:at]
+def order_of(module):
+    at = ROOMS.index(module)
+    return [module] + ROOMS[at + 1:] + ROOMS[:at]
 
 
-def run(tree, rooms, jobs, count, most_seconds, again):
+def run(tree, modules, jobs, count, most_seconds, again):
     mutants, tests = load(tree), json.loads((tree / "tests.json").read_text())
     results = tree / "results.jsonl"
     lines = results.read_text().splitlines() if results.exists() else []
@@ -296,18 +296,18 @@ def run(tree, rooms, jobs, count, most_seconds, again):
     left = collections.Counter()
     work = []
     for mutant in mutants:
-        if mutant["state"] == "planted" and left[mutant["room"]] < count:
-            left[mutant["room"]] += 1
-            if mutant["id"] not in known and (not rooms or mutant["room"] in rooms):
+        if mutant["state"] == "planted" and left[mutant["module"]] < count:
+            left[mutant["module"]] += 1
+            if mutant["id"] not in known and (not modules or mutant["module"] in modules):
                 work.append(mutant)
 
     def one(mutant):
         worker = f"run-{mutant['id']}"
         result = dict(id=mutant["id"], caught=None, complete=True, shown=sorted(shown.get(mutant["id"], ())))
         spent = 0
-        for room in order_of(mutant["room"]):
-            reaching = sorted((t for t in tests if t["room"] == room and t["passes"] and mutant["id"] in t["reaches"]
-                               and f"{room}:{t['name']}" not in shown.get(mutant["id"], ())), key=lambda t: t["seconds"])
+        for module in order_of(mutant["module"]):
+            reaching = sorted((t for t in tests if t["module"] == module and t["passes"] and mutant["id"] in t["reaches"]
+                               and f"{module}:{t['name']}" not in shown.get(mutant["id"], ())), key=lambda t: t["seconds"])
             while reaching and not result["caught"]:
                 if spent > most_seconds:
                     result["complete"] = False
@@ -317,9 +317,9 @@ def run(tree, rooms, jobs, count, most_seconds, again):
                     several.append(reaching.pop(0))
                     seconds += several[-1]["seconds"]
                 spent += seconds
-                result["shown"] += [f"{room}:{test['name']}" for test in several]
-                caught = fault(tree, worker, room, several, mutant["id"])
-                result["caught"] = caught and f"{room}:{caught}"
+                result["shown"] += [f"{module}:{test['name']}" for test in several]
+                caught = fault(tree, worker, module, several, mutant["id"])
+                result["caught"] = caught and f"{module}:{caught}"
             if result["caught"]:
                 break
         subprocess.run(["rm", "-rf", tree / "workers" / worker])
@@ -336,13 +336,13 @@ def report(tree):
     lines = (tree / "results.jsonl").read_text().splitlines()
     results = list({r["id"]: r for r in map(json.loads, lines)}.values())  # the last of each
     results = [r for r in results if mutants[r["id"]]["state"] == "planted"]
-    for room in ROOMS:
-        of_room = [r for r in results if mutants[r["id"]]["room"] == room]
+    for module in ROOMS:
+        of_room = [r for r in results if mutants[r["id"]]["module"] == module]
         if not of_room:
             continue
         caught = [r for r in of_room if r["caught"]]
-        own = [r for r in caught if r["caught"].startswith(room + ":")]
-        print(f"{room}: {len(caught)} of {len(of_room)} caught, {len(own)} by the room's own tests")
+        own = [r for r in caught if r["caught"].startswith(module + ":")]
+        print(f"{module}: {len(caught)} of {len(of_room)} caught, {len(own)} by the module's own tests")
     for r in sorted(results, key=lambda r: (mutants[r["id"]]["file"], mutants[r["id"]]["line"])):
         m = mutants[r["id"]]
         if not r["caught"]:
@@ -356,8 +356,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("step", choices=["plant", "build", "cover", "run", "report"])
     parser.add_argument("tree", type=pathlib.Path)
-    parser.add_argument("rooms", nargs="*", help="to plant in, or whose tests cover runs or whose mutants run shows (all)")
-    parser.add_argument("--count", type=int, default=100, help="mutants a room")
+    parser.add_argument("modules", nargs="*", help="to plant in, or whose tests cover runs or whose mutants run shows (all)")
+    parser.add_argument("--count", type=int, default=100, help="mutants a module")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=60, help="of tests that run shows a mutant at most, by what they take without")
@@ -365,10 +365,10 @@ def main():
     options = parser.parse_args()
     tree = options.tree.resolve()
     match options.step:
-        case "plant": plant(tree, options.rooms, options.count * 3 // 2, options.seed)
+        case "plant": plant(tree, options.modules, options.count * 3 // 2, options.seed)
         case "build": build(tree, options.jobs)
-        case "cover": cover(tree, options.rooms, options.jobs)
-        case "run": run(tree, options.rooms, options.jobs, options.count, options.seconds, options.again)
+        case "cover": cover(tree, options.modules, options.jobs)
+        case "run": run(tree, options.modules, options.jobs, options.count, options.seconds, options.again)
         case "report": report(tree)
 
 

@@ -56,12 +56,12 @@ TEST(MechanismFault, OfParts) {
         {Rod<double>{one, std::size_t{4}, 1},
          "constraint 6 (rod 1–5): there is no particle 5; the mechanism has 1 to 4"},
         {Rod<double>{two, two, 1},
-         "constraint 6 (rod 2–2): it joins particle 2 with itself; it needs two different ones"},
+         "constraint 6 (rod 2–2): it joins particle 2 to itself; it needs two different particles"},
         {Rod<double>{two, P(0, 0), 0}, "constraint 6 (rod 2–fixed): its length is 0 m; it must be greater than 0"},
         {SlotCircle<double>{three, P(0, 0), 0},
          "constraint 6 (slot-circle of particle 3): its radius is 0 m; it must be greater than 0"},
         {SlotLine<double>{three, P(0, 0), P(0, 0)},
-         "constraint 6 (slot-line of particle 3): its direction is (0, 0); it must point somewhere"},
+         "constraint 6 (slot-line of particle 3): its direction is (0, 0); it must not be zero"},
         {Anchor<double>{one, P(0, INFINITY)},
          "constraint 6 (anchor of particle 1): its place is (0, inf); both must be finite numbers"},
         {Gravity<double>{std::nan("")}, "force 1 (gravity): its g is nan m/s²; it must be a finite number"},
@@ -70,11 +70,11 @@ TEST(MechanismFault, OfParts) {
         {Spring<double>{one, two, 1, -1}, "force 1 (spring 1–2): its rest length is -1 m; it must not be negative"},
         {Spring<double>{one, two, 1, 1, -1}, "force 1 (spring 1–2): its damping is -1 N s/m; it must not be negative"},
         {Spring<double>{two, two, 1, 1},
-         "force 1 (spring 2–2): it joins particle 2 with itself; it needs two different ones"},
+         "force 1 (spring 2–2): it joins particle 2 to itself; it needs two different particles"},
         {Attraction<double>{one, one},
-         "force 1 (attraction 1–1): it joins particle 1 with itself; it needs two different ones"},
+         "force 1 (attraction 1–1): it joins particle 1 to itself; it needs two different particles"},
         {Droplet<double>{P(0.6, 0.8), 1},
-         "force 1 (droplet): particle 2 starts at (0.6, 0.8) m, where what attracts it is; they must start apart"},
+         "force 1 (droplet): particle 2 starts at (0.6, 0.8) m, the place of what attracts it; start it elsewhere"},
     });
 }
 
@@ -151,9 +151,9 @@ TEST(MechanismFault, OfASingularConfigurationHoweverLongTheSteps) {
         const auto [code, said] = test::thrown_by([&] { stepper.advance(std::lround(0.3 / step)); });
         EXPECT_EQ(code, ExitCode::method_failed) << step;
         EXPECT_EQ(said.substr(0, said.find("; the particles are at (1")),
-                  "singular configuration: constraint 3 (rod 1–2) has come to follow from constraints 1 and 2, and the "
+                  "singular configuration: constraint 3 (rod 1–2) now follows from constraints 1 and 2, so the "
                   "forces are not determined");
-        EXPECT_NE(said.find(") m; start so that they do not come there, or leave the constraint out"),
+        EXPECT_NE(said.find(") m; choose a start that does not lead there, or leave the constraint out"),
                   std::string::npos);
     }
     // up to where it turns back in time, it moves
@@ -170,7 +170,7 @@ TEST(MechanismFault, OfAMotionThatBlowsUp) {
     Mechanism<double> model(parts);
     const auto [code, message] = test::thrown_by([&] { after(model, parts, 100, 0.1); });
     EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_NE(message.find("the motion blew up; take shorter steps"), std::string::npos) << message;
+    EXPECT_NE(message.find("the motion diverged; use a smaller step"), std::string::npos) << message;
 }
 
 TEST(MechanismFault, OfRodsThatAStepHasTorn) {
@@ -182,8 +182,8 @@ TEST(MechanismFault, OfRodsThatAStepHasTorn) {
     y.head(4) << 1e20, 2e20, 1e20, 2e20;
     EXPECT_EQ(test::thrown_by([&] { model.rate(y, dydt); }),
               (test::Thrown{ExitCode::method_failed,
-                            "the particles have come to (1e+20, 2e+20), (1e+20, 2e+20) m, where a constraint is off by "
-                            "2.2e+20 times the longest rod: the motion blew up; take shorter steps"}));
+                            "the particles are at (1e+20, 2e+20), (1e+20, 2e+20) m, where a constraint has an error of "
+                            "2.2e+20 times the longest rod: the motion diverged; use a smaller step"}));
 }
 
 TEST(MechanismFault, OfNothingAtAStartThatIsMet) {

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{"[system]\nlinks = 3\n" + track.substr(track.find("[a.track]")),
                     "nowhere/x.toml:4:1: [a.track] file a track is of a double pendulum; the side has 3 links"},
         RefusedText{track + "start_s = 3",
-                    "nowhere/x.toml:5:1: [a.track] start_s no sample is at 3 s: the track goes "
+                    "nowhere/x.toml:5:1: [a.track] start_s no sample at 3 s: the track goes "
                     "from 0 to 2.666 s"},
         RefusedText{track + "start_s = 1",
                     "x: [scene] duration_s must be at most \"199/120\", as long as the track of "

@@ -90,7 +90,7 @@ TEST(Replay, BeginsWhereItIsToldAndEndsWithItsPiece) {
             ADD_FAILURE() << gap;
         } catch (const Error& fault) {
             EXPECT_EQ(fault.what(),
-                      fmt::format("no sample is at {} s: the track goes from 0 to 2.402 s, in 2 pieces", gap));
+                      fmt::format("no sample at {} s: the track goes from 0 to 2.402 s, in 2 pieces", gap));
         }
 }
 

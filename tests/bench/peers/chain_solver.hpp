@@ -35,7 +35,7 @@ public:
         rate_.evaluations = steps_ = 0;
         integrate();
         for (const double x : y_)
-            if (!std::isfinite(x)) throw method_failed("the motion has blown up");
+            if (!std::isfinite(x)) throw method_failed("the motion diverged");
     }
     void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) final {}
     Observation observe() const final {

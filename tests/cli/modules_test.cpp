@@ -41,7 +41,7 @@ const std::map<std::string, std::set<std::string>> needs{
       "render", "image", "base"}},
 };
 
-/// Calls visit(file, room or system header) for every include in src.
+/// Calls visit(file, module or system header) for every include in src.
 template <class Visit>
 void for_each_include(Visit&& visit) {
     const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
@@ -53,40 +53,40 @@ void for_each_include(Visit&& visit) {
     }
 }
 
-TEST(Rooms, IncludeOnlyWhatTheyMay) {
+TEST(Modules, IncludeOnlyWhatTheyMay) {
     long seen = 0;
     for_each_include([&](const fs::path& file, const std::string& header) {
         if (file.filename() == "main.cpp") return;
-        const auto room = file.parent_path().filename().string();
+        const auto module = file.parent_path().filename().string();
         const auto other = fs::path(header).begin()->string();
-        ASSERT_TRUE(needs.contains(room)) << file << " is in a room of which nothing is said above";
-        if (!needs.contains(other) || other == room || other == header) return;  // <numeric> is a file
-        EXPECT_TRUE(needs.at(room).contains(other)) << file << " includes " << header;
+        ASSERT_TRUE(needs.contains(module)) << file << " is in a module of which nothing is said above";
+        if (!needs.contains(other) || other == module || other == header) return;  // <numeric> is a file
+        EXPECT_TRUE(needs.at(module).contains(other)) << file << " includes " << header;
         ++seen;
     });
     EXPECT_GT(seen, 300);  // measured 334
 }
 
 /// Charts are made of shapes and words: what draws them is not theirs to know.
-TEST(Rooms, PlotsKnowNoOpenGl) {
+TEST(Modules, PlotsKnowNoOpenGl) {
     for_each_include([](const fs::path& file, const std::string& header) {
         if (file.parent_path().filename() != "plot") return;
         EXPECT_FALSE(header.starts_with("render/gl") || header == "render/renderer.hpp") << file << ": " << header;
     });
 }
 
-TEST(Rooms, NeedEachOtherOneWay) {
-    for (const auto& [room, others] : needs)
+TEST(Modules, NeedEachOtherOneWay) {
+    for (const auto& [module, others] : needs)
         for (const auto& other : others) {
-            EXPECT_FALSE(needs.at(other).contains(room)) << room << " and " << other;
+            EXPECT_FALSE(needs.at(other).contains(module)) << module << " and " << other;
             for (const auto& further : needs.at(other))
-                EXPECT_TRUE(others.contains(further)) << room << " needs " << other << ", which needs " << further;
+                EXPECT_TRUE(others.contains(further)) << module << " needs " << other << ", which needs " << further;
         }
 }
 
-/// Whose headers stand in one room alone, and there in files whose names begin so.
+/// Whose headers stand in one module alone, and there in files whose names begin so.
 struct Library {
-    std::string_view header, room, file;
+    std::string_view header, module, file;
 };
 constexpr Library libraries[]{
     {"GL/", "render", "gl_"},
@@ -104,15 +104,16 @@ constexpr Library libraries[]{
     {"CLI/", "cli", ""},
 };
 
-TEST(Rooms, KeepTheirLibrariesToThemselves) {
+TEST(Modules, KeepTheirLibrariesToThemselves) {
     std::set<std::string_view> seen;
     for_each_include([&](const fs::path& file, const std::string& header) {
-        const auto room = file.parent_path().filename().string(), name = file.filename().string();
+        const auto module = file.parent_path().filename().string(), name = file.filename().string();
         for (const auto& library : libraries) {
             if (!header.starts_with(library.header)) continue;
             seen.insert(library.header);
-            const bool is_main = library.room == "cli" && name == "main.cpp";
-            EXPECT_TRUE(is_main || (room == library.room && name.starts_with(library.file))) << file << ": " << header;
+            const bool is_main = library.module == "cli" && name == "main.cpp";
+            EXPECT_TRUE(is_main || (module == library.module && name.starts_with(library.file)))
+                << file << ": " << header;
         }
     });
     EXPECT_EQ(seen.size(), std::size(libraries));
