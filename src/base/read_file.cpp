@@ -30,7 +30,7 @@ std::string read_whole_file(const std::filesystem::path& path, const WantedFile&
                             const std::atomic<bool>* stop) {
     const auto reason = [] { return std::generic_category().message(errno); };
     if (path.native().find('\0') != std::string::npos)  // the system would open what is named before it
-        throw bad_input("{}: has a NUL in it, which no name of a file has", path.string());
+        throw bad_input("{}: contains a NUL character; a file name cannot", path.string());
     const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> owner(file < 0 ? nullptr : fdopen(file, "r"), std::fclose);
     if (!owner) throw bad_input("{}: {}", path.string(), errno == ENOENT ? std::string(wanted.missing) : reason());

@@ -29,7 +29,7 @@ bool is_limited(decltype(RLIMIT_AS) what) {
 }  // namespace
 
 Error no_thread() {
-    constexpr const char* none = "the system gives this process no further thread";
+    constexpr const char* none = "the system allows this process no more threads";
     const bool space = is_limited(RLIMIT_AS), data = is_limited(RLIMIT_DATA);
     if ((space || data) && !has_room_for_a_stack())
         return io_failed("{}: there is no memory for its stack; raise the limit of its memory ({})", none,

@@ -22,7 +22,7 @@
 namespace doppel {
 namespace {
 
-constexpr const char* unsettled_words = "stretches of the motion differ by more than chance: that ± may be too small";
+constexpr const char* unsettled_words = "parts of the run differ by more than chance: this ± may be too small";
 
 long frames_of(const Scene& scene) {
     return schedule_of(scene).frames();
@@ -56,21 +56,22 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto say = [](const std::string& words) { print_line("         {}", words); };
     if (side.choice && side.choice->horizon < scene.samples)
-        say(fmt::format("errs by less than {} {} up to {:.3g} s; no setting holds much longer in {}",
+        say(fmt::format("error below {} {} up to {:.3g} s; no setting holds much longer in {}",
                         scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon), precision));
     else if (side.choice)
-        say(fmt::format("errs by {} {} at most, to the end; verified by {}", scientific(side.choice->estimated_error),
+        say(fmt::format("error at most {} {} to the end; verified by {}", scientific(side.choice->estimated_error),
                         unit, side.choice->reference->description()));
     else if (seen.error_s < scene.time(scene.samples))
         say(off_words(side, seen.error_s));
     else
-        say(fmt::format("errs by about {} {} at the end", scientific(seen.error), unit));
+        say(fmt::format("error about {} {} at the end", scientific(seen.error), unit));
     if (seen.exponent) {
         const auto& [value, uncertainty, is_settled] = *seen.exponent;
         const double tenfold = std::log(10) / value;
         switch (seen.kind) {
             case Forecast::Kind::regular:
-                say(fmt::format("regular: no Lyapunov exponent to be seen ({:.2g} ± {:.1g} 1/s)", value, uncertainty));
+                say(fmt::format("regular: the Lyapunov exponent is not above 0 ({:.2g} ± {:.1g} 1/s)", value,
+                                uncertainty));
                 break;
             case Forecast::Kind::chaotic:
                 say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
@@ -80,13 +81,13 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
             case Forecast::Kind::unstable:
                 say(
                     fmt::format("released at an unstable equilibrium: near it errors grow tenfold every {:.2g} s "
-                                "(exponent {:.2g} 1/s); this alone is no chaos",
+                                "(exponent {:.2g} 1/s); this alone is not chaos",
                                 tenfold, value));
         }
     }
     if (seen.limit) {
         const auto from = fmt::format("{:.2g}", seen.limit->from), to = fmt::format("{:.2g}", seen.limit->to);
-        say(fmt::format("{} can follow it for about {}{} s", precision, from, from == to ? "" : " to " + to));
+        say(fmt::format("predictability limit in {}: about {}{} s", precision, from, from == to ? "" : " to " + to));
     }
 }
 
@@ -172,7 +173,7 @@ void print(const SceneCheck& check) {
                video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(video));
     print_line("  takes  {} {:.2g} s to simulate, {}", estimate.at_least ? "more than" : "about", estimate.seconds,
                check.render_s ? fmt::format("{:.2g} s to render", *check.render_s)
-                              : "to render is not known: " + check.why_not);
+                              : "time to render unknown: " + check.why_not);
 }
 
 Json forecast_json(const Scene& scene, const Side& side, const Forecast& seen) {
@@ -328,12 +329,12 @@ void check_presets(const CheckOptions& options) {
 
 void add_check(CLI::App& app) {
     auto options = std::make_shared<CheckOptions>();
-    auto& command = *app.add_subcommand("check", "What a preset would run: models and why, errors, steps, time");
+    auto& command = *app.add_subcommand("check", "Says what a preset would run: model, method, errors, steps, time");
     command.footer(
         "Examples:\n"
         "  doppel check butterfly\n"
-        "  doppel check butterfly --set system.accuracy=1e-6    the cheapest way to that error, in rad\n"
-        "  doppel check flip-map                                what a figure would take\n"
+        "  doppel check butterfly --set system.accuracy=1e-6    the cheapest way to this error, rad\n"
+        "  doppel check flip-map                                cost of a figure\n"
         "  doppel check butterfly --json | jq '.[0].warnings'");
     add_preset_options(command, *options);
     command.add_flag("--json", options->as_json,

@@ -167,8 +167,7 @@ std::string Comparison::summary() const {
 
 void add_compare(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<CompareOptions>();
-    auto& command =
-        *app.add_subcommand("compare", "Golden comparison of two PNGs, or of two folders of them, name by name");
+    auto& command = *app.add_subcommand("compare", "Compares two PNGs, or two folders of them, with the golden policy");
     command.footer(
         "Exit code 0: the same within the golden policy (a few pixels may differ a little, as between\n"
         "drivers); 1: they differ, and a picture of the difference was written to DIR/compare/.\n"

@@ -52,7 +52,8 @@ std::optional<Shard> shard_of(const FigureCommandOptions& options) {
     if (options.shard.empty()) return std::nullopt;
     const auto parts = two_numbers(options.shard, '/');
     if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > most_parts)
-        throw bad_input("--shard wants I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", most_parts, options.shard);
+        throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", most_parts,
+                        options.shard);
     if (options.merge) throw bad_input("--shard makes a part and --merge joins them; give one");
     return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
 }
@@ -150,19 +151,19 @@ void add_figure(CLI::App& app) {
         "  doppel figure flip-map --shard 3/8        # a part, on one of eight machines\n"
         "  doppel figure flip-map --merge            # all parts in DIR/flip-map/ together\n"
         "  doppel figure flip-map --tiles --set grid.x.points=8192 --set grid.y.points=8192\n"
-        "A long figure that was interrupted goes on where it was when the same command is given again.");
-    add_run_options(command, *options, "Threads that compute, one a core where not given; the numbers stay");
+        "The same command resumes an interrupted figure.");
+    add_run_options(command, *options, "Threads; default: one a core; same numbers for any N");
     command.add_option("--size", options->size, "Size of the layout, px")->type_name("WxH");
-    command.add_option("--format", options->format, "What the picture is written as")
+    command.add_option("--format", options->format, "Format of the picture")
         ->type_name("FORMAT")
         ->check(CLI::IsMember({"png", "pdf", "svg"}));
-    command.add_option("--scale", options->scale, "Pixels of the picture to one of the layout: 2 for print")
+    command.add_option("--scale", options->scale, "Scale: 2 draws four pixels for each pixel of the layout")
         ->type_name("N")
         ->check(CLI::Range(0.25, 8.0));
     command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
     command.add_flag("--tiles", options->tiles,
-                     "Of a map: tiles, a pixel a cell, and a page to pan and zoom, NAME.html");
+                     "Of a map: tiles, one pixel a cell, and a page to pan and zoom, NAME.html");
     command.callback([options] { make_figures(*options); });
 }
 

@@ -50,11 +50,11 @@ void fit(const FitCommandOptions& options) {
 void add_fit(CLI::App& app) {
     auto options = std::make_shared<FitCommandOptions>();
     auto& command =
-        *app.add_subcommand("fit", "Fits a double pendulum to a track: a preset, errors, how far it predicts");
+        *app.add_subcommand("fit", "Fits a double pendulum to a track: parameters, errors, prediction horizon");
     command.footer(
         "A track is CSV with time_s and theta1_rad, theta2_rad (from the downward vertical), or x0_px, y0_px,\n"
         "x1_px, y1_px, x2_px, y2_px (pivot, joint and end in a picture, y down); any rate, with gaps, in one\n"
-        "or more pieces. Models from point masses without friction to bodies with viscous and dry friction\n"
+        "or more pieces. Models from point masses without friction to bodies with viscous and Coulomb friction\n"
         "and drag are fitted, and the smallest is chosen that predicts pieces left out as well as any.\n"
         "DIR/NAME/ gets NAME.toml, a preset; NAME.fit.json, all numbers with errors; NAME.residuals.csv, the\n"
         "residuals; NAME.png, a page to judge it by.\n"
@@ -73,20 +73,20 @@ void add_fit(CLI::App& app) {
     command.add_option("--every", options->every_s, "Seconds from the beginning of a piece to that of the next")
         ->type_name("S")
         ->check(CLI::Range(1e-3, 1e6));
-    command.add_option("--gravity", options->fit.convention.gravity, "Of the preset, m/s²: angles do not tell it")
+    command
+        .add_option("--gravity", options->fit.convention.gravity,
+                    "Gravity of the preset, m/s²; angles do not determine it")
         ->type_name("G")
         ->check(CLI::Range(1e-3, 1e4))
         ->capture_default_str();
     command
         .add_option("--mass", options->fit.convention.second_mass,
-                    "Of the second arm in the preset, kg: angles do not tell it")
+                    "Mass of the second link in the preset, kg; angles do not determine it")
         ->type_name("KG")
         ->check(CLI::Range(1e-9, 1e9))
         ->capture_default_str();
     add_out_options(command, *options);
-    command
-        .add_option("-j,--jobs", options->fit.jobs,
-                    "Threads that compute, one a core where not given; the numbers stay")
+    command.add_option("-j,--jobs", options->fit.jobs, "Threads; default: one a core; same numbers for any N")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
     command.callback([options] { fit(*options); });

@@ -123,7 +123,7 @@ void write_preset(const fs::path& path, std::string_view kind) {
         read_figure(preset);
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(path, ignored)))
-        throw bad_input("{}: is there already; give the name of a new file", path.string());
+        throw bad_input("{}: exists already; give a new name", path.string());
     outlive_readers();
     const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, ignored)) throw cannot(folder, "opened", ENOENT);
@@ -138,7 +138,7 @@ void write_preset(const fs::path& path, std::string_view kind) {
 void add_init(CLI::App& app) {
     auto name = std::make_shared<std::string>();
     auto kind = std::make_shared<std::string>(pair_kind);
-    auto& command = *app.add_subcommand("init", "Writes a preset to start from: every key, with help and default");
+    auto& command = *app.add_subcommand("init", "Writes a preset with every key, its help and its default");
     command.footer(
         "Examples:\n"
         "  doppel init mine.toml && doppel render mine.toml\n"
@@ -150,7 +150,7 @@ void add_init(CLI::App& app) {
         command.add_option("--figure", *kind, "A figure of this kind, and not a film")->check(CLI::IsMember(kinds));
     command.callback([name, kind, figure] {
         if (name->empty() && figure->count() == 0)
-            throw bad_input("init wants the name of the new file: doppel init FILE.toml");
+            throw bad_input("init needs the name of the new file: doppel init FILE.toml");
         write_preset(name->empty() ? *kind + ".toml" : *name, *kind);
     });
 }

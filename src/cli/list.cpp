@@ -119,7 +119,7 @@ void print_json(const Json& json) {
 void add_list(CLI::App& app) {
     auto what = std::make_shared<std::string>("presets");
     auto as_json = std::make_shared<bool>(false);
-    auto& command = *app.add_subcommand("list", "The presets and their titles; list methods: what steps them");
+    auto& command = *app.add_subcommand("list", "Lists presets and their titles; list methods: the integrators");
     command.footer(
         "Presets in presets/ and presets/figures/ here are listed, too.\n"
         "--json: an array of {\"name\", \"title\", \"kind\": \"pair\" or that of a figure, \"path\"}; the path is "
@@ -139,7 +139,7 @@ void add_list(CLI::App& app) {
 
 void add_show(CLI::App& app) {
     auto name = std::make_shared<std::string>();
-    auto& command = *app.add_subcommand("show", "The TOML of a preset, a start for one of your own");
+    auto& command = *app.add_subcommand("show", "Prints the TOML of a preset, to start your own from");
     command.footer("Example:\n  doppel show butterfly > mine.toml");
     command.add_option("PRESET", *name, "Name (see doppel list) or path")->required();
     command.callback([name] {
@@ -198,7 +198,7 @@ std::optional<std::string> schema_line_fault(const PresetText& preset) {
 }
 
 void add_schema(CLI::App& app) {
-    auto& command = *app.add_subcommand("schema", "The JSON schema of presets, which editors of TOML read");
+    auto& command = *app.add_subcommand("schema", "Prints the JSON schema of presets, for editors");
     command.footer(
         "Example:\n"
         "  doppel schema > preset.schema.json    # beside presets that begin #:schema ./preset.schema.json");

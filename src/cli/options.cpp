@@ -26,7 +26,7 @@ void add_preset_options(CLI::App& command, PresetOptions& options) {
 
 CLI::Option* refuse_dash(CLI::Option* option) {
     return option->check([](const std::string& path) {
-        return path == "-" ? "this is not written to standard output; give a name, or ./- for one of that name" : "";
+        return path == "-" ? "cannot be standard output here; give a name, or ./- for a file of that name" : "";
     });
 }
 
@@ -39,15 +39,14 @@ void add_out_options(CLI::App& command, OutOptions& options) {
         ->type_name("STYLE")
         ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
         ->capture_default_str();
-    command.add_flag("--force", options.force,
-                     "Replace files that somebody changed, or that another kind of run wrote");
+    command.add_flag("--force", options.force, "Replace files that were changed, or that another kind of run wrote");
 }
 
 Destination::Destination(const std::string& out, std::size_t runs, const std::string& ending) : folder_(out) {
     if (out != "-") return;
     if (runs != 1) throw bad_input("-o -: standard output takes one file; give one preset, not {}", runs);
     if (ending != ".csv" && isatty(STDOUT_FILENO))
-        throw bad_input("-o -: standard output is a terminal, which shows no {}; send it on: -o - > FILE{}",
+        throw bad_input("-o -: standard output is a terminal, which cannot show {}; redirect it: -o - > FILE{}",
                         ending.substr(1), ending);
     folder_ = own_.emplace().path();
     streamed_ = ending;
@@ -57,7 +56,7 @@ LoneFile::LoneFile(std::filesystem::path path, std::string_view start) : path_(s
     using Type = std::filesystem::file_type;
     const auto type = type_of(path_);
     if (type != Type::not_found && type != Type::regular)
-        throw io_failed("{} is {}; give the name of another file", path_.string(),
+        throw io_failed("{} is {}; give another file name", path_.string(),
                         type == Type::symlink ? "a symbolic link" : "no regular file");
     if (type == Type::regular && (start.empty() || start_of_file(path_, start.size()) != start))
         throw io_failed("{} was not written by Doppel for this; give the name of another file", path_.string());
@@ -90,7 +89,7 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
 }
 
 void add_gl_option(CLI::App& command, std::string& gl) {
-    command.add_option("--gl", gl, "What draws; auto: OSMesa, EGL where that is missing")
+    command.add_option("--gl", gl, "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing")
         ->type_name("NAME")
         ->check(CLI::IsMember(gl_names()))
         ->capture_default_str();
@@ -108,7 +107,7 @@ std::optional<std::pair<long, long>> two_numbers(const std::string& text, char s
 
 Override size_override(const std::string& key, const std::string& size) {
     const auto sides = two_numbers(size, 'x');
-    if (!sides) throw bad_input("--size wants WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", size);
+    if (!sides) throw bad_input("--size must be WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", size);
     return {key, fmt::format("[{}, {}]", sides->first, sides->second), "--size " + size};
 }
 

@@ -72,10 +72,12 @@ int run_program(int argc, char** argv) {
         const bool completes = words.size() > 1 && words[1] == "complete";  // of the scripts of "doppel completion"
         if (!completes) refuse_empty_arguments(words);
 
-        CLI::App app("Doppel films chaotic pendulums in pairs, a hair apart, and charts how they part.", "doppel");
+        CLI::App app("Doppel films pairs of chaotic pendulums that differ slightly, and charts how they diverge.",
+                     "doppel");
         app.set_version_flag("--version", fmt::format("doppel {} ({})", version(), revision()));
         app.footer(
-            "doppel COMMAND --help tells more. Exit codes: 0 done, 1 compare found a difference, 2 bad usage\n"
+            "doppel COMMAND --help explains each command. Exit codes: 0 done, 1 compare found a difference, 2 bad "
+            "usage\n"
             "or input, 3 the method failed, 4 reading, writing or encoding failed, 75 the same, where trying\n"
             "again may help, 130 interrupted, 143 terminated.");
         app.require_subcommand(1);

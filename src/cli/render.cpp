@@ -44,7 +44,7 @@ std::vector<std::string> columns_of_option(const std::string& text) {
 Rational seconds_of_option(const std::string& option, const std::string& text) {
     const auto seconds = parse_rational(text);
     if (!seconds || seconds->numerator < 0)
-        throw bad_input("{} wants seconds ≥ 0, such as 6.8 or 1/3; it is \"{}\"", option, text);
+        throw bad_input("{} must be seconds ≥ 0, such as 6.8 or 1/3; it is \"{}\"", option, text);
     return *seconds;
 }
 
@@ -127,7 +127,7 @@ void take_range(const RenderOptions& options, RunOptions& run) {
     if (run.from_s || run.to_s) throw bad_input("--frames counts frames, --from and --to seconds; give one");
     const auto range = two_numbers(options.frames, ':');
     if (!range || range->first < 0 || range->second <= range->first)
-        throw bad_input("--frames wants A:B with 0 ≤ A < B, the frames A to B−1; it is \"{}\"", options.frames);
+        throw bad_input("--frames must be A:B with 0 ≤ A < B, the frames A to B−1; it is \"{}\"", options.frames);
     std::tie(run.first, run.last) = *range;
 }
 
@@ -149,7 +149,7 @@ std::vector<Override> overrides(const RenderOptions& options) {
 
 void add_render(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();
-    auto& command = *app.add_subcommand("render", "Films presets: video or PNG sequence, CSV and manifest");
+    auto& command = *app.add_subcommand("render", "Renders presets to films: video or PNG sequence, CSV and manifest");
     command.footer(
         "Examples:\n"
         "  doppel render butterfly\n"
@@ -160,19 +160,20 @@ void add_render(CLI::App& app) {
         "  doppel render out/lab/lab.toml --beside track.csv\n"
         "  doppel render butterfly --set video.layout=overlay --set 'video.contact_sheet=[4, 3]'\n"
         "  doppel render calm --format webm -o - | mpv -");
-    add_run_options(command, *options, "Threads that compress PNGs, one a core where not given; the bytes stay");
+    add_run_options(command, *options, "Threads that compress PNGs; default: one a core; same bytes for any N");
     command
         .add_option("--frames", options->frames,
                     "Only the frames A to B-1 of the motion, with the pixels of the whole film")
         ->type_name("A:B");
-    command.add_option("--from", options->from, "Only from this time on, s")->type_name("SECONDS");
-    command.add_option("--to", options->to, "Only up to before this time, s: --to 20 makes 20 s")->type_name("SECONDS");
+    command.add_option("--from", options->from, "Start time, s")->type_name("SECONDS");
+    command.add_option("--to", options->to, "End time, s, not included: --to 20 makes 20 s")->type_name("SECONDS");
     command.add_option("--size", options->size, "Size of the picture, px, even")->type_name("WxH");
     command.add_option("--format", options->format, "Of the film; png: a sequence")
         ->type_name("FORMAT")
         ->check(CLI::IsMember(std::vector<std::string>(format_names.begin(), format_names.end())));
     command
-        .add_option("--quality", options->quality, "A quarter of the pixels, what the preset says, or slow and best")
+        .add_option("--quality", options->quality,
+                    "draft: a quarter of the pixels; standard: as the preset; best: slow")
         ->type_name("QUALITY")
         ->check(CLI::IsMember({"draft", "standard", "best"}));
     add_beside_option(command, *options);
@@ -205,7 +206,7 @@ void add_still(CLI::App& app) {
     command.add_option("--at", options->at, "The time of the picture, s")->type_name("SECONDS")->required();
     add_out_options(command, *options);
     command.add_option("--size", options->size, "Size of the picture, px")->type_name("WxH");
-    command.add_option("--format", options->format, "What the picture is written as")
+    command.add_option("--format", options->format, "Format of the picture")
         ->type_name("FORMAT")
         ->check(CLI::IsMember({"png", "pdf", "svg"}))
         ->capture_default_str();

@@ -44,7 +44,7 @@ void check_chart(const TomlReader& table, const ChartSpec& chart) {
     if (const double most = std::min(layout.width_pt / least_width, height_pt / least_height);
         chart.width_cm && chart.font_pt > most)
         throw table.fault("font_pt",
-                          "leaves no room for a chart on {:.3g}×{:.3g} cm; at most {:.2g} pt would, it is {:g}",
+                          "is too large for a chart of {:.3g}×{:.3g} cm; at most {:.2g} pt is possible; it is {:g}",
                           layout.width_pt / pt_per_cm, height_pt / pt_per_cm, most, chart.font_pt);
     if (std::min(width, height) < smallest || std::max(width, height) > largest) {
         const auto what = chart.width_cm

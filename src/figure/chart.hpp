@@ -38,7 +38,7 @@ void chart_fields(Visit& visit, Chart& chart) {
     const auto of_paper = [&](std::string_view what) {
         return Only{on_paper, fmt::format("{}; it needs width_cm", what), true, false, "width_cm"};
     };
-    visit({"format", "what the picture is written as: pixels, or text and lines for a paper"}, chart.format);
+    visit({"format", "format of the picture: pixels, or text and lines for a paper"}, chart.format);
     visit(size_field, chart.size);
     visit(theme_field, chart.theme);
     visit({.key = "width_cm",
@@ -73,11 +73,12 @@ void chart_fields(Visit& visit, Chart& chart) {
            Only{!on_paper, "is of a size in pixels; with width_cm dpi says it"}},
           chart.scale);
     visit({.key = "title",
-           .help = "words in place of title and subtitle, one text or a list of both; `false`: neither",
+           .help = "text in place of title and subtitle, one or a list of both; `false`: none",
            .is_drawn = true},
           chart.title);
-    visit({.key = "captions", .help = "words in place of those below the picture; `false`: none", .is_drawn = true},
-          chart.captions);
+    visit(
+        {.key = "captions", .help = "text in place of the captions below the picture; `false`: none", .is_drawn = true},
+        chart.captions);
 }
 
 /// Reads and checks the keys above. Throws Error (exit 2).

@@ -53,11 +53,11 @@ bool Computation::take(const std::filesystem::path& path, bool must_be) {
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.experiment->units(trial);
     kept_units_ = done_units_;
-    report_.note(fmt::format(
-        "goes on from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
-        part.damaged_line == 0
-            ? ""
-            : fmt::format("; line {} is damaged, and what follows it is computed anew", part.damaged_line)));
+    report_.note(
+        fmt::format("resuming from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
+                    part.damaged_line == 0
+                        ? ""
+                        : fmt::format("; line {} is damaged, and what follows is computed again", part.damaged_line)));
     return true;
 }
 
@@ -101,7 +101,7 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
         figure_.experiment->compute(first, numbers, stop);
         for (std::size_t i = 0; i < numbers.size(); ++i)
             if (!figure_.experiment->fits(first + i, numbers[i]))
-                throw method_failed("{}: trial {} came to a number that is infinite or NaN", figure_.name, first + i);
+                throw method_failed("{}: the result of trial {} is infinite or NaN", figure_.name, first + i);
         return keep(groups_[group], std::move(numbers), seconds_of(CLOCK_THREAD_CPUTIME_ID) - cpu_start);
     } catch (const Error& fault) {
         throw with_record(fault);
@@ -112,8 +112,8 @@ Error Computation::with_record(const Error& fault) {
     const std::lock_guard hold(mutex_);
     if (!has_record_) return fault;
     if (writer_) writer_->flush();
-    return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command goes on from there",
-                                      fault.what(), percent(kept_units_), record_.string())};
+    return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command resumes", fault.what(),
+                                      percent(kept_units_), record_.string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {

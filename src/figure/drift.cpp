@@ -52,7 +52,7 @@ public:
             if (find_method(name)->constraints) add_run(name, Model::constraints);
         for (const auto& name : projected) {
             if (!known(table, "projected", name).constraints)
-                throw table.fault("projected", "takes methods that step constraints; \"{}\" does not", name);
+                throw table.fault("projected", "needs methods that integrate constraints; \"{}\" does not", name);
             add_run(name, Model::constraints, Stabilise::projection);
         }
         check_distinct(table, "methods", methods);
@@ -88,8 +88,8 @@ public:
             Plot plot;
             // room for names beyond the end
             plot.x = {.label = "time, s", .low = 1, .high = 9 * times_s_.back(), .logarithmic = true};
-            plot.y = {.label = of_rods ? "worst error of a rod so far, m, in constraints"
-                                       : "worst relative error of the energy so far",
+            plot.y = {.label = of_rods ? "maximum error of a rod to date, m, with constraints"
+                                       : "maximum relative error of the energy to date",
                       .high = 10,
                       .logarithmic = true};
             for (const std::size_t run : longest_first(numbers))
@@ -110,10 +110,8 @@ public:
         for (const auto& trial : numbers)
             if (std::any_of(trial.begin() + numbers_in<DriftCost>, trial.end(), [](double x) { return x > 0; }))
                 return std::nullopt;
-        return fmt::format(
-            "no method makes an error, or none came as far as {} s, the first point: more evaluations_per_s take it "
-            "further",
-            times_s_.front());
+        return fmt::format("no method has an error, or none reached {} s, the first point; use more evaluations_per_s",
+                           times_s_.front());
     }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
@@ -238,7 +236,7 @@ private:
                            bounded.empty()
                                ? "No method keeps the error of the energy bounded"
                                : fmt::format("The error of the energy stays bounded with {}", fmt::join(bounded, ", ")),
-                           breaks ? ", a dot marks a breakdown" : "");
+                           breaks ? ", a dot marks a failed run" : "");
     }
 
     SideSpec release_;

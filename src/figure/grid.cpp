@@ -17,7 +17,7 @@ namespace doppel {
 namespace {
 
 constexpr std::string_view key_help =
-    "what the pairs differ in: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
+    "key that is varied: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
     "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an adaptive "
     "method";
 
@@ -58,10 +58,10 @@ public:
                .help = "a second quantity of curves, on an axis at the right",
                .names = names_of<Quantity>},
               right_);
-        visit({"difference", "of the key of x between the two of a pair"}, difference_);
+        visit({"difference", "difference of the key of x between the two of a pair"}, difference_);
         const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
         visit({"exponent_duration_s",
-               "of the motion that an exponent is found by",
+               "duration of the motion from which an exponent is computed",
                "s",
                positive,
                "",
@@ -69,7 +69,7 @@ public:
               options_.exponent_duration_s);
         const Only of_flips{has(Quantity::flip_time), "is of flip_time"};
         visit({"flip_tolerance",
-               "of the Taylor series that find flips of two links: what the last terms of a step may amount to",
+               "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
                "rad/s",
                {.low = 1e-15, .is_positive = true},
                "1e-8 up to 20 s, for longer times less",
@@ -78,21 +78,21 @@ public:
         const Only strobed{.holds = quantity_ == Quantity::stroboscopic, .hides = true};
         auto& strobe = options_.stroboscope;
         visit({"link", "whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
-        visit({"transient_periods", "of the drive, that pass first", "", from_to(0, 1'000'000), "", strobed},
+        visit({"transient_periods", "transient, in periods of the drive", "", from_to(0, 1'000'000), "", strobed},
               strobe.transient_periods);
-        visit({"periods", "of the drive, shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
+        visit({"periods", "periods of the drive that are shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
         visit({"overlay",
-               "lines of theory on a map: where a shaken pivot holds one link upright, or where two links released at "
-               "rest have the energy to flip, or the step at which linear theory has a method blow up"},
+               "lines of theory on a map: where a vibrating pivot keeps one link upright, where two links released at "
+               "rest have the energy to flip, or the linear stability limit of a method"},
               overlay_);
         visit({"mark_step_s",
-               "a step that a line marks",
+               "a step marked by a line",
                "s",
                positive,
                "",
                {.holds = quantity_ == Quantity::convergence, .hides = true}},
               mark_step_);
-        visit({"color_range", "of the colours of a map, [lowest, highest]", "", {}, "that of the numbers"},
+        visit({"color_range", "range of the colours of a map, [lowest, highest]", "", {}, "that of the numbers"},
               color_range_);
         visit.table("x", [&](auto& table) { x_.fields(table, key_help); });
         visit.table("y", [&](auto& table) { y_.fields(table, "the same upwards: a map, of cells"); });
@@ -200,7 +200,7 @@ public:
         if (is_map()) finish_maps(numbers, figure);
         if (quantity_ == Quantity::convergence) finish_convergence(numbers, figure);
         if (quantity_ == Quantity::stroboscopic)
-            figure.captions.push_back(fmt::format("{} periods of the drive each, after {} that pass first.",
+            figure.captions.push_back(fmt::format("{} drive periods each, after a transient of {}.",
                                                   grouped(options_.stroboscope.periods),
                                                   grouped(options_.stroboscope.transient_periods)));
     }
@@ -209,7 +209,7 @@ public:
         if (right_) return std::nullopt;
         Drawn drawn;
         for_each_cell([&](const Cell& cell) { drawn.add(value_at(numbers, cell)); });
-        if (quantity_ == Quantity::stroboscopic && !drawn.any) return "the motion broke down at every value";
+        if (quantity_ == Quantity::stroboscopic && !drawn.any) return "the run failed at every value";
         const auto pairs = fmt::format("{}{}", x_.count, is_map() ? fmt::format(" × {}", y_.count) : "");
         return nothing_drawn(quantity_, words(), drawn, pairs, seconds_text(pair_));
     }
@@ -275,10 +275,11 @@ private:
             const bool is_curves = axis == &color_ || axis == &panel_;
             if (!axis->levels.empty() && !is_curves)
                 throw table.fault(role, "takes numbers; \"{}\" is for panel or color", axis->key);
-            if (axis->is_setting() && axis != &x_) throw table.fault(role, "cannot be the setting, which is for x");
+            if (axis->is_setting() && axis != &x_)
+                throw table.fault(role, "cannot be \"setting\", which is only for x");
         }
         if (x_.is_of_one_side && difference_ != 0)
-            throw table.fault("difference", "must be 0 for {}, which both sides do not differ in", x_.key);
+            throw table.fault("difference", "must be 0 for {}, in which the sides do not differ", x_.key);
         for (const auto& end : {x_.value(0), x_.value(x_.count - 1)})
             x_.demand(table, "difference", Quad(end + difference_));
         if (is_map() && color_.is_there())
@@ -544,11 +545,11 @@ private:
             least.push_back(scientific(nearest) + (panel_.is_there() ? " in " + panel_.words(p) : ""));
         }
         figure.captions.push_back(
-            fmt::format("The distance falls by the power of each method's order; slopes{}: {}. The least is {}.",
+            fmt::format("The distance falls with the order of each method; slopes{}: {}. The smallest distance is {}.",
                         panel_.is_there() ? " in " + panel_.words(panel_.count - 1) : "", fmt::join(slopes, ", "),
                         fmt::join(least, " and ")));
         for (auto& plot : figure.panels) {
-            plot.x = {.label = "step, s (the mean, where a tolerance chooses it)", .logarithmic = true};
+            plot.x = {.label = "step, s (the mean step of adaptive methods)", .logarithmic = true};
             plot.y = y;
             if (mark_step_)
                 plot.rules.push_back(
@@ -594,7 +595,7 @@ private:
         const auto spec = measurements().front().flips_in_lanes();
         long broken = 0;  // flips; where there is none the number is infinite
         if (spec) for_each_cell([&](const Cell& cell) { broken += std::isnan(at(numbers, cell)[0]); });
-        if (broken > 0) all.none_label += ", or broken down";
+        if (broken > 0) all.none_label += ", or failed";
         const auto scale = color_range(all);
         for (auto& plot : figure.panels) {
             plot.map->none_label = all.none_label;
@@ -608,10 +609,10 @@ private:
                 is_zero(pair_.a.omega_deg_per_s) ? " from rest" : "",
                 has_outline ? " Inside the line no rod has the energy to flip." : "", scientific(spec->tolerance)));
         if (broken > 0)
-            figure.captions.push_back(fmt::format(
-                "{} of the releases broke down (no step of 10⁻⁹ s met the tolerance): their cells are empty, as those "
-                "without a flip.",
-                broken));
+            figure.captions.push_back(
+                fmt::format("{} of the releases failed (no step of 10⁻⁹ s met the tolerance): their cells are empty, "
+                            "as are those without a flip.",
+                            broken));
         if (quantity_ != Quantity::stability) return;
         // as many columns as leave methods of either sort rows of their own
         constexpr std::size_t many = 6, few = 3;
@@ -619,15 +620,15 @@ private:
             return group.x.is_setting() && !find_method(group.pair.a.integrator)->adaptive;
         });
         if (groups_.size() > many) figure.columns = stepped % few == 0 ? few : few + 1;
-        figure.captions.push_back(fmt::format(
-            "{}A blow-up: an error beyond {:g} times the energy released, NaN, or a method "
-            "that gives up, as gauss and rattle do where they do not find their stages or multipliers.",
-            overlay_ == Overlay::linear_limit
-                ? fmt::format("Dashed: the step at which linear theory has small oscillations gain {:g} times their "
-                              "energy in {} s; Gauss collocation has none. ",
-                              blow_up, seconds_text(pair_))
-                : "",
-            blow_up));
+        figure.captions.push_back(
+            fmt::format("{}A run has failed if its error exceeds {:g} times the energy released, if it is NaN, or if "
+                        "gauss or rattle do not converge.",
+                        overlay_ == Overlay::linear_limit
+                            ? fmt::format("Dashed: the linear stability limit, where small oscillations gain {:g} "
+                                          "times their energy in {} s; Gauss collocation has none. ",
+                                          blow_up, seconds_text(pair_))
+                            : "",
+                        blow_up));
     }
 
     Preset pair_;

@@ -263,7 +263,7 @@ PlotAxis GridAxis::plot_axis() const {
 std::string GridAxis::apart(const Quad& difference) const {
     if (difference == 0) return "";
     const auto far = text_of(difference < 0 ? Quad(-difference) : difference);
-    if (angle) return fmt::format("twins {}° apart", far);
+    if (angle) return fmt::format("pairs {}° apart", far);
     const auto comma = label.rfind(", ");
     if (comma == std::string::npos) {
         auto ratios = label;  // "mass ratio m₁/m₂"

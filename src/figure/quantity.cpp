@@ -18,9 +18,9 @@ constexpr double never = std::numeric_limits<double>::infinity();
 QuantityWords words_of(Quantity quantity, const std::string& seconds, const StroboscopeSpec& stroboscope) {
     switch (quantity) {
         case Quantity::divergence:
-            return {.label = fmt::format("average of ln(d/d₀) over {} s", seconds),
+            return {.label = fmt::format("mean of ln(d/d₀) over {} s", seconds),
                     .columns = {"average_log_ratio"},
-                    .short_label = "average of ln(d/d₀)"};
+                    .short_label = "mean of ln(d/d₀)"};
         case Quantity::exponent:
             return {.label = "largest Lyapunov exponent, 1/s",
                     .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
@@ -49,7 +49,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
                     .logarithmic = true,
                     .is_of_side_a = true};
         case Quantity::deviation:
-            return {.label = fmt::format("how far an angle goes from its start within {} s, °", seconds),
+            return {.label = fmt::format("maximum deviation of an angle within {} s, °", seconds),
                     .columns = {"deviation_deg"},
                     .is_of_side_a = true};
         case Quantity::period:
@@ -58,7 +58,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
                     .none = fmt::format("no whole period within {} s", seconds),
                     .is_of_side_a = true};
         case Quantity::stroboscopic:
-            return {.label = fmt::format("rate ω{} once a period of the drive, rad/s",
+            return {.label = fmt::format("rate ω{} at each drive period, rad/s",
                                          subscript(static_cast<std::size_t>(stroboscope.link))),
                     .columns = {"theta_rad", "omega_rad_per_s"},
                     .is_of_side_a = true,
@@ -68,7 +68,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
         case Quantity::step_cost:
             return {.label = "CPU time of an Euler step, ns",
                     .columns = {"angles_step_ns", "constraints_step_ns"},
-                    .curves = {"in angles", "in constraints"},
+                    .curves = {"in angles", "with constraints"},
                     .is_of_side_a = true,
                     .method = "explicit Euler"};
         case Quantity::stability:
@@ -85,7 +85,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
                     .logarithmic = true,
                     .drawn = 1};
         case Quantity::parting_time:
-            return {.label = "time at which the two part, s",
+            return {.label = "time of divergence, s",
                     .columns = {"parting_time_s"},
                     .none = fmt::format("together for {} s", seconds)};
     }
@@ -224,7 +224,8 @@ void demand_apart(const TomlReader& table, Quantity quantity, bool is_of_one_sid
                           name);
     if (are_all || (difference != 0 && same > 0))
         throw table.fault(
-            "difference", "must set the two of a pair apart, which \"{}\" compares; {}: give {}grid.difference", name,
+            "difference",
+            "must make the two of a pair differ, because \"{}\" compares them; {}: give {}grid.difference", name,
             difference == 0 ? "it is 0, and both sides are the same" : text_of(difference) + " is lost in rounding",
             difference == 0 ? "" : "a greater ");
     const auto start = [](const Scene& scene) -> double {
@@ -257,16 +258,14 @@ std::string exponent_words(Curve& exponents, const std::vector<double>& unsettle
                                   exponent > 0 ? "an unstable" : "a stable", exponent);
         exponents.y[i] = NAN;
     }
-    const auto which = contracts ? "regular or settle: their exponent is not above 0"
-                                 : "regular: their exponent cannot be told from 0";
+    const auto which =
+        contracts ? "regular or come to rest: their exponent is not above 0" : "regular: their exponent is not above 0";
     auto words = regular == 0 ? fmt::format("None of {} releases is regular", count)
                               : fmt::format("{} of {} releases are {}", regular, count, which);
-    words += ". The band of the exponent holds two of three runs four times as long";
+    words += ". The band is the 68 % interval of the exponent";
     if (changing > 0)
         words += fmt::format(
-            ", but not for {} whose stretches differ by more than chance (a transient, or orbits that stick): there it "
-            "is "
-            "too narrow",
+            "; it is too narrow for {}, where parts of the run differ by more than chance (transients, sticky orbits)",
             changing);
     return fmt::format("{}.{}", words, equilibria);
 }
@@ -281,12 +280,10 @@ std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords&
     const auto name = fmt::format(
         "{} {}", quantity == Quantity::exponent || quantity == Quantity::energy_error ? "an" : "a", name_of(quantity));
     if (drawn.any)
-        return fmt::format("none of the {} pairs has {} above 0, which alone a logarithmic scale can show", pairs,
-                           name);
+        return fmt::format("none of the {} pairs has {} above 0, which a logarithmic scale needs", pairs, name);
     if (words.none_is_bad)
         return fmt::format(
-            "every one of the {} pairs broke down within {} s; take a finer step or tolerance, or a shorter "
-            "scene.duration_s",
+            "all of the {} pairs failed within {} s; use a smaller step or tolerance, or a shorter scene.duration_s",
             pairs, seconds);
     return fmt::format("none of the {} pairs has {}: {}{}", pairs, name, words.none,
                        quantity == Quantity::parting_time ? ", or apart from the start" : "");
@@ -305,8 +302,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     if ((is_ideal || quantity == Quantity::exponent) && (a.is_mechanism() || (is_ideal && !a.physical.is_none())))
         throw table.fault(key, "is that of a plain chain, without forces and constraints of its own");
     if (quantity == Quantity::exponent && a.physical.has_coulomb())
-        throw table.fault(key,
-                          "is that of a smooth motion; joints with joint_coulomb_N_m come to rest and let go again");
+        throw table.fault(key, "needs a smooth motion; joints with joint_coulomb_N_m stick and slip");
     const bool is_of_angles =
         quantity == Quantity::deviation || quantity == Quantity::flip_time || quantity == Quantity::period;
     if (is_of_angles && !a.particles.empty())
@@ -322,7 +318,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
         !(released_energy(chain_of(a).cast<double>()) > 1e-10 * chain_of(a).cast<double>().potential_range()))
         throw table.fault(key, "\"stability\" is of a release with energy to keep, above hanging at rest");
     if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
-        throw table.fault(key, "\"energy_error\" takes a system that keeps its energy; a spring is damped");
+        throw table.fault(key, "\"energy_error\" needs a system that conserves energy; a spring is damped");
     flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.physical.is_none() && a.links() == 2;
     if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));
     if (alike && (is_of_distance(quantity) || quantity == Quantity::energy_error)) run_ = lanes_of(scene);

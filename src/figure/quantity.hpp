@@ -59,8 +59,8 @@ struct QuantityWords {
     std::vector<std::string> columns;      // of the table, one a number
     std::vector<std::string> curves = {};  // the names of the numbers where each is a curve of its own
     bool logarithmic = false;
-    std::string none = "broke down";  // what it means where there is none
-    bool none_is_bad = none == "broke down";
+    std::string none = "run failed";  // what it means where there is none
+    bool none_is_bad = none == "run failed";
     bool is_of_side_a = false;     // alone: what sets the two apart does not matter
     std::string method = {};       // by which it is found, where not by the preset's
     std::string short_label = {};  // of a curve beside that of another quantity

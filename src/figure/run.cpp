@@ -201,7 +201,7 @@ public:
             demand_room(figure, header, folder);
             if (const auto others = other_resumes(folder, header);
                 !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
-                report.note(k, fmt::format("leaves {}{} alone, of another preset or version", others.front().string(),
+                report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
                                            others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
             computations_.push_back(std::make_unique<Computation>(figure, header, folder, jobs, report_of(report, k)));
             auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;

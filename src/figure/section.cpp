@@ -39,7 +39,7 @@ public:
         auto system = reader.document.table(reader.top, "system");
         for (const char* key : {"angle_deg", "omega_deg_per_s"})
             if (system.has(key))
-                throw system.fault(key, "is not for a section, whose orbits start all over their energy");
+                throw system.fault(key, "is not for a section, whose orbits start at all states of an energy");
         auto table = reader.settings(*this);
         if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
         settings_ = resolved_chain(release_) + table.finish();
@@ -58,8 +58,8 @@ public:
         visit({"orbits", "of each energy", "", from_to(1, 10'000)}, orbits_);
         visit({"crossings", "of each orbit", "", from_to(1, 1'000'000)}, spec_.crossings);
         visit({"tolerance", "of taylor: relative error of a step", "", positive}, spec_.tolerance);
-        visit({"exponent_duration_s", "of the motion by whose largest exponent an orbit is regular or chaotic", "s",
-               positive},
+        visit({"exponent_duration_s",
+               "duration of the motion whose largest exponent decides between regular and chaotic", "s", positive},
               exponent_duration_s_);
     }
 

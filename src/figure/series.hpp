@@ -44,8 +44,8 @@ struct SeriesKeys {
         constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true},
             costs{.low = 10, .high = 1e6, .is_positive = true};
         visit({"logarithmic", "the axis", "", {}, "", of_pairs}, logarithmic);
-        visit({"check_tolerance", "runs every pair once more at this tolerance, to see how long both agree", "",
-               positive, "", of_pairs},
+        visit({"check_tolerance", "runs every pair again at this tolerance, to see how long both agree", "", positive,
+               "", of_pairs},
               check_tolerance);
         visit({"duration_s", "of the motion", "s", of_motions, "",
                Only{!is_of_pairs(), "is of one motion; pairs have that of [scene]"}},
@@ -58,8 +58,8 @@ struct SeriesKeys {
               tolerance);
         visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100), "", of_errors},
               points_per_decade);
-        visit({"evaluations_per_s", "of the right-hand side, a second of motion: the same for all methods", "", costs,
-               "", of_errors},
+        visit({"evaluations_per_s", "evaluations of the right-hand side a second of motion, the same for all methods",
+               "", costs, "", of_errors},
               evaluations_per_s);
         visit({.key = "methods",
                .help = "names of methods",

@@ -16,8 +16,7 @@ public:
         if (release_.physical.has_coulomb())
             throw reader.document.table(reader.top, "system")
                 .fault("joint_coulomb_N_m",
-                       "is not for Lyapunov exponents, which are those of smooth motions: such joints come to "
-                       "rest and let go again");
+                       "is not for Lyapunov exponents, which need a smooth motion: these joints stick and slip");
         constexpr std::size_t most_links = 4;
         if (release_.links() > most_links)
             throw table.fault("quantity", "= \"exponents\" is for 1 to {} links; there are {}", most_links,
@@ -50,7 +49,7 @@ public:
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
         Plot plot;
         plot.x = {.label = "time, s", .logarithmic = true};
-        plot.y = {.label = "exponents so far, 1/s"};
+        plot.y = {.label = "running estimates of the exponents, 1/s"};
         const auto samples = samples_of(numbers);
         for (std::size_t i = 0; i < exponents(); ++i) {
             Curve curve{.label = "λ" + subscript(i + 1), .hue = static_cast<int>(i)};
@@ -67,7 +66,7 @@ public:
             keeps_volume()
                 ? fmt::format("Their sum is 0 within {}, and the pairs are ± within {} 1/s.",
                               scientific(std::abs(sum(last))), scientific(pair_mismatch(last)))
-                : fmt::format("Their sum is −{:.4f} 1/s: at that mean rate friction shrinks volumes of states.",
+                : fmt::format("Their sum is −{:.4f} 1/s, the mean rate at which friction contracts phase-space volume.",
                               std::abs(sum(last)));
         figure.captions.push_back(fmt::format("After {} s: {} 1/s. {}", spec_.duration_s, words, of_them));
     }

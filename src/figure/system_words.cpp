@@ -54,7 +54,9 @@ std::string model_words(const Scene& scene, const Varied& varied) {
                                             : fmt::format("{} {}{}", number_words(count),
                                                           particles ? "particle" : "link", count == 1 ? "" : "s");
     if (model == scene.b.motion.model && !is_varied(varied, ".model") && !is_varied(varied, ".integrator"))
-        words += model == Model::angles ? " in angles" : model == Model::constraints ? " on rods" : " as a mechanism";
+        words += model == Model::angles        ? " in angles"
+                 : model == Model::constraints ? " with constraints"
+                                               : " as a mechanism";
     return words;
 }
 

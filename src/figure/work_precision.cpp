@@ -46,7 +46,7 @@ public:
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
         if (ladders_.empty())
-            throw table.fault("models", "must name one that serves; {} takes \"{}\"", problems_.all[0].name,
+            throw table.fault("models", "must name one that is supported; {} supports \"{}\"", problems_.all[0].name,
                               name_of(problems_.all[0].motion.model));
     }
 
@@ -132,10 +132,9 @@ public:
                     if (ladder.solver.is_study() && rung.is_study() && !rung.failed()) return std::nullopt;
                 }
             }
-        if (!any)
-            return "every run of every method broke down; raise work_precision.most_evaluations for finer settings";
+        if (!any) return "every run of every method failed; raise work_precision.most_evaluations for finer settings";
         return fmt::format(
-            "no run of any method errs by less than {:g}{}; raise work_precision.most_evaluations, or take a "
+            "no run of any method has an error below {:g}{}; raise work_precision.most_evaluations, or take a "
             "shorter motion",
             most_error_shown, has_angles() ? " rad" : " of the size");
     }
@@ -190,7 +189,7 @@ private:
                     solvers_.push_back({value_named<Model>(model), name});
         if (solvers_.empty())
             throw table.fault(table.has("methods") ? "methods" : "models",
-                              "must leave a method with a model that it serves");
+                              "must leave a method with a model that it supports");
     }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
@@ -262,19 +261,19 @@ private:
         const auto rank = fmt::format("by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}", has_angles() ? " rad" : "");
         if (has_libraries())
             return fmt::format(
-                "In colour {} of other libraries{} and Doppel’s best; the pale band is the front of all of "
+                "In colour {} of other libraries{} and Doppel’s best; the pale band is the Pareto front of all of "
                 "Doppel’s.",
                 all ? "all methods" : "the five best methods", all ? "" : fmt::format(" ({})", rank));
-        if (all) return "Each method in its best model; the pale band is the front: no method errs less at less cost.";
-        return fmt::format("In colour the five best, {}, each in its best model; the pale band is the front of all.",
-                           rank);
+        if (all) return "Each method in its best model; the pale band is the Pareto front.";
+        return fmt::format(
+            "In colour the five best, {}, each in its best model; the pale band is the Pareto front of all.", rank);
     }
 
     std::string error_words(bool floors) const {
         return fmt::format("Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
                            has_angles() ? "angle" : "place, as a part of the mechanism's size,",
                            problems_.all.front().is_plain_chain() ? "in two formulations" : "at two tolerances",
-                           floors ? " Dashed: the rounding of a double, and what the motion makes of it." : "");
+                           floors ? " Dashed: round-off in double, and round-off × sensitivity." : "");
     }
 
     std::string spread_words(const Ladders& ladders) const {
@@ -286,7 +285,7 @@ private:
     }
 
     static constexpr std::size_t best_shown = 5;
-    inline static const Field cost_field{.key = "cost", .help = "what the error is drawn over"};
+    inline static const Field cost_field{.key = "cost", .help = "the cost axis"};
     Cost cost_ = Cost::time;
     std::optional<std::string> scene_;
     Preset film_;  // of the scene

@@ -120,7 +120,7 @@ void fit(const WorkDiagram& diagram, Plot& plot) {
     if (!(least < near * diagram.floor)) return;
     const double grown = diagram.floor / rounding;
     const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);
-    plot.rules.push_back({.at = diagram.floor, .label = "rounding × " + times});
+    plot.rules.push_back({.at = diagram.floor, .label = "round-off × " + times});
     plot.y.low = std::fmin(least, diagram.floor) / 20;
     constexpr double in_sight = 1e-12;
     if (diagram.floor > in_sight) return;

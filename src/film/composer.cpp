@@ -143,8 +143,8 @@ DisplayList Composer::title_card(double opacity) const {
 std::string Composer::outcome() const {
     const auto& parting = state_.outcome.parting;
     if (!parting.start_as_one()) return "apart from the start";
-    if (parting.since()) return fmt::format("parted after {:.1f} s", *parting.since());
-    if (state_.outcome.largest_distance >= Parting::apart_at) return "apart for moments only";
+    if (parting.since()) return fmt::format("diverged after {:.1f} s", *parting.since());
+    if (state_.outcome.largest_distance >= Parting::apart_at) return "apart only for moments";
     return fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
 }
 

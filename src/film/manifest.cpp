@@ -89,8 +89,8 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
         const double error = seen->energy_change / scene.energy_range();
         if (side->has_energy_error && error > most)
             record.warnings.push_back(fmt::format(
-                "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse "
-                "for these {:g} s; accuracy = 1e-3 chooses what is not",
+                "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse for {:g} s; use accuracy "
+                "= 1e-3",
                 name, 100 * error, side->method.title, step_control_text(*side), scene.time(record.last_sample)));
     }
     try {

@@ -39,8 +39,8 @@ std::string step_that_holds(const Scene& scene, const BreakDown& fault, const st
     auto side = fault.side == 'a' ? scene.a : scene.b;
     if (side.method.adaptive) {
         const double smallest = retried(scene, side, fault, stop).second.smallest_step;
-        if (smallest == 0) return "not even a first step held";
-        return fmt::format("the smallest step that held was {:.3g} s; a smaller tolerance may hold", smallest);
+        if (smallest == 0) return "the first step failed";
+        return fmt::format("the smallest successful step was {:.3g} s; a smaller tolerance may work", smallest);
     }
     auto finest = side.step;                 // that was tried
     constexpr long most_steps = 20'000'000;  // a few seconds for a double pendulum
@@ -51,10 +51,10 @@ std::string step_that_holds(const Scene& scene, const BreakDown& fault, const st
         if (!half || side.motion.steps_per_sample > most_steps / samples) break;
         side.step = *half;
         if (retried(scene, side, fault, stop).first)
-            return fmt::format("halved until it held: step_s = \"{}\" comes further", side.step.text());
+            return fmt::format("step_s = \"{}\" gets further", side.step.text());
         finest = side.step;
     }
-    return fmt::format("no step down to {} s held", finest.text());
+    return fmt::format("no step down to {} s works", finest.text());
 }
 
 /// "NAME.failed.csv": what stays of a run that broke down.
@@ -101,8 +101,8 @@ Part part_between(const Scene& scene, const RunOptions& options) {
     const auto begin = moment_at(from * hz), end = options.to_s ? moment_at(to * hz) : Moment{scene.samples + 1};
     const Part part{scene.frames.first_from(begin), scene.frames.first_from(end), begin, end};
     if (part.first >= part.last)
-        throw bad_input("--from {} --to {}: {} has no frame there; they are {:.3g} s apart", from, to, name,
-                        scene.preset.video.speed.slowest().value() / scene.fps.value());
+        throw bad_input("--from {} --to {}: {} has no frame in this interval; frames are {:.3g} s apart", from, to,
+                        name, scene.preset.video.speed.slowest().value() / scene.fps.value());
     return part;
 }
 

@@ -52,7 +52,7 @@ private:
     float time_spacing() const { return (strip_.area.width() < 400 * layout_.text ? 50 : 90) * layout_.text; }
     void draw_axes(DisplayList& list) const;
     void dim_horizon(DisplayList& list) const;
-    std::string horizon_text() const { return fmt::format("predictable to {:.1f} s", *state_.scene.horizon()); }
+    std::string horizon_text() const { return fmt::format("predictability limit {:.1f} s", *state_.scene.horizon()); }
     void say_horizon(DisplayList& list) const;
     void say_horizon_above(DisplayList& list) const;
     void draw_time_labels(DisplayList& list) const;
@@ -148,7 +148,7 @@ void StripLayer::say_horizon_above(DisplayList& list) const {
 void StripLayer::draw_parting(float free_from, DisplayList& list) const {
     const float x = strip_.time.at(*state_.outcome.parting.since());
     add_dashed_line(x, strip_.area, 6 * layout_.text, px(style_.width.mark), theme_.quiet_text, list);
-    const auto text = fmt::format("parted at {:.1f} s", *state_.outcome.parting.since());
+    const auto text = fmt::format("diverged at {:.1f} s", *state_.outcome.parting.since());
     const auto& caption = strip_.caption;
     if (strip_.lines > 2) return list.push_back(label(text, {caption.left, strip_.base}, size_, theme_.text));
     if (strip_.lines == 2)

@@ -20,8 +20,8 @@ struct StripRow {
 constexpr std::array<StripRow, strip_kinds> rows{{{0.24f, "state-space distance", ""},
                                                   {0.18f, "finite-time growth rate", "1/s"},
                                                   {0.15f, "energy error", "of the potential range"},
-                                                  {0.15f, "worst rod error, m", ""},
-                                                  {0.18f, "force in the rods, N", ""},
+                                                  {0.15f, "maximum rod error, m", ""},
+                                                  {0.18f, "rod tension, N", ""},
                                                   {0.18f, "energy of {}, J", ""},
                                                   {0.18f, "energy of {}, J", ""},
                                                   {0.18f, "angles, °", ""},
@@ -79,7 +79,7 @@ std::pair<int, float> caption_size(const Layout& layout, const Scene& scene, Str
         value = width(no_error_words(kind, scene));
         second = value > 0 ? value : width(words.how);
     }
-    const float parted = is_first ? width("parted at 00.0 s") : 0;
+    const float parted = is_first ? width("diverged at 00.0 s") : 0;
     float one_line = width(words.what) + (words.how.empty() ? 0 : width(", " + words.how));
     if (value > 0) one_line += 18 * t + value;
     if (is_first) one_line += gap + parted;
@@ -148,7 +148,7 @@ float share_of(StripKind kind) {
 
 std::string no_error_words(StripKind kind, const Scene& scene) {
     const bool none = kind == StripKind::energy && !scene.a.has_energy_error && !scene.b.has_energy_error;
-    return none ? "none: damping takes energy" : "";
+    return none ? "none: damping removes energy" : "";
 }
 
 StripWords strip_words(StripKind kind, const Scene& scene) {
@@ -159,7 +159,7 @@ StripWords strip_words(StripKind kind, const Scene& scene) {
             fmt::format("energy of {}, J", (is_a ? scene.preset.a : scene.preset.b).label.value_or(is_a ? "a" : "b"));
     }
     if (kind != StripKind::distance) return words;
-    if (wording_of(scene) == Wording::plain) words.what = "how far apart they are";
+    if (wording_of(scene) == Wording::plain) words.what = "their distance";
     if (!scene.members.empty()) return {words.what, "first to last", "distance, first to last"};
     if (differ_in_kind(scene.preset.a, scene.preset.b))
         return {words.what, "of the last masses", "distance of last masses"};

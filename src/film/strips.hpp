@@ -39,7 +39,7 @@ StripWords strip_words(StripKind kind, const Scene& scene);
 /// In place of curves where friction or damping takes energy from both sides; empty where not.
 std::string no_error_words(StripKind kind, const Scene& scene);
 /// In place of an exponent.
-inline constexpr const char* alike_words = "none: both start alike";
+inline constexpr const char* alike_words = "none: both start equal";
 
 /// px of a 1920×1080 picture that a number above a strip has, so that what comes after it stays in place.
 inline constexpr float value_room = 110, brief_value_room = 50;

@@ -92,7 +92,7 @@ void add_row(const Picture& picture, int row, double share, std::vector<double>&
 Picture downscaled(const Picture& picture, Size size) {
     const auto [width, height] = picture.size;
     if (size.width < 1 || size.height < 1 || size.width > width || size.height > height)
-        throw bad_input("a picture of {}x{} px cannot be reduced to {}x{}; 1x1 … {}x{} would do", width, height,
+        throw bad_input("a picture of {}x{} px cannot be reduced to {}x{}; 1x1 … {}x{} is possible", width, height,
                         size.width, size.height, width, height);
     Picture small(size);
     std::vector<double> sums(std::size_t{4} * width);

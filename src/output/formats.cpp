@@ -56,15 +56,14 @@ std::optional<FormatFault> size_fault(const VideoOptions& options, const FormatR
         return FormatFault{"size",
                            fmt::format("must be from 1 to {} of {}; it is {}", row.largest_side, row.title, given)};
     if (options.format != FilmFormat::png && !libav_takes(options.size))
-        return FormatFault{
-            "size", fmt::format("is more than libav encodes as {}; it is {}; {} would do{}", row.title, given,
-                                words_of(largest_alike(options.size)),
-                                options.format == FilmFormat::mp4
-                                    ? ", and [8192, 4352] for players that keep to the highest level of H.264, 6.2"
-                                    : "")};
+        return FormatFault{"size", fmt::format("exceeds what libav encodes as {}; it is {}; {} is possible{}",
+                                               row.title, given, words_of(largest_alike(options.size)),
+                                               options.format == FilmFormat::mp4
+                                                   ? ", and [8192, 4352] for players limited to level 6.2 of H.264"
+                                                   : "")};
     const bool halved = row.is_encoded() && options.pixel_format != PixelFormat::yuv444;
     if (halved && (width % 2 != 0 || height % 2 != 0))
-        return FormatFault{"size", fmt::format("must be even, as {} needs it in {}; it is {}; {} would do", row.title,
+        return FormatFault{"size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title,
                                                pixel_format_names[static_cast<std::size_t>(options.pixel_format)],
                                                given, words_of({width + width % 2, height + height % 2}))};
     return std::nullopt;
@@ -74,7 +73,7 @@ std::optional<FormatFault> alpha_fault(const VideoOptions& options, const Format
     const auto fault = [](std::string_view key, std::string_view value) {
         return FormatFault{
             "transparent",
-            fmt::format("takes a format with opacity: png, apng, or webm (VP9, yuv420p); the {} is \"{}\"", key,
+            fmt::format("needs a format with opacity: png, apng, or webm (VP9, yuv420p); the {} is \"{}\"", key,
                         value)};
     };
     if (!options.transparent) return std::nullopt;

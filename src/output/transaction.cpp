@@ -25,8 +25,7 @@ constexpr const char* lock_name = ".lock";  // holds the process, then, after co
 constexpr const char* backup_name = ".old";  // of a folder, where the file system cannot exchange two names
 
 Error not_ours(const fs::path& path) {
-    return io_failed("{} was not written by Doppel, as far as it knows; move it, or give another folder with --out",
-                     path.string());
+    return io_failed("{} was not written by Doppel; move it, or give another folder with --out", path.string());
 }
 
 /// Throws where something of another type has the name; no link is followed.
@@ -135,8 +134,8 @@ bool Transaction::lock() {
         throw try_again("{}: another run{} is writing there; wait for it, or give another folder with --out",
                         folder_.string(), process);
     throw io_failed(
-        "{}: another run{} may be writing there: the file system has no locks ({}), so nobody can tell; remove {} if "
-        "there is none, or give another folder with --out",
+        "{}: another run{} may be writing there: the file system has no locks ({}); remove {} if no run is active, or "
+        "give another folder with --out",
         folder_.string(), process, std::generic_category().message(fault), hidden_.string());
 }
 
@@ -207,7 +206,7 @@ void Transaction::refuse_foreign_file(const std::string& name) const {
                         path.string(), origin.kind, kind_);
     if (!replacing_.force && origin.is_changed)
         throw io_failed(
-            "{} is not as Doppel wrote it: somebody changed it; move it, give another folder with --out, or replace it "
+            "{} was changed since Doppel wrote it; move it, give another folder with --out, or replace it "
             "with --force",
             path.string());
     // an immutable file (chattr +i) cannot be renamed, a read-only one can: say so before work starts

@@ -84,7 +84,7 @@ struct SlotLine {
     auto members() const { return std::tie(particle, point, direction); }
 };
 
-/// A circular slot that a particle slides in: what a rod from the centre would do, and so does this.
+/// A circular slot that a particle slides in: what a rod from the centre is possible, and so does this.
 template <class Scalar>
 struct SlotCircle {
     static constexpr std::string_view kind = "slot-circle";

@@ -107,10 +107,10 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
             caption.draw({sheet.left, top}, made.items);
             top += caption.height();
         }
-        if (!page.left_out.empty()) made.notes.push_back(fmt::format("there is no room for {}", page.left_out));
+        if (!page.left_out.empty()) made.notes.push_back(fmt::format("there is no space for {}", page.left_out));
         if (unit && made.scale < scale)
             made.notes.push_back(
-                fmt::format("for want of room text is {:.2g} times as high as asked for", made.scale / scale));
+                fmt::format("text is reduced to {:.2g} times its size for lack of space", made.scale / scale));
         return made;
     }
 }

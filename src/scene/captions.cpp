@@ -187,7 +187,7 @@ std::string joined(const std::vector<std::string>& parts) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// Of a side that differs in kind: what it is, and how it starts.
+/// Of a side that differs in kind: what it is, and its start.
 SideCaptions captions_of_kind(const SideSpec& spec, const std::vector<Statement>& all) {
     std::vector<std::string> start;
     for (const auto& statement : all)
@@ -195,7 +195,7 @@ SideCaptions captions_of_kind(const SideSpec& spec, const std::vector<Statement>
     return {system_words(spec, ""), joined(start)};
 }
 
-/// Of side b, or of side a: what sets it apart.
+/// Of side b, or of side a: what differs from the other side.
 SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
                             const std::vector<KeyDifference>& differences, bool of_b, bool has_label, Wording wording) {
     std::vector<std::string> differs, start;
@@ -219,7 +219,7 @@ SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
         start.back() = "…";
     }
     differs.resize(std::min(most, differs.size()));
-    // under a label of its own the note says what sets it apart, too
+    // under a label of its own the note says what differs from the other side, too
     if (has_label && !says_nothing) start.insert(start.begin(), differs.begin(), differs.end());
     return {joined(differs), joined(start)};
 }
@@ -230,7 +230,7 @@ std::string physical_words(const PhysicalSpec& physical) {
     std::vector<std::string> words;
     const auto has = [](const std::vector<Quad>& list) { return !is_zero(list); };
     if (has(physical.rod_mass_kg) || has(physical.inertia_kg_m2) || !physical.center_m.empty())
-        words.push_back("heavy links");
+        words.push_back("links with mass");
     if (has(physical.joint_viscous_N_m_s) || has(physical.joint_coulomb_N_m)) words.push_back("friction");
     if (has(physical.arm_drag_linear_N_m_s) || has(physical.arm_drag_quadratic_N_m_s2) ||
         has(physical.air_drag_quadratic_N_m_s2) || has(physical.drag_linear_N_s_per_m) ||
@@ -294,7 +294,7 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
 std::string scene_caption(const Scene& scene, Wording wording) {
     if (scene.preset.subtitle) return *scene.preset.subtitle;
     if (scene.a.replay && scene.b.replay) return "two real double pendulums";
-    if (scene.a.replay || scene.b.replay) return "a real double pendulum and its twin";
+    if (scene.a.replay || scene.b.replay) return "a real double pendulum and its simulation";
     const auto at_rest = [](const SideSpec& side) {
         const auto rests = [](const ParticleSpec& particle) {
             return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;

@@ -9,10 +9,10 @@ namespace doppel {
 
 /// "double pendulum", "chain of 4 links"; of several "double pendulums".
 std::string chain_words(std::size_t links, std::string_view plural = "");
-/// What a chain has besides point masses: "heavy links, friction"; empty where it has nothing.
+/// What a chain has besides point masses: "links with mass, friction"; empty where it has nothing.
 std::string physical_words(const PhysicalSpec& physical);
 
-/// What a picture says about one side: `heading`, what sets it apart from the other; `note`, the start it has besides;
+/// What a picture says about one side: `heading`, what differs from the other side from the other; `note`, the start it has besides;
 /// or what the preset says in their place.
 struct SideCaptions {
     std::string heading, note;

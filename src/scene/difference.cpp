@@ -25,7 +25,8 @@ void check_droplets(const Scene& scene, const Side& side) {
         const double rounding = std::nextafter(side.gravity, 2 * side.gravity) - side.gravity;
         if (pull >= rounding) continue;
         throw bad_input(
-            "{}: the droplet pulls with {:.2g} m/s², below the rounding of g in double ({:.2g}): both sides would move "
+            "{}: the droplet attracts with {:.2g} m/s², below the rounding of g in double ({:.2g}): both sides would "
+            "move "
             "identically{}",
             scene.preset.name, pull, rounding, remedy<double>);
     }
@@ -55,7 +56,7 @@ void check_numbers(const Scene& scene, const std::vector<KeyDifference>& differe
     }
 }
 
-/// What moves on a side and how it starts, in the precision that it is computed with.
+/// What moves on a side and its start, in the precision that it is computed with.
 template <class Scalar>
 struct System {
     std::optional<Pendulum<Scalar>> chain;
@@ -94,7 +95,7 @@ void check_systems(const Scene& scene, const std::vector<KeyDifference>& differe
     for (const auto& difference : differences)
         if (const auto name = difference.any().name(); names.find(name) == std::string::npos)
             names += (names.empty() ? "" : ", ") + name;
-    throw bad_input("{}: {} differ, but not in what is computed of them in {}: both sides would move identically{}",
+    throw bad_input("{}: {} differ, but not in the numbers of {}: both sides would move identically{}",
                     scene.preset.name, names, working<Scalar>, remedy<Scalar>);
 }
 

@@ -28,7 +28,7 @@ constexpr Bounds from_to(double low, double high, std::string_view zero = {}) {
     return {.low = low, .high = high, .zero = zero};
 }
 /// Of an angle, deg.
-inline constexpr Bounds angle_bounds{.low = -1e6, .high = 1e6, .why = "more leaves no digits to move by"};
+inline constexpr Bounds angle_bounds{.low = -1e6, .high = 1e6, .why = "beyond, rounding hides the motion"};
 
 /// What pictures show of one text, and how many texts of one list.
 inline constexpr std::size_t most_letters = 1000, most_texts = 20;

@@ -77,7 +77,7 @@ Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<boo
     const auto known = side.choice ? side.choice->reference : nullptr;
     const auto& reference = known ? *known : reference_trajectory(side.motion, scene.samples, side.reach, off, stop);
     const auto history = error_history(side.motion, reference, off, stop);
-    if (history.error.empty()) throw method_failed("the method breaks down at once");
+    if (history.error.empty()) throw method_failed("the method fails at once");
     Forecast seen{.error = history.error.back(),
                   .error_s = scene.time(static_cast<long>(history.error.size()) - 1),
                   .exponent = std::nullopt,
@@ -95,12 +95,12 @@ Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<boo
 }
 
 std::string off_words(const Side& side, double from_s) {
-    return fmt::format("off by half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", from_s);
+    return fmt::format("its error exceeds half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", from_s);
 }
 
 std::optional<std::string> early_error(const Scene& scene, const Side& side, long last, const std::atomic<bool>& stop) {
     if (side.replay || (side.choice && side.choice->horizon >= last)) return std::nullopt;
-    if (side.choice) return fmt::format("within the accuracy up to {:.3g} s", scene.time(side.choice->horizon));
+    if (side.choice) return fmt::format("the accuracy holds up to {:.3g} s", scene.time(side.choice->horizon));
     const auto history =
         error_history(side.motion, reference_trajectory(side.motion, last, side.reach, off, stop, 0), off, stop);
     if (history.error.empty() || !(history.error.back() > off)) return std::nullopt;

@@ -31,7 +31,7 @@ struct Forecast {
 
 /// By the run beside the reference (analysis/reference_trajectory.hpp), and runs by Taylor series as fine as the precision
 /// allows, each of which rounds in its own way.
-/// Errors  exit 130 soon after `stop` is set; exit 3 where the method breaks down at once.
+/// Errors  exit 130 soon after `stop` is set; exit 3 where the method fails at once.
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop);
 
 /// "off by half a rad from 11 s on".

@@ -25,7 +25,7 @@ void check_changes(const Preset& preset, const TomlReader& video) {
         throw video.fault("speed", "must begin at 0 s; it begins at {} s", changes.front().at_s.value());
     for (std::size_t i = 1; i < changes.size(); ++i)
         if (changes[i].at_s.value() <= changes[i - 1].at_s.value() || changes[i].at_s.value() > end)
-            throw video.fault("speed", "must change at times that rise, up to {} s; {} s comes after {} s", end,
+            throw video.fault("speed", "must have increasing times, up to {} s; {} s comes after {} s", end,
                               changes[i].at_s.value(), changes[i - 1].at_s.value());
 }
 
@@ -134,10 +134,10 @@ void check_frames(Preset& preset, const TomlReader& video) {
     const double seconds = spec.speed.changes_over_time() ? film_time(spec, end) : end / spec.speed.constant.value();
     const double frames = seconds * fps->value(), most_frames = std::max(1e7, samples);
     if (frames > most_frames)
-        throw video.fault("speed", "makes a film of {:.3g} frames; the most are {}", frames, most_frames);
+        throw video.fault("speed", "makes a film of {:.3g} frames; at most {} are possible", frames, most_frames);
     const auto stride = sampled ? quotient(*sampled, *fps) : std::nullopt;
     if (!stride || static_cast<double>(stride->numerator) * (frames + 1) > 2e18)  // of 64 bits
-        throw video.fault("speed", "and fps must have to scene.sample_hz ratios of smaller whole numbers; it is {}",
+        throw video.fault("speed", "and fps must have simpler ratios to scene.sample_hz; it is {}",
                           spec.speed.constant.text());
     if (spec.poster_s && spec.poster_s->value() > end)
         throw video.fault("poster_s", "must be up to {} s; it is {}", end, spec.poster_s->value());

@@ -14,23 +14,20 @@ namespace {
 
 /// The smallest model that serves, and why.
 std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEntry& method) {
-    if (spec.model != ModelChoice::automatic)
-        return {value_named<Model>(name_of(spec.model)), "the preset asks for it"};
+    if (spec.model != ModelChoice::automatic) return {value_named<Model>(name_of(spec.model)), "the preset selects it"};
     if (!spec.particles.empty())
-        return {Model::mechanism, "particles, constraints and forces of its own take the general mechanism"};
+        return {Model::mechanism, "particles, constraints and forces need the general mechanism"};
     if (spec.is_mechanism())
-        return {Model::mechanism, "a chain with further constraints or forces takes the general mechanism"};
+        return {Model::mechanism, "a chain with further constraints or forces needs the general mechanism"};
     if (!spec.physical.is_none())
-        return {Model::angles, fmt::format("{}: rigid bodies in angles, at a cost that grows with the links",
-                                           physical_words(spec.physical))};
-    if (!method.angles) return {Model::constraints, fmt::format("\"{}\" steps particles on their rods", method.name)};
+        return {Model::angles, fmt::format("{}: rigid bodies in angles, cost O(N)", physical_words(spec.physical))};
+    if (!method.angles)
+        return {Model::constraints, fmt::format("\"{}\" integrates particles with constraints", method.name)};
     if (spec.stabilise != Stabilise::none) return {Model::constraints, "only constraints can be stabilised"};
     if (spec.links() == 2)
-        return {Model::angles,
-                "two links and no further forces: the closed form in angles is the smallest model that serves"};
-    return {Model::angles,
-            fmt::format("a chain of {} and no further forces: angles, at a cost that grows with the links",
-                        spec.links() == 1 ? "one link" : fmt::format("{} links", spec.links()))};
+        return {Model::angles, "two links and no further forces: the closed form in angles is the smallest model"};
+    return {Model::angles, fmt::format("a chain of {} and no further forces: angles, cost O(N)",
+                                       spec.links() == 1 ? "one link" : fmt::format("{} links", spec.links()))};
 }
 
 /// What of each link's mass is at its end, kg: that of a body is along it.
@@ -91,7 +88,7 @@ void measure(const SideSpec& spec, Side& side) {
 /// A track, and the pendulum that it is taken for.
 Side make_measured_side(const SideSpec& spec, const Rational& sample_hz) {
     Side side;
-    side.why = "a measured swing, which nothing steps";
+    side.why = "a measured track; no method integrates it";
     side.motion.sample_interval = *quotient({1, 1}, sample_hz);
     side.motion.chain = chain_of(spec);
     if (!spec.physical.is_none()) side.motion.physical = physical_of(spec);
@@ -146,7 +143,7 @@ public:
     std::size_t index(const std::string& what, const std::string& name) const {
         if (const auto found = indices_.find(name); found != indices_.end()) return found->second;
         const auto meant = nearest(name, std::vector<std::string_view>(names_.begin(), names_.end()));
-        throw bad_input("{} names the particle \"{}\", which is not there{}", what, name,
+        throw bad_input("{} names the particle \"{}\", which does not exist{}", what, name,
                         meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
     }
     End<Quad> end(const std::string& what, const EndSpec& spec) const {
@@ -195,8 +192,7 @@ public:
         if (part_.kind == PartKind::spring)
             return Spring<Quad>{a, b, part_.stiffness_N_per_m, length(a, b), part_.damping_N_s_per_m};
         const auto* other = std::get_if<std::size_t>(&b);
-        if (!other)
-            throw bad_input("an attraction is between two particles; a body that stays in place is a \"droplet\"");
+        if (!other) throw bad_input("an attraction needs two particles; use a \"droplet\" for a fixed body");
         return Attraction<Quad>{a, *other, constant};
     }
 

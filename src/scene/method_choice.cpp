@@ -59,7 +59,7 @@ long steps_at(int level) {
 /// The fewest that are `least` or more. Throws Error (exit 2) where those are too many to count.
 int level_of_steps(double least) {
     constexpr double most = 0x1p40;
-    if (!(least <= most)) throw bad_input("accuracy would take {:.2g} steps a sample: no run of these ends", least);
+    if (!(least <= most)) throw bad_input("accuracy would need {:.2g} steps a sample; such a run never ends", least);
     int level = 0;
     while (static_cast<double>(steps_at(level)) < least) ++level;
     return level;
@@ -194,8 +194,8 @@ Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, 
                                   const Asking& side) const {
     const auto seconds = [&](long sample) { return static_cast<double>(sample) / preset_.sample_hz.value(); };
     if (!history.failure.empty())
-        return method_failed("the motion breaks down within {:.2g} s: {}",
-                             seconds(static_cast<long>(history.error.size())), history.failure);
+        return method_failed("the motion fails within {:.2g} s: {}", seconds(static_cast<long>(history.error.size())),
+                             history.failure);
     const auto within = [&](long sample) { return history.at(static_cast<std::size_t>(sample)) / margin; };
     const double for_swing = within(side.swing_samples), to_end = within(samples_);
     const auto up = [](double value) {
@@ -204,11 +204,10 @@ Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, 
     };
     const bool quad = in_quad(side.spec);
     return bad_input(
-        "accuracy = {:.3g} rad is beyond {} here: it would hold for {:.2g} s; within reach are {} for {:.2g} s{}{}",
-        accuracy, quad ? "quad" : "double", std::max(0.0, seconds(horizon)),
-        std::isfinite(for_swing) ? up(for_swing) : "none", seconds(side.swing_samples),
-        to_end < enough ? fmt::format(" and {} to the end", up(to_end)) : "",
-        quad ? "" : "; precision = \"quad\" reaches further");
+        "accuracy = {:.3g} rad is beyond {} here: it would hold for {:.2g} s; possible: {} for {:.2g} s{}{}", accuracy,
+        quad ? "quad" : "double", std::max(0.0, seconds(horizon)), std::isfinite(for_swing) ? up(for_swing) : "none",
+        seconds(side.swing_samples), to_end < enough ? fmt::format(" and {} to the end", up(to_end)) : "",
+        quad ? "" : "; precision = \"quad\" allows more");
 }
 
 double MethodChooser::work(Asking& side, const StepLevels& method, int level, const std::atomic<bool>& stop) const {

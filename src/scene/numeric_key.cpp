@@ -137,11 +137,10 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
     const Place place(number.inside);
     const auto found = find_number(side, place);
     if (!found.field) {
-        if (place.key == "accuracy")
-            throw table.fault(key, "\"{}\" is varied where the preset gives an accuracy", number.path);
+        if (place.key == "accuracy") throw table.fault(key, "\"{}\" needs an accuracy in the preset", number.path);
         if (found.names.empty() && !place.table.empty())
-            throw table.fault(key, "\"{}\" is of no particle, constraint or force of the preset", number.path);
-        throw table.fault(key, "\"{}\" is no number of the preset; there are {}", number.path,
+            throw table.fault(key, "\"{}\" names no particle, constraint or force of the preset", number.path);
+        throw table.fault(key, "\"{}\" is not a number of the preset; there are {}", number.path,
                           fmt::join(found.names, ", "));
     }
     const auto& field = *found.field;

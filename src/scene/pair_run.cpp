@@ -73,7 +73,7 @@ void check_distance(const Scene& scene, const PairState& state) {
     const bool of_b = std::abs(worst.b) > std::abs(worst.a);
     throw Error(state.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,
                 fmt::format("{}: side {}: {} is {:.6g} at t = {} s, and {:.6g} on the other side: the square of their "
-                            "difference is out of range, beyond 1.8e308",
+                            "difference exceeds 1.8e308",
                             scene.preset.name, of_b ? 'b' : 'a', worst.what, of_b ? worst.b : worst.a,
                             scene.time(state.sample), of_b ? worst.a : worst.b));
 }

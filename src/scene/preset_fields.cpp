@@ -24,16 +24,15 @@ const Field subtitle_field{.key = "subtitle",
                            .absent = "what both sides have in common",
                            .is_drawn = true};
 const Field kind_field{.key = "kind", .help = "\"pair\" is a film, the others are figures", .names = scene_kinds};
-const Field model_field{.key = "model", .help = "the equations; auto: the smallest that serves"};
+const Field model_field{.key = "model", .help = "the equations; auto: the smallest model that can simulate the scene"};
 const Field accuracy_field{"accuracy",
                            "largest error of an angle, or of a place as a part of the size of a mechanism; "
                            "chooses integrator, step_s and tolerance",
                            "rad",
                            {.low = 0, .high = 1, .is_open = true}};
 const Field size_field{"size", "width and height", "px", picture_sizes, "", {}, "width and height"};
-const Field preview_field{"preview",
-                          "for trying out: half as wide and high (unless the command line gives a size), fast "
-                          "and coarse encoding"};
+const Field preview_field{
+    "preview", "a draft: half the width and height (unless the command line gives a size), fast and coarse encoding"};
 const Field theme_field{.key = "theme", .help = "colours", .names = known_themes};
 
 void clock_fields(KeyVisitor& visit, Preset& preset) {
@@ -65,7 +64,8 @@ void link_fields(KeyVisitor& visit, SideSpec& side, const Bounds& masses) {
     auto links = static_cast<int>(side.links());
     visit({"links", "links of the chain", "", from_to(1, 10'000)}, links);
     side.set_links(static_cast<std::size_t>(links));
-    auto mass = of_links("mass_kg", "masses at the ends of the links; may be 0 beside rod_mass_kg", "kg", masses, "m");
+    auto mass =
+        of_links("mass_kg", "masses at the ends of the links; 0 is possible with rod_mass_kg", "kg", masses, "m");
     mass.otherwise = not_negative;
     visit(mass, side.mass_kg);
     visit(of_links("length_m", "lengths of the links", "m", positive, "l"), side.length_m);
@@ -87,37 +87,38 @@ void physical_fields(KeyVisitor& visit, PhysicalSpec& physical) {
         field.only.holds = !is_zero(values);
         visit(field, values);
     };
-    list("rod_mass_kg", "", "kg", "mass of each rod, evenly along it, besides mass_kg", physical.rod_mass_kg);
-    auto center = of_links("center_m", "of a link whose mass_kg is a body: from its joint to the centre of mass", "m",
+    list("rod_mass_kg", "", "kg", "mass of each uniform rod, in addition to mass_kg", physical.rod_mass_kg);
+    auto center = of_links("center_m", "makes mass_kg a rigid body: distance from its joint to the centre of mass", "m",
                            not_negative, "", "centre of mass");
     center.absent = "at the end";
     center.only.holds = !physical.center_m.empty();
     visit(center, physical.center_m);
-    list("inertia_kg_m2", "", "kg m²", "of such a body, about its centre of mass", physical.inertia_kg_m2);
-    list("joint_viscous_N_m_s", "viscous friction", "N m s", "friction at each joint, by its rate",
+    list("inertia_kg_m2", "", "kg m²", "moment of inertia of this body about its centre of mass",
+         physical.inertia_kg_m2);
+    list("joint_viscous_N_m_s", "viscous friction", "N m s", "friction at each joint, proportional to its rate",
          physical.joint_viscous_N_m_s);
-    list("joint_coulomb_N_m", "Coulomb friction", "N m", "friction at each joint, whatever its rate (Coulomb)",
+    list("joint_coulomb_N_m", "Coulomb friction", "N m", "Coulomb friction at each joint, independent of its rate",
          physical.joint_coulomb_N_m);
     visit({"joint_coulomb_width_deg_per_s", "has no effect any more: a joint comes to rest where its rate is 0",
            "deg/s", positive},
           physical.joint_coulomb_width_deg_per_s);
-    list("arm_drag_linear_N_m_s", "linear drag on arms", "N m s", "drag on each link, by its own rate",
+    list("arm_drag_linear_N_m_s", "linear drag on links", "N m s", "drag on each link, proportional to its own rate",
          physical.arm_drag_linear_N_m_s);
-    list("arm_drag_quadratic_N_m_s2", "drag on arms", "N m s²", "the same, by the square of its rate",
-         physical.arm_drag_quadratic_N_m_s2);
+    list("arm_drag_quadratic_N_m_s2", "drag on links", "N m s²",
+         "drag on each link, proportional to the square of its own rate", physical.arm_drag_quadratic_N_m_s2);
     list("air_drag_quadratic_N_m_s2", "air drag", "N m s²",
-         "drag on each link, by the square of the rate with which its centre of oscillation meets the air broadside",
+         "drag on each link, proportional to the square of the normal velocity at its centre of oscillation",
          physical.air_drag_quadratic_N_m_s2);
-    list("drag_linear_N_s_per_m", "linear drag", "N s/m", "drag on each end of a link, by its speed",
+    list("drag_linear_N_s_per_m", "linear drag", "N s/m", "drag on each end of a link, proportional to its speed",
          physical.drag_linear_N_s_per_m);
-    list("drag_quadratic_N_s2_per_m2", "quadratic drag", "N s²/m²", "the same, by the square of its speed",
-         physical.drag_quadratic_N_s2_per_m2);
+    list("drag_quadratic_N_s2_per_m2", "quadratic drag", "N s²/m²",
+         "drag on each end of a link, proportional to the square of its speed", physical.drag_quadratic_N_s2_per_m2);
     visit.table("pivot", [&pivot = physical.pivot](KeyVisitor& table) {
-        table({"direction_deg", "of the motion, from the x axis: 90 = up", "deg", angle_bounds}, pivot.direction_deg);
-        table({"amplitude_m", "half the way to and fro; 0 = the pivot stays where it is", "m", not_negative},
+        table({"direction_deg", "direction of the prescribed motion, from the x axis: 90 = up", "deg", angle_bounds},
+              pivot.direction_deg);
+        table({"amplitude_m", "amplitude of the prescribed motion; 0 = a fixed pivot", "m", not_negative},
               pivot.amplitude_m);
-        table({"frequency_hz", "swings a second", "Hz", {.low = 0, .high = most_hz, .is_open = true}},
-              pivot.frequency_hz);
+        table({"frequency_hz", "frequency", "Hz", {.low = 0, .high = most_hz, .is_open = true}}, pivot.frequency_hz);
         table({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, pivot.phase_deg);
     });
 }
@@ -135,10 +136,9 @@ void method_fields(KeyVisitor& visit, SideSpec& side) {
     visit({.key = "integrator", .help = "the method", .names = names_of_methods()}, side.integrator);
     const bool adaptive = find_method(side.integrator)->adaptive;
     const auto only = [&](bool holds, const char* what) {
-        return Only{
-            holds,
-            fmt::format("is for {}; \"{}\" goes by {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
-            side.integrator_from_command_line, false, "integrator"};
+        return Only{holds,
+                    fmt::format("is for {}; \"{}\" uses {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
+                    side.integrator_from_command_line, false, "integrator"};
     };
     visit({"step_s", "of methods with a fixed step", "s", positive, "1/30000",
            only(!adaptive, "methods with a fixed step")},
@@ -150,7 +150,7 @@ void method_fields(KeyVisitor& visit, SideSpec& side) {
 
 void precision_fields(KeyVisitor& visit, SideSpec& side) {
     visit({"precision", "53 bits or 113 (34 digits)"}, side.precision);
-    visit({"stabilise", "what keeps constraints from drifting"}, side.stabilise);
+    visit({"stabilise", "correction of constraint drift"}, side.stabilise);
     visit({"stabilise_rate_per_s",
            "of Baumgarte's method, α = β",
            "1/s",
@@ -174,33 +174,33 @@ void side_fields(KeyVisitor& visit, SideSpec& side, bool is_physical) {
 
 void side_text_fields(KeyVisitor& visit, SideSpec& side) {
     visit({.key = "label",
-           .help = "what the side is called in the picture; \"\" = nothing",
-           .absent = "what sets it apart",
+           .help = "name of the side in the picture; \"\" = none",
+           .absent = "what differs from the other side",
            .is_drawn = true},
           side.label);
-    visit({.key = "note", .help = "the line below the label; \"\" = none", .absent = "how it starts", .is_drawn = true},
+    visit({.key = "note", .help = "the line below the label; \"\" = none", .absent = "its start", .is_drawn = true},
           side.note);
     visit.table("track", [&track = side.track](KeyVisitor& table) {
         table({.key = "file",
-               .help = "CSV of a measured double pendulum, which the side shows instead of a simulation; beside the "
-                       "preset, from here, or one that came with the program",
+               .help = "CSV of a measured double pendulum, shown instead of a simulation; path from the preset, from "
+                       "the current folder, or a built-in name",
                .absent = "none"},
               track.file);
         const Only of_file{.holds = !track.is_none()};
-        table({"start_s", "the file's time at which the motion begins", "s", {}, "the first sample", of_file},
+        table({"start_s", "time in the file at which the motion begins", "s", {}, "the first sample", of_file},
               track.start_s);
-        table({"offset_deg", "what the encoders show at rest, which is subtracted", "deg", angle_bounds, "", of_file,
-               "one an arm"},
+        table({"offset_deg", "reading of the encoders at rest, which is subtracted", "deg", angle_bounds, "", of_file,
+               "one a link"},
               track.offset_deg);
     });
 }
 
 void part_fields(KeyVisitor& visit, TorqueSpec& torque) {
-    visit({"joint", "where: 1 is the pivot, 2 the end of link 1; the link above takes the opposite", "",
+    visit({"joint", "1 is the pivot, 2 the end of link 1; the link above takes the opposite torque", "",
            from_to(1, 10'000)},
           torque.joint);
     visit({"amplitude_N_m", "torque", "N m"}, torque.amplitude_N_m);
-    visit({"frequency_hz", "swings a second", "Hz", from_to(0, most_hz)}, torque.frequency_hz);
+    visit({"frequency_hz", "frequency", "Hz", from_to(0, most_hz)}, torque.frequency_hz);
     visit({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, torque.phase_deg);
 }
 
@@ -245,7 +245,7 @@ void part_fields(KeyVisitor& visit, PartSpec& part) {
 
 void format_fields(KeyVisitor& visit, VideoSpec& video) {
     static constexpr std::array<std::string_view, 2> codecs{"vp9", "av1"};
-    visit({"format", "the file; png: a picture a frame"}, video.format);
+    visit({"format", "file format; png: one picture a frame"}, video.format);
     const auto only = [&](bool holds, const char* what) {
         return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
                     visit.from_command_line("format"), false, "format"};
@@ -257,10 +257,10 @@ void format_fields(KeyVisitor& visit, VideoSpec& video) {
     visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
     visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.holds = video.transparent}},
           video.transparent);
-    constexpr std::string_view effort = "of mp4 and webm: effort of the encoder; \"doppel\": chosen for such pictures";
+    constexpr std::string_view effort = "of mp4 and webm: preset of the encoder; \"doppel\": tuned for these pictures";
     visit({"preset", effort, "", {}, "", encoded, "", encoder_presets}, video.preset);
     visit({.key = "crf",
-           .help = "of mp4 and webm: lower is better; of mp4 up to 51",
+           .help = "of mp4 and webm: lower is better; at most 51 for mp4",
            .bounds = from_to(0, row.largest_crf),
            .only = encoded,
            .otherwise = from_to(0, 63)},
@@ -273,19 +273,19 @@ void time_fields(KeyVisitor& visit, VideoSpec& video) {
     constexpr std::string_view rates =
         "frames a second; 23.976, 29.97 and 59.94 mean 24000/1001, 30000/1001, 60000/1001";
     visit({"fps", rates, "1/s", positive, all_samples}, video.fps);
-    visit({"speed", "seconds of motion a second of film; a list: each speed is reached at its time", "", positive},
+    visit({"speed", "seconds of motion a second of film; in a list, each speed is reached at its time", "", positive},
           video.speed);
-    const Only of_changes{video.speed.changes_over_time(), "is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]",
-                          false, false, "speed"};
+    const Only of_changes{video.speed.changes_over_time(),
+                          "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, false, "speed"};
     constexpr std::string_view ease =
-        "of motion before a change of speed, in which the film's pace goes over by 3u² − 2u³";
+        "time of motion before a change of speed, in which the speed changes by 3u² − 2u³";
     visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
-    visit({"hold_start_s", "how long the first frame stands", "s", seconds}, video.hold_start_s);
-    visit({"hold_end_s", "how long the last frame stands", "s", seconds}, video.hold_end_s);
+    visit({"hold_start_s", "hold time of the first frame", "s", seconds}, video.hold_start_s);
+    visit({"hold_end_s", "hold time of the last frame", "s", seconds}, video.hold_end_s);
     visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);
-    visit({"end_card_s", "a card with the outcome after the film", "s", seconds}, video.end_card_s);
+    visit({"end_card_s", "a card with the result after the film", "s", seconds}, video.end_card_s);
     visit({"poster_s", "NAME.poster.png: the frame nearest to this time", "s", not_negative}, video.poster_s);
-    constexpr std::string_view moments = "NAME.contact.png: pendulums and time at so many moments, across and down";
+    constexpr std::string_view moments = "NAME.contact.png: frames at equal intervals, across and down";
     visit({"contact_sheet", moments, "", from_to(1, 32), "", {}, "frames across and down"}, video.contact_sheet);
 }
 
@@ -293,8 +293,8 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     visit({"layout", "how the pendulums are placed"}, video.layout);
     const auto only = [&](Arrangement layout) {
         return Only{video.layout == layout,
-                    fmt::format("is of the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)), false,
-                    false, "layout"};
+                    fmt::format("is for the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)),
+                    false, false, "layout"};
     };
     const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
     constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
@@ -305,9 +305,7 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
           video.phase);
     visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
     visit({.key = "panels", .help = "\"pendulums\" and strips, in their order"}, static_cast<Panels&>(video));
-    visit({.key = "show",
-           .help = "what is said around the pendulums; credit: by whom, on the end card",
-           .names = shown_parts},
+    visit({.key = "show", .help = "text elements; credit: Doppel's name on the end card", .names = shown_parts},
           video.show);
     constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
     for (std::size_t i = 0; i < strip_kinds; ++i) {
@@ -337,9 +335,8 @@ void style_fields(KeyVisitor& visit, VideoSpec& video) {
             table({key, help, "px", from_to(4, 400)}, video.fonts.*member);
     });
     constexpr auto glow = from_to(0, 100, "none"), trail = from_to(0, 3600, "none");
-    visit({"glow_px", "how far the light of trails and bobs reaches", "px", glow, of_theme}, video.glow_px);
-    visit({"trail_s", "how long the path behind the last bob lasts; 0.3 of an ensemble, 1 of one with a list", "s",
-           trail},
+    visit({"glow_px", "glow radius of trails and bobs", "px", glow, of_theme}, video.glow_px);
+    visit({"trail_s", "duration of the trail of the last bob; ensembles: 0.3, or 1 with a list of members", "s", trail},
           video.trail_s);
 }
 

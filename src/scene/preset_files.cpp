@@ -26,7 +26,7 @@ constexpr std::size_t most_bytes = std::size_t{8} << 20;  // links = 10 000 with
 
 void check_preset_name(const std::string& path, const std::string& name) {
     const auto refuse = [&](const std::string& why) {
-        throw bad_input("{}: the preset's name, \"{}\", becomes that of its folder and files, and {}; rename it", path,
+        throw bad_input("{}: the name of the preset, \"{}\", is used for its folder and files, and {}; rename it", path,
                         name, why);
     };
     if (name == "." || name == "..") refuse("leads out of it");
@@ -35,8 +35,7 @@ void check_preset_name(const std::string& path, const std::string& name) {
         if (const auto character = next_character(rest); is_control(character))
             refuse(fmt::format("holds the control character U+{:04X}", static_cast<unsigned>(character)));
     if (name.size() > longest_preset_name)
-        refuse(
-            fmt::format("has {} bytes; {} are the most that leave room for endings", name.size(), longest_preset_name));
+        refuse(fmt::format("has {} bytes; at most {} are possible", name.size(), longest_preset_name));
 }
 
 namespace {

@@ -19,9 +19,9 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
         return 0L;
     };
     const long start = std::lround(std::min(rate, 1e6)), below = next(start, -1), above = next(start + 1, 1);
-    if (below == 0 && above == 0) return "a longer or shorter step_s would";
-    if (below == 0 || above == 0) return fmt::format("{} would", std::max(below, above));
-    return fmt::format("{} or {} would", below, above);
+    if (below == 0 && above == 0) return "another step_s";
+    if (below == 0 || above == 0) return fmt::format("{}", std::max(below, above));
+    return fmt::format("{} or {}", below, above);
 }
 
 /// What layouts and strips ask of the system.
@@ -30,15 +30,15 @@ void check_layout(const Preset& preset, const TomlReader& video) {
     const auto name = name_of(layout);
     const bool chains = preset.a.particles.empty() && preset.b.particles.empty();
     if (!chains && (layout == Arrangement::ensemble || layout == Arrangement::phase))
-        throw video.fault("layout", "\"{}\" is of chains; the sides are mechanisms of particles", name);
+        throw video.fault("layout", "\"{}\" is for chains; the sides are mechanisms", name);
     for (const auto strip : preset.video.strips)
         if ((strip == StripKind::angles || strip == StripKind::rates) && !chains)
-            throw video.fault("panels", "\"{}\" is of chains; the sides are mechanisms of particles", name_of(strip));
+            throw video.fault("panels", "\"{}\" is for chains; the sides are mechanisms", name_of(strip));
     if (layout == Arrangement::ensemble && differ_in_kind(preset.a, preset.b))
-        throw video.fault("layout",
-                          "\"ensemble\" goes from one side to the other: both have as many links; they have {} "
-                          "and {}",
-                          preset.a.links(), preset.b.links());
+        throw video.fault(
+            "layout",
+            "\"ensemble\" interpolates between the sides, so both need the same number of links; they have {} and {}",
+            preset.a.links(), preset.b.links());
     if (layout == Arrangement::phase) {
         const long links = static_cast<long>(std::min(preset.a.links(), preset.b.links()));
         if (preset.video.phase_link > links)
@@ -48,17 +48,16 @@ void check_layout(const Preset& preset, const TomlReader& video) {
     if (layout != Arrangement::ensemble) return;
     const auto &a = preset.a, &b = preset.b;
     if (!a.track.is_none() || !b.track.is_none())
-        throw video.fault("layout", "\"{}\" goes from one simulation to another; a side shows a track", name);
+        throw video.fault("layout", "\"{}\" needs two simulations; a side shows a track", name);
     if (!are_alike(a.physical, b.physical))
         throw video.fault(
-            "layout", "\"{}\" takes sides with the same kinds of torques, and center_m on both or on neither", name);
+            "layout", "\"{}\" needs sides with the same kinds of torques, and center_m on both or on neither", name);
     if (a.is_mechanism() || b.is_mechanism())
-        throw video.fault("layout", "\"{}\" is of chains without further constraints and forces", name);
+        throw video.fault("layout", "\"{}\" is for chains without further constraints and forces", name);
     if (a.model != b.model || a.integrator != b.integrator || a.step() != b.step() ||
         a.allowed_error() != b.allowed_error() || a.accuracy != b.accuracy || a.precision != b.precision ||
         a.stabilise != b.stabilise)
-        throw video.fault("layout",
-                          "\"{}\" takes sides that differ in their numbers alone, not in how they are stepped", name);
+        throw video.fault("layout", "\"{}\" needs sides that differ only in numbers, not in model or method", name);
 }
 
 /// Samples are compared particle by particle: a particle of one side must be one of the other.
@@ -76,7 +75,7 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
         entry({.key = "name"}, name);
         if (std::find(others.begin(), others.end(), name) != others.end()) continue;
         const auto meant = nearest(name, others);
-        throw entry.fault("name", "must be that of a particle on both sides; \"{}\" is on this one only{}", name,
+        throw entry.fault("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
                           meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
     }
     if (names.size() == others.size())
@@ -94,7 +93,7 @@ void check_layout(const TomlReader& table, const VideoSpec& video) {
         throw table.fault("size", "must be higher than wide for the layout \"portrait\"; it is [{}, {}]",
                           video.size.width, video.size.height);
     if (!video.pendulums && video.layout != Arrangement::side_by_side && !is_portrait)
-        throw table.fault("panels", "must hold \"pendulums\" for the layout \"{}\"", name_of(video.layout));
+        throw table.fault("panels", "must contain \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
 /// Members of an ensemble leave short trails without light.
@@ -165,13 +164,14 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
     if (members.empty()) return;
     for (std::size_t k = 0; k < members.size(); ++k)
         if (members[k].size() != preset.a.links())
-            throw video.fault("members", "must have {} angles each, one a link; [{}] has {}", preset.a.links(), k,
-                              members[k].size());
+            throw video.fault("members", "must have {} angles each, one for each link; [{}] has {}", preset.a.links(),
+                              k, members[k].size());
     const auto check_side = [&](const char* table, const std::vector<Quad>& angles, const std::vector<Quad>& member) {
         if (video.from_command_line("members") || !document.table(top, table).has("angle_deg") || angles == member)
             return;
-        throw video.fault("members", "begins with side a and ends with side b; [{}] angle_deg is {}, the member's {}",
-                          table, toml_value(angles), toml_value(member));
+        throw video.fault("members",
+                          "must begin with side a and end with side b; [{}] angle_deg is {}, the member's {}", table,
+                          toml_value(angles), toml_value(member));
     };
     check_side("a", preset.a.angle_deg, members.front());
     check_side("b", preset.b.angle_deg, members.back());
@@ -222,7 +222,7 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
         const auto rate = quotient({1, 1}, side->step());
         const auto steps = rate ? quotient(*rate, preset.sample_hz) : std::nullopt;
         if (!steps || !steps->is_whole())
-            throw scene.fault("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}; {} do",
+            throw scene.fault("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}; use {}",
                               rate ? rate->text() : "?", side == &preset.a ? "a" : "b", preset.sample_hz.text(),
                               rate ? rates_that_divide(*rate, preset.sample_hz.value()) : "another");
     }

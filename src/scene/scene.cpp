@@ -106,9 +106,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     const auto has_rod_forces = [](const Side& side) { return !side.motion.physical && !side.replay; };
     if (wanted(StripKind::rod_force) && !(has_rod_forces(scene.a) && has_rod_forces(scene.b)))
         throw bad_input(
-            "{}: [video] panels: \"rod-force\" is the force in massless rods of a simulation; links with mass, "
-            "friction or "
-            "a drive have none such, and tracks tell none",
+            "{}: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and tracks, "
+            "have no rod tension",
             preset.name);
     scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
     check_difference(scene);
@@ -156,19 +155,18 @@ std::optional<double> SideRun::energy_error(const Observation& seen) const {
 }
 
 BreakDown SideRun::broken(const std::string& what) const {
-    return {
-        fmt::format("{}: side {} broke down by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_, scene_.time(now_),
-                    what, name_of(side_.motion.model), side_.method.title, step_control_text(side_)),
-        name_, now_.share > 0 ? now_.sample + 1 : now_.sample};
+    return {fmt::format("{}: side {} failed by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_, scene_.time(now_),
+                        what, name_of(side_.motion.model), side_.method.title, step_control_text(side_)),
+            name_, now_.share > 0 ? now_.sample + 1 : now_.sample};
 }
 
 void SideRun::watch(const Observation& seen) {
     if (const auto fault = not_finite(seen, side_.has_angles)) throw broken(*fault);
     if (seen.energy_change > proportion_.gain)
-        throw broken(
-            fmt::format("the energy has grown by {:.3g} J, more than ten times what there is", seen.energy_change));
+        throw broken(fmt::format("the energy has grown by {:.3g} J, more than tenfold", seen.energy_change));
     if (seen.length_error > proportion_.reach)
-        throw broken(fmt::format("a rod is off by {:.3g} m, more than all of them are long", seen.length_error));
+        throw broken(fmt::format("the length of a rod has an error of {:.3g} m, more than the length of the chain",
+                                 seen.length_error));
 }
 
 Observation SideRun::next(const std::atomic<bool>& stop) {

@@ -22,10 +22,9 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
     if (table.has("accuracy")) {
         const bool ours = table.from_command_line("accuracy"), theirs = rival && table.from_command_line(*rival);
         if (rival && ours == theirs)
-            table.refuse(
-                table.fault("accuracy", "chooses integrator, step and tolerance itself; give it, or {}", *rival)
-                    .with(table.beside(*rival)),
-                "accuracy");
+            table.refuse(table.fault("accuracy", "chooses integrator, step and tolerance; remove it, or {}", *rival)
+                             .with(table.beside(*rival)),
+                         "accuracy");
         if (theirs) {
             side.accuracy.reset();
             return false;
@@ -59,8 +58,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
         std::string name;
         entry({.key = "name"}, name);
         if (!name.empty() && !given.insert(name).second)
-            entry.refuse(entry.fault("name", "must differ from those before it; \"{}\" is there already", name),
-                         "name");
+            entry.refuse(entry.fault("name", "must be unique; \"{}\" is used already", name), "name");
         const auto same = indices.find(name);
         const bool is_new = same == indices.end();
         if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : entries[same->second], is_new))
@@ -71,7 +69,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
 bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
     entry.check_together([&] {
         if (particle.name.empty())
-            throw entry.fault("name", "is missing; constraints and forces call a particle by it");
+            throw entry.fault("name", "is missing; constraints and forces refer to a particle by it");
         entry.demand_drawable("name", particle.name);
     });
     part_fields(entry, particle);
@@ -125,9 +123,12 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
     if (side.particles.empty()) return;
     for (const auto* key : {"links", "mass_kg", "length_m", "angle_deg", "omega_deg_per_s"})
         if (table.has(key))
-            table.refuse(table.fault(key, "describes a chain, and [[system.particle]] another system; give one")
-                             .with(table.beside("particle")),
-                         key);
+            table.refuse(
+                table
+                    .fault(key,
+                           "describes a chain, but [[system.particle]] describes another system; remove one of them")
+                    .with(table.beside("particle")),
+                key);
 }
 
 void check_masses(TomlReader& table, const SideSpec& side) {
@@ -144,16 +145,16 @@ void check_physical(TomlReader& table, const SideSpec& side) {
         throw table.fault(!side.forces.empty()        ? "force"
                           : !side.constraints.empty() ? "constraint"
                                                       : "particle",
-                          "cannot be beside links with mass, friction or a drive, which are for chains alone");
-    constexpr std::string_view why = "links with mass, friction or a drive move in angles";
+                          "cannot be combined with links with mass, friction or a drive, which need a plain chain");
+    constexpr std::string_view why = "links with mass, friction or a drive need angles";
     if (side.model == ModelChoice::mechanism || side.model == ModelChoice::constraints)
-        throw table.fault("model", "\"{}\" is not for such a chain: {}", name_of(side.model), why);
+        throw table.fault("model", "\"{}\" does not support this chain: {}", name_of(side.model), why);
     if (side.stabilise != Stabilise::none) throw table.fault("stabilise", "is for constraints; {}", why);
     const auto& method = *find_method(side.integrator);
     if (!side.accuracy && !method.angles)
-        throw table.fault("integrator", "\"{}\" steps particles on rods; {}", side.integrator, why);
+        throw table.fault("integrator", "\"{}\" needs model = \"constraints\"; {}", side.integrator, why);
     if (!side.accuracy && physical.has_coulomb() && !method.stabilised)
-        throw table.fault("integrator", "\"{}\" cannot end a step at rest, as joints with joint_coulomb_N_m come to",
+        throw table.fault("integrator", "\"{}\" does not support Coulomb friction (joint_coulomb_N_m)",
                           side.integrator);
     check_masses(table, side);
 }
@@ -166,17 +167,18 @@ void check_choices(TomlReader& table, const SideSpec& side) {
                           "must be \"mechanism\" or \"auto\" with particles, constraints or forces; it is \"{}\"",
                           name_of(side.model));
     if (side.stabilise != Stabilise::none && side.model == ModelChoice::angles)
-        throw table.fault("stabilise", "is for constraints; in angles the rods keep their length by themselves");
+        throw table.fault("stabilise", "is for constraints; in angles rods have constant length");
     if (side.accuracy) return;
     const auto& method = *find_method(side.integrator);
     if (side.is_mechanism() && !method.mechanism)
-        throw table.fault("integrator", "\"{}\" serves {}, not a mechanism", side.integrator, served(method));
+        throw table.fault("integrator", "\"{}\" supports {}, not a mechanism", side.integrator, served(method));
     const auto models = models_of(method);
     if (side.model != ModelChoice::automatic && std::ranges::find(models, name_of(side.model)) == models.end())
-        throw table.fault(table.has("integrator") ? "integrator" : "model", "\"{}\" serves {}, not model = \"{}\"",
+        throw table.fault(table.has("integrator") ? "integrator" : "model", "\"{}\" supports {}, not model = \"{}\"",
                           side.integrator, served(method), name_of(side.model));
     if (side.stabilise != Stabilise::none && !method.angles)
-        throw table.fault("stabilise", "is not for \"{}\", which keeps the constraints itself", side.integrator);
+        throw table.fault("stabilise", "is not needed with \"{}\", which keeps the constraints itself",
+                          side.integrator);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& 
     std::string_view key = "file";
     try {
         if (!side.particles.empty() || side.links() != 2)
-            throw bad_input("a track is of a double pendulum; the side has {}",
+            throw bad_input("a track needs two links; the side has {}",
                             side.particles.empty()
                                 ? fmt::format("{} link{}", side.links(), side.links() == 1 ? "" : "s")
                                 : "particles");

@@ -63,7 +63,7 @@ void bound_keys(std::string_view text, const std::string& path) {
             dots = 0;
         if (dots == most_parts) {
             const auto before = text.substr(0, at);
-            throw bad_input("{}:{}:{}: a key may have {} parts; this one has more", path,
+            throw bad_input("{}:{}:{}: a key can have at most {} parts; this one has more", path,
                             1 + std::count(before.begin(), before.end(), '\n'), at - before.rfind('\n'), most_parts);
         }
         ++at;
@@ -116,9 +116,9 @@ toml::table given_by(const Override& change, TomlTexts& texts) {
             return parsed_value(change, quoted, texts);
         const auto list = fmt::format("[{}]", change.value);
         const bool lacks_brackets = change.value.find(',') != std::string::npos && is_toml(list);
-        throw bad_input("{}: \"{}\" is no TOML value ({}); {}", change.origin, change.value, fault.description(),
-                        lacks_brackets ? fmt::format("a list wants brackets: '{}={}'", change.key, list)
-                                       : fmt::format("strings want quotes: '{}=\"{}\"'", change.key, change.value));
+        throw bad_input("{}: \"{}\" is not a TOML value ({}); {}", change.origin, change.value, fault.description(),
+                        lacks_brackets ? fmt::format("a list needs brackets: '{}={}'", change.key, list)
+                                       : fmt::format("a string needs quotes: '{}=\"{}\"'", change.key, change.value));
     }
 }
 
@@ -132,7 +132,7 @@ std::vector<std::string> literals_of(const toml::node& node, std::size_t links, 
     const auto literal = [&](const toml::node& number) {
         const auto text = literal_of(number, texts);
         if (!number.is_number() || !text)
-            throw bad_input("{}: an element is set of a list of numbers; {}", change.origin, found(node));
+            throw bad_input("{}: only an element of a list of numbers can be set; {}", change.origin, found(node));
         return *text;
     };
     std::vector<std::string> literals;
@@ -196,10 +196,10 @@ toml::table& entry_named(const toml::table& root, toml::array& entries, std::str
                 entries.push_back(toml::parse("name = " + toml_text(name), change.origin));
                 return *entries.back().as_table();
             }
-    throw bad_input("{}: [[{}]] has {} \"{}\"; {}", change.origin, key,
-                    of_kind.empty() ? "no entry" : "several entries of kind", name,
-                    names.empty() ? "give the entry that is meant a name in the preset"
-                                  : fmt::format("there are {}", fmt::join(names, ", ")));
+    throw bad_input(
+        "{}: [[{}]] has {} \"{}\"; {}", change.origin, key, of_kind.empty() ? "no entry" : "several entries of kind",
+        name,
+        names.empty() ? "give the entry a name in the preset" : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
 /// Where the key of `change` leads: the innermost table, and `key` ← what is left of it.
@@ -221,7 +221,7 @@ toml::table& table_of(toml::table& root, const Override& change, std::string& ke
         }
         if (!table->contains(head)) table->insert(head, toml::parse("", change.origin));  // knows its origin
         table = table->get_as<toml::table>(head);
-        if (!table) throw bad_input("{}: \"{}\" is no table", change.origin, head);
+        if (!table) throw bad_input("{}: \"{}\" is not a table", change.origin, head);
     }
     return *table;
 }
@@ -254,7 +254,7 @@ void apply(toml::table& root, const std::vector<Override>& overrides, TomlTexts&
             if (change.key == before.key)
                 throw bad_input("{} is given twice: {} and {}", change.key, before.origin, change.origin);
             if (before.key.starts_with(change.key + ".") || before.key.starts_with(change.key + "["))
-                throw bad_input("{}: would drop {}, which was given before it; give the table first", change.origin,
+                throw bad_input("{}: would remove {}, which was given before; give the table first", change.origin,
                                 before.origin);
         }
         apply(root, change, texts);
@@ -288,9 +288,9 @@ Override parse_set(const std::string& argument) {
     const auto key = argument.substr(0, equals);
     if (equals == std::string::npos || key.empty() || key.starts_with('.') || key.ends_with('.') ||
         key.find("..") != std::string::npos)
-        throw bad_input("--set wants table.key=VALUE; it is \"{}\"", argument);
+        throw bad_input("--set must be table.key=VALUE; it is \"{}\"", argument);
     if (const auto parts = 1 + std::count(key.begin(), key.end(), '.'); parts > most_parts)
-        throw bad_input("--set wants a key of at most {} parts; this one has {}", most_parts, parts);
+        throw bad_input("--set needs a key of at most {} parts; this one has {}", most_parts, parts);
     return {key, argument.substr(equals + 1), "--set " + key};
 }
 

@@ -24,17 +24,15 @@ std::optional<std::string> not_drawable(std::string_view text, const Typeface& t
         if (is_control(character)) return fmt::format("holds the control character {}, which cannot be drawn", number);
         if (needs_shaping(character))
             return fmt::format(
-                "holds \"{}\" ({}) of a script whose letters join or run to the left, which Doppel does "
-                "not write",
-                lacking, number);
+                "holds \"{}\" ({}) of a script that Doppel cannot draw (joined or right-to-left letters)", lacking,
+                number);
         auto letter = letters.size() == most ? "…" : fmt::format("\"{}\" ({})", lacking, number);
         if (std::find(letters.begin(), letters.end(), letter) == letters.end()) letters.push_back(std::move(letter));
         text.remove_prefix(static_cast<std::size_t>(lacking.data() + lacking.size() - text.data()));
     }
     if (letters.empty()) return std::nullopt;
-    const auto rest = typeface.uses_system_fonts() ? "; no font of this system has outlines of them either; "
-                                                     "[video.fonts] text takes a font file of your own"
-                                                   : "";
+    const auto rest =
+        typeface.uses_system_fonts() ? "; no font of this system has them; give a font file in [video.fonts] text" : "";
     return fmt::format(
         "holds {}, which the built-in font lacks; it has Latin and Greek letters and signs of mathematics{}",
         fmt::join(letters, ", "), rest);
@@ -125,8 +123,7 @@ void TomlReader::demand_drawable(std::string_view key, std::string_view text) co
 void TomlReader::demand_title(const std::string& name) {
     if (has("title") || !typeface_) return;
     if (const auto fault = not_drawable(name, *typeface_))
-        refuse({fmt::format("{}: title is missing, and the preset's name in its place {}", path_, *fault), {}, ""},
-               "title");
+        refuse({fmt::format("{}: title is missing, and the preset's name {}", path_, *fault), {}, ""}, "title");
 }
 
 const toml::table* TomlReader::read_table(std::string_view key) {

@@ -79,7 +79,7 @@ public:
             const Quad rounding = parse_quad("1e-32") * abs(decimal);
             if (value && abs(Quad(value->as<Quad>() - decimal)) > rounding) value.reset();
         }
-        if (!value) throw fault("has more digits than Doppel counts with; it is {}", shown(node));
+        if (!value) throw fault("has too many digits; it is {}", shown(node));
         const bool is_open = field_.bounds.is_open;
         if (value->numerator < (is_open ? 1 : 0))
             throw fault("must be {} 0; it is {}", is_open ? ">" : "≥", shown(node));
@@ -141,7 +141,7 @@ public:
             if (field_.is_drawn) table_.demand_drawable(field_.key, text);
             if (!field_.names.empty() &&
                 std::find(field_.names.begin(), field_.names.end(), text) == field_.names.end())
-                throw fault("are of {}; \"{}\" is not", fmt::join(field_.names, ", "), text);
+                throw fault("must be of {}; \"{}\" is not", fmt::join(field_.names, ", "), text);
         }
         into = std::move(texts);
     }
@@ -232,13 +232,14 @@ public:
                 continue;
             }
             if (std::find(names.begin(), names.end(), panel) == names.end())
-                throw fault("may hold \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
+                throw fault("may contain \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
                             panel);
             const auto kind = value_named<StripKind>(panel);
             if (std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end())
                 into.strips.push_back(kind);
         }
-        if (panels.empty()) throw fault("must hold at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
+        if (panels.empty())
+            throw fault("must contain at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
     }
 
 private:
@@ -303,7 +304,7 @@ private:
         if (literal->size() <= always_held) return value;
         const auto digits = significant_digits(*literal);
         if (digits.size() > always_held && digits != significant_digits(text_of(value)))
-            throw fault_of(element, "must have at most 34 digits, which quad holds; it has {}", digits.size());
+            throw fault_of(element, "must have at most 34 digits, the precision of quad; it has {}", digits.size());
         return value;
     }
 

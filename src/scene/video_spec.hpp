@@ -94,7 +94,7 @@ inline constexpr std::array<Member<Widths, double>, 6> width_names{{
     {"rod", &Widths::rod, "rods; 0 = by the size of the panel"},
     {"bob", &Widths::bob, "radius of the heaviest bob; 0 = by the size of the panel"},
     {"grid", &Widths::grid, "lines of charts"},
-    {"mark", &Widths::mark, "lines that mark now, the parting and the horizon"},
+    {"mark", &Widths::mark, "lines that mark now, the divergence and the horizon"},
 }};
 
 /// Sizes of words, px an em in a 1920×1080 picture.
@@ -105,7 +105,7 @@ inline constexpr std::array<Member<FontSizes, double>, 8> font_size_names{{
     {"title", &FontSizes::title, "the title"},
     {"subtitle", &FontSizes::subtitle, "the line below it"},
     {"clock", &FontSizes::clock, "the time"},
-    {"heading", &FontSizes::heading, "what sets a side apart"},
+    {"heading", &FontSizes::heading, "headings of the sides"},
     {"note", &FontSizes::note, "the line below a heading"},
     {"strip", &FontSizes::strip, "titles and values of strips"},
     {"axis", &FontSizes::axis, "numbers of axes"},
@@ -196,8 +196,8 @@ struct VideoSpec : Panels {
     FontSizes fonts;
     std::optional<std::string> text_font;               // path of the font file for all words
     Typeface typeface = Typeface::with_system_fonts();  // with that file, read
-    std::optional<double> glow_px;  // how far the light of trails and bobs reaches; the theme's where not given
-    double trail_s = 2.5;           // s; 0 = none
+    std::optional<double> glow_px;                      // glow radius of trails and bobs; the theme's where not given
+    double trail_s = 2.5;                               // s; 0 = none
 
     bool shows(std::string_view part) const { return std::find(show.begin(), show.end(), part) != show.end(); }
     const FormatRow& format_row() const { return doppel::format_row(format, codec); }

@@ -56,7 +56,7 @@ TEST(Spectrum, DoesNotDependOnHowOftenTheFrameIsSetUpright) {
         EXPECT_NEAR(rarely.exponents[i], often.exponents[i], 1e-11) << i;  // measured 1.4e-12
 }
 
-/// C_jk = −∂Q_j/∂ω_k of viscous joints, of drag on arms and on ends by their velocity.
+/// C_jk = −∂Q_j/∂ω_k of viscous joints, of drag on links and on ends by their velocity.
 Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd& theta, const Eigen::VectorXd& omega) {
     const auto n = theta.size();
     const auto& f = p.friction;

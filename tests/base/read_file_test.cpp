@@ -33,7 +33,7 @@ TEST(ReadFile, TakesRegularFilesOfALimitedSizeAlone) {
     EXPECT_EQ(refusal(longest), longest.string() + " has more than 1 MB; a track is a CSV file");
     // the system would open the name before it
     EXPECT_EQ(refusal(fs::path(longest.string() + std::string("\0b", 2))),
-              longest.string() + " b: has a NUL in it, which no name of a file has");
+              longest.string() + " b: contains a NUL character; a file name cannot");
     EXPECT_EQ(refusal(folder / "none"), (folder / "none").string() + ": there is no such file");
     std::ofstream(longest) << std::string(std::size_t{1} << 20, ' ');
     EXPECT_EQ(refusal(longest), "no error");

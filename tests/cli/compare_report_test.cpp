@@ -153,7 +153,7 @@ TEST(CompareReports, DoNotReadTheManifestsOfTheirFolder) {
                                     "\"$DOPPEL\" init mine.toml && stat -c %x other.json");
     EXPECT_NE(result.out.find("\n2001-01-01"), std::string::npos) << result.out << result.err;
     const auto refused = doppel(folder, {"compare", "one.png", "one.png", "--junit", "other.json"});
-    EXPECT_EQ(refused.err, "doppel: other.json was not written by Doppel for this; give the name of another file\n");
+    EXPECT_EQ(refused.err, "doppel: other.json was not written by Doppel for this; give another file name\n");
 }
 
 TEST(CompareReports, AreNotForStandardOutput) {

@@ -46,7 +46,7 @@ TEST(FigureProgram, DrawsByNameAndByPath) {
     const auto result =
         doppel(folder, with({"figure", "fig2-right", "./mine.toml", "-o", "figures", "--scale", "2"}, small));
     EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_EQ(result.err, "fig2-right: there is no room for the captions\nmine: there is no room for the captions\n");
+    EXPECT_EQ(result.err, "fig2-right: there is no space for the captions\nmine: there is no space for the captions\n");
     for (const char* file :
          {"fig2-right/fig2-right.png", "fig2-right/fig2-right.csv", "fig2-right/fig2-right.json", "mine/mine.png"}) {
         EXPECT_TRUE(fs::exists(folder / "figures" / file)) << file;
@@ -90,7 +90,7 @@ TEST(FigureProgram, ExitsWith130WithinASecondOfCtrlC) {
     EXPECT_EQ(wait_for(child), 130);
     EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1));  // measured 0.05 s
     EXPECT_EQ(bytes_of(folder / "stderr").rfind("doppel: interrupted", 0), 0u);
-    // nothing of what was not complete, but what the same command goes on from where that took long
+    // nothing of what was not complete, but what the same command resuming from where that took long
     for (const auto& name : test::listing(folder / "out/droplet")) EXPECT_TRUE(name.ends_with(".resume")) << name;
     EXPECT_TRUE(fs::exists(folder / "out/fig6/fig6.png")) << "all of what was";
 }
@@ -142,7 +142,7 @@ TEST_F(LongFigure, GoesOnAfterItWasKilled) {
     expect_record_alone();
     const auto again = doppel(folder_, with(long_map, {"--jobs", "2", "--progress", "plain"}));
     EXPECT_EQ(again.code, 0) << again.err;
-    EXPECT_TRUE(contains(again.err, "goes on from " + record_ + ": ")) << again.err;
+    EXPECT_TRUE(contains(again.err, "resuming from " + record_ + ": ")) << again.err;
     EXPECT_FALSE(contains(again.err, ": 0 % is done")) << again.err;
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out/flip-map"), {}), 3) << "the record has gone";
 
@@ -162,7 +162,7 @@ TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
     const auto bytes = bytes_of(folder_ / record_);
     const auto other = doppel(folder_, with(long_map, {"--set", "scene.duration_s=0.1", "--progress", "plain"}));
     EXPECT_EQ(other.code, 0) << other.err;
-    EXPECT_TRUE(contains(other.err, "leaves " + record_ + " alone, of another preset or version")) << other.err;
+    EXPECT_TRUE(contains(other.err, "leaves " + record_ + ", of another preset or version")) << other.err;
     EXPECT_EQ(bytes_of(folder_ / record_), bytes);
 }
 

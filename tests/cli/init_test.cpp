@@ -146,9 +146,9 @@ TEST(Init, WritesAFigureThatIsDrawn) {
         EXPECT_GT(last.size(), 4u) << kind << last;  // a number, and the end of its line
     }
     EXPECT_EQ(doppel(folder, {"init", "--figure", "pair"}).code, 2);
-    EXPECT_EQ(doppel(folder, {"init"}).err, "doppel: init wants the name of the new file: doppel init FILE.toml\n");
+    EXPECT_EQ(doppel(folder, {"init"}).err, "doppel: init needs the name of the new file: doppel init FILE.toml\n");
     EXPECT_EQ(doppel(folder, {"init", "mine.toml", "--figure", "grid"}).err,
-              "doppel: mine.toml: is there already; give the name of a new file\n");
+              "doppel: mine.toml: exists already; give a new name\n");
 }
 
 TEST(Init, LeavesWhatIsThere) {
@@ -156,8 +156,8 @@ TEST(Init, LeavesWhatIsThere) {
     write_bytes(folder / "mine.toml", "title = \"mine\"\n");
     fs::create_symlink("nowhere", folder / "link.toml");
     for (const auto& [name, message] : std::vector<std::pair<std::string, std::string>>{
-             {"mine.toml", "mine.toml: is there already; give the name of a new file"},
-             {"link.toml", "link.toml: is there already; give the name of a new file"},
+             {"mine.toml", "mine.toml: exists already; give a new name"},
+             {"link.toml", "link.toml: exists already; give a new name"},
              {"mine.txt", "mine.txt: the name of a preset's file ends in .toml"},
              {".toml", ".toml: the name of a preset's file ends in .toml"}}) {
         const auto result = doppel(folder, {"init", name});

@@ -17,7 +17,7 @@ TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
     EXPECT_NE(result.out.find("pictures/calm/calm.0.5s.png"), std::string::npos);
     for (const auto& [arguments, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
              {{"still", "calm"}, "--at is required"},
-             {{"still", "calm", "--at", "soon"}, "--at wants seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
+             {{"still", "calm", "--at", "soon"}, "--at must be seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
              {{"still", "calm", "--at", "31"}, "--at 31: calm ends at 30 s"},
              {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""}, "and still, which draws PNG"},
              {{"render", "calm", "--from", "-1"}, "--from wants seconds ≥ 0"},

@@ -100,9 +100,10 @@ TEST(Chart, KeysOfPaperNeedItsWidth) {
     expect_error(ExitCode::bad_input, {"with width_cm dpi says it"}, [] {
         small_sweep({"chart.width_cm=8.6", "chart.scale=2"});
     });
-    expect_error(ExitCode::bad_input, {"leaves no room for a chart on 3×1.69 cm; at most 4.8 pt would, it is 40"}, [] {
-        small_sweep({"chart.width_cm=3", "chart.font_pt=40"});
-    });
+    expect_error(ExitCode::bad_input, {"is too large for a chart of 3×1.69 cm; at most 4.8 pt is possible; it is 40"},
+                 [] {
+                     small_sweep({"chart.width_cm=3", "chart.font_pt=40"});
+                 });
     expect_error(ExitCode::bad_input, {"must leave a picture of 16 to 16384 px a side"}, [] {
         small_sweep({"chart.width_cm=200", "chart.dpi=1200"});
     });

@@ -149,7 +149,7 @@ Found positive_means_chaos() {
     const auto regular = exponent(20), chaotic = exponent(120);
     return {
         holds_if(!(average[1] > 0 && is_regular(regular))),
-        fmt::format("the average of ln(d/d₀) is {:.2f} at 0° and {:.2f} at 20°, where the exponent is {:.3f} ± "
+        fmt::format("the mean of ln(d/d₀) is {:.2f} at 0° and {:.2f} at 20°, where the exponent is {:.3f} ± "
                     "{:.3f} 1/s, none; at 120° it is {:.2f} ± {:.2f} 1/s",
                     average[0], average[1], regular.value, regular.uncertainty, chaotic.value, chaotic.uncertainty)};
 }

@@ -19,7 +19,7 @@ using test::write_bytes;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A computation that goes on from the record in the folder, and what came of it.
+/// A computation that resuming from the record in the folder, and what came of it.
 struct Resumed {
     Said said;
     KnownTrials trials;
@@ -47,7 +47,7 @@ TEST(Computation, ComputesOnlyWhatARecordDoesNotHave) {
 
     const Resumed resumed(figure, header_of(figure), folder);
     EXPECT_EQ(resumed.computed_units, 6);
-    EXPECT_TRUE(resumed.said.has("goes on from " + record.string() + ": 40 % is done"));
+    EXPECT_TRUE(resumed.said.has("resuming from " + record.string() + ": 40 % is done"));
     ASSERT_FALSE(resumed.said.progress.empty());
     EXPECT_EQ(resumed.said.progress.back().done, 10);
     EXPECT_EQ(resumed.said.progress.back().total, 10);

@@ -116,7 +116,7 @@ TEST(Drift, SaysInALineWhatIsSeen) {
     };
     EXPECT_EQ(
         caption("[\"euler\", \"rk4\", \"rattle6\"]"),
-        "The error of the energy stays bounded with rattle6; ∝ tells how the others grow, a dot marks a breakdown.");
+        "The error of the energy stays bounded with rattle6; ∝ tells how the others grow, a dot marks a failed run.");
     EXPECT_EQ(caption("[\"rk4\"]"), "No method keeps the error of the energy bounded; ∝ tells how the others grow.");
 }
 

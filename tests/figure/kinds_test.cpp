@@ -230,7 +230,7 @@ TEST(FlipMap, LeavesCellsEmptyThatBreakDown) {
     Figure page;
     figure.experiment->draw(trials, page);
     EXPECT_NE(page.captions.back().find("of the releases broke down"), std::string::npos) << page.captions.back();
-    EXPECT_TRUE(page.panels.back().map->none_label.ends_with(", or broken down")) << page.panels.back().map->none_label;
+    EXPECT_TRUE(page.panels.back().map->none_label.ends_with(", or failed")) << page.panels.back().map->none_label;
     EXPECT_LT(findings_of(figure).at("share_without"), 1);
 }
 

@@ -141,7 +141,7 @@ TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
         const auto figure = figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=80", "grid.x.step=5",
                                                      "scene.sample_hz=1", "scene.duration_s=3000", "system.step_s=1",
                                                      fmt::format("system.integrator=\"{}\"", method)});
-        expect_error(ExitCode::method_failed, {"fig2-right: every one of the 5 pairs broke down", "a finer step"},
+        expect_error(ExitCode::method_failed, {"fig2-right: all of the 5 pairs broke down", "a finer step"},
                      [&] { run_figure(figure, {.out = out}); });
         EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
     }
@@ -149,10 +149,9 @@ TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
     const auto alone =
         figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
                                  "system.step_s=1", "system.model=\"mechanism\""});
-    expect_error(ExitCode::method_failed, {"every one of the 3 pairs broke down"},
-                 [&] { run_figure(alone, {.out = out}); });
+    expect_error(ExitCode::method_failed, {"all of the 3 pairs broke down"}, [&] { run_figure(alone, {.out = out}); });
     for (int i = 1; i <= 2; ++i) run_figure(alone, {.out = out, .shard = Shard{i, 2}});
-    expect_error(ExitCode::method_failed, {"every one of the 3 pairs broke down"},
+    expect_error(ExitCode::method_failed, {"all of the 3 pairs broke down"},
                  [&] { run_figure(alone, {.out = out, .merge = true}); });
     EXPECT_EQ(names_in(out / "fig2-right").size(), 2u);
 }
@@ -198,7 +197,7 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
          "none of the 4 × 4 pairs has a flip_time: no flip within 20 s"},
         {figure_of("stability", {"grid.panel.values=[\"euler\"]", "grid.y.points=2", "grid.x.points=2",
                                  "grid.x.from=0.5", "grid.x.to=1"}),
-         "every one of the 2 × 2 pairs broke down"},
+         "all of the 2 × 2 pairs broke down"},
         {figure_of("poincare", {"system.gravity_m_per_s2=1e-12", "section.energy_J=[1e-12]", "section.orbits=2",
                                 "section.exponent_duration_s=10"}),
          "no orbit comes back"},
@@ -248,14 +247,14 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     const auto bytes = bytes_of(record);
     Said said;
     run_figure(small_sweep(), {.out = out}, said);
-    EXPECT_TRUE(said.has("leaves " + record.string() + " alone, of another preset or version"));
+    EXPECT_TRUE(said.has("leaves " + record.string() + ", of another preset or version"));
     EXPECT_EQ(said.notes.size(), 1u);  // nothing of the other part's
     EXPECT_EQ(bytes_of(record), bytes);
     EXPECT_EQ(bytes_of(folder / "fig2-right.csv"), table_text(small_sweep(), computed(small_sweep())));
     EXPECT_EQ(names_in(folder).size(), 5u);
     // its own is believed, and gone afterwards
     run_figure(large, {.out = out}, said);
-    EXPECT_TRUE(said.has("goes on from " + record.string() + ": 100 % is done"));
+    EXPECT_TRUE(said.has("resuming from " + record.string() + ": 100 % is done"));
     EXPECT_FALSE(fs::exists(record));
     EXPECT_TRUE(fs::exists(other));
 }

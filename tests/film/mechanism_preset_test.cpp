@@ -116,7 +116,7 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
         {bead + spring + spring,
          R"(presets/x.toml:13:1: [[system.force]] 2 name must differ from those before it; "pull" is there already)"},
         {"[[system.particle]]\nmass_kg = 1",
-         "presets/x.toml: [[system.particle]] 1 name is missing; constraints and forces call a particle by it"},
+         "presets/x.toml: [[system.particle]] 1 name is missing; constraints and forces refer to a particle by it"},
         {bead + "[[system.constraint]]\nkind = \"rope\"",
          R"(presets/x.toml:8:1: [[system.constraint]] 1 kind must be "anchor", "rod", "slot-line" or "slot-circle"; it is "rope"; did you mean "rod"?)"},
         {bead + "[[system.force]]\nfrom = \"bead\"",
@@ -129,7 +129,8 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
         {rod + "from = [1, 0]\nto = [0, 0]",
          "x: side a: a rod joins two fixed places; at least one end must be a particle"},
         {"[system]\nlinks = 2\n[[system.particle]]\nname = \"a\"",
-         "presets/x.toml:2:1: [system] links describes a chain, and [[system.particle]] another system; give one"},
+         "presets/x.toml:2:1: [system] links describes a chain, but [[system.particle]] describes another system; "
+         "remove one of them"},
         {"[system]\nintegrator = \"gauss4\"\n[[system.particle]]\nname = \"a\"",
          R"(presets/x.toml:2:1: [system] integrator "gauss4" serves angles, not a mechanism)"},
         {"[system]\nmodel = \"angles\"\n[[system.particle]]\nname = \"a\"",
@@ -155,7 +156,7 @@ mass_kg = 3.4e-5
 )";
     EXPECT_EQ(
         fault(text),
-        "x: the droplet pulls with 8.8e-22 m/s², below the rounding of g in double (1.8e-15): both sides would move "
+        "x: the droplet attracts with 8.8e-22 m/s², below the rounding of g in double (1.8e-15): both sides would move "
         "identically. Set precision = \"quad\"");
     auto preset =
         read_preset({"x", "presets/x.toml", text}, sets({"system.precision=\"quad\"", "system.model=\"mechanism\""}));

@@ -98,7 +98,7 @@ TEST(Still, RangesInSecondsAreThoseInFramesWithoutTheirEnd) {
     EXPECT_EQ(message(Rational{1, 1}, Rational{1, 2}),
               "--from 1 --to 0.5: the end, which is not included, must be after the start");
     EXPECT_EQ(message(Rational{1001, 1000}, Rational{1002, 1000}),
-              "--from 1.001 --to 1.002: butterfly has no frame there; they are 0.00833 s apart");
+              "--from 1.001 --to 1.002: butterfly has no frame in this interval; frames are 0.00833 s apart");
 }
 
 }  // namespace still_test

@@ -54,7 +54,7 @@ TEST(Strips, TheHorizonIsSaidWhereNoLineCrossesTheWords) {
     const auto words = [](const char* size, long sample) {
         const auto scene = scene_of("horizon", {fmt::format("video.size={}", size)});
         const auto layout = make_layout(scene);
-        const auto found = label_of(labels_of(scene, sample), "predictable to 3");
+        const auto found = label_of(labels_of(scene, sample), "predictability limit 3");
         return found ? std::optional(layout.strips[0].area.holds(box_of(*found))) : std::nullopt;
     };
     EXPECT_EQ(words("[1920, 1080]", 120), true);             // beside its line
@@ -62,7 +62,7 @@ TEST(Strips, TheHorizonIsSaidWhereNoLineCrossesTheWords) {
     EXPECT_EQ(words("[480, 270]", 34 * 120), std::nullopt);  // until they part, which is said there
     // a box clears the grid beneath
     const auto scene = scene_of("horizon", {"video.size=[960, 540]"});
-    const auto label = *label_of(labels_of(scene, 0), "predictable to 3");
+    const auto label = *label_of(labels_of(scene, 0), "predictability limit 3");
     const auto picture = frame_of(scene, 0);
     const int y = static_cast<int>(label.anchor.y) - static_cast<int>(0.3f * label.size);
     for (int x = static_cast<int>(label.anchor.x) - 2; x < static_cast<int>(label.anchor.x); ++x)

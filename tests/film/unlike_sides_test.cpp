@@ -86,12 +86,11 @@ TEST(UnlikeSides, AreDrawnInEveryLayoutThatTakesThem) {
                     << layout << ", side " << side;
             }
         }
-    EXPECT_NE(
-        error_of([] { scene_of("single-and-double", {"video.layout=\"ensemble\""}); })
-            .second.find(
-                "[video] layout \"ensemble\" goes from one side to the other: both have as many links; they have 1 "
-                "and 2"),
-        std::string::npos);
+    EXPECT_NE(error_of([] { scene_of("single-and-double", {"video.layout=\"ensemble\""}); })
+                  .second.find("[video] layout \"ensemble\" interpolates between the sides, so both need the same "
+                               "number of links; they have 1 "
+                               "and 2"),
+              std::string::npos);
     EXPECT_NE(error_of([] {
                   scene_of("single-and-double", {"video.layout=\"phase\""});
               }).second.find("phase_link must be from 1 to 1"),

@@ -22,7 +22,7 @@ PhysicalPendulum<Scalar> bodies(std::size_t links) {
     return p.template cast<Scalar>();
 }
 
-/// The same with viscous friction, drag on arms and ends, a motor at the first and the last joint, and a pivot that moves.
+/// The same with viscous friction, drag on links and ends, a motor at the first and the last joint, and a pivot that moves.
 template <class Scalar>
 PhysicalPendulum<Scalar> driven_bodies(std::size_t links) {
     auto p = bodies<double>(links);

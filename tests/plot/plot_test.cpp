@@ -149,11 +149,11 @@ TEST(Plot, SaysWhatItHasNoRoomFor) {
     const Figure figure{.title = "title", .subtitle = "subtitle", .panels = sweep().panels, .captions = {"caption"}};
     EXPECT_TRUE(compose(figure, {1600, 900}, light).notes.empty());
     using Notes = std::vector<std::string>;
-    EXPECT_EQ(compose(figure, {609, 300}, light, 1, 1.0f).notes, (Notes{"there is no room for the captions"}));
+    EXPECT_EQ(compose(figure, {609, 300}, light, 1, 1.0f).notes, (Notes{"there is no space for the captions"}));
     EXPECT_EQ(compose(figure, {609, 260}, light, 1, 1.0f).notes,
-              (Notes{"there is no room for the subtitle and the captions"}));
+              (Notes{"there is no space for the subtitle and the captions"}));
     EXPECT_EQ(compose(figure, {480, 180}, light, 1, 1.0f).notes.back(),
-              "for want of room text is 0.8 times as high as asked for");
+              "text is reduced to 0.8 times its size for lack of space");
 }
 
 TEST(Plot, TextOnPaperIsAsHighAsAskedFor) {

@@ -41,7 +41,7 @@ TEST(Captions, AreThoseOfThePresetWhereItHasSome) {
     EXPECT_EQ(scene_caption(own), "by me");
     const auto sides = side_captions(own);
     EXPECT_EQ(sides[0].heading, "left");
-    EXPECT_EQ(sides[0].note, "θ₁ = 90°, θ₂ = 90°");  // what sets it apart has lost its place above
+    EXPECT_EQ(sides[0].note, "θ₁ = 90°, θ₂ = 90°");  // what differs from the other side has lost its place above
     EXPECT_EQ(sides[1].heading, "θ₁ = 90.003°");
     EXPECT_EQ(sides[1].note, "");
     // they are in the resolved preset, and nowhere but in a film's sides

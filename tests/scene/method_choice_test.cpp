@@ -307,13 +307,13 @@ TEST(Choice, StandsInPlaceOfIntegratorAndStep) {
 
 TEST(Choice, SaysWhatIsWithinReach) {
     EXPECT_EQ(fault_of("[system]\naccuracy = 1e-6\nstep_s = 0.001"),
-              "test.toml:2:1: [system] accuracy chooses integrator, step and tolerance itself; give it, or step_s");
+              "test.toml:2:1: [system] accuracy chooses integrator, step and tolerance; remove it, or step_s");
     EXPECT_EQ(fault_of("[system]\naccuracy = 2"), "test.toml:2:1: [system] accuracy must be at most 1 rad; it is 2");
     EXPECT_EQ(fault_of("[system]\naccuracy = 0"), "test.toml:2:1: [system] accuracy must be > 0; it is 0");
     const auto beyond = fault_of("[scene]\nduration_s = 30\n[system]\naccuracy = 1e-15");
     EXPECT_EQ(beyond.find("test: side a: accuracy = 1e-15 rad is beyond double here: it would hold for "), 0u)
         << beyond;
-    EXPECT_NE(beyond.find("; precision = \"quad\" reaches further"), std::string::npos) << beyond;
+    EXPECT_NE(beyond.find("; precision = \"quad\" allows more"), std::string::npos) << beyond;
     // what it says is within reach for a swing, is
     const auto at = beyond.find("within reach are ") + 17;
     const auto reachable = beyond.substr(at, beyond.find(' ', at) - at);

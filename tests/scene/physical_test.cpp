@@ -91,14 +91,13 @@ INSTANTIATE_TEST_SUITE_P(
                       "presets/x.toml:2:1: [[system.torque]] 1 joint must be 1 to 2, the number of links; it is 3"},
         RefusedPreset{"[system.pivot]\namplitude_m = 1\nfrequency_hz = 0",
                       "presets/x.toml:3:1: [system.pivot] frequency_hz must be > 0; it is 0"},
-        RefusedPreset{
-            "[system]\nrod_mass_kg = 1\n[video]\npanels = [\"pendulums\", \"rod-force\"]",
-            "x: [video] panels: \"rod-force\" is the force in massless rods of a simulation; links with mass, "
-            "friction or a drive have none such, and tracks tell none"},
+        RefusedPreset{"[system]\nrod_mass_kg = 1\n[video]\npanels = [\"pendulums\", \"rod-force\"]",
+                      "x: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and "
+                      "tracks, have no rod tension"},
         RefusedPreset{
             "[system]\njoint_viscous_N_m_s = 1\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [0, 1]",
-            "presets/x.toml:3:10: [system] force cannot be beside links with mass, friction or a drive, which are for "
-            "chains alone"}));
+            "presets/x.toml:3:10: [system] force cannot be combined with links with mass, friction or a drive, which "
+            "need a plain chain"}));
 
 /// The angle errors of a preset's run, by the motion of another method.
 double error_at_end(const Preset& preset) {

@@ -54,9 +54,9 @@ TEST(Overrides, NameTheOptionInPlaceOfALine) {
               R"(--set foo.bar: a preset has no "foo"; it has a, b, scene, subtitle, system, title, video)");
     EXPECT_EQ(fault({"video.foo.bar=3"}).rfind(R"(--set video.foo.bar: [video] has no "foo"; )", 0), 0u);
     EXPECT_EQ(fault({"system.links=3", "system={}"}),
-              "--set system: would drop --set system.links, which was given before it; give the table first");
+              "--set system: would remove --set system.links, which was given before; give the table first");
     EXPECT_EQ(fault({"title.x=1"}), R"(--set title.x: "title" is no table)");
-    EXPECT_NE(fault({"video.theme=2dark"}).find("strings want quotes: 'video.theme=\"2dark\"'"), std::string::npos);
+    EXPECT_NE(fault({"video.theme=2dark"}).find("a string needs quotes: 'video.theme=\"2dark\"'"), std::string::npos);
     EXPECT_EQ(fault({"video.crf=1\nx=2"}), "--set video.crf: \"1 x=2\" is more than one value");
 }
 

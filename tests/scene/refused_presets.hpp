@@ -70,27 +70,24 @@ inline const std::vector<RefusedPreset> refused_system{
     RefusedPreset{"[system]\nmodel = \"constraints\"\nintegrator = \"gauss6\"",
                   R"(presets/x.toml:3:1: [system] integrator "gauss6" serves angles, not model = "constraints")"},
     RefusedPreset{"[system]\nstabilise = \"baumgarte\"\nmodel = \"angles\"",
-                  "presets/x.toml:2:1: [system] stabilise is for constraints; in angles the rods keep their length by "
-                  "themselves"},
+                  "presets/x.toml:2:1: [system] stabilise is for constraints; in angles rods have constant length"},
     RefusedPreset{"[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
                   R"(presets/x.toml:2:1: [system] stabilise is not for "rattle6", which keeps the constraints itself)"},
     RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nmodel = \"constraints\"",
-                  "presets/x.toml:3:1: [system] model \"constraints\" is not for such a chain: links with mass, "
-                  "friction or a drive move in angles"},
+                  "presets/x.toml:3:1: [system] model \"constraints\" does not support this chain: links with mass, "
+                  "friction or a drive need angles"},
     RefusedPreset{
         "[system]\njoint_coulomb_N_m = [0, 0.1]\nstabilise = \"projection\"",
-        "presets/x.toml:3:1: [system] stabilise is for constraints; links with mass, friction or a drive move "
-        "in angles"},
-    RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"gauss4\"",
-                  "presets/x.toml:3:1: [system] integrator \"gauss4\" cannot end a step at rest, as joints with "
-                  "joint_coulomb_N_m come to"},
+        "presets/x.toml:3:1: [system] stabilise is for constraints; links with mass, friction or a drive need angles"},
     RefusedPreset{
-        "[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"rattle\"",
-        "presets/x.toml:3:1: [system] integrator \"rattle\" steps particles on rods; links with mass, friction "
-        "or a drive move in angles"},
+        "[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"gauss4\"",
+        "presets/x.toml:3:1: [system] integrator \"gauss4\" does not support Coulomb friction (joint_coulomb_N_m)"},
+    RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nintegrator = \"rattle\"",
+                  "presets/x.toml:3:1: [system] integrator \"rattle\" needs model = \"constraints\"; links with mass, "
+                  "friction or a drive need angles"},
     RefusedPreset{"[system]\nrod_mass_kg = [1, 1]\nmodel = \"mechanism\"",
-                  "presets/x.toml:3:1: [system] model \"mechanism\" is not for such a chain: links with mass, friction "
-                  "or a drive move in angles"},
+                  "presets/x.toml:3:1: [system] model \"mechanism\" does not support this chain: links with mass, "
+                  "friction or a drive need angles"},
     RefusedPreset{
         "[system]\nstabilise = \"tape\"",
         R"(presets/x.toml:2:1: [system] stabilise must be "none", "baumgarte" or "projection"; it is "tape")"},
@@ -101,22 +98,19 @@ inline const std::vector<RefusedPreset> refused_system{
         "presets/x.toml:2:1: [system] step_s must be a number or a fraction such as \"1/30000\"; it is \"fast\""},
     RefusedPreset{"[system]\nstep_s = -0.1", "presets/x.toml:2:1: [system] step_s must be > 0; it is -0.1"},
     RefusedPreset{"[a.track]\noffset_deg = [1e300, 0]",
-                  "presets/x.toml:2:1: [a.track] offset_deg must be from -1000000 to 1000000: more leaves no digits to "
-                  "move by; one is 1e+300"},
-    RefusedPreset{
-        "[system.pivot]\nphase_deg = -1e7",
-        "presets/x.toml:2:1: [system.pivot] phase_deg must be from -1000000 to 1000000: more leaves no digits to "
-        "move by; one is -10000000"},
-    RefusedPreset{
-        "[system.pivot]\ndirection_deg = 1e7",
-        "presets/x.toml:2:1: [system.pivot] direction_deg must be from -1000000 to 1000000: more leaves no digits "
-        "to move by; one is 10000000"},
-    RefusedPreset{
-        "[[system.torque]]\nphase_deg = 1e7",
-        "presets/x.toml:2:1: [[system.torque]] 1 phase_deg must be from -1000000 to 1000000: more leaves no digits "
-        "to move by; one is 10000000"},
+                  "presets/x.toml:2:1: [a.track] offset_deg must be from -1000000 to 1000000: beyond, rounding hides "
+                  "the motion; one is 1e+300"},
+    RefusedPreset{"[system.pivot]\nphase_deg = -1e7",
+                  "presets/x.toml:2:1: [system.pivot] phase_deg must be from -1000000 to 1000000: beyond, rounding "
+                  "hides the motion; one is -10000000"},
+    RefusedPreset{"[system.pivot]\ndirection_deg = 1e7",
+                  "presets/x.toml:2:1: [system.pivot] direction_deg must be from -1000000 to 1000000: beyond, rounding "
+                  "hides the motion; one is 10000000"},
+    RefusedPreset{"[[system.torque]]\nphase_deg = 1e7",
+                  "presets/x.toml:2:1: [[system.torque]] 1 phase_deg must be from -1000000 to 1000000: beyond, "
+                  "rounding hides the motion; one is 10000000"},
     RefusedPreset{"[system]\nstep_s = 1e-300",
-                  "presets/x.toml:2:1: [system] step_s has more digits than Doppel counts with; it is 1e-300"}};
+                  "presets/x.toml:2:1: [system] step_s has too many digits; it is 1e-300"}};
 
 inline const std::vector<RefusedPreset> refused_rates{
     RefusedPreset{
@@ -142,7 +136,7 @@ inline const std::vector<RefusedPreset> refused_rates{
 inline const std::vector<RefusedPreset> refused_video{
     RefusedPreset{
         "[video]\nsize = [641, 360]",
-        "presets/x.toml:2:1: [video] size must be even, as H.264 needs it in yuv420p; it is [641, 360]; [642, "
+        "presets/x.toml:2:1: [video] size must be even for H.264 needs it in yuv420p; it is [641, 360]; [642, "
         "360] would do"},
     RefusedPreset{"[video]\nsize = [0, 100]",
                   "presets/x.toml:2:1: [video] size must be whole numbers from 64 to 16384; it is [0, 100]"},
@@ -193,17 +187,16 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{"size = [1280, 720]\nlayout = \"portrait\"",
                   R"([video] size must be higher than wide for the layout "portrait"; it is [1280, 720])"},
     RefusedPreset{"size = [301, 200]",
-                  "[video] size must be even, as H.264 needs it in yuv420p; it is [301, 200]; [302, 200] would do"},
-    RefusedPreset{
-        "size = [16384, 16384]",
-        "[video] size is more than libav encodes as H.264; it is [16384, 16384]; [16254, 16254] would do, and "
-        "[8192, 4352] for players that keep to the highest level of H.264, 6.2"},
+                  "[video] size must be even for H.264 needs it in yuv420p; it is [301, 200]; [302, 200] would do"},
+    RefusedPreset{"size = [16384, 16384]",
+                  "[video] size exceeds what libav encodes as H.264; it is [16384, 16384]; [16254, 16254] would do, "
+                  "and [8192, 4352] for players limited to level 6.2 of H.264"},
     RefusedPreset{
         "transparent = true\nformat = \"webm\"\ncodec = \"av1\"",
-        R"([video] transparent takes a format with opacity: png, apng, or webm (VP9, yuv420p); the codec is "av1")"},
+        R"([video] transparent needs a format with opacity: png, apng, or webm (VP9, yuv420p); the codec is "av1")"},
     RefusedPreset{
         "transparent = true\nformat = \"webm\"\npixel_format = \"yuv444p\"",
-        R"([video] transparent takes a format with opacity: png, apng, or webm (VP9, yuv420p); the pixel_format is "yuv444p")"},
+        R"([video] transparent needs a format with opacity: png, apng, or webm (VP9, yuv420p); the pixel_format is "yuv444p")"},
     RefusedPreset{
         "fps = 60\nformat = \"gif\"",
         "[video] fps must be at most 50, as a frame of a GIF takes 2 to 65535 hundredths of a second; it is 60"},
@@ -214,7 +207,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{"preset = \"slow\"\nformat = \"apng\"", R"([video] preset is of mp4 and webm; the format is "apng")"},
     RefusedPreset{
         "transparent = true",
-        R"([video] transparent takes a format with opacity: png, apng, or webm (VP9, yuv420p); the format is "mp4")"},
+        R"([video] transparent needs a format with opacity: png, apng, or webm (VP9, yuv420p); the format is "mp4")"},
     RefusedPreset{"poster_s = 30.001", "[video] poster_s must be up to 30 s; it is 30.001"},
     RefusedPreset{"contact_sheet = [0, 4]",
                   "[video] contact_sheet must be two whole numbers from 1 to 32; it is [0, 4]"},
@@ -227,10 +220,11 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{"members = [[1, 2], 3]\nlayout = \"ensemble\"",
                   "[video] members must be a whole number, or 2 to 8 lists of angles; 3 is a whole number"},
     RefusedPreset{"members = [[1, 2], [3]]\nlayout = \"ensemble\"",
-                  "[video] members must have 2 angles each, one a link; [1] has 1"},
-    RefusedPreset{"members = [[1, 2], [3, 4]]\nlayout = \"ensemble\"\n[b]\nangle_deg = [5, 6]",
-                  "[video] members begins with side a and ends with side b; [b] angle_deg is [5, 6], the member's [3, "
-                  "4]"},
+                  "[video] members must have 2 angles each, one for each link; [1] has 1"},
+    RefusedPreset{
+        "members = [[1, 2], [3, 4]]\nlayout = \"ensemble\"\n[b]\nangle_deg = [5, 6]",
+        "[video] members must begin with side a and end with side b; [b] angle_deg is [5, 6], the member's [3, "
+        "4]"},
     RefusedPreset{"glow_px = -1", "[video] glow_px must be from 0 (none) to 100; it is -1"},
     RefusedPreset{"glow_px = 2\nlayout = \"ensemble\"",
                   R"([video] glow_px must be 0 for the layout "ensemble", whose trails do not glow; it is 2)"},
@@ -256,9 +250,10 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{"speed = [[0, 0]]", "[video] speed must be from 0.001 to 1000; it is 0"},
     RefusedPreset{"speed = [[1, 1]]", "[video] speed must begin at 0 s; it begins at 1 s"},
     RefusedPreset{"speed = [[0, 1], [40, 2]]",
-                  "[video] speed must change at times that rise, up to 30 s; 40 s comes after 0 s"},
+                  "[video] speed must have increasing times, up to 30 s; 40 s comes after 0 s"},
     RefusedPreset{"speed = [[0, 1], [5, 1e-9]]", "[video] speed must be from 0.001 to 1000; it is 1e-09"},
-    RefusedPreset{"speed_ease_s = 1", "[video] speed_ease_s is of a speed that changes, speed = [[0, 1], [6.8, 0.25]]"},
+    RefusedPreset{"speed_ease_s = 1",
+                  "[video] speed_ease_s is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]"},
     RefusedPreset{"widths_px.trail = 1000", "[video.widths_px] trail must be from 0 to 200 px; it is 1000"},
     RefusedPreset{"fonts_px.title = 1", "[video.fonts_px] title must be from 4 to 400 px; it is 1"}};
 

@@ -76,7 +76,7 @@ TEST(Set, ReachesEntriesByTheirNamesOrTheOnlyOneOfAKind) {
 
 TEST(Set, ErrorsNameWhatWouldBeRight) {
     const std::vector<std::pair<std::string, std::string>> cases{
-        {"system.angle_deg=60,60", "a list wants brackets: 'system.angle_deg=[60,60]'"},
+        {"system.angle_deg=60,60", "a list needs brackets: 'system.angle_deg=[60,60]'"},
         {"video.theme=blue", "[video] theme must be \"dark\", \"light\" or \"high-contrast\"; it is \"blue\""},
         {"scene.duration_s=long",
          "[scene] duration_s must be a number or a fraction such as \"1/30000\"; it is \"long\""},
@@ -99,7 +99,7 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
     for (const auto& [given, words] : std::vector<std::pair<std::string, std::string>>{
              {"system.force.rope.length_m=1", "[[system.force]] has no entry \"rope\"; there are tie"},
              {"system.constraint.rope.length_m=1",
-              "[[system.constraint]] has no entry \"rope\"; give the entry that is meant a name in the preset"},
+              "[[system.constraint]] has no entry \"rope\"; give the entry a name in the preset"},
              {"b.force.rope.length_m=1", "[[b.force]] has no entry \"rope\""},
              {"system.force.tie.stiffnes_N_per_m=1",
               "has no \"stiffnes_N_per_m\"; did you mean \"stiffness_N_per_m\"?"}}) {

@@ -81,7 +81,7 @@ TEST(SideTrack, CaptionsTellWhichIsMeasured) {
     EXPECT_EQ(words[0].note, "piece-00.csv, 500 Hz");
     EXPECT_EQ(words[1].heading, "computed");
     EXPECT_EQ(words[1].note, "explicit Euler, 1/30 000 s");
-    EXPECT_EQ(scene_caption(scene), "a real double pendulum and its twin");
+    EXPECT_EQ(scene_caption(scene), "a real double pendulum and its simulation");
     EXPECT_EQ(scene.preset.video.strips[0], StripKind::distance);
 }
 
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{"[a.track]\nfile = \"" + preset_file + "\"",
                     "nowhere/x.toml:2:1: [a.track] file " + preset_file + ":1: there is no column time_s"},
         RefusedText{"[system]\nlinks = 3\n" + track.substr(track.find("[a.track]")),
-                    "nowhere/x.toml:4:1: [a.track] file a track is of a double pendulum; the side has 3 links"},
+                    "nowhere/x.toml:4:1: [a.track] file a track needs two links; the side has 3 links"},
         RefusedText{track + "start_s = 3",
                     "nowhere/x.toml:5:1: [a.track] start_s no sample at 3 s: the track goes "
                     "from 0 to 2.666 s"},
@@ -137,11 +137,10 @@ INSTANTIATE_TEST_SUITE_P(
                     "x: [scene] duration_s must be at most \"199/120\", as long as the track of "
                     "side a lasts; it is 2"},
         RefusedText{track + "[video]\npanels = [\"pendulums\", \"rod-force\"]",
-                    "x: [video] panels: \"rod-force\" is the force in massless rods of a simulation; links with mass, "
-                    "friction or a drive have none such, and tracks tell none"},
+                    "x: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and "
+                    "tracks, have no rod tension"},
         RefusedText{track + "[video]\nlayout = \"ensemble\"",
-                    "nowhere/x.toml:6:1: [video] layout \"ensemble\" goes from one simulation to another; a side shows "
-                    "a track"}));
+                    "nowhere/x.toml:6:1: [video] layout \"ensemble\" needs two simulations; a side shows a track"}));
 
 /// Numbers of friction and drive go from side a to side b, as those of the chain do.
 TEST(Ensemble, GoesFromFrictionToFriction) {
@@ -158,10 +157,9 @@ TEST(Ensemble, GoesFromFrictionToFriction) {
     const auto [code, message] =
         error_of([] { preset_from("[a]\ncenter_m = 0.5\n[video]\nlayout = \"ensemble\"\nmembers = 5"); });
     EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_EQ(
-        message,
-        "nowhere/x.toml:4:1: [video] layout \"ensemble\" takes sides with the same kinds of torques, and center_m on "
-        "both or on neither");
+    EXPECT_EQ(message,
+              "nowhere/x.toml:4:1: [video] layout \"ensemble\" needs sides with the same kinds of torques, and "
+              "center_m on both or on neither");
 }
 
 }  // namespace side_track_test

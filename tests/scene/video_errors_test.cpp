@@ -24,11 +24,10 @@ TEST(VideoErrors, LayoutsSayWhichSystemsTheyTake) {
         return error_of([&] { scene_of(preset, arguments); }).second;
     };
     EXPECT_EQ(message("springs", {"video.layout=\"phase\""}),
-              "--set video.layout: [video] layout \"phase\" is of chains; the sides are mechanisms of particles");
-    EXPECT_EQ(
-        message("two-methods", {"video.layout=\"ensemble\""}),
-        "--set video.layout: [video] layout \"ensemble\" takes sides that differ in their numbers alone, not in how "
-        "they are stepped");
+              "--set video.layout: [video] layout \"phase\" is for chains; the sides are mechanisms");
+    EXPECT_EQ(message("two-methods", {"video.layout=\"ensemble\""}),
+              "--set video.layout: [video] layout \"ensemble\" needs sides that differ only in numbers, not in model "
+              "or method");
 }
 
 TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
@@ -113,14 +112,13 @@ TEST(VideoErrors, FractionsWhoseProductsWouldLeave64BitsAreRefused) {
     EXPECT_EQ(
         message({"scene.sample_hz=\"999999937/999999929\"", "scene.duration_s=\"999999929/999999937\"",
                  "video.fps=\"999983/999979\"", "video.speed=\"999961/999959\""}),
-        "--set video.speed: [video] speed and fps must have to scene.sample_hz ratios of smaller whole numbers; it is "
-        "999961/999959");
+        "--set video.speed: [video] speed and fps must have simpler ratios to scene.sample_hz; it is 999961/999959");
     EXPECT_EQ(
         message({"video.speed=1e-9"}),
         "presets/butterfly.toml: [video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is "
         "3/25000000");
     EXPECT_EQ(message({"video.fps=1000", "video.speed=\"1/1000\""}),
-              "--set video.speed: [video] speed makes a film of 3e+07 frames; the most are 10000000");
+              "--set video.speed: [video] speed makes a film of 3e+07 frames; at most 10000000");
     EXPECT_EQ(message({"video.poster_s=30.5"}),
               "--set video.poster_s: [video] poster_s must be up to 30 s; it is 30.5");
 }
