@@ -102,12 +102,12 @@ void run(const char* file) {
     for (std::size_t side = 0; side < 2; ++side) {
         const View view{.pivot = {side == 0 ? 250.0f : 710.0f, 280}, .px_per_m = 105};
         draw(bobs[side], trails[side], view, theme.sides[side], theme, list);
-        list.push_back(label(side == 0 ? "90°, 90°" : "90.003°, 90°", {view.pivot.x, 40}, 22, theme.sides[side],
-                             Align::center));
+        list.push_back(
+            label(side == 0 ? "90°, 90°" : "90.003°, 90°", {view.pivot.x, 40}, 22, theme.sides[side], Align::center));
     }
     if (parting.since())
-        list.push_back(label(fmt::format("diverged at {:.1f} s", *parting.since()), {480, 520}, 22, theme.text,
-                             Align::center));
+        list.push_back(
+            label(fmt::format("diverged at {:.1f} s", *parting.since()), {480, 520}, 22, theme.text, Align::center));
     Renderer renderer(size);
     write_png(file, renderer.draw(list));
 }

@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-/// What the energy and the rods of a motion are measured by, so that a run that has broken down is told from one.
+/// What the energy and the rods of a motion are measured by, so that a failed run is recognised.
 struct Proportion {
     /// What an energy error is a fraction of, J: |E0|, or the potential range where E0 is zero (below the rounding of a
     /// start that is given in degrees: cos 90° is 6e-17 in double).
@@ -39,7 +39,7 @@ struct WatchedMotion {
     WatchedMotion(const MotionSpec& spec, double potential_range, double reach)
         : motion(make_motion(spec)), proportion(motion->observe(), potential_range, reach) {}
 
-    /// On to the next sample. False where the method breaks down. Errors: those of advanced().
+    /// On to the next sample. False where the method fails. Errors: those of advanced().
     bool advance(const std::atomic<bool>& stop);
     double evaluations() const { return static_cast<double>(motion->effort().evaluations); }
 };

@@ -33,7 +33,7 @@ inline std::optional<double> log_ratio(double distance, double start) {
 }
 
 /// The mean of λ over all samples but the first of a pair, from its distances in their order (Kao 2022). Samples at which
-/// the two are one are left out; NaN where none is left, or the motion broke down.
+/// the two are one are left out; NaN where none is left, or the motion failed.
 class AverageLogRatio {
 public:
     void add(double distance) {

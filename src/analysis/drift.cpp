@@ -45,7 +45,7 @@ double time_of(const MotionSpec& spec, long sample) {
            static_cast<double>(spec.sample_interval.denominator);
 }
 
-/// Evaluations a second between the first sample and the last, or the last before a breakdown; NaN where there are not
+/// Evaluations a second between the first sample and the last, or the last before a failure; NaN where there are not
 /// two.
 double evaluation_rate(const MotionSpec& spec, double duration_s, const std::atomic<bool>& stop) {
     auto motion = watched(spec);
@@ -58,7 +58,7 @@ double evaluation_rate(const MotionSpec& spec, double duration_s, const std::ato
     return rate;
 }
 
-/// By the finest setting within the cost. One that breaks down at once is too coarse.
+/// By the finest setting within the cost. One that fails at once is too coarse.
 MotionSpec calibrated(const MotionSpec& motion, double evaluations_per_s, double seconds,
                       const std::atomic<bool>& stop) {
     const double most = evaluations_per_s * (1 + 1e-9);

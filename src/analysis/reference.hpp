@@ -97,7 +97,7 @@ struct ErrorHistory {
     }
 };
 
-/// The run of `spec` beside the reference, sample by sample; errors until it is off by more than `enough`, breaks down,
+/// The run of `spec` beside the reference, sample by sample; errors until it is off by more than `enough`, fails,
 /// or the reference ends. Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
 ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double enough,
                            const std::atomic<bool>& stop);

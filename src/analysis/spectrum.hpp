@@ -21,7 +21,7 @@ struct SpectrumSample {
 
 /// Estimates of all 2N Lyapunov exponents of a chain of 1 to 4 links, in the canonical (θ, p). At any time their sum is
 /// 0 without friction, and with it the mean of what that does to the volume: of viscous friction −tr(C M⁻¹).
-/// Errors  exit 2 where there are more links or joints have Coulomb's friction, exit 3 where the method breaks down, exit
+/// Errors  exit 2 where there are more links or joints have Coulomb friction, exit 3 where the method fails, exit
 ///         130 soon after `stop` is set.
 std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
                                               const std::atomic<bool>& stop);

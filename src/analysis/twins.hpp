@@ -13,19 +13,19 @@ struct Twins {
     Pendulum<double> a, b;
 };
 
-/// How they are stepped and sampled.
+/// How they are integrated and sampled.
 struct TwinRun {
-    MotionSpec a, b;   // the model, method, steps and sample interval of one side of all twins
+    MotionSpec a, b;   // the model, method, steps and sample interval of one side of all pairs
     long samples = 0;  // without the one at the start
 };
 
-/// How many pendulums are best stepped at once.
+/// How many pendulums are best integrated at once.
 std::size_t twins_block();
 
-/// Steps all twins side by side; `watch` sees every trial at every sample 0 … N, the samples in their order.
+/// Steps all pairs side by side; `watch` sees every trial at every sample 0 … N, the samples in their order.
 ///
 /// Every trial is the same to the bit in any company: each lane does what a lone double would.
-/// Pendulums that several twins share are stepped once. Numbers that broke down are NaN or infinite.
+/// Pendulums that several pairs share are integrated once. Numbers that failed are NaN or infinite.
 ///
 /// Errors: those of Batch; exit 130 soon after `stop` is set.
 using TwinWatch = std::function<void(std::size_t trial, long sample, const Bobs<double>& a, const Bobs<double>& b)>;

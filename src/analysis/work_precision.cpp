@@ -58,7 +58,7 @@ private:
         return external_->make(spec_.chain->cast<double>(), problem_.duration(), setting());
     }
 
-    /// The worst errors of energy and lengths, as seen some 240 times on the way. False where the run breaks down.
+    /// The worst errors of energy and lengths, as seen some 240 times on the way. False where the run fails.
     bool is_sound(Rung& rung, const std::atomic<bool>& stop) const {
         long samples = 240;
         auto spec = spec_;

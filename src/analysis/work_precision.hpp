@@ -70,27 +70,27 @@ struct Rung {
 };
 
 struct LadderSpec {
-    long most_evaluations;  // of a rung
-    double least_error;     // at which the ladder ends
+    long most_evaluations;  // of a setting
+    double least_error;     // at which the study ends
     bool timed = false;
     bool watched = true;  // energies and lengths, in a run of their own; not of external methods
 };
 
 /// A solver's settings from coarse to fine: steps by factors of √2, 1/30000 s among them, or tolerances by half
-/// decades. The ladder ends where the errors are at the floor, fall below `least_error`, or another rung would take too
-/// many evaluations; never because of the time. The study's step is always among it. A rung that fails has no
+/// decades. The study ends where the errors are at the floor, fall below `least_error`, or another setting would take too
+/// many evaluations; never because of the time. The study's step is always among it. A setting that fails has no
 /// numbers. CPU times are those of the thread for the whole motion, without setting it up, after a run that warms the
 /// caches; short runs are repeated. Throws Error (exit 130) soon after `stop` is set.
 std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& reference, const Solver& solver,
                              const LadderSpec& spec, const std::atomic<bool>& stop);
 
-/// A solver's rungs on a problem.
+/// A solver's settings on a problem.
 struct Ladder {
     Solver solver;
     std::vector<Rung> rungs;
 };
 
-/// The ladder of several repeats, the first of which has everything.
+/// The step-size study of several repeats, the first of which has everything.
 Ladder merged(const Solver& solver, const std::vector<std::vector<Rung>>& repeats);
 
 /// The range of errors shown; what is below `least` is at the floor.
@@ -98,17 +98,17 @@ struct ErrorRange {
     double least, most;
 };
 
-/// Of ladders of one problem the rungs that no cheaper one beats, cheapest first, until one is at the floor. A rung whose
+/// Of step-size studies of one problem the settings that no cheaper one beats, cheapest first, until one is at the floor. A setting whose
 /// next finer one errs more than twice as much was lucky and does not count.
 std::vector<Rung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range);
 
-/// The ladder that takes the least to err by no more than `error`: by the cheapest rung that does so, and whose next finer
+/// The step-size study that takes the least to err by no more than `error`: by the cheapest setting that does so, and whose next finer
 /// one does, too, for now and then a coarse one is lucky.
 struct Cheapest {
     const Ladder* ladder = nullptr;  // none does; of equals the first
     double cost = std::numeric_limits<double>::infinity();
 };
-/// Of ladders of one problem, by the solvers that count.
+/// Of step-size studies of one problem, by the solvers that count.
 Cheapest cheapest(std::span<const Ladder> ladders, Cost cost, double error,
                   const std::function<bool(const Solver&)>& counts);
 
@@ -116,11 +116,11 @@ Cheapest cheapest(std::span<const Ladder> ladders, Cost cost, double error,
 std::vector<const Ladder*> best_models(std::span<const Ladder> ladders, Cost cost);
 
 /// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems, whose
-/// ladders these are, at all `errors`. One that does not come so far ranks behind all that do; of equals the first.
+/// step-size studies these are, at all `errors`. One that does not come so far ranks behind all that do; of equals the first.
 std::vector<std::string> ranked(std::span<const std::vector<Ladder>> problems, Cost cost,
                                 std::span<const double> errors, bool external);
 
-/// Median and greatest spread of the CPU times of all useful rungs; NaN where there are none.
+/// Median and greatest spread of the CPU times of all useful settings; NaN where there are none.
 std::pair<double, double> time_spread(std::span<const std::vector<Ladder>> problems);
 
 }  // namespace doppel

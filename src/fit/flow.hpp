@@ -6,12 +6,12 @@
 
 namespace doppel {
 
-/// How many directions there are for a start alone, and with all that moves the arms; no others are compiled.
+/// How many directions there are for a start alone, and with all that moves the links; no others are compiled.
 constexpr int start_directions = 4, all_directions = 4 + static_cast<int>(dynamic_count);
 
 /// The motion from one start, step after step, to be asked for angles at ascending times: Dormand and Prince's method of order
 /// 5 at fixed steps, so that derivatives are those of what is computed. N derivatives are carried along: those by the start
-/// (0 to 3), or by the fitted parameters that move the arms, too (4 + their number).
+/// (0 to 3), or by the fitted parameters that move the links, too (4 + their number).
 ///
 /// With Coulomb friction each step keeps to one law and counts as far as that holds, until a joint comes to rest or is let
 /// go. Then the slope f jumps, and with it how the state changes with what fixes the time t* of the event:
@@ -42,7 +42,7 @@ private:
         return joint == 0 ? Column(y.col(2)) : Column(y.col(3) - y.col(2));
     }
     double begin() const { return origin_ + static_cast<double>(done_) * step_; }
-    /// The sum, by these weights, of an arm's angle, rate and acceleration where the step begins, and where it ends.
+    /// The sum, by these weights, of a link's angle, rate and acceleration where the step begins, and where it ends.
     auto weighted(const std::array<double, 6>& w, std::size_t arm) const {
         return w[0] * before_.y.col(arm) + w[1] * before_.y.col(arm + 2) + w[2] * before_.slope.col(arm + 2) +
                w[3] * after_.y.col(arm) + w[4] * after_.y.col(arm + 2) + w[5] * after_.slope.col(arm + 2);

@@ -14,7 +14,7 @@ struct Prediction {
     double data_s = 0;                  // of it, from which the start was fitted
     double within_s = 0;                // after these: how long it was seen within the limit
     std::optional<double> left_s;       // when it was first seen beyond; nothing where the track ended before
-    std::vector<double> time_s, error;  // after the data: rad, the larger of both arms'
+    std::vector<double> time_s, error;  // after the data: rad, the larger of both links'
     std::optional<double> start_alone_s, parameters_alone_s;  // until one standard error of these reaches the limit
 };
 

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// The models, from the smallest: of point masses and of bodies as long as there is no dry friction.
+/// The models, from the smallest: of point masses and of bodies as long as there is no Coulomb friction.
 std::vector<FittedModel> models_of(Bodies bodies) {
     constexpr const char* words[]{"no friction",
                                   "viscous friction",

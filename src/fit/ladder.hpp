@@ -5,7 +5,7 @@
 
 namespace doppel {
 
-/// Which bodies the arms may be.
+/// Which bodies the links may be.
 enum class Bodies { automatic, point, rigid };
 
 /// A model and how it did.

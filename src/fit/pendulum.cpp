@@ -46,7 +46,7 @@ std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState&
 FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, const Convention& convention) {
     const double a = p[inertia], c = p[coupling], d1 = p[gravity_1], d2 = p[gravity_2], g = convention.gravity;
     const double m2 = convention.second_mass;
-    // the second arm: B = (1 + share) m2 a2², and g/d2 = B/(m2 a2); the rest of A and D1 must stay positive
+    // the second link: B = (1 + share) m2 a2², and g/d2 = B/(m2 a2); the rest of A and D1 must stay positive
     constexpr double of_rod = 1.0 / 3;
     const double room = std::min(a / (c * c) - 1, d1 / (c * d2) - 1);
     const double share = model.point_masses ? 0 : std::clamp(0.5 * room, 0.0, of_rod);

@@ -27,7 +27,7 @@ enum FitParameter : std::size_t {
     viscous_2,    // at the middle joint
     coulomb_1,    // Coulomb friction at the pivot, over B, 1/s²
     coulomb_2,    // at the middle joint
-    quadratic_1,  // drag of the first arm per squared rate, over B
+    quadratic_1,  // drag of the first link per squared rate, over B
     quadratic_2,  // of the second
     offset_1,     // of the encoders, rad: what they show at rest
     offset_2,
@@ -35,7 +35,7 @@ enum FitParameter : std::size_t {
     scale_1,  // radians shown for a radian turned
     scale_2,
     parameter_count,
-    dynamic_count = offset_1  // so many move the arms, the others read them
+    dynamic_count = offset_1  // so many move the links, the others read them
 };
 using Parameters = Eigen::Matrix<double, parameter_count, 1>;
 
@@ -64,7 +64,7 @@ inline constexpr std::array<ParameterWords, parameter_count> parameter_words{{
     {"scale_2", "scale 2", ""},
 }};
 
-/// On which speed the quadratic drag of the second arm acts.
+/// On which speed the quadratic drag of the second link acts.
 enum class Drag {
     own,      // its own rate ω2, as if the middle joint stood still
     carried,  // relative to the air: u = ω2 + (C/B) cos(θ1 − θ2) ω1, the joint's motion added
@@ -101,7 +101,7 @@ using ArmState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; 
 ///
 /// s is the joint's mode, the sign of its rate, until the next event (fit/flow.hpp): at 0 the joint is held.
 ///
-/// Source  Landau & Lifshitz, Mechanics, §5 problem 1 and §25; the carried drag: a point of the second arm at the
+/// Source  Landau & Lifshitz, Mechanics, §5 problem 1 and §25; the carried drag: a point of the second link at the
 ///         distance B/(m2 a2) of its centre of oscillation moves through the air with that distance times u.
 template <class Scalar>
 struct Arms {
@@ -110,7 +110,7 @@ struct Arms {
     bool has_coulomb = false;
     std::array<int, 2> modes{1, 1};
 
-    /// Both right sides, and the factor of the other arm's acceleration on both left.
+    /// Both right sides, and the factor of the other link's acceleration on both left.
     struct Sides {
         Scalar r1, r2, cosine;
     };
@@ -145,7 +145,7 @@ struct Arms {
     bool is_held(std::size_t joint) const { return has_coulomb && modes[joint] == 0; }
 };
 
-/// The arms of a model. Derivatives by fitted parameters are along direction 4 + their number, where there is one.
+/// The links of a model. Derivatives by fitted parameters are along direction 4 + their number, where there is one.
 template <class Scalar>
 Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
     Arms<Scalar> arms{.p = {}, .drag = model.drag};
@@ -179,9 +179,9 @@ struct Convention {
     double second_mass = 1.0;  // kg, > 0
 };
 
-/// A pendulum that moves as the fitted arms do. Lengths of the first arm follow from gravity (L1 = g C/D2); how the rest is
-/// shared out among mass, centre and inertia no angle tells: both arms are uniform rods (I = m a²/3, a to the centre of
-/// mass), or, where point masses were fitted, points at their ends (I = 0). A second arm too light in its first for that
+/// A pendulum that moves as the fitted links do. Lengths of the first link follow from gravity (L1 = g C/D2); how the rest is
+/// shared out among mass, centre and inertia no angle tells: both links are uniform rods (I = m a²/3, a to the centre of
+/// mass), or, where point masses were fitted, points at their ends (I = 0). A second link too light in its first for that
 /// is given less inertia.
 struct FittedPendulum {
     std::vector<std::pair<std::string, std::array<double, 2>>> arms;  // what presets say of both, by key

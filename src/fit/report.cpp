@@ -238,7 +238,7 @@ void write_residuals(const FitResult& result, const std::filesystem::path& place
 namespace {
 
 constexpr double mrad = 1e3;
-constexpr std::array<const char*, 2> names{"θ1", "θ2"};  // of the arms
+constexpr std::array<const char*, 2> names{"θ1", "θ2"};  // of the links
 
 /// The first shot: some samples as points, the model as lines.
 Plot track_plot(const FitResult& result) {

@@ -26,7 +26,7 @@ std::string horizon_sentence(const FitResult& result);
 /// "A/B = 1.7988 ± 0.0007", with as many digits as the error bears.
 std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter);
 
-/// The page of a fit: a piece and the model, the residuals with a band of two rms, the ladder, and the errors of
+/// The page of a fit: a piece and the model, the residuals with a band of two rms, the hierarchy, and the errors of
 /// predictions; below them the parameters and what was found, in sentences.
 Figure fit_page(const FitResult& result, const std::string& name);
 

@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// How far the angles are spread about their mean, rms of both arms, rad.
+/// How far the angles are spread about their mean, rms of both links, rad.
 double spread_of(const Track& track) {
     double squares = 0;
     for (const auto& piece : track.pieces)
@@ -56,8 +56,8 @@ void demand_description(const Track& track, const ModelLadder& ladder) {
         track.pieces.front().name, best.name, best.left_out_rms, spread_of(track));
 }
 
-/// Exchanged, the arms obey the same equations, but for friction. No body, however, hangs by its own weight the wrong
-/// way: D1 − C D2/B is the first arm's own moment, m1 a1 g and more, where B/(m2 a2) ≥ a2.
+/// Exchanged, the links obey the same equations, but for friction. No body, however, hangs by its own weight the wrong
+/// way: D1 − C D2/B is the first link's own moment, m1 a1 g and more, where B/(m2 a2) ≥ a2.
 void demand_order(const Track& track, const ModelLadder& ladder) {
     constexpr double least = 1.01;
     const auto& fit = ladder.rungs[ladder.best].fit;

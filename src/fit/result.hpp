@@ -31,7 +31,7 @@ struct FitResult {
     std::optional<Horizon>
         horizon;              // nothing where it is not known how pieces follow one another, or they are too short
     FittedPendulum pendulum;  // of the preset's model
-    double models_cpu_s = 0, cpu_s = 0;  // of the ladder; of all
+    double models_cpu_s = 0, cpu_s = 0;  // of the hierarchy; of all
 
     const FittedModel& chosen() const { return ladder.rungs[ladder.chosen]; }
 };

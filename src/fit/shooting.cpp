@@ -91,13 +91,13 @@ Parameters bounded_change(const Fit& fit, ParameterMatrix matrix, Parameters slo
     }
 }
 
-/// Whether such arms exist: their energy of motion is positive, they hang down, and the clock's lag is small.
+/// Whether such links exist: their energy of motion is positive, they hang down, and the clock's lag is small.
 bool is_possible(const Parameters& p) {
     return p[inertia] > p[coupling] * p[coupling] && p[coupling] > 0 && p[gravity_1] > 0 && p[gravity_2] > 0 &&
            std::abs(p[lag]) < 0.05 && p[scale_1] > 0.5 && p[scale_2] > 0.5;
 }
 
-/// Of each arm: 1.48 times the median size of its residuals, which a few wild ones do not move; no less than `least`.
+/// Of each link: 1.48 times the median size of its residuals, which a few wild ones do not move; no less than `least`.
 std::array<double, 2> scale_of(const Fit& fit) {
     constexpr double least = 1e-10;
     std::array<double, 2> scale{};

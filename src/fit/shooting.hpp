@@ -55,7 +55,7 @@ struct Fit {
     Parameters parameters = Parameters::Zero();
     std::vector<Shot> shots;                  // in the order of the track
     double step_s = 0.016;                    // of the integrator, to begin with
-    std::array<double, 2> scale{1e-3, 1e-3};  // of each arm's residuals, rad
+    std::array<double, 2> scale{1e-3, 1e-3};  // of each link's residuals, rad
     bool is_evaluated = false;                // the shots' sums, cost and rms are those of what stands above
     double cost = 0, rms = 0;                 // rms of the residuals, rad
     int passes = 0;                           // over all shots, of this fit

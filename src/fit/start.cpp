@@ -14,7 +14,7 @@ namespace {
 
 using Unknowns = Eigen::Matrix<double, 6, 1>;  // two angles, two rates, two offsets
 
-/// What the motion from a start leaves of measured angles, both arms' moment by moment.
+/// What the motion from a start leaves of measured angles, both links' moment by moment.
 using Rest = std::function<Eigen::VectorXd(const Eigen::VectorXd& measured, const Unknowns& x)>;
 
 double rms_of(const Eigen::VectorXd& rest) {

@@ -17,7 +17,7 @@ struct FittedStart {
 };
 
 /// Fits start and offsets of a double pendulum to the first two seconds of a replay, or to as much of them as it can
-/// follow within 0.1 rad: Gauss–Newton steps over a stretch that is doubled until it is as long. `motion` = how it is stepped;
+/// follow within 0.1 rad: Gauss–Newton steps over a stretch that is doubled until it is as long. `motion` = how it is integrated;
 /// its start does not matter. Throws Error (exit 130) soon after `stop` is set.
 FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std::atomic<bool>& stop);
 

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// Σ over shots of r_i r_(i+lag) of one arm, by lag.
+/// Σ over shots of r_i r_(i+lag) of one link, by lag.
 std::vector<double> correlations_of(const Fit& fit, std::size_t arm, std::size_t lags, const std::atomic<bool>& stop) {
     std::vector<double> result(lags + 1, 0);
     const double most = Fit::bend * fit.scale[arm];

@@ -11,7 +11,7 @@ namespace doppel {
 struct Uncertainty {
     ParameterMatrix covariance = ParameterMatrix::Zero();
     bool is_white = true;               // residuals like noise: each independent of those before
-    std::array<double, 2> neighbour{};  // correlation of successive residuals, by arm
+    std::array<double, 2> neighbour{};  // correlation of successive residuals, by link
     std::array<double, 2> memory_s{};   // after which the correlation has fallen below 1/e
     double inflation = 1;               // of standard errors against white residuals; 1 where they are
 

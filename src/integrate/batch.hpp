@@ -12,10 +12,10 @@ namespace doppel {
 
 class BatchBlock;
 
-/// Many pendulums of the same number of links, each with its own masses, lengths, gravity and release, stepped side by
+/// Many pendulums of the same number of links, each with its own masses, lengths, gravity and release, integrated side by
 /// side in the registers of this processor. Every one ends, to the last bit, as it would alone and at every width.
 ///
-/// One thread steps one batch; several batches may be stepped at once.
+/// One thread steps one batch; several batches may be integrated at once.
 class Batch {
 public:
     /// In angles or as particles on rods. `width` doubles to a register: one of register_widths(), or 0 for the widest.

@@ -21,7 +21,7 @@ struct BatchRequest {
     bool by_rk4;       // else by Euler
 };
 
-/// Some members that are stepped side by side.
+/// Some members that are integrated side by side.
 class BatchBlock {
 public:
     virtual ~BatchBlock();

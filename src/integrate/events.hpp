@@ -10,7 +10,7 @@ namespace doppel {
 // A model whose right-hand side is smooth only between events, as with joints that stick and slip, offers
 //
 //     switches()       whether it has events
-//     take_modes(y)    at the start: y ← how the motion goes on from y; which law holds until the first event
+//     take_modes(y)    at the start: y ← how the motion resumes from y; which law holds until the first event
 //     settle(y)        the same at an event
 //     margin(y)        0 or more until the next event
 //     longest_step()   s; in longer ones a margin may go below 0 and back between two looks at it

@@ -20,7 +20,7 @@ double flip_tolerance(double duration);
 
 /// When each double pendulum first flips, s: one of its rods passes the upward vertical, |θ_i| > π. Infinity where none
 /// does within the duration; 0 where it is released beyond; NaN where no step of 1e-9 s meets the tolerance. Those whose
-/// energy forbids it are not stepped at all.
+/// energy forbids it are not integrated at all.
 ///
 /// By Taylor series of order 16 in SIMD lanes, each with a step of its own and taking the next release as soon as its
 /// own is done. Time i depends on pendulum i alone, to the last bit: not on the width, the order or the grouping; and

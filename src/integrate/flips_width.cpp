@@ -34,7 +34,7 @@ private:
 
     static constexpr int registers = 2;  // while one waits for its results the other works
     static constexpr int steps_between_looks = 64;
-    static constexpr double least_step = 1e-9;  // s; where no more is allowed the numbers have broken down
+    static constexpr double least_step = 1e-9;  // s; where no more is allowed the numbers have failed
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double broken = std::numeric_limits<double>::quiet_NaN();
     static constexpr std::size_t none = ~std::size_t(0);

@@ -80,7 +80,7 @@ public:
 
 private:
     using Turning = TurningAngle<Scalar>;
-    static constexpr long refreshed_every = 256;  // steps; turning errs by some 1e-16 each, and errors add up
+    static constexpr long refreshed_every = 256;  // steps; turning has an error of some 1e-16 each, and errors add up
     static constexpr long block = 16;             // steps between two checks of how fast all turns
 
     [[gnu::always_inline]] void run(long steps) {

@@ -17,7 +17,7 @@ enum class Model { angles, constraints, mechanism };
 enum class Precision { in_double, in_quad };
 enum class Stabilise { none, baumgarte, projection };
 
-/// What moves, and how it is stepped; everything exact, so that quad means 34 digits of what was written.
+/// What moves, and how it is integrated; everything exact, so that quad means 34 digits of what was written.
 struct MotionSpec {
     std::optional<Pendulum<Quad>> chain;             // of every model but a mechanism that is none
     std::optional<PhysicalPendulum<Quad>> physical;  // the same chain, where its links are more than point masses
@@ -31,7 +31,7 @@ struct MotionSpec {
     Stabilise stabilise = Stabilise::none;
     Quad stabilise_rate = 0;     // Baumgarte's α = β, 1/s
     bool follows_turns = true;   // false: angles of particles only up to whole turns, and none followed between samples
-    bool wants_tension = false;  // the forces in the rods observed as well; of point masses alone
+    bool wants_tension = false;  // the rod tensions observed as well; of point masses alone
 };
 
 /// The state at one sample, the same for every model.

@@ -74,7 +74,7 @@ private:
 
 namespace {
 
-/// Whether they are stepped alike, so that a Batch serves.
+/// Whether they are integrated alike, so that a Batch serves.
 bool are_stepped_alike(std::span<const MotionSpec> specs) {
     const auto& one = specs.front();
     return one.chain && one.model != Model::mechanism && one.precision == Precision::in_double &&

@@ -10,10 +10,10 @@
 
 namespace doppel {
 
-/// Many motions that are stepped together from sample to sample, each as it would be alone, to the last bit.
+/// Many motions that are integrated together from sample to sample, each as it would be alone, to the last bit.
 ///
 /// Chains of two or three links that differ in their masses, lengths, gravity and release only, by Euler's or the classical
-/// Runge–Kutta method, are stepped side by side (integrate/batch.hpp), all others one by one.
+/// Runge–Kutta method, are integrated side by side (integrate/batch.hpp), all others one by one.
 class MotionBatch {
 public:
     /// On `jobs` threads; what comes of it does not depend on them. Throws what make_motion() does.
@@ -31,7 +31,7 @@ public:
     /// What Motion::observe() says of motion k: angles unwrapped.
     Bobs<double> bobs(std::size_t k) const;
 
-    /// How many doubles to a register the motions are stepped in; 1 where they are stepped one by one.
+    /// How many doubles to a register the motions are integrated in; 1 where they are integrated one by one.
     int width() const;
 
 private:
@@ -43,7 +43,7 @@ private:
     template <class Act>
     void with_name(std::size_t k, const Act& act) const;
 
-    std::size_t size_, part_;  // motions, and how many are stepped on one thread at a time
+    std::size_t size_, part_;  // motions, and how many are integrated on one thread at a time
     int jobs_;
     std::vector<std::unique_ptr<SideBySide>> together_;  // a part each; or
     std::vector<std::unique_ptr<Motion>> one_by_one_;

@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-/// Where the output time of an adaptive method is, s from the start of its last step; in two parts, so that it neither
+/// Where the output time of an adaptive method is, s from the start of its last step; as a sum of two, so that it neither
 /// drifts nor coarsens. Steps taken to look ahead of it are subtracted when it comes to them: looking changes no bit.
 template <class Scalar>
 class OutputTime {

@@ -30,7 +30,7 @@ namespace doppel {
 ///
 /// Order   p = 10 − ½ ln ε, more than the usual 1 − ½ ln ε, since the work grows more like p than like p².
 /// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the rates' amount.
-///         Rates are the harder part: an angle errs by about h/p times as much. No step is more than twice the one
+///         Rates are the harder part: an angle has an error of about h/p times as much. No step is more than twice the one
 ///         before.
 /// Rounding of the state is carried over to the next step.
 /// Source  Jorba & Zou 2005, A software package for the numerical integration of ODEs by means of high-order Taylor

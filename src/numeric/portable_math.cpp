@@ -9,7 +9,7 @@ namespace doppel {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// ln 2 in two parts: the product of the first with a double's exponent is exact
+// ln 2 as a sum of two: the product of the first with a double's exponent is exact
 constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
 
 /// z c_0 + z² c_1 + …
@@ -27,7 +27,7 @@ double arctangent(double t) {
                                    6.66107313738753120669e-02, 4.97687799461593236017e-02, 1.62858201153657823623e-02};
     static constexpr double odd[]{-1.99999999998764832476e-01, -1.11111104054623557880e-01, -7.69187620504482999495e-02,
                                   -5.83357013379057348645e-02, -3.65315727442169155270e-02};
-    double high = 0, low = 0, x = t;  // atan c in two parts
+    double high = 0, low = 0, x = t;  // atan c as a sum of two
     if (t >= 39.0 / 16) {
         high = 1.57079632679489655800e+00, low = 6.12323399573676603587e-17, x = -1 / t;
     } else if (t >= 19.0 / 16) {

@@ -115,7 +115,7 @@ struct Mechanism : ConstraintSet<S> {
         return worst;
     }
 
-    /// The forces in the rods, N, > 0 where one pulls, in the order of the constraints that are rods: the λ of C″ = 0,
+    /// The rod tensions, N, > 0 where one pulls, in the order of the constraints that are rods: the λ of C″ = 0,
     /// without what a stabilisation adds. NaN where a constraint depends on others, so that none is
     /// determined.
     std::vector<Scalar> tensions(const State& y) {
@@ -196,7 +196,7 @@ private:
     }
 
     /// Factors J(q) M⁻¹ J0ᵀ, and near a singular configuration finds out whether one lies between this call and the one
-    /// before: stepped over, it would look like any other step, and end in another motion.
+    /// before: integrated over, it would look like any other step, and end in another motion.
     template <class Vector>
     void factor_and_check_path(const Vector& q, const Gradients& zero) {
         factor(q, zero);

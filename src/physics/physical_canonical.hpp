@@ -15,7 +15,7 @@ namespace doppel {
 /// Q_i are the torque on the link and l_i t_i·(Σ_{k≥i} drag_k). j_1′ is the velocity of the pivot, given by the time; time and
 /// work are as in (θ, ω). The flow is symplectic in (θ, p) where there is no friction; with friction a method is what it is
 /// for any equation.
-/// Errors  exit 2 with Coulomb's friction, whose joints rest at the end of steps.
+/// Errors  exit 2 with Coulomb friction, whose joints rest at the end of steps.
 template <class S>
 struct Canonical<PhysicalChain<S>> {
     using Scalar = S;

@@ -14,7 +14,7 @@ namespace doppel {
 
 /// A chain of rigid bodies in angles, with friction, motors and a pivot that moves: M θ″ = f in O(N) (ArticulatedBodies).
 ///
-/// A joint with Coulomb's friction comes to rest where its rate is 0, and is held while a torque of at most c holds it: then
+/// A joint with Coulomb friction comes to rest where its rate is 0, and is held while a torque of at most c holds it: then
 /// it keeps its angle exactly. Between such events the right-hand side is smooth.
 ///
 /// State   (q, v) of PhysicalLayout, q = (θ1 … θN …). Angles are not wrapped.
@@ -108,7 +108,7 @@ public:
         bodies_.factor(sin_, cos_);
     }
     void solve_mass(const Half& f, Half& a) { bodies_.solve_mass(f, a); }
-    /// Without Coulomb's friction.
+    /// Without Coulomb friction.
     const PhysicalForces<Scalar>& forces_at(const Half& omega, const Scalar& t, const Planar<Scalar>& pivot_velocity) {
         rates_ = omega;
         take_forces(t, pivot_velocity);

@@ -68,7 +68,7 @@ struct PivotPlace {
     }
 };
 
-/// The torques on the arms, N m, and forces on their ends, N, by friction and motors, and their power, W.
+/// The torques on the links, N m, and forces on their ends, N, by friction and motors, and their power, W.
 template <class S>
 class PhysicalForces {
 public:

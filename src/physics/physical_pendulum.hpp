@@ -8,12 +8,12 @@ namespace doppel {
 /// is that of its link less that of the link above. Each list has one number a link, ≥ 0, or is empty: none.
 ///
 ///     at a joint       −b ω − c sign ω                  torque on its link, the opposite on the link above
-///     on an arm        −k1 ω − k2 |ω| ω                 torque, by the arm's own rate
-///     of the air met   −k3 |u| u , u = ω + t·p′ m a / J  torque about the joint p and, m a / J times it along t, force
+///     on a link        −k1 ω − k2 |ω| ω                 torque, by the link's own rate
+///     of the relative velocity of the air   −k3 |u| u , u = ω + t·p′ m a / J  torque about the joint p and, m a / J times it along t, force
 ///     on a link's end  −d1 v − d2 |v| v                 force, by its velocity
 ///
-/// The third of them acts where an arm meets the air broadside: at its centre of oscillation, J / (m a) from the joint,
-/// with the speed u J / (m a), t across the arm and J its inertia about the joint. The second term is Coulomb's friction: it
+/// The third of them acts where the normal velocity of the air acts: at the centre of oscillation of a link, J / (m a) from the joint,
+/// with the speed u J / (m a), t across the link and J its inertia about the joint. The second term is Coulomb friction: it
 /// holds a joint at rest as long as a torque of at most c does.
 template <class Scalar>
 struct Friction {

@@ -69,7 +69,7 @@ struct RodChain {
             rate_of_any(y, dydt);
     }
 
-    /// The forces in the rods, N, > 0 where one pulls: on particle k acts λ_k r_k, so T_k = −λ_k |r_k|.
+    /// The rod tensions, N, > 0 where one pulls: on particle k acts λ_k r_k, so T_k = −λ_k |r_k|.
     std::vector<Scalar> tensions(const State& y) {
         using std::sqrt;
         find_multipliers(y.head(2 * w.size()), y.tail(2 * w.size()));
@@ -242,7 +242,7 @@ private:
     Scalar least_motion_{0};  // m²/s²: Σ |u_k|² above which pulls_ serves; infinite with a mass below 1/8 of the next
 };
 
-/// The forces in the rods of a chain whose bobs are there, N, from the pivot down: > 0 where a rod pulls, < 0 where it
+/// The rod tensions of a chain whose bobs are there, N, from the pivot down: > 0 where a rod pulls, < 0 where it
 /// pushes. Whatever model the bobs are from, for they follow from places and velocities alone.
 template <class Scalar>
 std::vector<Scalar> tensions(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {

@@ -14,7 +14,11 @@ namespace doppel {
 struct ChosenName {
     std::span<const std::string_view> names;
     std::string_view name;
-    std::function<void(std::size_t)> choose;
+    void* member;
+    void (*set)(void* member,
+                std::size_t name);  // a pointer, not a std::function: KeyMember stays trivial, and cheap to compile
+
+    void choose(std::size_t k) const { set(member, k); }
 };
 
 template <class... T>
@@ -29,7 +33,8 @@ using KeyMember = PointerToAny<bool, int, double, Quad, Rational, std::string, s
 template <class T>
 KeyMember member_of(T& member) {
     if constexpr (std::is_enum_v<T>)
-        return ChosenName{names_of<T>, name_of(member), [&](std::size_t k) { member = static_cast<T>(k); }};
+        return ChosenName{names_of<T>, name_of(member), &member,
+                          [](void* chosen, std::size_t k) { *static_cast<T*>(chosen) = static_cast<T>(k); }};
     else
         return &member;
 }

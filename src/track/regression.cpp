@@ -14,7 +14,7 @@ namespace {
 constexpr int degree = 5;
 constexpr std::size_t least_points = degree + 3;
 
-/// Of an arm, those in a window around a moment, which is shifted to be whole even at the ends of the piece, and widened
+/// Of a link, those in a window around a moment, which is shifted to be whole even at the ends of the piece, and widened
 /// to hold enough; without outliers.
 std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t arm, double time_s, double window) {
     const auto& times = piece.time_s;
@@ -79,7 +79,7 @@ double window_of(const Track& track) {
     const auto& piece = track.pieces.front();
     const double interval = piece.duration() / static_cast<double>(piece.size() - 1);
     const double noise = std::max(track.noise[0], track.noise[1]);
-    // the acceleration errs by about 27 noise/(window² √samples): to be some tenths of rad/s²
+    // the acceleration has an error of about 27 noise/(window² √samples): to be some tenths of rad/s²
     const double quiet = portable_pow(27 * noise * std::sqrt(interval) / 0.5, 0.4);
     return std::clamp(std::max(quiet, samples * interval), shortest, longest);
 }
@@ -113,7 +113,7 @@ std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& st
 Regression regress(const std::vector<Glimpse>& glimpses) {
     Regression result;
     if (glimpses.size() < 8) return result;
-    // the second arm, whose own term has no unknown: −θ2″ = C (cosδ θ1″ − sinδ ω1²) + D2 sinθ2 + friction
+    // the second link, whose own term has no unknown: −θ2″ = C (cosδ θ1″ − sinδ ω1²) + D2 sinθ2 + friction
     Equations<3> second, first;
     for (const auto& [one, two] : glimpses) {
         const SinCos<double> between(one.angle - two.angle), turn1(one.angle), turn2(two.angle);

@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-/// Angle, rate and acceleration of an arm at one moment, from a polynomial through the samples around it.
+/// Angle, rate and acceleration of a link at one moment, from a polynomial through the samples around it.
 struct ArmGlimpse {
     double angle = 0, rate = 0, acceleration = 0;
     double rms = 0;  // of how far the samples are from it, rad

@@ -95,7 +95,7 @@ double number_of(const std::string& place, std::string_view column, std::string_
     return value;
 }
 
-/// Of both arms, given themselves or by the places of pivot, joint and end, y down.
+/// Of both links, given themselves or by the places of pivot, joint and end, y down.
 std::array<double, 2> angles_of(const std::string& place, std::span<const double> values) {
     constexpr double most = 1e6;  // rad: 160 000 turns
     std::array<double, 2> angles{values[0], values[1]};
@@ -277,7 +277,7 @@ struct Reading {
     bool relative = false, mirrored = false;
     std::array<int, 2> quarters{};  // of a turn to subtract
 
-    /// Takes both arms' angles so; or what they change by, which does not begin anywhere.
+    /// Takes both links' angles so; or what they change by, which does not begin anywhere.
     void take(double& first, double& second, bool are_angles) const {
         const double quarter = are_angles ? std::numbers::pi / 2 : 0, shift = quarters[0] * quarter;
         first *= unit, second *= mirrored ? -unit : unit;

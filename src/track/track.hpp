@@ -15,7 +15,7 @@ struct TrackPiece {
     std::string name;                             // of the file, and which part of it
     std::vector<double> time_s;                   // ascending, as in the file
     std::array<std::vector<double>, 2> angle;     // rad, from the downward vertical, without jumps by whole turns
-    std::array<std::vector<char>, 2> is_outlier;  // by arm and sample: far off its neighbours, left out of the fit
+    std::array<std::vector<char>, 2> is_outlier;  // by link and sample: far off its neighbours, left out of the fit
 
     std::size_t size() const { return time_s.size(); }
     double duration() const { return time_s.back() - time_s.front(); }

@@ -231,7 +231,7 @@ Found energy_gain() {
     exact.integrator = "taylor";
     const double euler = gain(side({90, 90})), taylor = gain(exact);
     return {holds_if(euler > 0),
-            fmt::format("in 75 s at 90°/90° Euler gains {} J of 58.8; Taylor series, {} J: the method's doing",
+            fmt::format("in 75 s at 90°/90° Euler gains {} J of 58.8; Taylor series, {} J: an error of the method",
                         scientific(euler), scientific(std::abs(taylor)))};
 }
 
@@ -252,7 +252,7 @@ Found droplet_79() {
 
 Found droplet_90() {
     const auto [parted, seen_s] = parted_by_droplet(90);
-    return {holds_if(seen_s > 0), fmt::format("in quad, from 90°/90°, the two are strangers after {:.0f} s", seen_s)};
+    return {holds_if(seen_s > 0), fmt::format("in quad, from 90°/90°, the two have diverged after {:.0f} s", seen_s)};
 }
 
 Found three_links() {
@@ -281,13 +281,13 @@ constexpr Claim claims[]{
     {"Each step updates velocities first, then positions (eq. 7)", order_of_update},
     {"The constraint and the first row of its Jacobian are as printed (eqs. 9, 10)", constraint_row},
     {"λ > 0, hence chaos", positive_means_chaos},
-    {"The twins of figure 2 left part until ln(d/d₀) saturates near 11.5", course_over_time},
+    {"The pair of figure 2 left diverges until ln(d/d₀) saturates near 11.5", course_over_time},
     {"Figure 2 right rises to 2.8 by 40° and 4 by 80°, falls to 3–4 near 108°, then stays at 8–10", course_over_angle},
     {"Figures 3 left and 5 left share their scale", figure3_axis},
     {"Figures 3 and 5 right are released at θ₂ = 0", figure3_release},
     {"The lower curve of figure 6 is released at 30°", figure6_release},
-    {"The two formulations part because of floating point and π", floating_point},
-    {"The energy rises until the simulation breaks down", energy_gain},
+    {"The two formulations diverge because of floating point and π", floating_point},
+    {"The energy rises until the simulation fails", energy_gain},
     {"A raindrop a mile away is felt at 79°/79° (figure 7)", droplet_79},
     {"A raindrop a mile away is felt where the motion is chaotic", droplet_90},
     {"Figure 8 takes over an hour and a half, and more than three links are out of reach", three_links}};
